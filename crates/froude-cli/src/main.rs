@@ -1,0 +1,107 @@
+//! The program `froude`: parse, call, print.
+//!
+//! Exit code 0: done. 1: failed. 2: bad input. With `--json` the result goes to
+//! standard output as one JSON document; progress and messages go to standard error.
+
+mod args;
+mod print;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use froude::pipeline::{self, Job};
+use froude::{Error, demo, inspect, twin};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use args::{Cli, Verb};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match run(cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("froude: {error}");
+            ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
+        }
+    }
+}
+
+fn run(cli: Cli) -> Result<(), Error> {
+    match cli.verb {
+        Verb::Demo { dir } => {
+            let bar = spinner();
+            let outcomes = demo::run(&dir, Some(today()), &|step| bar.set_message(step.to_owned()))?;
+            bar.finish_and_clear();
+            if cli.json {
+                return print::json(&outcomes.iter().map(|o| &o.file).collect::<Vec<_>>());
+            }
+            for outcome in &outcomes {
+                print::outcome(outcome);
+            }
+        }
+        Verb::Identify { input, out, sidecar, models } => {
+            let bar = spinner();
+            let job = Job { input, out, sidecar, models, date: Some(today()) };
+            let outcome = pipeline::identify(&job, &|step| bar.set_message(step.to_owned()))?;
+            bar.finish_and_clear();
+            if cli.json {
+                return print::json(&outcome.file);
+            }
+            print::outcome(&outcome);
+        }
+        Verb::Compare { estimates, all } => {
+            let comparison = froude::compare_files(&estimates)?;
+            if cli.json {
+                return print::json(&print::comparison_json(&comparison));
+            }
+            print::comparison(&comparison, all);
+        }
+        Verb::Inspect { file, sidecar } => {
+            let inspection = inspect::inspect(&file, sidecar.as_deref())?;
+            if cli.json {
+                return print::json(&inspection);
+            }
+            print::inspection(&inspection);
+        }
+        Verb::Simulate { campaign, replace } => {
+            let written = twin::simulate(&campaign, replace)?;
+            if cli.json {
+                let rows: Vec<_> = written
+                    .iter()
+                    .map(|w| serde_json::json!({"source": w.source, "path": w.path, "rows": w.rows}))
+                    .collect();
+                return print::json(&rows);
+            }
+            for w in written {
+                println!("{}: {} observations in {}", w.source, w.rows, w.path.display());
+            }
+        }
+        Verb::Schema => print!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA),
+    }
+    Ok(())
+}
+
+/// A spinner on standard error; silent where that is no terminal.
+fn spinner() -> ProgressBar {
+    let bar = ProgressBar::new_spinner();
+    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(std::time::Duration::from_millis(100));
+    bar
+}
+
+/// Today's date (UTC) as `2026-11-21`, from the days since 1970 (Hinnant's civil-from-days).
+fn today() -> String {
+    let seconds = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).map_or(0, |d| d.as_secs());
+    let days = (seconds / 86_400) as i64 + 719_468;
+    let era = days.div_euclid(146_097);
+    let day_of_era = days.rem_euclid(146_097);
+    let year_of_era = (day_of_era - day_of_era / 1_460 + day_of_era / 36_524 - day_of_era / 146_096) / 365;
+    let day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+    let month_from_march = (5 * day_of_year + 2) / 153;
+    let day = day_of_year - (153 * month_from_march + 2) / 5 + 1;
+    let month = if month_from_march < 10 { month_from_march + 3 } else { month_from_march - 9 };
+    let year = year_of_era + era * 400 + i64::from(month <= 2);
+    format!("{year:04}-{month:02}-{day:02}")
+}

@@ -1,0 +1,174 @@
+//! What a user sees when the input is wrong: exit code 2, one message, nothing written.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn froude(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_froude")).args(args).current_dir(folder).output().unwrap()
+}
+
+/// Runs `identify` on files written to a fresh folder; asserts exit 2, the exact message and that nothing was made.
+fn refuses(files: &[(&str, &str)], input: &str, message: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let before = std::fs::read_dir(folder.path()).unwrap().count();
+    let output = froude(folder.path(), &["identify", input]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(said.trim_end(), format!("froude: {message}"), "exact message");
+    assert_eq!(output.status.code(), Some(2), "exit code");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), before, "nothing is written");
+}
+
+const TABLE: &str = "speed [m/s],f_x [N]\n0.1,-0.5\n0.2,-2.0\n0.3,-4.4\n0.4,-8.1\n0.5,-12.4\n";
+
+#[test]
+fn a_missing_unit_is_named_with_its_column() {
+    refuses(
+        &[("t.csv", "speed,f_x [N]\n0.1,-0.5\n")],
+        "t.csv",
+        "t.csv:1: column `speed` has no unit; write `speed [m/s]`, or map it with a sidecar t.toml",
+    );
+}
+
+#[test]
+fn a_length_where_a_speed_belongs_names_both_units() {
+    refuses(
+        &[("t.csv", "speed [m],f_x [N]\n0.1,-0.5\n")],
+        "t.csv",
+        "t.csv:1: column `speed [m]`: wrong unit: expected a speed (m/s), found a length (m)",
+    );
+}
+
+#[test]
+fn an_empty_cell_is_named_with_line_and_column() {
+    refuses(
+        &[("t.csv", "speed [m/s],f_x [N]\n0.1,-0.5\n0.2,\n")],
+        "t.csv",
+        "t.csv:3: column `f_x [N]`: the cell is empty; fill it in or delete the row",
+    );
+}
+
+#[test]
+fn not_a_number_is_refused() {
+    refuses(
+        &[("t.csv", "speed [m/s],f_x [N]\n0.1,NaN\n")],
+        "t.csv",
+        "t.csv:2: column `f_x [N]`: `NaN` is not a finite number; correct it or delete the row",
+    );
+}
+
+#[test]
+fn a_ragged_row_is_named_with_its_line() {
+    refuses(
+        &[("t.csv", "speed [m/s],f_x [N]\n0.1,-0.5,3\n")],
+        "t.csv",
+        "t.csv:2: the row has 3 cells, the header has 2",
+    );
+}
+
+#[test]
+fn a_table_without_rows_is_refused() {
+    refuses(
+        &[("t.csv", "speed [m/s],f_x [N]\n")],
+        "t.csv",
+        "t.csv: the table has no rows; at least one observation is needed",
+    );
+}
+
+#[test]
+fn a_truncated_parquet_file_is_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.parquet"), b"PAR1 and then nothing").unwrap();
+    let output = froude(folder.path(), &["identify", "t.parquet"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.starts_with("froude: t.parquet: not a whole Parquet file ("), "{said}");
+    assert!(said.trim_end().ends_with("it is truncated or damaged: copy or export it again"), "{said}");
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn drag_models_without_a_body_name_the_missing_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), TABLE).unwrap();
+    let output = froude(folder.path(), &["identify", "t.csv", "--models", "f4"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(
+        said.trim_end(),
+        "froude: model f4: needs the body's geometry; the campaign lacks body.link (major_semi_axis, minor_semi_axis, \
+         half_length), body.head_side_area, body.tail_side_area, fluid.density (or temperature), a table column \
+         configuration (HkLT) or n_links [1]"
+    );
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn an_unknown_model_lists_what_there_is() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), TABLE).unwrap();
+    let output = froude(folder.path(), &["identify", "t.csv", "--models", "f7"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.starts_with("froude: model \"f7\" is not known; built in are f1 to f6, quadratic,"), "{said}");
+}
+
+const CAMPAIGN: &str = "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n";
+
+#[test]
+fn a_campaign_that_names_a_missing_file_is_refused_with_its_line() {
+    refuses(&[("c.toml", CAMPAIGN)], "c.toml", "c.toml:6: `table` names t.csv, which does not exist");
+}
+
+#[test]
+fn duplicate_coefficient_names_of_different_unit_are_refused() {
+    let campaign =
+        format!("{CAMPAIGN}[identify]\n[[identify.model]]\nname = \"m\"\nf_x = \"-A*u\"\nf_y = \"-A*v*abs(v)\"\n");
+    refuses(
+        &[("c.toml", &campaign), ("t.csv", "v_x [m/s],v_y [m/s],f_x [N],f_y [N]\n0.1,0.1,-0.5,-0.1\n")],
+        "c.toml",
+        "model \"m\": coefficient A would be kg/s in one formula and kg/m in another; give the two terms different names",
+    );
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_made_is_told_and_nothing_is_left() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), TABLE).unwrap();
+    std::fs::write(folder.path().join("file"), "in the way").unwrap();
+    let output = froude(folder.path(), &["identify", "t.csv", "--out", "file/results"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.starts_with("froude: file/results: cannot be written: "), "{said}");
+    assert!(said.trim_end().ends_with("choose another place with --out"), "{said}");
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(std::fs::read_to_string(folder.path().join("file")).unwrap(), "in the way");
+}
+
+#[test]
+fn rank_deficient_data_give_null_and_name_what_is_determined() {
+    let folder = tempfile::tempdir().unwrap();
+    // One speed: the linear and the quadratic term are the same column.
+    std::fs::write(folder.path().join("t.csv"), "speed [m/s],f_x [N]\n0.5,-1.0\n0.5,-1.1\n0.5,-0.9\n").unwrap();
+    let output = froude(folder.path(), &["--json", "identify", "t.csv", "--models", "linear_quadratic"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let estimate = &json["estimates"][0];
+    assert!(estimate["coefficients"]["D_x_I"]["value"].is_null());
+    assert_eq!(estimate["coefficients"]["D_x_II"]["status"], "undetermined");
+    assert_eq!(estimate["undetermined"].as_array().unwrap().len(), 1);
+    let codes: Vec<&str> = json["findings"].as_array().unwrap().iter().map(|f| f["code"].as_str().unwrap()).collect();
+    assert!(codes.contains(&"few-speeds"), "{codes:?}");
+}
+
+#[test]
+fn radians_typed_into_a_column_of_degrees_are_suspected() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows: String = (0..9).map(|k| format!("0.5,{},-1.0,{}\n", f64::from(k) * 0.1, f64::from(k) * 0.2)).collect();
+    std::fs::write(folder.path().join("t.csv"), format!("speed [m/s],angle [deg],f_x [N],f_y [N]\n{rows}")).unwrap();
+    let output = froude(folder.path(), &["inspect", "t.csv"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        said.contains("all 9 angles lie within ±0.800 deg: they look like radians in a column of degrees; head the column `angle [rad]` if so"),
+        "{said}"
+    );
+}

@@ -1,0 +1,133 @@
+//! The verbs as a user runs them, end to end.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn froude(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_froude")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn example(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
+}
+
+#[test]
+fn the_demo_writes_both_campaigns_and_says_where_the_reports_lie() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = froude(folder.path(), &["demo", "here"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    for part in ["mounting frame", "circulation tank twin", "D_x_II", "C_d_II", "report.html"] {
+        assert!(said.contains(part), "{part} is not in\n{said}");
+    }
+    for report in [
+        "here/unh-rm2/tare-results/report.html",
+        "here/unh-rm2/rotor-results/report.html",
+        "here/mamba/campaign-results/report.html",
+    ] {
+        let html = std::fs::read_to_string(folder.path().join(report)).unwrap();
+        assert!(html.starts_with("<!DOCTYPE html>"));
+        assert!(html.contains("<svg"));
+    }
+    // A second demo does not write over the first.
+    let again = froude(folder.path(), &["demo", "here"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert_eq!(
+        String::from_utf8_lossy(&again.stderr).trim_end(),
+        "froude: here exists and is not empty; name another folder: froude demo DIR"
+    );
+}
+
+#[test]
+fn a_bare_table_gets_polynomials_and_the_power_law() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["Tare-drag.csv", "Tare-drag.toml"] {
+        std::fs::copy(example("unh-rm2").join(name), folder.path().join(name)).unwrap();
+    }
+    let out = json(&froude(folder.path(), &["--json", "identify", "Tare-drag.csv"]));
+    let models: Vec<&str> = out["estimates"].as_array().unwrap().iter().map(|e| e["model"].as_str().unwrap()).collect();
+    assert_eq!(models, ["quadratic", "linear_quadratic", "power_law"]);
+    let k = out["estimates"][0]["coefficients"]["D_x_II"]["value"].as_f64().unwrap();
+    // The preparer's figure, printed with four digits.
+    assert!((k - 47.83).abs() < 0.005, "{k}");
+    assert!(folder.path().join("Tare-drag-results/report.html").exists());
+    assert!(folder.path().join("Tare-drag-results/estimate.json").exists());
+}
+
+#[test]
+fn the_record_obeys_the_published_schema() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = json(&froude(
+        folder.path(),
+        &["--json", "identify", example("unh-rm2/tare.toml").to_str().unwrap(), "--out", "results"],
+    ));
+    let schema: serde_json::Value = serde_json::from_slice(&froude(folder.path(), &["schema"]).stdout).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let errors: Vec<String> = validator.iter_errors(&out).map(|e| e.to_string()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
+    let file: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("results/estimate.json")).unwrap()).unwrap();
+    assert_eq!(file, out, "--json prints what estimate.json holds");
+}
+
+#[test]
+fn the_twin_is_the_same_for_the_same_seed() {
+    let folder = tempfile::tempdir().unwrap();
+    let mamba = example("mamba");
+    std::fs::create_dir_all(folder.path().join("published")).unwrap();
+    for name in [
+        "campaign.toml",
+        "published/circulation_tank_restricted.json",
+        "published/cfd.json",
+        "published/towing_rig.json",
+    ] {
+        std::fs::copy(mamba.join(name), folder.path().join(name)).unwrap();
+    }
+    assert_eq!(froude(folder.path(), &["simulate", "campaign.toml"]).status.code(), Some(0));
+    let first = std::fs::read(folder.path().join("tank.csv")).unwrap();
+    let refused = froude(folder.path(), &["simulate", "campaign.toml"]);
+    assert_eq!(refused.status.code(), Some(2), "an existing table is not replaced unasked");
+    assert_eq!(froude(folder.path(), &["simulate", "campaign.toml", "--replace"]).status.code(), Some(0));
+    assert_eq!(std::fs::read(folder.path().join("tank.csv")).unwrap(), first);
+    // Table 3: 536 runs.
+    assert_eq!(String::from_utf8(first).unwrap().lines().count(), 537);
+}
+
+#[test]
+fn published_sets_are_compared_without_inventing_uncertainty() {
+    let published = example("mamba/published");
+    let path = |n: &str| published.join(n).to_str().unwrap().to_owned();
+    let out = json(&froude(
+        &published,
+        &[
+            "--json",
+            "compare",
+            &path("cfd.json"),
+            &path("circulation_tank_restricted.json"),
+            &path("table11_as_printed.json"),
+        ],
+    ));
+    for row in out["coefficients"].as_array().unwrap() {
+        assert!(row["e_n"].is_null(), "{row}");
+        assert!(row["note"].as_str().unwrap().starts_with("no uncertainty stated by "), "{row}");
+        let model = |id: &serde_json::Value| {
+            id.as_str().unwrap().split(' ').next().unwrap().rsplit('/').next().unwrap().to_owned()
+        };
+        assert_eq!(model(&row["first"]), model(&row["second"]), "only equal models are compared");
+    }
+    let contradictions: Vec<&str> = out["findings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|f| f["code"] == "contradiction")
+        .map(|f| f["message"].as_str().unwrap())
+        .collect();
+    assert_eq!(contradictions.len(), 1, "{contradictions:?}");
+    assert!(contradictions[0].contains("C_d: 0.3268 and 0.3628 differ by two exchanged digits"), "{contradictions:?}");
+}

@@ -1,0 +1,70 @@
+//! Least squares with honest uncertainty; knows no fluid.
+//!
+//! A [`Problem`] (design, responses of one or several components, weights,
+//! clusters) and [`Options`] (bounds, constraints, priors, loss, covariance)
+//! go into [`fit`]; out comes a [`Fit`] in which every number is either
+//! supported by the data or absent: what cannot be determined is `None`, and
+//! the combinations that can are named.
+//!
+//! | module          | what                                                                 |
+//! |-----------------|----------------------------------------------------------------------|
+//! | [`linear`]      | the fit: pivoted QR, separate σ per component                        |
+//! | [`bounded`]     | bounds, by an exact active-set method                                |
+//! | `constrained`   | linear inequalities: interior point, polished by QR                  |
+//! | [`robust`]      | Huber's loss                                                         |
+//! | `covariance`    | classical, HC3, CR3                                                  |
+//! | [`rank`]        | what is determined                                                   |
+//! | [`diagnostics`] | serial correlation, collinearity                                     |
+//! | [`select`]      | F tests, AICc, cross-validation, lack of fit                         |
+//! | [`odr`]         | orthogonal distance regression: uncertain inputs                     |
+//! | [`wild`]        | wild cluster bootstrap                                               |
+//! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
+//! | [`factored`]    | one design, many responses                                           |
+//! | [`coverage`]    | whether an interval covers as often as it says                       |
+//!
+//! All of it runs on one thread except the bootstrap, whose result does not
+//! depend on how many there are.
+//!
+//! Not here: models that are not linear in their coefficients (errors in
+//! variables aside), correlated noise other than by cluster, Bayesian
+//! posteriors beyond normal priors. No R² is reported: without an intercept it has
+//! no agreed meaning, and with one it praises the range of the test.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+// Matrix loops read like the formula with indices.
+#![allow(clippy::needless_range_loop)]
+
+mod block;
+pub mod bounded;
+mod constrained;
+mod covariance;
+pub mod coverage;
+mod dense;
+mod determined;
+pub mod diagnostics;
+pub mod distribution;
+mod error;
+mod estimate;
+pub mod factored;
+pub mod linear;
+pub mod odr;
+mod options;
+mod outcome;
+mod problem;
+pub mod propagate;
+pub mod rank;
+mod report;
+pub mod robust;
+pub mod select;
+mod shape;
+pub mod wild;
+
+pub use covariance::FEWEST_CLUSTERS;
+pub use error::FitError;
+pub use factored::{Factored, Solution};
+pub use faer;
+pub use linear::fit;
+pub use options::{Bound, Constraint, CovarianceKind, Loss, Options, Prior};
+pub use outcome::{Combination, ComponentSummary, Fit, FitCoefficient, Optimality, Prediction, Status};
+pub use problem::Problem;
+pub use report::{End, Report};

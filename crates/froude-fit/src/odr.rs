@@ -1,0 +1,189 @@
+//! Orthogonal distance regression: some inputs are uncertain too.
+//!
+//! A towing speed enters the columns `v` and `v|v|`, of both force components,
+//! together; errors given per column would be wrong. Here each observation has
+//! `m` measured inputs `z` with known standard deviations `s`, and regressors
+//! that are any function of them. With `δ` the corrections of the inputs,
+//!
+//! `Σ_i ( Σ_c (y_ic − x_c(z_i + δ_i) · β)² / σ_c² + Σ_m δ_im² / s_im² )`
+//!
+//! is minimised over `β` and all `δ`. The `δ_i` of each observation are
+//! eliminated inside each Gauss–Newton step: linearised in `δ_i`, its responses
+//! have covariance `V_i = diag(σ²) + F_i S_i² F_iᵀ`, `F_i = ∂(x β)/∂z`, and the step is a
+//! generalised least squares fit (by QR of the whitened rows). At its end the conditions of
+//! the full problem hold exactly.
+//!
+//! σ of a component is known, or estimated by restricted maximum likelihood of
+//! the linearised model. The minimum of the sum above over σ as well would not
+//! be consistent: the `δ` are as many as the observations.
+//!
+//! **Source.** Boggs, Byrd & Schnabel (1987), SIAM J. Sci. Stat. Comput. 8 (the problem);
+//! Patterson & Thompson (1971), Biometrika 58 (σ); Giesbrecht & Burns (1985), Biometrics 41
+//! (degrees of freedom).
+//!
+//! Not here: correlated inputs, inputs whose error is shared by many
+//! observations (see [`crate::propagate`]), bounds.
+
+mod model;
+mod solve;
+mod variance;
+
+pub use model::{InputModel, OdrProblem, Sigma};
+
+use faer::Mat;
+
+use crate::dense::{mul, norm, row};
+use crate::determined::Indeterminacy;
+use crate::distribution::coverage_factor;
+use crate::error::FitError;
+use crate::outcome::{FitCoefficient, Status};
+use crate::report::{End, Report};
+use solve::State;
+use variance::Variance;
+
+/// σ has converged when it changes by less than this part.
+const SIGMA_TOLERANCE: f64 = 1e-9;
+/// Most alternations between β, δ and σ.
+const SIGMA_ITERATIONS: usize = 200;
+
+/// σ of one component.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OdrSigma {
+    /// The component.
+    pub component: String,
+    /// Its σ, without what the input errors contribute.
+    pub sigma: f64,
+    /// Whether it was estimated.
+    pub is_estimated: bool,
+    /// Degrees of freedom of the estimate, infinite when known.
+    pub dof: f64,
+    /// The input errors alone explain all scatter; σ is at its floor.
+    pub is_negligible: bool,
+}
+
+/// The result of [`odr`].
+#[derive(Debug, Clone)]
+pub struct OdrFit {
+    /// One per column.
+    pub coefficients: Vec<FitCoefficient>,
+    /// Covariance, `p × p`, zero rows where not determined.
+    pub covariance: Mat<f64>,
+    /// One per component.
+    pub sigma: Vec<OdrSigma>,
+    /// `δ`, `n × m`: estimated input less measured input.
+    pub input_correction: Mat<f64>,
+    /// `y − x(z + δ) β`, `n × c`.
+    pub residuals: Mat<f64>,
+    /// The sum that was minimised.
+    pub objective: f64,
+    /// Probability of the intervals.
+    pub confidence: f64,
+    /// How it ended.
+    pub report: Report,
+}
+
+/// Fits a linear model whose inputs are uncertain.
+///
+/// # Errors
+///
+/// [`FitError`] when sizes or numbers are not usable, or when a component whose
+/// σ is to be estimated has no degrees of freedom.
+pub fn odr<M: InputModel>(model: &M, problem: &OdrProblem, confidence: f64) -> Result<OdrFit, FitError> {
+    problem.check(model)?;
+    if !(confidence > 0.0 && confidence < 1.0) {
+        return Err(FitError::Option { option: "confidence", value: confidence, must: "between 0 and 1" });
+    }
+    let (mut state, mut variance) = State::start(model, problem)?;
+    let mut report = Report { end: End::IterationLimit, iterations: 0 };
+    for _ in 0..SIGMA_ITERATIONS {
+        let step = solve::minimise(model, problem, &mut state, &variance.sigma);
+        report.iterations += step.iterations;
+        if !variance.has_estimated() || step.end == End::IterationLimit {
+            report.end = step.end;
+            break;
+        }
+        let linear = solve::linearise(model, problem, &state);
+        let change = variance.update(problem, &linear);
+        if change < SIGMA_TOLERANCE {
+            report.end = step.end;
+            break;
+        }
+    }
+    Ok(finish(model, problem, &state, &variance, confidence, report))
+}
+
+fn finish<M: InputModel>(
+    model: &M,
+    problem: &OdrProblem,
+    state: &State,
+    variance: &Variance,
+    confidence: f64,
+    report: Report,
+) -> OdrFit {
+    let p = model.n_coefficients();
+    let linear = solve::linearise(model, problem, state);
+    let rows = solve::whiten(problem, &linear, &variance.sigma);
+    let factored = rows.factor();
+    let null = Indeterminacy::new(factored.qr.null_space().as_ref());
+    let mut lift = factored.qr.lift();
+    for j in 0..p {
+        for k in 0..lift.ncols() {
+            lift[(j, k)] /= factored.scale[j];
+        }
+    }
+    let full = mul(lift.as_ref(), lift.transpose());
+    let covariance =
+        Mat::from_fn(p, p, |i, j| if null.determined[i] && null.determined[j] { full[(i, j)] } else { 0.0 });
+    let spread = variance.spread(problem, &linear, &full);
+    let coefficients = (0..p)
+        .map(|j| {
+            let name = problem.names[j].clone();
+            if !null.determined[j] {
+                return FitCoefficient {
+                    name,
+                    status: Status::Undetermined,
+                    value: None,
+                    standard: None,
+                    interval: None,
+                    dof: None,
+                    unconstrained: None,
+                    inflation: None,
+                };
+            }
+            let value = state.beta[j];
+            let standard = norm(&row(lift.as_ref(), j));
+            let dof = spread.coefficient_dof(j, standard * standard);
+            let half = coverage_factor(confidence, dof) * standard;
+            FitCoefficient {
+                name,
+                status: Status::Free,
+                value: Some(value),
+                standard: Some(standard),
+                interval: Some([value - half, value + half]),
+                dof: Some(dof),
+                unconstrained: Some(value),
+                inflation: None,
+            }
+        })
+        .collect();
+    let c = model.n_components();
+    let n = problem.response.nrows();
+    OdrFit {
+        coefficients,
+        covariance,
+        sigma: (0..c)
+            .map(|k| OdrSigma {
+                component: problem.components[k].clone(),
+                sigma: variance.sigma[k],
+                is_estimated: problem.sigma[k] == Sigma::Estimated,
+                dof: spread.sigma_dof(k, variance.sigma[k]),
+                is_negligible: variance.is_at_floor(k),
+            })
+            .collect(),
+        input_correction: state.delta.clone(),
+        residuals: Mat::from_fn(n, c, |i, k| linear.residual[i * c + k]),
+        objective: solve::objective(problem, state, &linear.residual, &variance.sigma),
+        confidence,
+        report,
+    }
+}

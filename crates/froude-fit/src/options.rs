@@ -1,0 +1,205 @@
+//! How a problem is to be fitted.
+
+use crate::error::FitError;
+use crate::problem::{Problem, size};
+
+/// Bounds, constraints, prior knowledge, loss and kind of covariance.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Bounds of the coefficients: empty (all free) or one per coefficient.
+    pub bounds: Vec<Bound>,
+    /// Linear equalities `row · β = value`.
+    pub equalities: Vec<Constraint>,
+    /// Linear inequalities `row · β ≤ value`.
+    pub inequalities: Vec<Constraint>,
+    /// Published values taken as observations with a known standard deviation.
+    pub priors: Vec<Prior>,
+    /// Coefficients held at a value, taken as exact.
+    pub fixed: Vec<(usize, f64)>,
+    /// Coefficients held at zero.
+    pub excluded: Vec<usize>,
+    /// What is minimised.
+    pub loss: Loss,
+    /// Where the standard uncertainties come from.
+    pub covariance: CovarianceKind,
+    /// Probability of the intervals, 0.95 by default.
+    pub confidence: f64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            bounds: Vec::new(),
+            equalities: Vec::new(),
+            inequalities: Vec::new(),
+            priors: Vec::new(),
+            fixed: Vec::new(),
+            excluded: Vec::new(),
+            loss: Loss::Squares,
+            covariance: CovarianceKind::Classical,
+            confidence: 0.95,
+        }
+    }
+}
+
+/// Bounds of one coefficient; infinite where there is none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bound {
+    /// Smallest value allowed.
+    pub lower: f64,
+    /// Largest value allowed.
+    pub upper: f64,
+}
+
+impl Bound {
+    /// Any value.
+    pub const FREE: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
+    /// Zero or more.
+    pub const NON_NEGATIVE: Self = Self { lower: 0.0, upper: f64::INFINITY };
+}
+
+/// A linear relation between coefficients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constraint {
+    /// Factors of the coefficients, length `p`.
+    pub row: Vec<f64>,
+    /// Right-hand side.
+    pub value: f64,
+}
+
+/// A value known beforehand, with its standard uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prior {
+    /// The coefficient.
+    pub index: usize,
+    /// Its published value.
+    pub value: f64,
+    /// Its standard uncertainty, positive, in the unit of the coefficient.
+    pub standard: f64,
+}
+
+/// What is minimised.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Loss {
+    /// The weighted sum of squares.
+    Squares,
+    /// Huber's loss: squares up to `k` standard deviations, linear beyond.
+    Huber {
+        /// Where the loss turns linear, in σ. 1.345 keeps 95 % efficiency on
+        /// normal errors.
+        k: f64,
+    },
+}
+
+/// Where the standard uncertainties come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CovarianceKind {
+    /// Independent errors of one σ per component.
+    Classical,
+    /// Independent errors of any variance (MacKinnon & White 1985, HC3).
+    Hc3,
+    /// Errors correlated in clusters: cluster jackknife, t with `G − 1`.
+    Cr3,
+}
+
+impl Options {
+    /// Bounds of coefficient `j`.
+    pub(crate) fn bound(&self, j: usize) -> Bound {
+        self.bounds.get(j).copied().unwrap_or(Bound::FREE)
+    }
+
+    /// The same options without bounds and inequalities.
+    #[must_use]
+    pub fn unconstrained(&self) -> Self {
+        Self { bounds: Vec::new(), inequalities: Vec::new(), ..self.clone() }
+    }
+
+    /// Checks indices, sizes and numbers against the problem.
+    ///
+    /// # Errors
+    ///
+    /// The first thing found wrong.
+    pub fn check(&self, problem: &Problem) -> Result<(), FitError> {
+        let p = problem.n_coefficients();
+        let of_columns = "one per column of the design";
+        if !self.bounds.is_empty() {
+            size("bounds", self.bounds.len(), p, of_columns)?;
+        }
+        for (j, bound) in self.bounds.iter().enumerate() {
+            let is_fine = bound.lower <= bound.upper && bound.lower < f64::INFINITY && bound.upper > f64::NEG_INFINITY;
+            if !is_fine {
+                return Err(FitError::Bounds {
+                    name: problem.names[j].clone(),
+                    lower: bound.lower,
+                    upper: bound.upper,
+                });
+            }
+        }
+        for (constraints, what) in [(&self.equalities, "equality row"), (&self.inequalities, "inequality row")] {
+            for constraint in constraints {
+                size(what, constraint.row.len(), p, of_columns)?;
+                let all = constraint.row.iter().chain([&constraint.value]);
+                for &value in all {
+                    finite("a number of a constraint", value)?;
+                }
+            }
+        }
+        if !(self.confidence > 0.0 && self.confidence < 1.0) {
+            return Err(FitError::Option { option: "confidence", value: self.confidence, must: "between 0 and 1" });
+        }
+        if let Loss::Huber { k } = self.loss
+            && !(k > 0.0 && k.is_finite())
+        {
+            return Err(FitError::Option { option: "Huber's k", value: k, must: "positive and finite" });
+        }
+        if self.covariance == CovarianceKind::Cr3 && problem.cluster.is_none() {
+            return Err(FitError::NoClusters);
+        }
+        self.check_coefficients(problem)
+    }
+
+    fn check_coefficients(&self, problem: &Problem) -> Result<(), FitError> {
+        let p = problem.n_coefficients();
+        let mut said: Vec<Option<&'static str>> = vec![None; p];
+        let mut say = |index: usize, option: &'static str| match said.get_mut(index) {
+            None => Err(FitError::NoSuchCoefficient { option, index, count: p }),
+            Some(Some(first)) => Err(FitError::Conflict { name: problem.names[index].clone(), first, second: option }),
+            Some(empty) => {
+                *empty = Some(option);
+                Ok(())
+            }
+        };
+        for &(index, value) in &self.fixed {
+            say(index, "fixed")?;
+            finite("a fixed value", value)?;
+            let bound = self.bound(index);
+            if value < bound.lower || value > bound.upper {
+                return Err(FitError::FixedOutsideBounds {
+                    name: problem.names[index].clone(),
+                    value,
+                    lower: bound.lower,
+                    upper: bound.upper,
+                });
+            }
+        }
+        for &index in &self.excluded {
+            say(index, "excluded")?;
+        }
+        for prior in &self.priors {
+            say(prior.index, "given a prior")?;
+            finite("the value of a prior", prior.value)?;
+            if !(prior.standard > 0.0 && prior.standard.is_finite()) {
+                return Err(FitError::Option {
+                    option: "the standard uncertainty of a prior",
+                    value: prior.standard,
+                    must: "positive and finite (fix the coefficient to take a value as exact)",
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn finite(option: &'static str, value: f64) -> Result<(), FitError> {
+    if value.is_finite() { Ok(()) } else { Err(FitError::Option { option, value, must: "finite" }) }
+}

@@ -1,0 +1,207 @@
+//! What a fit returns.
+
+use faer::Mat;
+
+use crate::options::CovarianceKind;
+use crate::report::Report;
+
+/// How a coefficient came by its value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Estimated from the data.
+    Free,
+    /// At one of its bounds.
+    AtBound,
+    /// Held at a given value.
+    Fixed,
+    /// Held at zero.
+    Excluded,
+    /// Estimated from the data and a published value.
+    Prior,
+    /// Not determined by the data.
+    Undetermined,
+    /// At a bound that its unconstrained interval does not reach.
+    BoundContradicted,
+}
+
+/// One coefficient of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitCoefficient {
+    /// Its name.
+    pub name: String,
+    /// How it came by its value.
+    pub status: Status,
+    /// Its value under all constraints; `None` when not determined.
+    pub value: Option<f64>,
+    /// Standard uncertainty of the unconstrained estimate; `None` when held,
+    /// not determined, or when there are no degrees of freedom.
+    pub standard: Option<f64>,
+    /// The t-interval of the unconstrained estimate, cut by the bounds; `None`
+    /// without a standard uncertainty, or when nothing is left
+    /// ([`Status::BoundContradicted`]).
+    ///
+    /// It is the unconstrained interval that covers as often as it says. The
+    /// value may lie outside when another coefficient is held at its bound.
+    pub interval: Option<[f64; 2]>,
+    /// Degrees of freedom of the interval.
+    pub dof: Option<f64>,
+    /// The estimate without bounds and inequalities.
+    pub unconstrained: Option<f64>,
+    /// Variance relative to that of the same column alone, ≥ 1.
+    pub inflation: Option<f64>,
+}
+
+/// One response component of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentSummary {
+    /// Its name.
+    pub name: String,
+    /// Its rows.
+    pub n: usize,
+    /// How many parameters its rows determine (equalities taken off).
+    pub rank: usize,
+    /// `n − tr H`: rows less the parameters that they determine; a fraction
+    /// where a prior or another component shares in one.
+    pub dof: f64,
+    /// Standard deviation of a row of weight one, from the fit without bounds
+    /// and inequalities; `None` without degrees of freedom. With Huber's loss,
+    /// the scale from the median absolute residual.
+    pub sigma: Option<f64>,
+    /// Weighted sum of squared residuals of the constrained fit.
+    pub rss: f64,
+    /// `√(Σ w r² / Σ w y²)`, 0 for a fit without error.
+    pub relative_residual: f64,
+    /// Durbin–Watson statistic of the residuals in row order; `None` below
+    /// three rows or for residuals that are rounding only.
+    pub durbin_watson: Option<f64>,
+    /// Probability of a statistic as far from its mean, errors independent.
+    pub durbin_watson_p: Option<f64>,
+    /// Whether that probability is below [`crate::diagnostics::SERIAL_P`].
+    pub is_serially_correlated: bool,
+    /// Corrected Akaike criterion (σ counted); `None` where it is not defined
+    /// (see [`crate::select::aicc`]).
+    pub aicc: Option<f64>,
+}
+
+/// A determined combination of coefficients that are not determined themselves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Combination {
+    /// `(coefficient, weight)`, in coefficient order; the first weight is 1.
+    pub weights: Vec<(usize, f64)>,
+    /// `Σ weight · coefficient`.
+    pub value: f64,
+    /// Its standard uncertainty.
+    pub standard: Option<f64>,
+    /// Degrees of freedom of that.
+    pub dof: Option<f64>,
+}
+
+/// A predicted response.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prediction {
+    /// Its value.
+    pub value: f64,
+    /// Standard uncertainty of the mean response, not of a new observation.
+    pub standard: Option<f64>,
+}
+
+/// How well a constrained fit meets its optimality conditions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Optimality {
+    /// Largest violation, relative to the response.
+    pub kkt: f64,
+    /// Inequalities of the options that hold with equality.
+    pub active_inequalities: Vec<usize>,
+}
+
+/// The result of [`crate::fit`].
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// One per column of the design.
+    pub coefficients: Vec<FitCoefficient>,
+    /// Covariance of the unconstrained estimate, `p × p`; rows and columns are
+    /// zero for coefficients that are held or not determined, NaN never.
+    pub covariance: Mat<f64>,
+    /// Where it comes from.
+    pub covariance_kind: CovarianceKind,
+    /// Correlation, `p × p`, zero where the covariance is.
+    pub correlation: Mat<f64>,
+    /// The pair of coefficients with the largest correlation, and that.
+    pub largest_correlation: Option<(usize, usize, f64)>,
+    /// One per component.
+    pub components: Vec<ComponentSummary>,
+    /// `X β` of the constrained fit, length `n`.
+    pub fitted: Vec<f64>,
+    /// `y − X β`, length `n`.
+    pub residuals: Vec<f64>,
+    /// Diagonal of the hat matrix of the unconstrained fit, length `n`.
+    pub leverage: Vec<f64>,
+    /// Weight that the loss gave each row, 1 for squares.
+    pub loss_weight: Vec<f64>,
+    /// Largest over smallest singular value of the column-scaled free design;
+    /// infinite when it is rank-deficient, 1 when nothing is free.
+    pub condition_number: f64,
+    /// What is determined of the coefficients that are not.
+    pub undetermined: Vec<Combination>,
+    /// Sum of the components' criteria.
+    pub aicc: Option<f64>,
+    /// `∂β/∂y`, `p × n`, of the unconstrained estimate; zero rows like the
+    /// covariance. The way of input errors into coefficients: [`crate::propagate`].
+    pub sensitivity: Mat<f64>,
+    /// How well the bounds and inequalities are met; `None` without any.
+    pub optimality: Option<Optimality>,
+    /// Probability of the intervals.
+    pub confidence: f64,
+    /// How the iterations ended.
+    pub report: Report,
+    /// Some minimiser, also where coefficients are not determined.
+    pub(crate) minimiser: Vec<f64>,
+    /// Covariance of the unconstrained estimate that goes with it.
+    pub(crate) full_covariance: Mat<f64>,
+    /// Null vectors, `p × k`.
+    pub(crate) null_space: Mat<f64>,
+}
+
+/// A row may have this part of its terms along a null vector and still be determined.
+const ALONG_NULL: f64 = 1e-8;
+
+impl Fit {
+    /// The coefficient of that name.
+    #[must_use]
+    pub fn coefficient(&self, name: &str) -> Option<&FitCoefficient> {
+        self.coefficients.iter().find(|c| c.name == name)
+    }
+
+    /// `(weight, name)` of a combination, for printing.
+    #[must_use]
+    pub fn name_combination(&self, combination: &Combination) -> Vec<(f64, &str)> {
+        combination.weights.iter().map(|&(j, w)| (w, self.coefficients[j].name.as_str())).collect()
+    }
+
+    /// Whether the data determine `row · β`.
+    #[must_use]
+    pub fn determines(&self, row: &[f64]) -> bool {
+        (0..self.null_space.ncols()).all(|k| {
+            let mut sum = 0.0_f64;
+            let mut size = 0.0_f64;
+            for (j, x) in row.iter().enumerate() {
+                let term = x * self.null_space[(j, k)];
+                sum += term;
+                size += term.abs();
+            }
+            sum.abs() <= ALONG_NULL * size
+        })
+    }
+
+    /// The response `row · β`, also where only combinations are determined;
+    /// `None` when the data do not determine it or the length is not `p`.
+    #[must_use]
+    pub fn predict(&self, row: &[f64]) -> Option<Prediction> {
+        if row.len() != self.minimiser.len() || !self.determines(row) {
+            return None;
+        }
+        let value = crate::dense::dot(row, &self.minimiser);
+        let variance = crate::dense::dot(row, &crate::dense::mul_vec(self.full_covariance.as_ref(), row));
+        Some(Prediction { value, standard: variance.is_finite().then(|| variance.max(0.0).sqrt()) })
+    }
+}

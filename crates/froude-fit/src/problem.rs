@@ -1,0 +1,146 @@
+//! What is to be fitted: rows, components, weights and clusters.
+
+use std::collections::HashMap;
+
+use faer::Mat;
+
+use crate::error::FitError;
+
+/// Rows of a linear model `y = X β + e`.
+///
+/// Several response components (say the two forces of a towing test) are
+/// stacked in one problem. Each has its own standard deviation σ; the variance
+/// of row `i` is `σ² / weight[i]`, with σ that of its component.
+#[derive(Debug, Clone)]
+pub struct Problem {
+    /// `X`, `n × p`: a row per observed component, a column per coefficient.
+    pub design: Mat<f64>,
+    /// `y`, length `n`.
+    pub response: Vec<f64>,
+    /// Relative 1/variance of each row; `None` means all one.
+    pub weight: Option<Vec<f64>>,
+    /// Component of each row, an index into `components`.
+    pub component: Vec<usize>,
+    /// Names of the components.
+    pub components: Vec<String>,
+    /// Cluster of each row: rows of one cluster may have correlated errors.
+    pub cluster: Option<Vec<usize>>,
+    /// Names of the coefficients, length `p`.
+    pub names: Vec<String>,
+}
+
+impl Problem {
+    /// A problem with one component named `y`, no weights and no clusters.
+    #[must_use]
+    pub fn single(design: Mat<f64>, response: Vec<f64>, names: Vec<String>) -> Self {
+        let n = response.len();
+        Self {
+            design,
+            response,
+            weight: None,
+            component: vec![0; n],
+            components: vec!["y".to_owned()],
+            cluster: None,
+            names,
+        }
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn n_rows(&self) -> usize {
+        self.design.nrows()
+    }
+
+    /// Number of coefficients.
+    #[must_use]
+    pub fn n_coefficients(&self) -> usize {
+        self.design.ncols()
+    }
+
+    /// The rows named, in the order given, as a problem of its own.
+    ///
+    /// Components that lose all their rows stay named; [`crate::fit`] refuses
+    /// them, so take care to leave them some.
+    #[must_use]
+    pub fn rows(&self, rows: &[usize]) -> Self {
+        Self {
+            design: Mat::from_fn(rows.len(), self.design.ncols(), |i, j| self.design[(rows[i], j)]),
+            response: rows.iter().map(|&i| self.response[i]).collect(),
+            weight: self.weight.as_ref().map(|w| rows.iter().map(|&i| w[i]).collect()),
+            component: rows.iter().map(|&i| self.component[i]).collect(),
+            components: self.components.clone(),
+            cluster: self.cluster.as_ref().map(|c| rows.iter().map(|&i| c[i]).collect()),
+            names: self.names.clone(),
+        }
+    }
+
+    /// Weight of row `i`.
+    pub(crate) fn weight_of(&self, i: usize) -> f64 {
+        self.weight.as_ref().map_or(1.0, |w| w[i])
+    }
+
+    /// Checks sizes, numbers and names.
+    ///
+    /// # Errors
+    ///
+    /// The first thing found wrong.
+    pub fn check(&self) -> Result<(), FitError> {
+        let (n, p) = self.design.shape();
+        if n == 0 {
+            return Err(FitError::NoRows);
+        }
+        if p == 0 {
+            return Err(FitError::NoCoefficients);
+        }
+        let of_rows = "one per row of the design";
+        size("response", self.response.len(), n, of_rows)?;
+        size("component", self.component.len(), n, of_rows)?;
+        size("names", self.names.len(), p, "one per column of the design")?;
+        if let Some(weight) = &self.weight {
+            size("weight", weight.len(), n, of_rows)?;
+            for (row, &weight) in weight.iter().enumerate() {
+                if !(weight.is_finite() && weight > 0.0) {
+                    return Err(FitError::Weight { row, weight });
+                }
+            }
+        }
+        if let Some(cluster) = &self.cluster {
+            size("cluster", cluster.len(), n, of_rows)?;
+        }
+        let mut seen = HashMap::new();
+        for (second, name) in self.names.iter().enumerate() {
+            if let Some(first) = seen.insert(name.as_str(), second) {
+                return Err(FitError::DuplicateName { name: name.clone(), first, second });
+            }
+        }
+        for row in 0..n {
+            for j in 0..p {
+                let value = self.design[(row, j)];
+                if !value.is_finite() {
+                    return Err(FitError::DesignNotFinite { row, name: self.names[j].clone(), value });
+                }
+            }
+            if !self.response[row].is_finite() {
+                return Err(FitError::ResponseNotFinite { row, value: self.response[row] });
+            }
+        }
+        let count = self.components.len();
+        let mut has_rows = vec![false; count];
+        for (row, &component) in self.component.iter().enumerate() {
+            match has_rows.get_mut(component) {
+                Some(flag) => *flag = true,
+                None => {
+                    return Err(FitError::NoSuchComponent { row, component, count });
+                }
+            }
+        }
+        if let Some(empty) = has_rows.iter().position(|&has| !has) {
+            return Err(FitError::EmptyComponent { name: self.components[empty].clone() });
+        }
+        Ok(())
+    }
+}
+
+pub(crate) fn size(what: &'static str, found: usize, expected: usize, of: &'static str) -> Result<(), FitError> {
+    if found == expected { Ok(()) } else { Err(FitError::Size { what, found, expected, of }) }
+}

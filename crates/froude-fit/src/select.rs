@@ -1,0 +1,79 @@
+//! Which model the data support.
+//!
+//! | question                                     | function                      |
+//! |----------------------------------------------|-------------------------------|
+//! | does the larger model earn its coefficients? | [`nested_tests`], [`aicc`]    |
+//! | does it predict a group it has not seen?     | [`leave_one_group_out`]       |
+//! | does it predict beyond the range it saw?     | [`range_block`]               |
+//! | does it fit as well as the repeats allow?    | [`lack_of_fit`]               |
+//!
+//! A question that the data cannot answer is [`Score::NotScorable`], with the
+//! reason, and not a number.
+
+mod aicc;
+mod group_out;
+mod lack_of_fit;
+mod nested;
+mod range_block;
+
+pub use aicc::{TooFewRows, aicc};
+pub use group_out::{GroupScore, leave_one_group_out};
+pub use lack_of_fit::{LackOfFit, lack_of_fit};
+pub use nested::{NestedTest, nested_tests};
+pub use range_block::{BlockScore, RangeBlock, range_block};
+
+use crate::options::{CovarianceKind, Options};
+use crate::problem::Problem;
+
+/// A score, or why there is none.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Score<T> {
+    /// The score.
+    Scored(T),
+    /// There is none.
+    NotScorable {
+        /// Why.
+        reason: String,
+    },
+}
+
+impl<T> Score<T> {
+    /// The score, if there is one.
+    pub fn scored(self) -> Option<T> {
+        match self {
+            Self::Scored(score) => Some(score),
+            Self::NotScorable { .. } => None,
+        }
+    }
+
+    /// The score, if there is one.
+    pub fn as_ref(&self) -> Option<&T> {
+        match self {
+            Self::Scored(score) => Some(score),
+            Self::NotScorable { .. } => None,
+        }
+    }
+}
+
+/// A score of one component.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComponentScore<T> {
+    /// The component.
+    pub component: String,
+    /// Its score.
+    pub score: Score<T>,
+}
+
+/// The rows to train on, as a problem without components that lost all rows.
+fn training(problem: &Problem, rows: &[usize]) -> Problem {
+    let mut part = problem.rows(rows);
+    let kept: Vec<usize> = (0..problem.components.len()).filter(|c| part.component.contains(c)).collect();
+    part.component = part.component.iter().filter_map(|c| kept.iter().position(|k| k == c)).collect();
+    part.components = kept.iter().map(|&c| problem.components[c].clone()).collect();
+    part
+}
+
+/// Options for a fit that only predicts.
+fn predicting(options: &Options) -> Options {
+    Options { covariance: CovarianceKind::Classical, ..options.clone() }
+}

@@ -1,0 +1,237 @@
+//! The inner loop: one block of rows folded into a triangle by Householder
+//! reflections.
+//!
+//! A block lies in memory as groups of eight rows; a group holds one [`Lane`]
+//! per column, so a sweep over a block runs straight through memory and never
+//! leaves the first-level cache. Step `k` of the factorisation reflects column
+//! `k` onto the triangle's diagonal. Its sweep updates the columns right of `k`
+//! and, while they are in registers, takes the inner products that step `k + 1`
+//! needs: one read and one write of the block a step, two multiply-adds each.
+
+use super::lanes::{Kernel, LANES, Lane, Level, Vectors};
+
+/// Bytes that a block may take: it stays in a first-level cache of 32 KiB.
+const BLOCK_BYTES: usize = 24 * 1024;
+
+/// Groups in a block of `width` columns.
+pub(crate) fn groups_per_block(width: usize) -> usize {
+    (BLOCK_BYTES / (width.max(1) * size_of::<Lane>())).clamp(4, 64)
+}
+
+/// Folds a block into the upper triangle `r` (`width × width`, row-major):
+/// afterwards `rᵀr` has grown by `blockᵀblock`. The block is used up.
+///
+/// `scratch` holds `2·width` numbers. Rows of zeros change nothing.
+pub(crate) fn absorb(level: Level, r: &mut [f64], block: &mut [Lane], scratch: &mut [f64]) {
+    level.run(Absorb { r, block, scratch });
+}
+
+struct Absorb<'a> {
+    r: &'a mut [f64],
+    block: &'a mut [Lane],
+    scratch: &'a mut [f64],
+}
+
+impl Kernel for Absorb<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, vectors: V) {
+        let width = self.r.len().isqrt();
+        let (dots, turns) = self.scratch.split_at_mut(width);
+        let block = self.block;
+        // The first step's inner products: a sweep that turns nothing.
+        turns.fill(0.0);
+        sweep_all::<V, false>(vectors, block, width, 0, turns, dots);
+        for k in 0..width {
+            let row = &mut self.r[k * width..(k + 1) * width];
+            let (alpha, squares) = (row[k], dots[k]);
+            if squares == 0.0 {
+                turns.fill(0.0);
+            } else {
+                // v = (alpha − beta, x), beta = −sign(alpha)·|(alpha, x)|: no cancellation.
+                let norm = (alpha * alpha + squares).sqrt();
+                let head = alpha + norm.copysign(alpha);
+                let scale = 1.0 / (norm * (norm + alpha.abs())); // 2/vᵀv
+                row[k] = -norm.copysign(alpha);
+                for j in k + 1..width {
+                    turns[j] = scale * (head * row[j] + dots[j]);
+                    row[j] -= head * turns[j];
+                }
+            }
+            sweep_all::<V, true>(vectors, block, width, k + 1, turns, dots);
+        }
+    }
+}
+
+/// One step over all columns from `first`: `x_j −= v·turn_j` with `v` the column
+/// before `first`, then `dots[j] = x_first · x_j` of the updated columns.
+///
+/// `TURN` is false for the opening sweep, which has no column before it.
+#[inline(always)]
+fn sweep_all<V: Vectors, const TURN: bool>(
+    vectors: V,
+    block: &mut [Lane],
+    width: usize,
+    first: usize,
+    turns: &[f64],
+    dots: &mut [f64],
+) {
+    let mut start = first;
+    while start < width {
+        // Even tiles: 12 columns go as 6 + 6 where 10 is the most, not as 10 + 2.
+        let left = width - start;
+        let tile = left.div_ceil(left.div_ceil(V::TILE));
+        macro_rules! tile {
+            ($($m:literal)*) => {
+                match tile {
+                    $($m if $m <= V::TILE => sweep::<V, $m, TURN>(
+                        vectors, block, width, [first, start], turns, dots,
+                    ),)*
+                    _ => {}
+                }
+            };
+        }
+        tile!(1 2 3 4 5 6 7 8 9 10);
+        start += tile;
+    }
+}
+
+/// One sweep over `M` columns from `start`. When `start == first` the pivot
+/// column is among them; otherwise it has been updated before.
+#[inline(always)]
+fn sweep<V: Vectors, const M: usize, const TURN: bool>(
+    vectors: V,
+    block: &mut [Lane],
+    width: usize,
+    [first, start]: [usize; 2],
+    turns: &[f64],
+    dots: &mut [f64],
+) {
+    let mut turn = [vectors.splat(0.0); M];
+    for (turn, value) in turn.iter_mut().zip(&turns[start..]) {
+        *turn = vectors.splat(*value);
+    }
+    let mut sums = [vectors.splat(0.0); M];
+    for group in block.chunks_exact_mut(width) {
+        let (before, rest) = group.split_at_mut(start);
+        let Some(columns) = rest.first_chunk_mut::<M>() else {
+            return;
+        };
+        for part in 0..V::PARTS {
+            let v = if TURN {
+                vectors.load(&before[first - 1], part)
+            } else {
+                vectors.splat(0.0)
+            };
+            let mut pivot = v;
+            if start != first {
+                pivot = vectors.load(&before[first], part);
+            }
+            for m in 0..M {
+                let mut x = vectors.load(&columns[m], part);
+                if TURN {
+                    x = vectors.subtract_product(v, turn[m], x);
+                    vectors.store(&mut columns[m], part, x);
+                }
+                if m == 0 && start == first {
+                    pivot = x;
+                }
+                sums[m] = vectors.multiply_add(pivot, x, sums[m]);
+            }
+        }
+    }
+    for (dot, sum) in dots[start..].iter_mut().zip(sums) {
+        *dot = vectors.sum(sum);
+    }
+}
+
+/// Copies `values` into column `column` of the block, from row `row` on.
+pub(crate) fn put(block: &mut [Lane], width: usize, column: usize, row: usize, values: &[f64]) {
+    let (mut group, offset) = (row / LANES, row % LANES);
+    let mut rest = values;
+    if offset != 0 {
+        let n = rest.len().min(LANES - offset);
+        block[group * width + column].0[offset..offset + n].copy_from_slice(&rest[..n]);
+        rest = &rest[n..];
+        group += 1;
+    }
+    let (whole, tail) = rest.as_chunks::<LANES>();
+    let lanes = block.chunks_exact_mut(width).skip(group);
+    for (lanes, chunk) in lanes.zip(whole) {
+        lanes[column].0 = *chunk;
+    }
+    if !tail.is_empty() {
+        let lane = &mut block[(group + whole.len()) * width + column];
+        lane.0[..tail.len()].copy_from_slice(tail);
+    }
+}
+
+/// Rows that are made at once: a small table that the compiler fills by lanes.
+const TILE_ROWS: usize = 64;
+
+/// Makes rows from raw columns, all of one length, into the block.
+pub(crate) struct MakeRows<'a, const R: usize, const W: usize, F> {
+    pub(crate) raw: [&'a [f64]; R],
+    pub(crate) block: &'a mut [Lane],
+    pub(crate) make: &'a F,
+}
+
+impl<const R: usize, const W: usize, F> Kernel for MakeRows<'_, R, W, F>
+where
+    F: Fn([f64; R]) -> [f64; W],
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) {
+        let mut table = [[0.0; TILE_ROWS]; W];
+        let n = self.raw.first().map_or(0, |column| column.len());
+        let tiles = self.block.chunks_mut(W * TILE_ROWS / LANES);
+        for (start, tile) in (0..n).step_by(TILE_ROWS).zip(tiles) {
+            let mut raw = [[0.0; TILE_ROWS]; R];
+            let count = TILE_ROWS.min(n - start);
+            for (to, from) in raw.iter_mut().zip(self.raw) {
+                to[..count].copy_from_slice(&from[start..start + count]);
+            }
+            for i in 0..TILE_ROWS {
+                let row = (self.make)(std::array::from_fn(|r| raw[r][i]));
+                for (column, value) in table.iter_mut().zip(row) {
+                    column[i] = value;
+                }
+            }
+            for (g, group) in tile.chunks_exact_mut(W).enumerate() {
+                for (lane, column) in group.iter_mut().zip(&table) {
+                    if let Some(values) = column[g * LANES..].first_chunk::<LANES>() {
+                        lane.0 = *values;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Asks for `values` to be brought near while other work is done.
+pub(crate) fn fetch_ahead(values: &[f64]) {
+    #[cfg(target_arch = "x86_64")]
+    for line in values.chunks(LANES) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        #[allow(unsafe_code)]
+        // SAFETY: a hint; it reads nothing, and the address lies in the slice.
+        unsafe {
+            _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast());
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = values;
+}
+
+/// Sets rows `row..` of the block to zero.
+pub(crate) fn clear_from(block: &mut [Lane], width: usize, row: usize) {
+    let (group, offset) = (row / LANES, row % LANES);
+    let (first, rest) = block[group * width..].split_at_mut(if offset == 0 { 0 } else { width });
+    for lane in first {
+        lane.0[offset..].fill(0.0);
+    }
+    rest.fill(Lane::ZERO);
+}

@@ -1,0 +1,138 @@
+//! Choosing between models.
+
+use froude_fit::select::{Score, lack_of_fit, leave_one_group_out, nested_tests, range_block};
+use froude_fit::{Constraint, Options, Problem, fit};
+
+use crate::{assert_close, normal, polynomial, rng, single};
+
+/// F of one dropped column is the square of its t.
+#[test]
+fn f_of_one_restriction_is_t_squared() {
+    let x: Vec<f64> = (0..12).map(f64::from).collect();
+    let mut rng = rng(1);
+    let y: Vec<f64> = x.iter().map(|x| 1.0 + 0.3 * x + 0.5 * normal(&mut rng)).collect();
+    let problem = single(&polynomial(&x, 3), &y);
+    let full = fit(&problem, &Options::default()).unwrap();
+    let c = &full.coefficients[2];
+    let t = c.value.unwrap() / c.standard.unwrap();
+    let restriction = Constraint { row: vec![0.0, 0.0, 1.0], value: 0.0 };
+    let tests = nested_tests(&problem, &Options::default(), &[restriction]).unwrap();
+    let test = tests[0].score.as_ref().unwrap();
+    assert_close(test.f, t * t, 1e-10);
+    assert_eq!(test.dof, [1.0, 9.0]);
+    assert_close(test.p, froude_fit::distribution::t_two_sided(t, 9.0), 1e-10);
+}
+
+/// A restriction of one component leaves the other unscored, and its rows alone.
+#[test]
+fn a_restriction_is_tested_on_its_own_component() {
+    let mut rng = rng(2);
+    let n = 20;
+    let problem = Problem {
+        design: faer::Mat::from_fn(n, 4, |i, j| {
+            let x = (i / 2) as f64;
+            match (i % 2, j) {
+                (0, 0) | (1, 2) => x + 1.0,
+                (0, 1) | (1, 3) => x * x,
+                _ => 0.0,
+            }
+        }),
+        response: (0..n).map(|i| (i / 2) as f64 + 1.0 + 0.1 * normal(&mut rng)).collect(),
+        weight: None,
+        component: (0..n).map(|i| i % 2).collect(),
+        components: vec!["f_x".into(), "f_y".into()],
+        cluster: None,
+        names: crate::names(4),
+    };
+    // b0 = 2 b1: not true of x + 1.
+    let restriction = Constraint { row: vec![1.0, -2.0, 0.0, 0.0], value: 0.0 };
+    let tests = nested_tests(&problem, &Options::default(), &[restriction]).unwrap();
+    let test = tests[0].score.as_ref().unwrap();
+    assert!(test.p < 1e-6);
+    assert_eq!(test.dof, [1.0, 8.0]);
+    assert_eq!(tests[1].score, Score::NotScorable { reason: "the restrictions do not touch this component".into() });
+}
+
+#[test]
+fn leaving_groups_out_by_hand() {
+    // Means of the other two groups: errors 1 − 3, 2 − 2.5 …
+    let problem = single(&vec![vec![1.0]; 6], &[1.0, 1.0, 2.0, 2.0, 6.0, 6.0]);
+    let groups = [7, 7, 8, 8, 9, 9];
+    let scores = leave_one_group_out(&problem, &Options::default(), &groups).unwrap();
+    let score = scores[0].score.as_ref().unwrap();
+    // 1 − 4 = −3, 2 − 3.5 = −1.5, 6 − 1.5 = 4.5.
+    let expected = ((9.0 + 2.25 + 20.25) / 3.0_f64).sqrt();
+    assert_close(score.rmse, expected, 1e-14);
+    assert_eq!((score.worst_group, score.n_groups), (9, 3));
+    assert_close(score.worst_rmse, 4.5, 1e-14);
+}
+
+#[test]
+fn two_groups_are_not_scorable() {
+    let problem = single(&vec![vec![1.0]; 4], &[1.0, 1.0, 2.0, 2.0]);
+    let scores = leave_one_group_out(&problem, &Options::default(), &[0, 0, 1, 1]).unwrap();
+    assert_eq!(
+        scores[0].score,
+        Score::NotScorable { reason: "leaving one group out needs 3 groups, and there are 2".into() }
+    );
+}
+
+#[test]
+fn a_group_that_needs_what_the_others_lack_is_not_scorable() {
+    // Group 2 alone has the second column.
+    let rows: Vec<Vec<f64>> = (0..9).map(|i| vec![1.0, if i >= 6 { 1.0 + f64::from(i) } else { 0.0 }]).collect();
+    let y: Vec<f64> = rows.iter().map(|r| r[0] + 0.5 * r[1]).collect();
+    let groups: Vec<usize> = (0..9).map(|i| i / 3).collect();
+    let scores = leave_one_group_out(&single(&rows, &y), &Options::default(), &groups).unwrap();
+    assert_eq!(
+        scores[0].score,
+        Score::NotScorable { reason: "without group 2 the others do not determine its prediction".into() }
+    );
+}
+
+/// Cubic data, straight line trained on the low end: the error at the far end.
+#[test]
+fn a_range_block_shows_extrapolation() {
+    let x: Vec<f64> = (0..10).map(f64::from).collect();
+    let y: Vec<f64> = x.iter().map(|x| x * x).collect();
+    let problem = single(&polynomial(&x, 2), &y);
+    let train: Vec<bool> = (0..10).map(|i| i < 3).collect();
+    let block = range_block(&problem, &Options::default(), &train).unwrap();
+    // Line through (0,0), (1,1), (2,4): −1/3 + 2x.
+    assert_close(block.refit.coefficients[1].value.unwrap(), 2.0, 1e-13);
+    let score = block.scores[0].score.as_ref().unwrap();
+    assert_eq!((score.worst_row, score.n_train, score.n_test), (9, 3, 7));
+    let error = 81.0 - (18.0 - 1.0 / 3.0);
+    assert_close(score.worst_error, error, 1e-13);
+    assert_close(score.worst_relative, error / 81.0, 1e-13);
+    let none = range_block(&problem, &Options::default(), &[true; 10]).unwrap();
+    assert_eq!(none.scores[0].score, Score::NotScorable { reason: "no row lies outside the training range".into() });
+}
+
+/// A straight line through repeats of a bent curve, by hand.
+#[test]
+fn lack_of_fit_by_hand() {
+    let x = [0.0, 0.0, 1.0, 1.0, 2.0, 2.0];
+    let y = [0.1, -0.1, 0.9, 1.1, 4.2, 3.8];
+    let problem = single(&polynomial(&x, 2), &y);
+    let found = fit(&problem, &Options::default()).unwrap();
+    let settings = [0, 0, 1, 1, 2, 2];
+    let scores = lack_of_fit(&problem, &found, &settings).unwrap();
+    let score = scores[0].score.as_ref().unwrap();
+    // Pure: 0.02 + 0.02 + 0.08 = 0.12 on 3; means 0, 1, 4 leave 2 · (1/9 + 4/9 + 1/9).
+    assert_eq!(score.dof, [1.0, 3.0]);
+    assert_close(score.pure_sigma, 0.04_f64.sqrt(), 1e-13);
+    assert_close(score.f, (4.0 / 3.0) / 0.04, 1e-12);
+    assert!(score.p < 0.02);
+    let single_settings = [0, 1, 2, 3, 4, 5];
+    let scores = lack_of_fit(&problem, &found, &single_settings).unwrap();
+    assert_eq!(scores[0].score, Score::NotScorable { reason: "no setting was repeated".into() });
+}
+
+#[test]
+fn aicc_of_a_fit_counts_sigma() {
+    let problem = single(&vec![vec![1.0]; 6], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    let found = fit(&problem, &Options::default()).unwrap();
+    let expected = 6.0 * (17.5_f64 / 6.0).ln() + 4.0 + 12.0 / 3.0;
+    assert_close(found.aicc.unwrap(), expected, 1e-13);
+}

@@ -1,0 +1,153 @@
+//! The observations of one source, as channels in SI units over rows.
+//!
+//! **Frame.** Body axes, x forward, y to starboard, z down; loads are those the
+//! fluid exerts on the body. `speed` and `angle` belong to the velocity by
+//! v = (U cos θ, −U sin θ), so that `angle ≡ atan2(−v_y, v_x)`.
+
+use froude_records::units::Dimension;
+use indexmap::IndexMap;
+
+/// One channel: a number per row, SI, with its dimension.
+#[derive(Debug, Clone)]
+pub struct Channel {
+    /// Values in SI, one per row.
+    pub values: Vec<f64>,
+    /// What they are.
+    pub dimension: Dimension,
+}
+
+/// The rows of one source after reduction.
+#[derive(Debug, Clone, Default)]
+pub struct Dataset {
+    /// Number of rows.
+    pub rows: usize,
+    /// Numbers by name: `v_x`, `speed`, `angle`, `f_x`, `n_links`, `density`, …
+    pub channels: IndexMap<String, Channel>,
+    /// Configuration of each row; empty text where the table has none.
+    pub configuration: Vec<String>,
+    /// Setup of each row.
+    pub setup: Vec<String>,
+    /// Run of each row.
+    pub run: Vec<String>,
+    /// Cluster that each row belongs to, by the source's `group` column.
+    pub group: Option<Vec<String>>,
+    /// Line of each row in its file.
+    pub line: Vec<usize>,
+}
+
+/// Names of the loads, in the order of the axes.
+pub const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
+
+impl Dataset {
+    /// The values of a channel, if the table has it.
+    #[must_use]
+    pub fn values(&self, name: &str) -> Option<&[f64]> {
+        self.channels.get(name).map(|c| c.values.as_slice())
+    }
+
+    /// The dimension of a channel, if the table has it.
+    #[must_use]
+    pub fn dimension(&self, name: &str) -> Option<Dimension> {
+        self.channels.get(name).map(|c| c.dimension)
+    }
+
+    /// The loads that the table measures.
+    #[must_use]
+    pub fn loads(&self) -> Vec<&'static str> {
+        LOADS.into_iter().filter(|l| self.channels.contains_key(*l)).collect()
+    }
+
+    /// Velocity of row `i` through the water, m/s, body axes; zero where the table has no motion.
+    #[must_use]
+    pub fn velocity_m_s(&self, i: usize) -> [f64; 2] {
+        let at = |name| self.values(name).map_or(0.0, |v| v[i]);
+        [at("v_x"), at("v_y")]
+    }
+
+    /// A copy in which `name` of every row is moved by `shift[row]`, with what hangs on it.
+    ///
+    /// A shift of `speed` or `angle` moves the velocity, one of `v_x` or `v_y` moves speed and angle.
+    #[must_use]
+    pub fn shifted(&self, name: &str, shift: &[f64]) -> Self {
+        let mut moved = self.clone();
+        if let Some(channel) = moved.channels.get_mut(name) {
+            for (value, by) in channel.values.iter_mut().zip(shift) {
+                *value += by;
+            }
+        }
+        match name {
+            "speed" | "angle" => moved.velocity_from_speed_and_angle(),
+            "v_x" | "v_y" => moved.speed_and_angle_from_velocity(),
+            _ => {}
+        }
+        moved
+    }
+
+    /// Sets `v_x`, `v_y` from `speed` and `angle` (zero where the table has none).
+    pub fn velocity_from_speed_and_angle(&mut self) {
+        let Some(speed) = self.values("speed").map(<[f64]>::to_vec) else { return };
+        let angle = self.values("angle").map_or_else(|| vec![0.0; self.rows], <[f64]>::to_vec);
+        let v_x = speed.iter().zip(&angle).map(|(u, a)| u * a.cos()).collect();
+        let v_y = speed.iter().zip(&angle).map(|(u, a)| -u * a.sin()).collect();
+        self.put("v_x", v_x, Dimension::SPEED);
+        self.put("v_y", v_y, Dimension::SPEED);
+        self.put("angle", angle, Dimension::ONE);
+    }
+
+    /// Sets `speed` and `angle` from `v_x`, `v_y`.
+    pub fn speed_and_angle_from_velocity(&mut self) {
+        let velocity: Vec<[f64; 2]> = (0..self.rows).map(|i| self.velocity_m_s(i)).collect();
+        self.put("speed", velocity.iter().map(|[x, y]| x.hypot(*y)).collect(), Dimension::SPEED);
+        self.put("angle", velocity.iter().map(|[x, y]| (-y).atan2(*x)).collect(), Dimension::ONE);
+    }
+
+    /// Sets a channel.
+    pub fn put(&mut self, name: &str, values: Vec<f64>, dimension: Dimension) {
+        self.channels.insert(name.to_owned(), Channel { values, dimension });
+    }
+
+    /// The rows named by `keep`, in that order.
+    #[must_use]
+    pub fn subset(&self, keep: &[usize]) -> Self {
+        let text = |column: &[String]| keep.iter().filter_map(|&i| column.get(i).cloned()).collect();
+        Self {
+            rows: keep.len(),
+            channels: self
+                .channels
+                .iter()
+                .map(|(name, c)| {
+                    let values = keep.iter().map(|&i| c.values[i]).collect();
+                    (name.clone(), Channel { values, dimension: c.dimension })
+                })
+                .collect(),
+            configuration: text(&self.configuration),
+            setup: text(&self.setup),
+            run: text(&self.run),
+            group: self.group.as_ref().map(|g| text(g)),
+            line: keep.iter().filter_map(|&i| self.line.get(i).copied()).collect(),
+        }
+    }
+
+    /// Distinct configurations in order of first appearance.
+    #[must_use]
+    pub fn configurations(&self) -> Vec<String> {
+        distinct(&self.configuration)
+    }
+}
+
+/// Distinct texts in order of first appearance.
+#[must_use]
+pub fn distinct(texts: &[String]) -> Vec<String> {
+    let mut seen = indexmap::IndexSet::new();
+    for t in texts {
+        seen.insert(t.clone());
+    }
+    seen.into_iter().collect()
+}
+
+/// Index of each text among the distinct ones.
+#[must_use]
+pub fn labels(texts: &[String]) -> Vec<usize> {
+    let names: indexmap::IndexSet<&String> = texts.iter().collect();
+    texts.iter().map(|t| names.get_index_of(t).unwrap_or(0)).collect()
+}

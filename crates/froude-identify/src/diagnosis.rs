@@ -1,0 +1,221 @@
+//! How far a fit can be trusted: diagnostics for the record, findings for the reader.
+
+use froude_fit as fit;
+use froude_records::campaign::Campaign;
+use froude_records::estimate::{Diagnostics, NamedCorrelation};
+use froude_records::finding::{Finding, Severity};
+
+use crate::dataset::Dataset;
+use crate::dissipation;
+use crate::error::IdentifyError;
+use crate::law::Kind;
+use crate::lint;
+use crate::regression::ModelFit;
+use crate::selection::{Score, aicc};
+
+/// Durbin–Watson below which residuals in run order are plainly not independent (lower 1 % bound is about 1.0 for
+/// 15 to 25 rows and one to two regressors: Savin and White 1977).
+const SERIAL_BELOW: f64 = 1.0;
+/// Condition number of the scaled design above which digits are lost to collinearity (Belsley, Kuh, Welsch 1980: 30).
+const COLLINEAR_ABOVE: f64 = 30.0;
+/// Rank correlation of |residual| with speed that calls the scatter uneven, in standard errors.
+const UNEVEN_ABOVE_Z: f64 = 2.0;
+
+/// The numbers for the record.
+///
+/// # Errors
+///
+/// A channel that the law needs and the data lack.
+pub fn diagnostics(model: &ModelFit, data: &Dataset, score: &Score) -> Result<Diagnostics, IdentifyError> {
+    let f = &model.fit;
+    let has_motion = data.values("speed").is_some_and(|u| u.iter().any(|x| *x > 0.0));
+    let force_law = matches!(model.law.kind, Kind::Drag { .. }) && has_motion;
+    Ok(Diagnostics {
+        condition_number: Some(f.condition_number).filter(|c| c.is_finite()),
+        largest_correlation: f.largest_correlation.map(|(a, b, value)| NamedCorrelation {
+            first: model.specs[a].name.clone(),
+            second: model.specs[b].name.clone(),
+            value,
+        }),
+        largest_leverage: f.leverage.iter().copied().reduce(f64::max).filter(|x| x.is_finite()),
+        relative_residual: f
+            .components
+            .iter()
+            .filter(|c| c.relative_residual.is_finite())
+            .map(|c| (c.name.clone(), c.relative_residual))
+            .collect(),
+        durbin_watson: f
+            .components
+            .iter()
+            .filter_map(|c| c.durbin_watson.filter(|d| d.is_finite()).map(|d| (c.name.clone(), d)))
+            .collect(),
+        aicc: aicc(model, data).filter(|a| a.is_finite()),
+        cross_validation_rmse: score.rmse.iter().filter(|(_, x)| x.is_finite()).cloned().collect(),
+        cross_validation_note: score.note.clone(),
+        lack_of_fit_p: lack_of_fit(model, data),
+        largest_power_w: if force_law {
+            Some(dissipation::largest_power_w(&model.law, data, model.law_coefficients())?)
+        } else {
+            None
+        },
+        notes: Vec::new(),
+    })
+}
+
+/// p-value of lack of fit against the repeats of a setting, by component.
+fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f64> {
+    let groups = lint::repeat_groups(data);
+    let n = data.rows;
+    let most = groups.iter().copied().max().map_or(0, |m| m + 1);
+    let stacked: Vec<usize> = (0..model.problem.response.len()).map(|row| row / n * most + groups[row % n]).collect();
+    match fit::select::lack_of_fit(&model.problem, &model.fit, &stacked) {
+        Ok(tests) => tests.into_iter().filter_map(|t| t.score.as_ref().map(|s| (t.component.clone(), s.p))).collect(),
+        Err(_) => indexmap::IndexMap::new(),
+    }
+}
+
+/// What a reader has to be told about this fit.
+#[must_use]
+pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagnostics) -> Vec<Finding> {
+    let name = &model.law.name;
+    let mut out = Vec::new();
+    for (component, dw) in &d.durbin_watson {
+        let has_order = data.rows >= 8;
+        if *dw < SERIAL_BELOW && has_order {
+            out.push(Finding::new(
+                Severity::Warning,
+                "serial-correlation",
+                format!(
+                    "{name}, {component}: residuals of successive rows go together (Durbin–Watson {dw:.2}, 2 when independent): \
+                     the stated interval assumes independence and is too narrow; use covariance = \"cluster\" over blocks of runs, \
+                     or a model that follows the drift"
+                ),
+            ));
+        }
+    }
+    out.extend(uneven_scatter(model, data));
+    if let Some(c) = d.condition_number
+        && c > COLLINEAR_ABOVE
+        && let Some(pair) = &d.largest_correlation
+    {
+        out.push(Finding::new(
+            Severity::Note,
+            "collinear",
+            format!(
+                "{name}: the scaled design has condition number {c:.0}; {} and {} are correlated by {:.3}: \
+                 compare predicted forces rather than single coefficients",
+                pair.first, pair.second, pair.value
+            ),
+        ));
+    }
+    for (component, p) in &d.lack_of_fit_p {
+        if *p < 0.01 {
+            out.push(Finding::new(
+                Severity::Warning,
+                "lack-of-fit",
+                format!("{name}, {component}: the misfit is larger than repeats of the same setting scatter (p = {p:.1e}): the model is wrong somewhere in the range"),
+            ));
+        }
+    }
+    if let Some(power) = d.largest_power_w
+        && power > 0.0
+    {
+        out.push(Finding::new(
+            Severity::Warning,
+            "not-dissipative",
+            format!(
+                "{name}: delivers up to {power:.3e} W to the body somewhere within ± the fitted speeds; a simulation can gain \
+                 energy from it. Fit with dissipative = true"
+            ),
+        ));
+    }
+    for (spec, c) in model.specs.iter().zip(&model.fit.coefficients) {
+        if c.status == fit::Status::BoundContradicted {
+            out.push(Finding::new(
+                Severity::Warning,
+                "bound-contradicted",
+                format!(
+                    "{name}: the data put {} outside its bounds with 95 % confidence; the bound or the model is wrong",
+                    spec.name
+                ),
+            ));
+        }
+    }
+    out.extend(drag_coefficients(model, data, campaign));
+    out
+}
+
+/// Whether |residual| grows with speed: Spearman's rank correlation against its standard error 1/√(n − 1).
+fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
+    let Some(speed) = data.values("speed") else { return Vec::new() };
+    let n = data.rows;
+    if n < 8 {
+        return Vec::new();
+    }
+    let mut out = Vec::new();
+    for (r, component) in model.law.responses.iter().enumerate() {
+        let size: Vec<f64> = (0..n).map(|i| model.fit.residuals[r * n + i].abs()).collect();
+        let rho = rank_correlation(&size, speed);
+        let z = rho * ((n - 1) as f64).sqrt();
+        if z.abs() > UNEVEN_ABOVE_Z {
+            out.push(Finding::new(
+                Severity::Warning,
+                "uneven-scatter",
+                format!(
+                    "{}, {component}: |residual| {} with speed (rank correlation {rho:.2}, {:.1} standard errors): equal {} errors \
+                     are not what the data show; {}",
+                    model.law.name,
+                    if rho > 0.0 { "grows" } else { "falls" },
+                    z.abs(),
+                    if model.law.in_logarithms() { "relative" } else { "absolute" },
+                    if model.law.in_logarithms() { "compare with the fit in newtons" } else { "use HC3, std columns, or a fit in logarithms" }
+                ),
+            ));
+        }
+    }
+    out
+}
+
+/// Spearman's rank correlation (average ranks are not needed: residuals do not tie).
+#[must_use]
+pub fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
+    let ranks = |v: &[f64]| -> Vec<f64> {
+        let mut order: Vec<usize> = (0..v.len()).collect();
+        order.sort_by(|&i, &j| v[i].total_cmp(&v[j]));
+        let mut out = vec![0.0; v.len()];
+        let mut start = 0;
+        while start < order.len() {
+            let mut end = start;
+            while end + 1 < order.len() && v[order[end + 1]] == v[order[start]] {
+                end += 1;
+            }
+            for &i in &order[start..=end] {
+                out[i] = 0.5 * (start + end) as f64;
+            }
+            start = end + 1;
+        }
+        out
+    };
+    let (x, y) = (ranks(a), ranks(b));
+    let mean = (a.len() as f64 - 1.0) / 2.0;
+    let sxy: f64 = x.iter().zip(&y).map(|(p, q)| (p - mean) * (q - mean)).sum();
+    let sxx: f64 = x.iter().map(|p| (p - mean).powi(2)).sum();
+    let syy: f64 = y.iter().map(|q| (q - mean).powi(2)).sum();
+    if sxx > 0.0 && syy > 0.0 { sxy / (sxx * syy).sqrt() } else { 0.0 }
+}
+
+/// Quadratic coefficients in N s²/m² that no body of the stated area has.
+fn drag_coefficients(model: &ModelFit, data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
+    let area = campaign.body.as_ref().and_then(|b| b.reference_area_m2);
+    let density = data.values("density").and_then(|d| d.first().copied());
+    let (Some(area), Some(density)) = (area, density) else { return Vec::new() };
+    model
+        .specs
+        .iter()
+        .enumerate()
+        .filter(|(j, s)| {
+            s.unit == "kg/m" && (s.name.ends_with("_II") || s.name.starts_with("D_d")) && model.coefficients[*j] != 0.0
+        })
+        .filter_map(|(j, s)| lint::drag_coefficient(&s.name, model.coefficients[j].abs(), density, area))
+        .collect()
+}

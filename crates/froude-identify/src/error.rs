@@ -1,0 +1,144 @@
+//! Why a campaign gives no coefficients.
+
+use froude_fit::FitError;
+use froude_records::RecordError;
+
+use crate::formula::FormulaError;
+
+/// Why a campaign gives no coefficients; each message says what to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum IdentifyError {
+    /// A file could not be read or written, or says something impossible.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+
+    /// The fit refused.
+    #[error("source {source_name:?}, model {model}: {source}")]
+    Fit {
+        /// Name of the source.
+        source_name: String,
+        /// Name of the model.
+        model: String,
+        /// Why.
+        source: Box<FitError>,
+    },
+
+    /// A user-written formula cannot be used.
+    #[error("model {model:?}, {response}: {source}")]
+    Formula {
+        /// Name of the model.
+        model: String,
+        /// The load that the formula gives.
+        response: String,
+        /// Why.
+        source: Box<FormulaError>,
+    },
+
+    /// One coefficient name stands for two units.
+    #[error(
+        "model {model:?}: coefficient {coefficient} would be {first} in one formula and {second} \
+         in another; give the two terms different names"
+    )]
+    CoefficientUnits {
+        /// Name of the model.
+        model: String,
+        /// Name of the coefficient.
+        coefficient: String,
+        /// Unit where it stands first.
+        first: String,
+        /// Unit where it stands again.
+        second: String,
+    },
+
+    /// A model asks for a channel that the table does not have.
+    #[error(
+        "model {model}: needs the column {channel}, which the table does not have; it has {}",
+        .known.join(", ")
+    )]
+    NoSuchChannel {
+        /// Name of the model.
+        model: String,
+        /// The channel.
+        channel: String,
+        /// What the table has.
+        known: Vec<String>,
+    },
+
+    /// f1 … f6 without the body that their areas come from.
+    #[error("model {model}: needs the body's geometry; the campaign lacks {}", .missing.join(", "))]
+    NoBody {
+        /// Name of the model.
+        model: String,
+        /// The missing keys, as the campaign would write them.
+        missing: Vec<String>,
+    },
+
+    /// A model name that nothing answers to.
+    #[error(
+        "model {model:?} is not known; built in are f1 to f6, quadratic, linear_quadratic, power_law, \
+         power_law_log, and those of [[identify.model]]: {}",
+        .user.join(", ")
+    )]
+    UnknownModel {
+        /// The name asked for.
+        model: String,
+        /// The user-written models.
+        user: Vec<String>,
+    },
+
+    /// A record without the geometry that its law needs.
+    #[error("estimate {id}: its law needs geometry.{key}, which the record does not carry")]
+    NoGeometry {
+        /// Id of the estimate.
+        id: String,
+        /// The missing key.
+        key: String,
+    },
+
+    /// A record whose model is not a force law that can be evaluated.
+    #[error("estimate {id}: model {model} is not a force law that can be evaluated here")]
+    NoForceLaw {
+        /// Id of the estimate.
+        id: String,
+        /// Its model.
+        model: String,
+    },
+
+    /// Nothing is left to fit.
+    #[error("source {source_name:?}: no observation is left after `keep`; {n_read} were read")]
+    NothingKept {
+        /// Name of the source.
+        source_name: String,
+        /// Rows before `keep`.
+        n_read: usize,
+    },
+
+    /// The table has no load to fit.
+    #[error(
+        "source {source_name:?}: the table has no load to fit; name a column f_x, f_y, … [N] or m_x, … [N m], \
+         or map one with a sidecar"
+    )]
+    NoLoad {
+        /// Name of the source.
+        source_name: String,
+    },
+
+    /// A source whose kind of input another verb makes.
+    #[error("source {source_name:?}: {what}")]
+    NotATable {
+        /// Name of the source.
+        source_name: String,
+        /// What to do instead.
+        what: String,
+    },
+
+    /// A campaign key that contradicts another or the data.
+    #[error("{place}: {what}")]
+    Campaign {
+        /// Where.
+        place: String,
+        /// What is wrong and what to do.
+        what: String,
+    },
+}

@@ -1,0 +1,343 @@
+//! A force law as the fit and the prediction see it: responses, coefficients and regressors.
+//!
+//! The built-in drag models come from `froude-hydro`; everything else that is
+//! linear in its coefficients is a formula. The power law F = k·(U/U_ref)ⁿ is the
+//! one law that is not linear: for it the regressors are the derivatives at the
+//! current coefficients.
+
+use faer::Mat;
+use froude_hydro::{Axis, Body, CrossTerm, DragModel, Link, Setting};
+use froude_records::estimate::{Estimate, Measured};
+use froude_records::units::Dimension;
+use indexmap::IndexMap;
+
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::formula::{Dim, Formula, channel_of_alias, load_column};
+
+/// Reference speed of the linear coefficients of f1 and of the power law, m/s.
+pub const REFERENCE_SPEED_M_S: f64 = 1.0;
+
+/// A coefficient as the record names it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CoefficientSpec {
+    /// Name, unique in the law.
+    pub name: String,
+    /// SI unit text, `1` for a pure number.
+    pub unit: String,
+}
+
+/// What a law computes.
+#[derive(Debug, Clone)]
+pub enum Kind {
+    /// f1 … f6 of the USR paper.
+    Drag {
+        /// Which of the six.
+        model: DragModel,
+        /// The body that the coefficients refer to.
+        body: Body,
+        /// How the cross terms continue to v_x < 0.
+        cross_term: CrossTerm,
+    },
+    /// Formulas, linear in their coefficients, one per response.
+    Formulas(Vec<Formula>),
+    /// F = −k·sgn(v)·|v|ⁿ along one axis, v in units of 1 m/s.
+    PowerLaw {
+        /// The velocity channel, `v_x` say.
+        channel: String,
+        /// True: fitted as ln|F| = ln k + n·ln|v| (relative errors); false: in newtons (absolute errors).
+        in_logarithms: bool,
+    },
+}
+
+/// A named force law.
+#[derive(Debug, Clone)]
+pub struct ForceLaw {
+    /// `f4`, `linear_quadratic`, a user's name.
+    pub name: String,
+    /// What it computes.
+    pub kind: Kind,
+    /// The responses in stacking order: `f_x`, `f_y`, or any channel that a formula gives.
+    pub responses: Vec<String>,
+    /// The coefficients in order.
+    pub coefficients: Vec<CoefficientSpec>,
+    /// The formulas' text by response; empty for built-in laws.
+    pub texts: IndexMap<String, String>,
+}
+
+impl ForceLaw {
+    /// One of f1 … f6 for a body.
+    #[must_use]
+    pub fn drag(model: DragModel, body: Body, cross_term: CrossTerm) -> Self {
+        Self {
+            name: model.name().to_owned(),
+            kind: Kind::Drag { model, body, cross_term },
+            responses: vec!["f_x".to_owned(), "f_y".to_owned()],
+            coefficients: model
+                .coefficients()
+                .iter()
+                .map(|c| CoefficientSpec { name: c.name.to_owned(), unit: c.unit.to_owned() })
+                .collect(),
+            texts: IndexMap::new(),
+        }
+    }
+
+    /// A law made of formulas, one per response, over the channels of `data`.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with a formula, with the model's name and the load.
+    pub fn formulas(name: &str, texts: &IndexMap<String, String>, data: &Dataset) -> Result<Self, IdentifyError> {
+        let mut formulas = Vec::new();
+        let mut coefficients: IndexMap<String, Dimension> = IndexMap::new();
+        for (response, text) in texts {
+            let target = aliased(response);
+            let wanted = data.dimension(target).ok_or_else(|| IdentifyError::NoSuchChannel {
+                model: name.to_owned(),
+                channel: target.to_owned(),
+                known: data.channels.keys().cloned().collect(),
+            })?;
+            let channel = |n: &str| data.dimension(n).map(exponents);
+            let formula = Formula::parse(target, text, &channel, exponents(wanted), &[]).map_err(|source| {
+                IdentifyError::Formula { model: name.to_owned(), response: response.clone(), source: Box::new(source) }
+            })?;
+            for (coefficient, dimension) in &formula.coefficients {
+                let dimension = dimension_of(*dimension);
+                if let Some(before) = coefficients.insert(coefficient.clone(), dimension)
+                    && before != dimension
+                {
+                    return Err(IdentifyError::CoefficientUnits {
+                        model: name.to_owned(),
+                        coefficient: coefficient.clone(),
+                        first: before.to_string(),
+                        second: dimension.to_string(),
+                    });
+                }
+            }
+            formulas.push(formula);
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            kind: Kind::Formulas(formulas),
+            responses: texts.keys().map(|r| aliased(r).to_owned()).collect(),
+            coefficients: coefficients
+                .iter()
+                .map(|(name, d)| CoefficientSpec { name: name.clone(), unit: d.to_string() })
+                .collect(),
+            texts: texts.clone(),
+        })
+    }
+
+    /// The power law along the axis of a load (`f_x` goes with `v_x`).
+    #[must_use]
+    pub fn power_law(response: &str, channel: &str, in_logarithms: bool) -> Self {
+        let axis = response.rsplit('_').next().unwrap_or(response);
+        Self {
+            name: if in_logarithms { "power_law_log" } else { "power_law" }.to_owned(),
+            kind: Kind::PowerLaw { channel: channel.to_owned(), in_logarithms },
+            responses: vec![response.to_owned()],
+            coefficients: vec![
+                CoefficientSpec { name: format!("k_{axis}"), unit: "N".to_owned() },
+                CoefficientSpec { name: format!("n_{axis}"), unit: "1".to_owned() },
+            ],
+            texts: IndexMap::new(),
+        }
+    }
+
+    /// The law that a record belongs to, over the channels of `data`.
+    ///
+    /// # Errors
+    ///
+    /// A built-in drag model without its geometry, or an unknown model.
+    pub fn of_estimate(estimate: &Estimate, data: &Dataset) -> Result<Self, IdentifyError> {
+        if let Some(model) = DragModel::from_name(&estimate.model) {
+            let body = body_of(estimate)?;
+            let cross_term = match estimate.law.constants.get("epsilon") {
+                Some(Measured { value, .. }) => CrossTerm::Smooth { epsilon_m_s: *value },
+                None => CrossTerm::AsPrinted,
+            };
+            return Ok(Self::drag(model, body, cross_term));
+        }
+        if !estimate.law.formulas.is_empty() {
+            return Self::formulas(&estimate.model, &estimate.law.formulas, data);
+        }
+        if estimate.model.starts_with("power_law")
+            && let Some(axis) = estimate.coefficients.keys().find_map(|n| n.strip_prefix("n_"))
+        {
+            let in_logarithms = estimate.model.ends_with("_log");
+            return Ok(Self::power_law(&format!("f_{axis}"), &format!("v_{axis}"), in_logarithms));
+        }
+        Err(IdentifyError::NoForceLaw { id: estimate.id.clone(), model: estimate.model.clone() })
+    }
+
+    /// Derivatives of every response by every coefficient: rows stacked response by response,
+    /// `responses·rows × coefficients`. For linear laws this is the design matrix and `at` is not read.
+    ///
+    /// # Errors
+    ///
+    /// A channel that the law needs and the data lack.
+    pub fn regressors(&self, data: &Dataset, at: &[f64]) -> Result<Mat<f64>, IdentifyError> {
+        let (n, p) = (data.rows, self.coefficients.len());
+        let mut out = Mat::zeros(n * self.responses.len(), p);
+        match &self.kind {
+            Kind::Drag { model, body, cross_term } => {
+                let links = self.channel(data, "n_links")?;
+                let density = self.channel(data, "density")?;
+                let mut row = vec![0.0; p];
+                for i in 0..n {
+                    let setting = Setting {
+                        body: *body,
+                        n_links: links[i],
+                        density_kg_m3: density[i],
+                        v_ref_m_s: REFERENCE_SPEED_M_S,
+                        cross_term: *cross_term,
+                    };
+                    model.regressor(&setting, data.velocity_m_s(i), &mut row);
+                    for (j, info) in model.coefficients().iter().enumerate() {
+                        let r = match info.axis {
+                            Axis::X => 0,
+                            Axis::Y => 1,
+                        };
+                        out[(r * n + i, j)] = row[j];
+                    }
+                }
+            }
+            Kind::Formulas(formulas) => {
+                for (r, formula) in formulas.iter().enumerate() {
+                    let columns = formula
+                        .channels
+                        .iter()
+                        .map(|c| self.channel(data, aliased(c)))
+                        .collect::<Result<Vec<_>, _>>()?;
+                    let place: Vec<usize> =
+                        formula.coefficients.iter().filter_map(|(name, _)| self.position(name)).collect();
+                    let mut values = vec![0.0; columns.len()];
+                    let mut row = vec![0.0; place.len()];
+                    for i in 0..n {
+                        for (value, column) in values.iter_mut().zip(&columns) {
+                            *value = column[i];
+                        }
+                        formula.regressor(&values, &mut row);
+                        for (&j, &x) in place.iter().zip(&row) {
+                            out[(r * n + i, j)] = x;
+                        }
+                    }
+                }
+            }
+            Kind::PowerLaw { channel, .. } => {
+                let v = self.channel(data, channel)?;
+                for i in 0..n {
+                    let [shape, slope] = power_law_terms(v[i], at[0], at[1]);
+                    out[(i, 0)] = shape;
+                    out[(i, 1)] = slope;
+                }
+            }
+        }
+        Ok(out)
+    }
+
+    /// The responses for given coefficients, stacked response by response.
+    ///
+    /// # Errors
+    ///
+    /// A channel that the law needs and the data lack.
+    pub fn predict(&self, data: &Dataset, at: &[f64]) -> Result<Vec<f64>, IdentifyError> {
+        let x = self.regressors(data, at)?;
+        // The power law is linear in k alone: its force is k times its first column.
+        let terms = if matches!(self.kind, Kind::PowerLaw { .. }) { 1 } else { at.len() };
+        Ok((0..x.nrows()).map(|i| (0..terms).map(|j| x[(i, j)] * at[j]).sum()).collect())
+    }
+
+    /// Place of a coefficient by name.
+    #[must_use]
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.coefficients.iter().position(|c| c.name == name)
+    }
+
+    /// True where the fit compares logarithms of the responses.
+    #[must_use]
+    pub fn in_logarithms(&self) -> bool {
+        matches!(self.kind, Kind::PowerLaw { in_logarithms: true, .. })
+    }
+
+    /// True where the fit has to iterate.
+    #[must_use]
+    pub fn is_nonlinear(&self) -> bool {
+        matches!(self.kind, Kind::PowerLaw { .. })
+    }
+
+    /// Symbol of the physical factor of each coefficient (`k*G_T`) for built-in laws.
+    #[must_use]
+    pub fn factor_symbols(&self) -> Option<Vec<&'static str>> {
+        match &self.kind {
+            Kind::Drag { model, .. } => Some(model.coefficients().iter().map(|c| c.factor.symbol()).collect()),
+            _ => None,
+        }
+    }
+
+    fn channel<'a>(&self, data: &'a Dataset, name: &str) -> Result<&'a [f64], IdentifyError> {
+        data.values(name).ok_or_else(|| IdentifyError::NoSuchChannel {
+            model: self.name.clone(),
+            channel: name.to_owned(),
+            known: data.channels.keys().cloned().collect(),
+        })
+    }
+}
+
+/// ∂F/∂k and ∂F/∂n of F = −k·sgn(v)·|v|ⁿ (v in units of 1 m/s); zero at rest.
+fn power_law_terms(v: f64, k: f64, n: f64) -> [f64; 2] {
+    let speed = v.abs() / REFERENCE_SPEED_M_S;
+    if speed == 0.0 {
+        return [0.0, 0.0];
+    }
+    let shape = -v.signum() * speed.powf(n);
+    [shape, k * shape * speed.ln()]
+}
+
+/// The channel name behind the ship theorist's letters: `u v w p q r` and `X Y Z K M N`.
+#[must_use]
+pub fn aliased(name: &str) -> &str {
+    channel_of_alias(name).or_else(|| load_column(name)).unwrap_or(name)
+}
+
+/// A dimension as the formula room writes it: exponents of m, kg, s, K and A.
+fn exponents(d: Dimension) -> Dim {
+    [d.m, d.kg, d.s, d.k, d.a]
+}
+
+fn dimension_of([m, kg, s, k, a]: Dim) -> Dimension {
+    Dimension { m, kg, s, k, a }
+}
+
+/// The body in a record's geometry.
+fn body_of(estimate: &Estimate) -> Result<Body, IdentifyError> {
+    let get = |key: &str| {
+        estimate
+            .geometry
+            .get(key)
+            .map(|m| m.value)
+            .ok_or_else(|| IdentifyError::NoGeometry { id: estimate.id.clone(), key: key.to_owned() })
+    };
+    Ok(Body {
+        link: Link {
+            major_semi_axis_m: get("major_semi_axis")?,
+            minor_semi_axis_m: get("minor_semi_axis")?,
+            half_length_m: get("half_length")?,
+        },
+        head_side_area_m2: get("head_side_area")?,
+        tail_side_area_m2: get("tail_side_area")?,
+    })
+}
+
+/// Geometry of a body as a record carries it.
+#[must_use]
+pub fn geometry_of(body: &Body) -> IndexMap<String, Measured> {
+    let m = |value, unit: &str| Measured { value, unit: unit.to_owned() };
+    IndexMap::from([
+        ("major_semi_axis".to_owned(), m(body.link.major_semi_axis_m, "m")),
+        ("minor_semi_axis".to_owned(), m(body.link.minor_semi_axis_m, "m")),
+        ("half_length".to_owned(), m(body.link.half_length_m, "m")),
+        ("head_side_area".to_owned(), m(body.head_side_area_m2, "m^2")),
+        ("tail_side_area".to_owned(), m(body.tail_side_area_m2, "m^2")),
+    ])
+}

@@ -1,0 +1,33 @@
+//! From observations to coefficients: records, force models and fits together.
+//!
+//! The way of the data: a source's table is **reduced** to observations, a
+//! **law** turns them into regressors, a **regression** fits it with its budget,
+//! **selection** chooses among laws, and a **record** carries the answer.
+//! **Compare** sets records side by side; **simulate** goes the other way.
+//!
+//! **Frame.** Body axes, x forward, y to starboard, z down; loads of the fluid on the body.
+//! **Units.** SI and radians.
+//!
+//! Not here: file formats (`froude-records`), formulas of drag (`froude-hydro`), algebra (`froude-fit`).
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod compare;
+pub mod dataset;
+pub mod diagnosis;
+pub mod dissipation;
+mod error;
+pub mod formula;
+pub mod law;
+pub mod lint;
+pub mod record;
+pub mod reduce;
+pub mod regression;
+pub mod select;
+pub mod selection;
+pub mod simulate;
+pub mod source;
+mod tare;
+pub mod uncertainty;
+pub mod validity;
+
+pub use error::IdentifyError;

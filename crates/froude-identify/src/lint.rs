@@ -1,0 +1,349 @@
+//! What is doubtful about the observations, before and after the fit.
+//!
+//! A lint changes nothing except that identical copies are dropped, and says so.
+//! Every limit is a constant with its reason.
+
+use std::collections::HashMap;
+
+use froude_records::campaign::{BodySpec, Campaign};
+use froude_records::finding::{Finding, Severity};
+use froude_records::table::{ColumnData, Table};
+
+use crate::dataset::{Dataset, LOADS, distinct};
+
+/// A load below this share of the largest is too small for its sign to say anything.
+const SIGN_MATTERS_ABOVE: f64 = 0.05;
+/// Share of rows at one extreme value that looks like a saturated sensor.
+const SATURATED_SHARE: f64 = 0.02;
+/// A linear and a quadratic term need at least this many distinct speeds.
+const DISTINCT_SPEEDS_NEEDED: usize = 3;
+/// Steps of volume per link that differ by more than this from the median do not add up.
+const VOLUME_STEP_TOLERANCE: f64 = 0.02;
+/// Angles all below this, over at least eight rows, were probably typed in radians (π/2 read as degrees).
+const RADIAN_SUSPICION_RAD: f64 = 1.6 * std::f64::consts::PI / 180.0;
+/// Drag coefficients on frontal area that bodies have (Hoerner 1965: 0.04 streamlined to 2.3 hollow section; margin 2 both ways).
+const BODY_DRAG_COEFFICIENT: std::ops::RangeInclusive<f64> = 0.02..=4.6;
+
+/// Every lint that looks at observations alone.
+#[must_use]
+pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    findings.extend(force_along_motion(data));
+    findings.extend(saturation(data));
+    findings.extend(angle_in_radians(data));
+    findings.extend(distinct_speeds(data));
+    findings.extend(one_sign_of_angle(data));
+    findings.extend(repeats(data));
+    if let Some(body) = &campaign.body {
+        findings.extend(volumes(body));
+    }
+    findings.extend(volume_channel(data));
+    findings
+}
+
+/// Rows equal to an earlier one in every column and text: (rows to keep, finding).
+///
+/// Repeats differ in their measured loads; a copy does not, and would count twice.
+#[must_use]
+pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
+    let mut seen: HashMap<Vec<u64>, usize> = HashMap::new();
+    let mut keep = Vec::new();
+    let mut copies = Vec::new();
+    let configurations = crate::dataset::labels(&data.configuration);
+    let setups = crate::dataset::labels(&data.setup);
+    let runs = crate::dataset::labels(&data.run);
+    for i in 0..data.rows {
+        let mut key: Vec<u64> = data.channels.values().map(|c| c.values[i].to_bits()).collect();
+        key.extend([configurations[i], setups[i], runs[i]].map(|x| x as u64));
+        if let Some(&first) = seen.get(&key) {
+            copies.push((first, i));
+        } else {
+            seen.insert(key, i);
+            keep.push(i);
+        }
+    }
+    if copies.is_empty() {
+        return (keep, None);
+    }
+    let line = |i: usize| data.line.get(i).copied().unwrap_or(i + 1);
+    let shown: Vec<String> = copies.iter().take(4).map(|&(a, b)| format!("{} = {}", line(b), line(a))).collect();
+    let more = if copies.len() > 4 { ", …" } else { "" };
+    let finding = Finding::new(
+        Severity::Warning,
+        "identical-copies",
+        format!(
+            "{} of {} rows are identical copies of earlier ones and are dropped (lines {}{more}); real repeats differ in their loads",
+            copies.len(),
+            data.rows,
+            shown.join(", ")
+        ),
+    );
+    (keep, Some(finding))
+}
+
+/// Speed and angle beside v_x and v_y that say something else.
+#[must_use]
+pub fn motion_contradictions(table: &Table, data: &Dataset) -> Vec<Finding> {
+    let read = |name: &str| {
+        table.columns.iter().find(|c| c.name == name).and_then(|c| match &c.data {
+            ColumnData::Number { si, .. } => Some(si),
+            ColumnData::Text(_) => None,
+        })
+    };
+    let mut findings = Vec::new();
+    if read("v_x").is_some()
+        && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed"))
+    {
+        let worst = stated.iter().zip(derived).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        if worst > 0.01 * scale {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "speed-contradicts-velocity",
+                format!("the speed column differs from |v| by up to {worst:.3e} m/s; v_x and v_y are used"),
+            ));
+        }
+    }
+    findings
+}
+
+/// Loads along the motion: a drag that pushes.
+fn force_along_motion(data: &Dataset) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (load, motion) in [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")] {
+        let (Some(f), Some(v)) = (data.values(load), data.values(motion)) else { continue };
+        let largest_f = f.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let largest_v = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let counted =
+            |i: &usize| f[*i].abs() > SIGN_MATTERS_ABOVE * largest_f && v[*i].abs() > SIGN_MATTERS_ABOVE * largest_v;
+        let rows: Vec<usize> = (0..data.rows).filter(counted).collect();
+        let along: Vec<usize> = rows.iter().copied().filter(|&i| f[i] * v[i] > 0.0).collect();
+        if along.is_empty() {
+            continue;
+        }
+        let all = along.len() * 2 > rows.len();
+        findings.push(Finding::new(
+            if all { Severity::Error } else { Severity::Warning },
+            "force-along-motion",
+            if all {
+                format!(
+                    "{load} points along {motion} in {} of {} rows: a drag must oppose the motion; if the sensor is \
+                     mounted the other way round, say sign = -1 for its column",
+                    along.len(),
+                    rows.len()
+                )
+            } else {
+                format!(
+                    "{load} points along {motion} in {} of {} rows (first on line {}); check zero and mounting of these runs",
+                    along.len(),
+                    rows.len(),
+                    data.line.get(along[0]).copied().unwrap_or(0)
+                )
+            },
+        ));
+    }
+    findings
+}
+
+/// Many rows at exactly the largest or smallest value of a load.
+fn saturation(data: &Dataset) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for load in LOADS {
+        let Some(f) = data.values(load) else { continue };
+        for (end, extreme) in [
+            ("largest", f.iter().copied().fold(f64::MIN, f64::max)),
+            ("smallest", f.iter().copied().fold(f64::MAX, f64::min)),
+        ] {
+            let there = f.iter().filter(|&&x| x == extreme).count();
+            if extreme != 0.0 && there >= 3 && there as f64 > SATURATED_SHARE * f.len() as f64 {
+                findings.push(Finding::new(
+                    Severity::Warning,
+                    "saturation",
+                    format!(
+                        "{load}: {there} rows stand at exactly the {end} value {extreme}; the sensor may be saturated"
+                    ),
+                ));
+            }
+        }
+    }
+    findings
+}
+
+/// Angles so small that they look like radians in a column of degrees.
+fn angle_in_radians(data: &Dataset) -> Option<Finding> {
+    let angle = data.values("angle")?;
+    let distinct = distinct_count(angle);
+    let largest = angle.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
+    (distinct >= 5 && largest > 0.0 && largest <= RADIAN_SUSPICION_RAD).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "angle-in-radians",
+            format!(
+                "all {distinct} angles lie within ±{:.3} deg: they look like radians in a column of degrees; \
+                 head the column `angle [rad]` if so",
+                largest.to_degrees()
+            ),
+        )
+    })
+}
+
+/// Too few distinct speeds to tell a linear from a quadratic term.
+fn distinct_speeds(data: &Dataset) -> Option<Finding> {
+    let speed = data.values("speed")?;
+    let n = distinct_count(speed);
+    (n < DISTINCT_SPEEDS_NEEDED).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "few-speeds",
+            format!("{n} distinct speeds: a linear and a quadratic term cannot be told apart with fewer than {DISTINCT_SPEEDS_NEEDED}"),
+        )
+    })
+}
+
+/// Only one sign of the angle: an angle offset looks exactly like C_XY_II.
+fn one_sign_of_angle(data: &Dataset) -> Option<Finding> {
+    let v_y = data.values("v_y")?;
+    data.values("f_x")?;
+    let has = |sign: f64| v_y.iter().any(|v| v * sign > 1e-9);
+    (has(1.0) != has(-1.0)).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "one-sign-of-angle",
+            "only one sign of the angle was run: an offset between sensor and body looks exactly like C_XY_II \
+             (1 deg moves it by some 0.1 for two links and 0.3 for nine); run ±θ pairs and set angle_offset = \"estimate\""
+                .to_owned(),
+        )
+    })
+}
+
+/// How many settings were repeated, which is what pure error comes from.
+fn repeats(data: &Dataset) -> Option<Finding> {
+    data.values("speed")?;
+    let groups = repeat_groups(data);
+    let repeated = distinct_usize(&groups);
+    let spare = data.rows - repeated;
+    (spare == 0 && data.rows >= 4).then(|| {
+        Finding::new(
+            Severity::Note,
+            "no-repeats",
+            "no setting was repeated: lack of fit cannot be told from scatter".to_owned(),
+        )
+    })
+}
+
+/// Settings as labels: rows with the same configuration, setup and motion (to 1e-9) share one.
+#[must_use]
+pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
+    let configurations = crate::dataset::labels(&data.configuration);
+    let setups = crate::dataset::labels(&data.setup);
+    let mut seen: HashMap<Vec<i64>, usize> = HashMap::new();
+    (0..data.rows)
+        .map(|i| {
+            let mut key = vec![configurations[i] as i64, setups[i] as i64];
+            for (name, channel) in &data.channels {
+                let measured = LOADS.contains(&name.as_str())
+                    || name.starts_with("std_")
+                    || name.starts_with("zero_")
+                    || matches!(name.as_str(), "repeat" | "run" | "temperature" | "v_x" | "v_y");
+                if !measured {
+                    key.push((channel.values[i] * 1e9).round() as i64);
+                }
+            }
+            let next = seen.len();
+            *seen.entry(key).or_insert(next)
+        })
+        .collect()
+}
+
+/// Volumes of the configurations that do not grow by one link's volume a link.
+fn volumes(body: &BodySpec) -> Vec<Finding> {
+    let mut points: Vec<(f64, f64)> =
+        body.volumes.iter().filter_map(|(name, v)| crate::reduce::links_of(name).map(|k| (f64::from(k), *v))).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    volume_steps(&points, body.link_volume_m3)
+}
+
+/// The same for a `volume` channel of the table.
+fn volume_channel(data: &Dataset) -> Vec<Finding> {
+    let (Some(k), Some(v)) = (data.values("n_links"), data.values("volume")) else { return Vec::new() };
+    let mut points: Vec<(f64, f64)> = k.iter().copied().zip(v.iter().copied()).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points.dedup();
+    volume_steps(&points, None)
+}
+
+/// Steps of volume between configurations against their median and the stated link.
+fn volume_steps(points: &[(f64, f64)], link_m3: Option<f64>) -> Vec<Finding> {
+    let steps: Vec<(f64, f64)> = points
+        .windows(2)
+        .filter(|w| w[1].0 > w[0].0)
+        .map(|w| (w[1].0, (w[1].1 - w[0].1) / (w[1].0 - w[0].0)))
+        .collect();
+    if steps.len() < 3 {
+        return Vec::new();
+    }
+    let mut sorted: Vec<f64> = steps.iter().map(|s| s.1).collect();
+    sorted.sort_by(f64::total_cmp);
+    let median = sorted[sorted.len() / 2];
+    let mut findings = Vec::new();
+    let odd: Vec<String> = steps
+        .iter()
+        .filter(|(_, step)| (step - median).abs() > VOLUME_STEP_TOLERANCE * median.abs())
+        .map(|(k, step)| format!("{step:.4e} m^3 to k = {k}"))
+        .collect();
+    if !odd.is_empty() {
+        findings.push(Finding::new(
+            Severity::Warning,
+            "volumes-do-not-add-up",
+            format!(
+                "the volume grows by {median:.4e} m^3 a link (median), but by {}: these configurations are not the same body with a link more",
+                odd.join(", ")
+            ),
+        ));
+    }
+    if let Some(link) = link_m3
+        && (link - median).abs() > VOLUME_STEP_TOLERANCE * median
+    {
+        findings.push(Finding::new(
+            Severity::Warning,
+            "link-volume",
+            format!(
+                "a link displaces {link:.4e} m^3 on its own, but the body grows by {median:.4e} m^3 a link: joints overlap, \
+                 or the coefficient's reference volume is not the link's"
+            ),
+        ));
+    }
+    findings
+}
+
+/// A drag coefficient on a stated frontal area that no body has.
+///
+/// `d_n_s2_m2` is the quadratic coefficient D of F = D·v|v|; C_D = D/(½ρA).
+#[must_use]
+pub fn drag_coefficient(name: &str, d_n_s2_m2: f64, density_kg_m3: f64, area_m2: f64) -> Option<Finding> {
+    let c_d = d_n_s2_m2 / (0.5 * density_kg_m3 * area_m2);
+    (!BODY_DRAG_COEFFICIENT.contains(&c_d)).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "unphysical-drag-coefficient",
+            format!(
+                "{name} = {d_n_s2_m2:.4} N s^2/m^2 on {area_m2:.4} m^2 is C_D = {c_d:.4}: no body has that \
+                 (0.04 to 2.3 is the range of shapes); check the unit of {name} and the reference area"
+            ),
+        )
+    })
+}
+
+fn distinct_count(values: &[f64]) -> usize {
+    // Settings are typed with few digits; a part in 10⁶ of the largest separates them.
+    let scale = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(f64::MIN_POSITIVE);
+    let mut sorted: Vec<i64> = values.iter().map(|v| (v / scale * 1e3).round() as i64).collect();
+    sorted.sort_unstable();
+    sorted.dedup();
+    sorted.len()
+}
+
+fn distinct_usize(labels: &[usize]) -> usize {
+    let texts: Vec<String> = labels.iter().map(usize::to_string).collect();
+    distinct(&texts).len()
+}

@@ -1,0 +1,276 @@
+//! From a source's table to observations: motion, water, zeros, tare, what is kept.
+//!
+//! Every step that changes a number or drops a row is told as a finding.
+
+use froude_hydro::fluid::Water;
+use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
+use froude_records::finding::{Finding, Severity};
+use froude_records::table::{ColumnData, Table, read_table};
+use froude_records::units::Dimension;
+use std::path::PathBuf;
+
+use crate::dataset::{Channel, Dataset, LOADS};
+use crate::error::IdentifyError;
+use crate::tare;
+
+/// An error that many observations share: `directions · e`, with `e` of the given covariance.
+#[derive(Debug, Clone)]
+pub struct SharedError {
+    /// What it is, for the budget.
+    pub name: String,
+    /// Which load it belongs to, and a column per component of `e`, a row per observation.
+    pub directions: Vec<(String, Vec<Vec<f64>>)>,
+    /// Covariance of `e`.
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// A source ready to be fitted.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// The observations that are kept.
+    pub data: Dataset,
+    /// Rows in the file.
+    pub n_read: usize,
+    /// What was found on the way.
+    pub findings: Vec<Finding>,
+    /// Errors shared by observations, from subtracted tares.
+    pub shared_errors: Vec<SharedError>,
+    /// Files that were read.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads and reduces the table of a source.
+///
+/// # Errors
+///
+/// Whatever the table reader finds; a source without table; nothing kept; impossible water.
+pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyError> {
+    let path = match &source.input {
+        Input::Table(path) => path.clone(),
+        other => return Err(not_a_table(source, other)),
+    };
+    let table = read_table(&path, source.sidecar.as_deref())?;
+    let mut files = vec![path];
+    files.extend(table.sidecar.clone());
+    let mut findings = Vec::new();
+    let mut data = dataset(&table, source)?;
+    water(&mut data, campaign, &mut findings)?;
+    zeros(&mut data, &mut findings);
+    findings.extend(crate::lint::motion_contradictions(&table, &data));
+    let n_read = data.rows;
+    let mut keep: Vec<usize> = (0..n_read).collect();
+    if let Some(clauses) = &source.keep {
+        keep = kept(clauses, &data, source)?;
+        if keep.len() < n_read {
+            findings.push(Finding::new(
+                Severity::Note,
+                "kept",
+                format!("{} of {n_read} observations satisfy `keep`; the others are left out", keep.len()),
+            ));
+        }
+    }
+    if keep.is_empty() {
+        return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read });
+    }
+    let mut data = data.subset(&keep);
+    let (unique, dropped) = crate::lint::identical_copies(&data);
+    if let Some(finding) = dropped {
+        findings.push(finding);
+        data = data.subset(&unique);
+    }
+    let mut shared_errors = Vec::new();
+    if let Some(tare) = &source.tare {
+        let (error, finding) = tare::subtract(&mut data, tare)?;
+        files.push(tare.record.clone());
+        findings.push(finding);
+        shared_errors.extend(error);
+    }
+    let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
+    Ok(Reduced { data, n_read, findings, shared_errors, files })
+}
+
+fn not_a_table(source: &Source, input: &Input) -> IdentifyError {
+    let what = match input {
+        Input::Runs(_) => "`runs` are recorded by a rig; reduce them to a table first",
+        Input::Cases(_) => "`cases` are computed by CFD; collect them into a table first",
+        Input::Mesh(_) => "`mesh` gives added mass; give its result as `record`",
+        Input::Record { .. } | Input::Table(_) => "a published record is compared, not fitted",
+    };
+    IdentifyError::NotATable { source_name: source.name.clone(), what: what.to_owned() }
+}
+
+/// The table's columns as channels, with velocity from speed and angle or the other way round.
+fn dataset(table: &Table, source: &Source) -> Result<Dataset, IdentifyError> {
+    let mut data = Dataset { rows: table.n_rows, ..Dataset::default() };
+    let text = |name: &str| -> Vec<String> {
+        table.columns.iter().find(|c| c.name == name).map_or_else(
+            || vec![String::new(); table.n_rows],
+            |c| match &c.data {
+                ColumnData::Text(t) => t.clone(),
+                ColumnData::Number { si, .. } => si.iter().map(f64::to_string).collect(),
+            },
+        )
+    };
+    data.configuration = text("configuration");
+    data.setup = text("setup");
+    data.run = text("run");
+    data.line.clone_from(&table.line_of_row);
+    for column in &table.columns {
+        if let ColumnData::Number { si, dimension, .. } = &column.data {
+            let channel = Channel { values: si.clone(), dimension: *dimension };
+            data.channels.insert(column.name.clone(), channel);
+        }
+    }
+    if let Some(group) = &source.group {
+        if !table.columns.iter().any(|c| &c.name == group) {
+            return Err(IdentifyError::Campaign {
+                place: source.place.to_string(),
+                what: format!("group = {group:?}: the table has no such column"),
+            });
+        }
+        data.group = Some(text(group));
+    }
+    if !data.channels.contains_key("n_links") {
+        links_from_configuration(&mut data);
+    }
+    if data.channels.contains_key("v_x") || data.channels.contains_key("v_y") {
+        for axis in ["v_x", "v_y"] {
+            if !data.channels.contains_key(axis) {
+                data.put(axis, vec![0.0; data.rows], Dimension::SPEED);
+            }
+        }
+        data.speed_and_angle_from_velocity();
+    } else {
+        data.velocity_from_speed_and_angle();
+    }
+    Ok(data)
+}
+
+/// `n_links` from names like H3LT, where every configuration is of that form.
+fn links_from_configuration(data: &mut Dataset) {
+    let links: Option<Vec<f64>> = data.configuration.iter().map(|c| links_of(c)).map(|k| k.map(f64::from)).collect();
+    if let Some(links) = links {
+        data.put("n_links", links, Dimension::ONE);
+    }
+}
+
+/// k of HkLT.
+#[must_use]
+pub fn links_of(configuration: &str) -> Option<u16> {
+    configuration.strip_prefix('H')?.strip_suffix("LT")?.parse().ok()
+}
+
+/// Density and kinematic viscosity per row, from the campaign or the temperature of the run.
+fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -> Result<(), IdentifyError> {
+    let stated = &campaign.fluid;
+    let salinity = stated.salinity_g_kg.unwrap_or(0.0);
+    let temperature: Option<Vec<f64>> = data
+        .values("temperature")
+        .map(|t| t.iter().map(|k| k - 273.15).collect())
+        .or_else(|| stated.temperature_degc.map(|t| vec![t; data.rows]));
+    let water: Option<Vec<Water>> = temperature
+        .map(|t| t.iter().map(|&t| Water::at(t, salinity)).collect::<Result<_, _>>())
+        .transpose()
+        .map_err(|e| IdentifyError::Campaign { place: "[fluid]".to_owned(), what: e.to_string() })?;
+    if let Some(density) = stated.density_kg_m3 {
+        data.put("density", vec![density; data.rows], Dimension::DENSITY);
+        if data.channels.contains_key("temperature") {
+            findings.push(Finding::new(
+                Severity::Note,
+                "stated-density",
+                format!("density {density} kg/m^3 is stated in [fluid] and used for every run, although the table has temperatures"),
+            ));
+        }
+    } else if let Some(water) = &water {
+        data.put("density", water.iter().map(|w| w.density_kg_m3).collect(), Dimension::DENSITY);
+    }
+    if let Some(nu) = stated.kinematic_viscosity_m2_s {
+        data.put("kinematic_viscosity", vec![nu; data.rows], Dimension::KINEMATIC_VISCOSITY);
+    } else if let Some(water) = &water {
+        let nu = water.iter().map(Water::kinematic_viscosity_m2_s).collect();
+        data.put("kinematic_viscosity", nu, Dimension::KINEMATIC_VISCOSITY);
+    }
+    Ok(())
+}
+
+/// Subtracts the mean of the zeros before and after each run, and tells how far they moved.
+fn zeros(data: &mut Dataset, findings: &mut Vec<Finding>) {
+    for load in LOADS {
+        let before = data.values(&format!("zero_before_{load}")).map(<[f64]>::to_vec);
+        let after = data.values(&format!("zero_after_{load}")).map(<[f64]>::to_vec);
+        let zero: Vec<f64> = match (&before, &after) {
+            (Some(b), Some(a)) => b.iter().zip(a).map(|(b, a)| 0.5 * (b + a)).collect(),
+            (Some(only), None) | (None, Some(only)) => only.clone(),
+            (None, None) => continue,
+        };
+        let Some(channel) = data.channels.get_mut(load) else { continue };
+        let largest = channel.values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        for (value, zero) in channel.values.iter_mut().zip(&zero) {
+            *value -= zero;
+        }
+        let drift = before.iter().zip(&after).flat_map(|(b, a)| b.iter().zip(a)).map(|(b, a)| (a - b).abs());
+        let drift = drift.fold(0.0, f64::max);
+        let grave = drift > 0.01 * largest;
+        findings.push(Finding::new(
+            if grave { Severity::Warning } else { Severity::Note },
+            "zero-drift",
+            format!(
+                "{load}: the zero of each run is subtracted; between before and after it moved by up to {drift:.3e} \
+                 (largest load {largest:.3e}){}",
+                if grave { "; declare it in the budget, shared by run" } else { "" }
+            ),
+        ));
+    }
+}
+
+/// Rows that satisfy every clause of `keep`.
+fn kept(keep: &Keep, data: &Dataset, source: &Source) -> Result<Vec<usize>, IdentifyError> {
+    // A limit typed in degrees is not the same double as an angle read in degrees: one part in 10¹² is equal.
+    let mut rows: Vec<usize> = (0..data.rows).collect();
+    for clause in &keep.clauses {
+        let unknown = || IdentifyError::Campaign {
+            place: source.place.to_string(),
+            what: format!("keep: the table has no column {:?}", clause.column),
+        };
+        match &clause.value {
+            KeepValue::Quantity(limit) => {
+                let values = data.values(crate::law::aliased(&clause.column)).ok_or_else(unknown)?;
+                let dimension = data.dimension(crate::law::aliased(&clause.column));
+                if dimension != Some(limit.unit.dimension) {
+                    return Err(IdentifyError::Campaign {
+                        place: source.place.to_string(),
+                        what: format!(
+                            "keep: {} is in {}, its limit in {}",
+                            clause.column,
+                            dimension.unwrap_or(Dimension::ONE),
+                            limit.unit.dimension
+                        ),
+                    });
+                }
+                let at = limit.value_si;
+                let slack = 1e-12 * at.abs();
+                rows.retain(|&i| match clause.comparison {
+                    Comparison::Lt => values[i] < at - slack,
+                    Comparison::Le => values[i] <= at + slack,
+                    Comparison::Gt => values[i] > at + slack,
+                    Comparison::Ge => values[i] >= at - slack,
+                    Comparison::Eq => (values[i] - at).abs() <= slack,
+                    Comparison::Ne => (values[i] - at).abs() > slack,
+                });
+            }
+            KeepValue::Text(wanted) => {
+                let column = match clause.column.as_str() {
+                    "configuration" => &data.configuration,
+                    "setup" => &data.setup,
+                    "run" => &data.run,
+                    _ => return Err(unknown()),
+                };
+                rows.retain(|&i| match clause.comparison {
+                    Comparison::Ne => &column[i] != wanted,
+                    _ => &column[i] == wanted,
+                });
+            }
+        }
+    }
+    Ok(rows)
+}

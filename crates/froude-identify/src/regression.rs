@@ -1,0 +1,454 @@
+//! One force law fitted to one source: problem, fit, combined uncertainty.
+
+use faer::Mat;
+use froude_fit as fit;
+use froude_records::campaign::{AngleOffset, BoundKind, BudgetEntry, Identify, SourceKind};
+use froude_records::finding::{Finding, Severity};
+
+use crate::dataset::{Dataset, distinct, labels};
+use crate::dissipation;
+use crate::error::IdentifyError;
+use crate::law::{CoefficientSpec, ForceLaw};
+use crate::reduce::SharedError;
+use crate::uncertainty::{Combined, Contribution, Linearised, combine, contributions};
+
+/// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
+const MOST_ITERATIONS: usize = 50;
+/// Relative change of the coefficients at which they stop.
+const CONVERGED: f64 = 1e-12;
+
+/// What a regression needs besides its data and law.
+#[derive(Debug, Clone, Copy)]
+pub struct Settings<'a> {
+    /// Name of the source, for messages.
+    pub source_name: &'a str,
+    /// What kind of source it is.
+    pub kind: SourceKind,
+    /// `[identify]` of the campaign.
+    pub identify: &'a Identify,
+    /// The declared budget.
+    pub budget: &'a [BudgetEntry],
+    /// Errors from subtracted tares.
+    pub shared_errors: &'a [SharedError],
+}
+
+/// A fitted law.
+#[derive(Debug, Clone)]
+pub struct ModelFit {
+    /// The law.
+    pub law: ForceLaw,
+    /// All coefficients: those of the law, then angle offsets by setup.
+    pub specs: Vec<CoefficientSpec>,
+    /// The stacked problem in its final linearisation.
+    pub problem: fit::Problem,
+    /// The options it was fitted with.
+    pub options: fit::Options,
+    /// The fit.
+    pub fit: fit::Fit,
+    /// Coefficient values, zero where undetermined, in the order of `specs`.
+    pub coefficients: Vec<f64>,
+    /// Combined uncertainty per coefficient, where it has one.
+    pub combined: Vec<Option<Combined>>,
+    /// Combined covariance, p × p.
+    pub covariance: Mat<f64>,
+    /// The budget's parts.
+    pub contributions: Vec<Contribution>,
+    /// Words for the covariance kind.
+    pub covariance_kind: String,
+    /// What was found while fitting.
+    pub findings: Vec<Finding>,
+}
+
+impl ModelFit {
+    /// The law's own coefficients (without angle offsets).
+    #[must_use]
+    pub fn law_coefficients(&self) -> &[f64] {
+        &self.coefficients[..self.law.coefficients.len()]
+    }
+
+    /// Standard uncertainty of the predicted response for one row of regressors.
+    #[must_use]
+    pub fn prediction_std(&self, row: &[f64]) -> f64 {
+        let mut variance = 0.0;
+        for (a, x) in row.iter().enumerate() {
+            for (b, y) in row.iter().enumerate() {
+                variance += x * y * self.covariance[(a, b)];
+            }
+        }
+        variance.max(0.0).sqrt()
+    }
+}
+
+/// Fits `law` to `data`.
+///
+/// # Errors
+///
+/// What the law, the fit or the budget finds wrong.
+pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result<ModelFit, IdentifyError> {
+    let refuse = |source: fit::FitError| IdentifyError::Fit {
+        source_name: settings.source_name.to_owned(),
+        model: law.name.clone(),
+        source: Box::new(source),
+    };
+    let newtons = stacked(law, data)?;
+    let measured = if law.in_logarithms() { logarithms(law, &newtons, data, settings)? } else { newtons.clone() };
+    let setups = offset_setups(law, data, settings.identify);
+    let mut specs = law.coefficients.clone();
+    specs.extend(setups.names.iter().map(|s| CoefficientSpec {
+        name: format!("angle_offset{}{s}", if s.is_empty() { "" } else { "_" }),
+        unit: "rad".to_owned(),
+    }));
+    let mut findings = Vec::new();
+    let (covariance, covariance_kind) = covariance_choice(data, settings, &mut findings)?;
+    let options = options(law, &specs, data, settings, covariance)?;
+    let mut beta = start(law, data, &newtons, specs.len());
+    let iterate = law.is_nonlinear() || !setups.names.is_empty();
+    let mut problem = problem(law, data, &specs, &measured, &setups, &beta)?;
+    let mut fitted = fit::fit(&problem, &options).map_err(refuse)?;
+    if iterate {
+        let mut converged = false;
+        for _ in 0..MOST_ITERATIONS {
+            let next = step(law, data, &setups, &fitted, &beta);
+            let change = next.iter().zip(&beta).map(|(a, b)| (a - b).abs() / (a.abs() + 1e-9)).fold(0.0, f64::max);
+            beta = next;
+            problem = self::problem(law, data, &specs, &measured, &setups, &beta)?;
+            fitted = fit::fit(&problem, &options).map_err(refuse)?;
+            if change < CONVERGED {
+                converged = true;
+                break;
+            }
+        }
+        if !converged {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "not-converged",
+                format!("model {}: the iteration did not settle within {MOST_ITERATIONS} steps", law.name),
+            ));
+        }
+    }
+    let coefficients: Vec<f64> = if iterate {
+        step(law, data, &setups, &fitted, &beta)
+    } else {
+        fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect()
+    };
+    let contributions = contributions(
+        Linearised {
+            law,
+            data,
+            coefficients: &coefficients[..law.coefficients.len()],
+            sensitivity: &fitted.sensitivity,
+        },
+        settings.budget,
+        settings.shared_errors,
+        settings.kind != SourceKind::Cfd,
+    )?;
+    let combined: Vec<Option<Combined>> = fitted
+        .coefficients
+        .iter()
+        .enumerate()
+        .map(|(j, c)| c.standard.map(|a| combine(a, c.dof.unwrap_or(f64::INFINITY), j, &contributions)))
+        .collect();
+    let mut covariance = fitted.covariance.clone();
+    for part in contributions.iter().filter(|c| !c.in_scatter) {
+        covariance += &part.covariance;
+    }
+    // A coefficient that was not estimated has no covariance, whatever the budget says.
+    for j in 0..specs.len() {
+        if combined[j].is_none() {
+            for k in 0..specs.len() {
+                covariance[(j, k)] = 0.0;
+                covariance[(k, j)] = 0.0;
+            }
+        }
+    }
+    Ok(ModelFit {
+        law: law.clone(),
+        specs,
+        problem,
+        options,
+        fit: fitted,
+        coefficients,
+        combined,
+        covariance,
+        contributions,
+        covariance_kind,
+        findings,
+    })
+}
+
+/// The measured responses, stacked.
+///
+/// # Errors
+///
+/// A response that the table does not have.
+pub fn stacked(law: &ForceLaw, data: &Dataset) -> Result<Vec<f64>, IdentifyError> {
+    let mut out = Vec::with_capacity(law.responses.len() * data.rows);
+    for response in &law.responses {
+        let values = data.values(response).ok_or_else(|| IdentifyError::NoSuchChannel {
+            model: law.name.clone(),
+            channel: response.clone(),
+            known: data.channels.keys().cloned().collect(),
+        })?;
+        out.extend_from_slice(values);
+    }
+    Ok(out)
+}
+
+/// Logarithms of the loads, for the error model "every point has the same relative error".
+fn logarithms(
+    law: &ForceLaw,
+    newtons: &[f64],
+    data: &Dataset,
+    settings: Settings<'_>,
+) -> Result<Vec<f64>, IdentifyError> {
+    let crate::law::Kind::PowerLaw { channel, .. } = &law.kind else { return Ok(newtons.to_vec()) };
+    let v = data.values(channel).unwrap_or_default();
+    newtons
+        .iter()
+        .zip(v)
+        .enumerate()
+        .map(|(i, (f, v))| {
+            if f * v < 0.0 {
+                Ok(f.abs().ln())
+            } else {
+                Err(IdentifyError::Campaign {
+                    place: format!("source {:?}, model {}", settings.source_name, law.name),
+                    what: format!(
+                        "a fit in logarithms needs a load that opposes the motion in every row; on line {} \
+                         {channel} is {v} and the load {f}: leave the row out with `keep`, or use power_law",
+                        data.line.get(i).copied().unwrap_or(i + 1)
+                    ),
+                })
+            }
+        })
+        .collect()
+}
+
+/// Setups whose angle offset is estimated, and the setup of each row.
+struct OffsetSetups {
+    names: Vec<String>,
+    of_row: Vec<usize>,
+}
+
+fn offset_setups(law: &ForceLaw, data: &Dataset, identify: &Identify) -> OffsetSetups {
+    let both_loads = law.responses == ["f_x", "f_y"];
+    if identify.angle_offset != AngleOffset::Estimate || !both_loads {
+        return OffsetSetups { names: Vec::new(), of_row: Vec::new() };
+    }
+    OffsetSetups { names: distinct(&data.setup), of_row: labels(&data.setup) }
+}
+
+/// The stacked, weighted linear problem at the current coefficients.
+///
+/// With an angle offset δ between sensor and body, f_sensor = Rᵀ(δ) f_body: the measured pair is rotated
+/// back by the current δ, and the columns of dδ are (f_y, −f_x) of the current fit.
+fn problem(
+    law: &ForceLaw,
+    data: &Dataset,
+    specs: &[CoefficientSpec],
+    measured: &[f64],
+    setups: &OffsetSetups,
+    beta: &[f64],
+) -> Result<fit::Problem, IdentifyError> {
+    let n = data.rows;
+    let p = law.coefficients.len();
+    let mut slopes = law.regressors(data, &beta[..p])?;
+    let mut current = law.predict(data, &beta[..p])?;
+    if law.in_logarithms() {
+        for i in 0..measured.len() {
+            for j in 0..p {
+                slopes[(i, j)] /= current[i];
+            }
+            current[i] = current[i].abs().ln();
+        }
+    }
+    let mut design = Mat::zeros(measured.len(), specs.len());
+    for i in 0..measured.len() {
+        for j in 0..p {
+            design[(i, j)] = slopes[(i, j)];
+        }
+    }
+    let mut response = measured.to_vec();
+    if law.is_nonlinear() {
+        for i in 0..response.len() {
+            let linear: f64 = (0..p).map(|j| slopes[(i, j)] * beta[j]).sum();
+            response[i] += linear - current[i];
+        }
+    }
+    if !setups.names.is_empty() {
+        for i in 0..n {
+            let s = setups.of_row[i];
+            let (sin, cos) = beta[p + s].sin_cos();
+            let (x, y) = (measured[i], measured[n + i]);
+            response[i] = cos * x - sin * y;
+            response[n + i] = sin * x + cos * y;
+            design[(i, p + s)] = current[n + i];
+            design[(n + i, p + s)] = -current[i];
+        }
+    }
+    let component: Vec<usize> = (0..measured.len()).map(|row| row / n).collect();
+    Ok(fit::Problem {
+        design,
+        response,
+        weight: weights(law, data),
+        component,
+        components: law.responses.clone(),
+        cluster: data.group.as_ref().map(|g| {
+            let of_row = labels(g);
+            (0..measured.len()).map(|row| of_row[row % n]).collect()
+        }),
+        names: specs.iter().map(|s| s.name.clone()).collect(),
+    })
+}
+
+/// Relative weights from `std_*` columns, scaled so that their mean is one within a response.
+fn weights(law: &ForceLaw, data: &Dataset) -> Option<Vec<f64>> {
+    let stds: Vec<Option<&[f64]>> = law.responses.iter().map(|r| data.values(&format!("std_{r}"))).collect();
+    if stds.iter().all(Option::is_none) {
+        return None;
+    }
+    let mut out = Vec::with_capacity(stds.len() * data.rows);
+    for std in stds {
+        match std {
+            Some(std) if std.iter().all(|s| *s > 0.0) => {
+                let weight: Vec<f64> = std.iter().map(|s| 1.0 / (s * s)).collect();
+                let mean = weight.iter().sum::<f64>() / weight.len() as f64;
+                out.extend(weight.iter().map(|w| w / mean));
+            }
+            _ => out.extend(std::iter::repeat_n(1.0, data.rows)),
+        }
+    }
+    Some(out)
+}
+
+/// Where the iteration starts: zero for linear laws, the log–log line for the power law.
+fn start(law: &ForceLaw, data: &Dataset, measured: &[f64], p: usize) -> Vec<f64> {
+    let mut beta = vec![0.0; p];
+    if let crate::law::Kind::PowerLaw { channel, .. } = &law.kind
+        && let Some(v) = data.values(channel)
+    {
+        let points: Vec<(f64, f64)> = v
+            .iter()
+            .zip(measured)
+            .filter(|(v, f)| v.abs() > 0.0 && **v * **f < 0.0)
+            .map(|(v, f)| (v.abs().ln(), f.abs().ln()))
+            .collect();
+        let count = points.len() as f64;
+        let (mx, my) =
+            (points.iter().map(|p| p.0).sum::<f64>() / count, points.iter().map(|p| p.1).sum::<f64>() / count);
+        let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
+        let sxy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
+        let n = if sxx > 0.0 { sxy / sxx } else { 2.0 };
+        beta[0] = if count > 0.0 { (my - n * mx).exp() } else { 1.0 };
+        beta[1] = n;
+    }
+    beta
+}
+
+/// The next coefficients: the linear ones as fitted, an offset moved by its fitted step.
+fn step(law: &ForceLaw, _data: &Dataset, setups: &OffsetSetups, fitted: &fit::Fit, beta: &[f64]) -> Vec<f64> {
+    let p = law.coefficients.len();
+    fitted
+        .coefficients
+        .iter()
+        .enumerate()
+        .map(|(j, c)| match c.value {
+            Some(value) if j >= p && !setups.names.is_empty() => beta[j] + value,
+            Some(value) => value,
+            None => 0.0,
+        })
+        .collect()
+}
+
+/// Which covariance is used and what the record calls it.
+fn covariance_choice(
+    data: &Dataset,
+    settings: Settings<'_>,
+    findings: &mut Vec<Finding>,
+) -> Result<(fit::CovarianceKind, String), IdentifyError> {
+    let is_cfd = settings.kind == SourceKind::Cfd;
+    let clusters = data.group.as_ref().map_or(0, |g| distinct(g).len());
+    let label = |kind: &str| {
+        if is_cfd { format!("{kind}; residuals are model error, not noise") } else { kind.to_owned() }
+    };
+    let asked = settings.identify.covariance.as_deref();
+    Ok(match asked {
+        Some("classical") => (fit::CovarianceKind::Classical, label("classical")),
+        Some("HC3" | "hc3") => (fit::CovarianceKind::Hc3, label("HC3")),
+        Some("cluster" | "CR3" | "cr3") => (fit::CovarianceKind::Cr3, label(&format!("CR3, {clusters} clusters"))),
+        Some(other) => {
+            return Err(IdentifyError::Campaign {
+                place: "[identify]".to_owned(),
+                what: format!("covariance = {other:?} is not known; use classical, HC3 or cluster"),
+            });
+        }
+        None if is_cfd && clusters >= 5 => {
+            (fit::CovarianceKind::Cr3, label(&format!("CR3 by {clusters} configurations")))
+        }
+        None => {
+            if is_cfd {
+                findings.push(Finding::new(
+                    Severity::Warning,
+                    "cfd-few-clusters",
+                    format!(
+                        "residuals of CFD are model error, not noise; cluster-robust intervals need five \
+                         configurations and a `group`, there are {clusters}: HC3 is used"
+                    ),
+                ));
+                (fit::CovarianceKind::Hc3, label("HC3"))
+            } else {
+                (fit::CovarianceKind::Classical, label("classical"))
+            }
+        }
+    })
+}
+
+/// Bounds, fixed values, exclusions, priors and constraints by name.
+fn options(
+    law: &ForceLaw,
+    specs: &[CoefficientSpec],
+    data: &Dataset,
+    settings: Settings<'_>,
+    covariance: fit::CovarianceKind,
+) -> Result<fit::Options, IdentifyError> {
+    let identify = settings.identify;
+    let position = |name: &str| specs.iter().position(|s| s.name == name);
+    let is_drag = law.factor_symbols().is_some();
+    let bounds = specs
+        .iter()
+        .enumerate()
+        .map(|(j, spec)| {
+            let kind = identify.bounds.named.get(&spec.name).copied().unwrap_or(
+                // The default is meant for drag coefficients; offsets and users' derivatives may have any sign.
+                if is_drag && j < law.coefficients.len() { identify.bounds.default } else { BoundKind::None },
+            );
+            match kind {
+                BoundKind::NonNegative => fit::Bound::NON_NEGATIVE,
+                BoundKind::None => fit::Bound::FREE,
+            }
+        })
+        .collect();
+    let inequalities =
+        if identify.dissipative && is_drag { dissipation::constraints(law, data, specs.len())? } else { Vec::new() };
+    Ok(fit::Options {
+        bounds,
+        inequalities,
+        priors: identify
+            .prior
+            .iter()
+            .filter(|p| p.model.as_ref().is_none_or(|m| m == &law.name))
+            .filter_map(|p| {
+                position(&p.coefficient).map(|index| fit::Prior {
+                    index,
+                    value: p.value,
+                    standard: p.standard_uncertainty,
+                })
+            })
+            .collect(),
+        fixed: identify.fixed.iter().filter_map(|(n, v)| position(n).map(|j| (j, *v))).collect(),
+        excluded: identify.exclude.iter().filter_map(|n| position(n)).collect(),
+        loss: identify.huber.map_or(fit::Loss::Squares, |k| fit::Loss::Huber { k }),
+        covariance,
+        ..fit::Options::default()
+    })
+}

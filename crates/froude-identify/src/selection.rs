@@ -1,0 +1,320 @@
+//! Which force model the data support, and why.
+//!
+//! Candidates are the models whose coefficients are all determined. The best by
+//! AICc is taken first; then a simpler model nested in it is preferred as long
+//! as no F test rejects it at 1 % in any load component. The reason is written
+//! with its numbers.
+
+use froude_fit as fit;
+use froude_hydro::{DragModel, Setting};
+use froude_records::campaign::RangeBlock;
+
+use crate::dataset::{Dataset, labels};
+use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S};
+use crate::regression::ModelFit;
+
+/// Level below which an F test rejects the simpler model.
+const REJECTED_BELOW: f64 = 0.01;
+/// AICc differences below this are no evidence (Burnham and Anderson 2002, § 2.6).
+const NO_EVIDENCE_BELOW: f64 = 2.0;
+
+/// F test of a simpler model inside a more general one, for one load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NestedTest {
+    /// Name of the restricted model.
+    pub simple: String,
+    /// Name of the model that it is nested in.
+    pub general: String,
+    /// Load component.
+    pub component: String,
+    /// F statistic.
+    pub f: f64,
+    /// Degrees of freedom: restrictions, residual.
+    pub dof: [f64; 2],
+    /// p-value.
+    pub p: f64,
+}
+
+/// Prediction of left-out observations by one model, by component.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Score {
+    /// RMSE by load component, in the load's unit.
+    pub rmse: Vec<(String, f64)>,
+    /// Why there is none.
+    pub note: Option<String>,
+}
+
+/// A range block: fitted inside, predicted outside.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockScore {
+    /// The block in words.
+    pub block: String,
+    /// Model.
+    pub model: String,
+    /// RMSE outside by component, and the same relative to the outside loads' RMS.
+    pub rmse: Vec<(String, f64, f64)>,
+    /// Largest |predicted/measured − 1| among the outside rows whose load is at least half the largest.
+    pub worst_ratio: Vec<(String, f64)>,
+    /// Coefficients refitted inside, beside those of all rows: (name, all, inside).
+    pub moved: Vec<(String, f64, f64)>,
+}
+
+/// What the selection says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recommendation {
+    /// Index of the recommended model.
+    pub index: usize,
+    /// Why, with numbers.
+    pub reason: String,
+}
+
+/// AICc of a fit in the units of its loads; a fit in logarithms is carried over by its Jacobian.
+#[must_use]
+pub fn aicc(model: &ModelFit, data: &Dataset) -> Option<f64> {
+    let base = model.fit.aicc?;
+    if !model.law.in_logarithms() {
+        return Some(base);
+    }
+    let jacobian: f64 = model.law.responses.iter().filter_map(|r| data.values(r)).flatten().map(|f| f.abs().ln()).sum();
+    Some(base + 2.0 * jacobian)
+}
+
+/// F tests of every nested pair among the fitted models.
+#[must_use]
+pub fn nested_tests(models: &[ModelFit], data: &Dataset) -> Vec<NestedTest> {
+    let mut out = Vec::new();
+    for general in models {
+        for simple in models {
+            let Some(rows) = restrictions(&simple.law, &general.law, data) else { continue };
+            let p = general.specs.len();
+            let constraints: Vec<fit::Constraint> = rows
+                .into_iter()
+                .map(|mut row| {
+                    row.resize(p, 0.0);
+                    fit::Constraint { row, value: 0.0 }
+                })
+                .collect();
+            let Ok(tests) = fit::select::nested_tests(&general.problem, &general.options, &constraints) else {
+                continue;
+            };
+            for test in tests {
+                if let Some(t) = test.score.as_ref() {
+                    out.push(NestedTest {
+                        simple: simple.law.name.clone(),
+                        general: general.law.name.clone(),
+                        component: test.component.clone(),
+                        f: t.f,
+                        dof: t.dof,
+                        p: t.p,
+                    });
+                }
+            }
+        }
+    }
+    out
+}
+
+/// Restrictions R·β = 0 under which `general` becomes `simple`.
+fn restrictions(simple: &ForceLaw, general: &ForceLaw, data: &Dataset) -> Option<Vec<Vec<f64>>> {
+    if simple.name == general.name {
+        return None;
+    }
+    match (&simple.kind, &general.kind) {
+        (Kind::Drag { model: a, .. }, Kind::Drag { model: b, body, cross_term }) => {
+            let setting = Setting {
+                body: *body,
+                n_links: 1.0,
+                density_kg_m3: data.values("density").and_then(|d| d.first().copied()).unwrap_or(1000.0),
+                v_ref_m_s: REFERENCE_SPEED_M_S,
+                cross_term: *cross_term,
+            };
+            drag_restrictions(*a, *b, &setting)
+        }
+        (Kind::Formulas(_), Kind::Formulas(_)) => {
+            // Nested by dropped terms: every coefficient of the simple law is one of the general's,
+            // with the same regressor.
+            if simple.responses != general.responses || simple.coefficients.len() >= general.coefficients.len() {
+                return None;
+            }
+            let x = simple.regressors(data, &[]).ok()?;
+            let y = general.regressors(data, &[]).ok()?;
+            for (j, c) in simple.coefficients.iter().enumerate() {
+                let k = general.position(&c.name)?;
+                let same = (0..x.nrows()).all(|i| (x[(i, j)] - y[(i, k)]).abs() <= 1e-9 * x[(i, j)].abs());
+                if !same {
+                    return None;
+                }
+            }
+            Some(
+                general
+                    .coefficients
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, c)| simple.position(&c.name).is_none())
+                    .map(|(k, _)| {
+                        let mut row = vec![0.0; general.coefficients.len()];
+                        row[k] = 1.0;
+                        row
+                    })
+                    .collect(),
+            )
+        }
+        _ => None,
+    }
+}
+
+fn drag_restrictions(simple: DragModel, general: DragModel, setting: &Setting) -> Option<Vec<Vec<f64>>> {
+    simple.restrictions_in(general, setting).map(|r| r.rows().map(<[f64]>::to_vec).collect())
+}
+
+/// Leave-one-configuration-out score of a model.
+#[must_use]
+pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
+    let groups = labels(&data.configuration);
+    let n = data.rows;
+    let stacked: Vec<usize> = (0..model.problem.response.len()).map(|row| groups[row % n]).collect();
+    let names = data.configurations();
+    match fit::select::leave_one_group_out(&model.problem, &model.options, &stacked) {
+        Ok(scores) => {
+            let mut out = Score { rmse: Vec::new(), note: None };
+            for score in scores {
+                match score.score {
+                    fit::select::Score::Scored(s) => out.rmse.push((score.component, s.rmse)),
+                    fit::select::Score::NotScorable { reason } => {
+                        out.note = Some(if names.len() < 3 {
+                            format!(
+                                "not scorable: leave-one-configuration-out needs three configurations, there are {}",
+                                names.len()
+                            )
+                        } else {
+                            format!("{}: not scorable: {reason}", score.component)
+                        });
+                    }
+                }
+            }
+            out
+        }
+        Err(reason) => Score { rmse: Vec::new(), note: Some(format!("not scorable: {reason}")) },
+    }
+}
+
+/// Fits inside a declared range, predicts outside.
+#[must_use]
+pub fn range_block(model: &ModelFit, data: &Dataset, block: &RangeBlock) -> Option<BlockScore> {
+    let values = data.values(crate::law::aliased(&block.column))?;
+    let inside = |i: usize| values[i] >= block.low - 1e-12 && values[i] <= block.high + 1e-12;
+    let n = data.rows;
+    let train: Vec<bool> = (0..model.problem.response.len()).map(|row| inside(row % n)).collect();
+    let result = fit::select::range_block(&model.problem, &model.options, &train).ok()?;
+    let mut rmse = Vec::new();
+    let mut worst = Vec::new();
+    for (r, name) in model.law.responses.iter().enumerate() {
+        let outside: Vec<usize> = (0..n).filter(|&i| !inside(i)).map(|i| r * n + i).collect();
+        let measured: Vec<f64> = outside.iter().map(|&row| model.problem.response[row]).collect();
+        let predicted: Option<Vec<f64>> = outside.iter().map(|&row| result.predicted[row]).collect();
+        let predicted = predicted?;
+        let count = measured.len() as f64;
+        let error = (measured.iter().zip(&predicted).map(|(m, p)| (m - p).powi(2)).sum::<f64>() / count).sqrt();
+        let size = (measured.iter().map(|m| m * m).sum::<f64>() / count).sqrt();
+        rmse.push((name.clone(), error, error / size));
+        let largest = measured.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        let ratio = measured
+            .iter()
+            .zip(&predicted)
+            .filter(|(m, _)| m.abs() >= 0.5 * largest)
+            .map(|(m, p)| p / m - 1.0)
+            .fold(0.0, |worst: f64, x| if x.abs() > worst.abs() { x } else { worst });
+        worst.push((name.clone(), ratio));
+    }
+    Some(BlockScore {
+        block: format!("fitted to {} in [{:.4}, {:.4}]", block.column, block.low, block.high),
+        model: model.law.name.clone(),
+        rmse,
+        worst_ratio: worst,
+        moved: model
+            .specs
+            .iter()
+            .zip(&model.coefficients)
+            .zip(&result.refit.coefficients)
+            .filter_map(|((s, all), inside)| inside.value.map(|x| (s.name.clone(), *all, x)))
+            .collect(),
+    })
+}
+
+/// The model that the data support.
+#[must_use]
+pub fn recommend(
+    models: &[ModelFit],
+    data: &Dataset,
+    tests: &[NestedTest],
+    scores: &[Score],
+) -> Option<Recommendation> {
+    let determined = |m: &ModelFit| m.fit.coefficients.iter().all(|c| c.status != fit::Status::Undetermined);
+    let score: Vec<Option<f64>> = models.iter().map(|m| if determined(m) { aicc(m, data) } else { None }).collect();
+    let (best, best_aicc) = score
+        .iter()
+        .enumerate()
+        .filter_map(|(i, s)| s.map(|s| (i, s)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .or_else(|| models.iter().position(determined).map(|i| (i, f64::NAN)))
+        .or_else(|| (!models.is_empty()).then_some((0, f64::NAN)))?;
+    let size = |m: &ModelFit| m.law.coefficients.len();
+    let mut chosen = best;
+    let mut simplified = None;
+    for (i, model) in models.iter().enumerate() {
+        if !determined(model) || size(model) >= size(&models[chosen]) {
+            continue;
+        }
+        let against: Vec<&NestedTest> =
+            tests.iter().filter(|t| t.simple == model.law.name && t.general == models[best].law.name).collect();
+        let smallest = against.iter().map(|t| t.p).fold(f64::INFINITY, f64::min);
+        if !against.is_empty() && smallest >= REJECTED_BELOW {
+            chosen = i;
+            simplified = Some(smallest);
+        }
+    }
+    let name = &models[chosen].law.name;
+    let mut reason = if models.len() == 1 {
+        format!("{name} is the only model asked for")
+    } else if let Some(p) = simplified {
+        format!(
+            "{name}: {} has the smallest AICc, but no F test rejects {name} inside it (smallest p = {p:.3}), and {name} has {} coefficients instead of {}",
+            models[best].law.name,
+            size(&models[chosen]),
+            size(&models[best])
+        )
+    } else {
+        let mut text = format!("{name} has the smallest AICc");
+        let runner = score
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| *i != best)
+            .filter_map(|(i, s)| s.map(|s| (i, s - best_aicc)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((i, behind)) = runner {
+            text += &format!(" ({} is {behind:.1} behind)", models[i].law.name);
+            if behind < NO_EVIDENCE_BELOW {
+                text += ", which is no evidence against it";
+            }
+        }
+        let rejected: Vec<String> = tests
+            .iter()
+            .filter(|t| t.general == *name && t.p < REJECTED_BELOW)
+            .map(|t| format!("{} in {} (p = {:.1e})", t.simple, t.component, t.p))
+            .collect();
+        if !rejected.is_empty() {
+            text += &format!("; F tests reject {}", rejected.join(", "));
+        }
+        text
+    };
+    let out: Vec<String> = models.iter().filter(|m| !determined(m)).map(|m| m.law.name.clone()).collect();
+    if !out.is_empty() {
+        reason += &format!("; {} not in the running, the data do not determine all coefficients", out.join(", "));
+    }
+    if let Some(score) = scores.get(chosen)
+        && let Some(note) = &score.note
+    {
+        reason += &format!("; cross-validation: {note}");
+    }
+    Some(Recommendation { index: chosen, reason })
+}

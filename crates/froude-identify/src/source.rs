@@ -1,0 +1,235 @@
+//! One source from its table to its estimates: reduce, lint, fit every model, choose.
+
+use std::path::PathBuf;
+
+use froude_hydro::{Body, CrossTerm, DragModel, Link};
+use froude_records::campaign::{Campaign, Source, SourceKind};
+use froude_records::estimate::{Estimate, Range};
+use froude_records::finding::{Finding, Severity};
+use froude_records::units::Dimension;
+use indexmap::IndexMap;
+
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+use crate::record;
+use crate::reduce::{Reduced, reduce};
+use crate::regression::{ModelFit, Settings, regress};
+use crate::selection::{
+    BlockScore, NestedTest, Recommendation, Score, leave_one_out, nested_tests, range_block, recommend,
+};
+use crate::{diagnosis, lint, validity};
+
+/// Everything that identification found out about one source.
+#[derive(Debug, Clone)]
+pub struct SourceResult {
+    /// Name of the source.
+    pub name: String,
+    /// Its kind.
+    pub kind: SourceKind,
+    /// The observations that were fitted.
+    pub data: Dataset,
+    /// Rows in the file.
+    pub n_read: usize,
+    /// The fitted models, in the order asked for.
+    pub models: Vec<ModelFit>,
+    /// Their records, in the same order.
+    pub estimates: Vec<Estimate>,
+    /// F tests of nested pairs.
+    pub tests: Vec<NestedTest>,
+    /// Leave-one-configuration-out scores, in the order of the models.
+    pub scores: Vec<Score>,
+    /// Declared range blocks, model by model.
+    pub blocks: Vec<BlockScore>,
+    /// Which model, and why.
+    pub recommendation: Option<Recommendation>,
+    /// Ranges of the observations.
+    pub validity: IndexMap<String, Range>,
+    /// All findings.
+    pub findings: Vec<Finding>,
+    /// Files that were read.
+    pub files: Vec<PathBuf>,
+}
+
+/// Identifies one source that has a table; `progress` is told each model before it is fitted.
+///
+/// # Errors
+///
+/// See [`IdentifyError`].
+pub fn identify_source(
+    campaign: &Campaign,
+    source: &Source,
+    progress: &dyn Fn(&str),
+) -> Result<SourceResult, IdentifyError> {
+    let Reduced { data, n_read, mut findings, shared_errors, files } = reduce(campaign, source)?;
+    let (validity, found) = validity::ranges(&data, campaign);
+    findings.extend(found);
+    findings.extend(lint::observations(&data, campaign));
+    let settings = Settings {
+        source_name: &source.name,
+        kind: source.kind,
+        identify: &campaign.identify,
+        budget: &source.uncertainty,
+        shared_errors: &shared_errors,
+    };
+    let laws = laws(campaign, source, &data)?;
+    let mut models = Vec::new();
+    for law in &laws {
+        progress(&law.name);
+        let model = regress(law, &data, settings)?;
+        findings.extend(model.findings.iter().cloned());
+        models.push(model);
+    }
+    let tests = nested_tests(&models, &data);
+    let scores: Vec<Score> = models.iter().map(|m| leave_one_out(m, &data)).collect();
+    let blocks = campaign
+        .identify
+        .cross_validation
+        .iter()
+        .flat_map(|block| models.iter().filter_map(|m| range_block(m, &data, block)))
+        .collect();
+    let recommendation = recommend(&models, &data, &tests, &scores);
+    let mut estimates = Vec::new();
+    for (i, model) in models.iter().enumerate() {
+        let diagnostics = diagnosis::diagnostics(model, &data, &scores[i])?;
+        let chosen = recommendation.as_ref().is_some_and(|r| r.index == i);
+        let found = diagnosis::findings(model, &data, campaign, &diagnostics);
+        // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
+        if chosen {
+            findings.extend(found);
+        }
+        let reason = recommendation.as_ref().filter(|_| chosen).map(|r| r.reason.clone());
+        estimates.push(record::estimate(model, &data, source, &validity, diagnostics, chosen, reason));
+    }
+    let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
+    Ok(SourceResult {
+        name: source.name.clone(),
+        kind: source.kind,
+        data,
+        n_read,
+        models,
+        estimates,
+        tests,
+        scores,
+        blocks,
+        recommendation,
+        validity,
+        findings,
+        files,
+    })
+}
+
+/// The laws that the campaign asks for, over the channels of the table.
+///
+/// # Errors
+///
+/// An unknown name, a drag model without a body, a formula that cannot be used.
+pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<ForceLaw>, IdentifyError> {
+    let identify = &campaign.identify;
+    let asked: Vec<String> = if !source.models.is_empty() {
+        source.models.clone()
+    } else if !identify.models.is_empty() || !identify.user_models.is_empty() {
+        identify.models.iter().cloned().chain(identify.user_models.iter().map(|m| m.name.clone())).collect()
+    } else {
+        vec!["quadratic".to_owned(), "linear_quadratic".to_owned(), "power_law".to_owned()]
+    };
+    let mut out = Vec::new();
+    for name in &asked {
+        if let Some(model) = DragModel::from_name(name) {
+            out.push(ForceLaw::drag(model, body(campaign, data, name)?, CrossTerm::AsPrinted));
+        } else if let Some(user) = identify.user_models.iter().find(|m| &m.name == name) {
+            out.push(ForceLaw::formulas(name, &user.formulas, data)?);
+        } else {
+            match name.as_str() {
+                "quadratic" => out.push(polynomial(name, data, source, false)?),
+                "linear_quadratic" => out.push(polynomial(name, data, source, true)?),
+                "power_law" | "power_law_log" => {
+                    for (load, channel) in moving_axes(data, source)? {
+                        out.push(ForceLaw::power_law(load, channel, name == "power_law_log"));
+                    }
+                }
+                _ => {
+                    return Err(IdentifyError::UnknownModel {
+                        model: name.clone(),
+                        user: identify.user_models.iter().map(|m| m.name.clone()).collect(),
+                    });
+                }
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Loads of the table with the velocity along or about the same axis, where there is motion.
+fn moving_axes(data: &Dataset, source: &Source) -> Result<Vec<(&'static str, &'static str)>, IdentifyError> {
+    const PAIRS: [(&str, &str); 6] =
+        [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z"), ("m_x", "w_x"), ("m_y", "w_y"), ("m_z", "w_z")];
+    let moves = |channel: &str| data.values(channel).is_some_and(|v| v.iter().any(|x| *x != 0.0));
+    let out: Vec<_> =
+        PAIRS.into_iter().filter(|(load, motion)| data.channels.contains_key(*load) && moves(motion)).collect();
+    if out.is_empty() {
+        return Err(IdentifyError::NoLoad { source_name: source.name.clone() });
+    }
+    Ok(out)
+}
+
+/// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone.
+fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Result<ForceLaw, IdentifyError> {
+    let texts: IndexMap<String, String> = moving_axes(data, source)?
+        .into_iter()
+        .map(|(load, v)| {
+            let axis = load.replace("f_", "").replace("m_", "r");
+            let quadratic = format!("-D_{axis}_II*{v}*abs({v})");
+            let text = if linear { format!("-D_{axis}_I*{v} {quadratic}") } else { quadratic };
+            (load.to_owned(), text)
+        })
+        .collect();
+    ForceLaw::formulas(name, &texts, data)
+}
+
+/// The body of f1 … f6, or the keys that the campaign lacks.
+fn body(campaign: &Campaign, data: &Dataset, model: &str) -> Result<Body, IdentifyError> {
+    let spec = campaign.body.as_ref();
+    let link = spec.and_then(|b| b.link.as_ref());
+    let (head, tail) = (spec.and_then(|b| b.head_side_area_m2), spec.and_then(|b| b.tail_side_area_m2));
+    let mut missing = Vec::new();
+    let mut need = |there: bool, key: &str| {
+        if !there {
+            missing.push(key.to_owned());
+        }
+    };
+    need(link.is_some(), "body.link (major_semi_axis, minor_semi_axis, half_length)");
+    need(head.is_some(), "body.head_side_area");
+    need(tail.is_some(), "body.tail_side_area");
+    need(data.dimension("density").is_some(), "fluid.density (or temperature)");
+    need(data.dimension("n_links").is_some(), "a table column configuration (HkLT) or n_links [1]");
+    match (link, head, tail) {
+        (Some(link), Some(head), Some(tail)) if missing.is_empty() => Ok(Body {
+            link: Link {
+                major_semi_axis_m: link.major_semi_axis_m,
+                minor_semi_axis_m: link.minor_semi_axis_m,
+                half_length_m: link.half_length_m,
+            },
+            head_side_area_m2: head,
+            tail_side_area_m2: tail,
+        }),
+        _ => Err(IdentifyError::NoBody { model: model.to_owned(), missing }),
+    }
+}
+
+/// A finding that a published source carries no data.
+#[must_use]
+pub fn published_note(source: &Source) -> Finding {
+    Finding::new(
+        Severity::Note,
+        "published",
+        format!("{} is a published record: it is compared, not fitted", source.name),
+    )
+    .of_source(&source.name)
+}
+
+/// Unit text of a response channel.
+#[must_use]
+pub fn response_unit(data: &Dataset, response: &str) -> String {
+    data.dimension(response).unwrap_or(Dimension::ONE).to_string()
+}

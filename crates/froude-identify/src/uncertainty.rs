@@ -1,0 +1,275 @@
+//! Type B uncertainty (GUM, JCGM 100:2008): what the declared budget does to the coefficients.
+//!
+//! A budget entry is an error e of a measured quantity, of zero mean and given
+//! standard deviation, that all rows of a sample, run, setup or campaign share.
+//! To first order it moves the stacked responses by J·e and the coefficients by
+//! S·J·e, with S = ∂β/∂y of the fit. A shared error does not average down.
+//!
+//! An entry whose groups hold one row each is already in the scatter of the
+//! residuals (type A): it is listed, and not added a second time. For
+//! `kind = "cfd"` there is no scatter, so it is added.
+
+use faer::Mat;
+use froude_records::campaign::{BudgetEntry, Shared};
+use indexmap::IndexMap;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use crate::dataset::{Dataset, labels};
+use crate::error::IdentifyError;
+use crate::law::{ForceLaw, aliased};
+use crate::reduce::SharedError;
+
+/// What one budget entry adds to the covariance of the coefficients.
+#[derive(Debug, Clone)]
+pub struct Contribution {
+    /// Name of the entry, with its quantity.
+    pub name: String,
+    /// `sample`, `run`, `setup`, `campaign`.
+    pub shared: &'static str,
+    /// Its part of the covariance, p × p.
+    pub covariance: Mat<f64>,
+    /// Degrees of freedom of the declared standard deviation; infinite unless stated.
+    pub dof: f64,
+    /// True where it is part of the residual scatter and not added again.
+    pub in_scatter: bool,
+}
+
+/// A fit as the propagation sees it.
+#[derive(Debug, Clone, Copy)]
+pub struct Linearised<'a> {
+    /// The law that was fitted.
+    pub law: &'a ForceLaw,
+    /// Its observations.
+    pub data: &'a Dataset,
+    /// Coefficients (undetermined ones at zero).
+    pub coefficients: &'a [f64],
+    /// ∂β/∂y, `p × (responses·rows)`.
+    pub sensitivity: &'a Mat<f64>,
+}
+
+/// The contribution of every entry of the budget and of every shared error.
+///
+/// # Errors
+///
+/// A quantity that is no channel of the observations.
+pub fn contributions(
+    fit: Linearised<'_>,
+    budget: &[BudgetEntry],
+    shared_errors: &[SharedError],
+    scatter_is_noise: bool,
+) -> Result<Vec<Contribution>, IdentifyError> {
+    let mut out = Vec::new();
+    for entry in budget {
+        let direction = direction(fit, entry)?;
+        let groups = groups(fit.data, entry.shared);
+        let n_groups = groups.iter().copied().max().map_or(0, |m| m + 1);
+        let single = n_groups == fit.data.rows && fit.data.rows > 1;
+        let p = fit.sensitivity.nrows();
+        let n = fit.data.rows;
+        let mut moved = Mat::<f64>::zeros(p, n_groups);
+        for row in 0..direction.len() {
+            if direction[row] != 0.0 {
+                let g = groups[row % n];
+                for j in 0..p {
+                    moved[(j, g)] += fit.sensitivity[(j, row)] * direction[row];
+                }
+            }
+        }
+        let covariance = &moved * moved.transpose();
+        out.push(Contribution {
+            name: entry
+                .name
+                .clone()
+                .map_or_else(|| entry.quantity.clone(), |name| format!("{name} ({})", entry.quantity)),
+            shared: entry.shared.name(),
+            covariance,
+            dof: entry.dof.unwrap_or(f64::INFINITY),
+            in_scatter: single && scatter_is_noise,
+        });
+    }
+    for error in shared_errors {
+        out.push(shared_error(fit, error));
+    }
+    Ok(out)
+}
+
+/// ∂(stacked response error)/∂e times the entry's standard deviation, per stacked row.
+///
+/// A load errs by itself. A wrong motion or density makes the fit use X(q + e) for X(q):
+/// the response is then wrong by −∂(Xβ)/∂q·e, taken by central differences.
+fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, IdentifyError> {
+    let quantity = aliased(&entry.quantity);
+    let n = fit.data.rows;
+    let values = fit.data.values(quantity).ok_or_else(|| IdentifyError::Campaign {
+        place: "[[source.uncertainty]]".to_owned(),
+        what: format!(
+            "quantity = {quantity:?} is no column of the table; it has {}",
+            fit.data.channels.keys().cloned().collect::<Vec<_>>().join(", ")
+        ),
+    })?;
+    let standard = |i: usize| if entry.relative { entry.standard * values[i].abs() } else { entry.standard };
+    let mut out = vec![0.0; n * fit.law.responses.len()];
+    if let Some(r) = fit.law.responses.iter().position(|name| name == quantity) {
+        for i in 0..n {
+            out[r * n + i] = if entry.relative { entry.standard * values[i] } else { entry.standard };
+        }
+        return Ok(out);
+    }
+    let scale = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(1e-3);
+    let step = 1e-5 * scale;
+    let up = fit.law.predict(&fit.data.shifted(quantity, &vec![step; n]), fit.coefficients)?;
+    let down = fit.law.predict(&fit.data.shifted(quantity, &vec![-step; n]), fit.coefficients)?;
+    for row in 0..out.len() {
+        out[row] = -(up[row] - down[row]) / (2.0 * step) * standard(row % n);
+    }
+    Ok(out)
+}
+
+/// Group of every row that shares the error.
+fn groups(data: &Dataset, shared: Shared) -> Vec<usize> {
+    match shared {
+        Shared::Sample => (0..data.rows).collect(),
+        Shared::Run => {
+            if data.run.iter().all(String::is_empty) {
+                (0..data.rows).collect()
+            } else {
+                labels(&data.run)
+            }
+        }
+        Shared::Setup => {
+            if data.setup.iter().all(String::is_empty) {
+                labels(&data.configuration)
+            } else {
+                labels(&data.setup)
+            }
+        }
+        Shared::Campaign => vec![0; data.rows],
+    }
+}
+
+/// A subtracted tare: S·D·C·Dᵀ·Sᵀ.
+fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Contribution {
+    let (p, n, q) = (fit.sensitivity.nrows(), fit.data.rows, error.covariance.len());
+    let mut moved = Mat::<f64>::zeros(p, q);
+    for (response, rows) in &error.directions {
+        if let Some(r) = fit.law.responses.iter().position(|name| name == response) {
+            for (i, row) in rows.iter().enumerate().take(n) {
+                for (k, d) in row.iter().enumerate() {
+                    for j in 0..p {
+                        moved[(j, k)] += fit.sensitivity[(j, r * n + i)] * d;
+                    }
+                }
+            }
+        }
+    }
+    let c = Mat::from_fn(q, q, |a, b| error.covariance[a][b]);
+    Contribution {
+        name: error.name.clone(),
+        shared: "campaign",
+        covariance: &moved * c * moved.transpose(),
+        dof: f64::INFINITY,
+        in_scatter: false,
+    }
+}
+
+/// Combined uncertainty of one coefficient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Combined {
+    /// Type A, from the scatter.
+    pub type_a: f64,
+    /// Type B, from the budget.
+    pub type_b: f64,
+    /// Root of the sum of squares.
+    pub standard: f64,
+    /// Effective degrees of freedom (Welch–Satterthwaite, GUM G.4.1).
+    pub dof: f64,
+    /// Coverage factor of the 95 % interval.
+    pub coverage: f64,
+}
+
+/// Combines the scatter of coefficient `j` with the budget.
+#[must_use]
+pub fn combine(type_a: f64, dof_a: f64, j: usize, parts: &[Contribution]) -> Combined {
+    let mut variance_b = 0.0;
+    let mut quartic = if dof_a.is_finite() && dof_a > 0.0 { type_a.powi(4) / dof_a } else { 0.0 };
+    for part in parts.iter().filter(|c| !c.in_scatter) {
+        let variance = part.covariance[(j, j)];
+        variance_b += variance;
+        if part.dof.is_finite() {
+            quartic += variance * variance / part.dof;
+        }
+    }
+    let variance = type_a * type_a + variance_b;
+    let dof = if quartic > 0.0 { variance * variance / quartic } else { f64::INFINITY };
+    Combined { type_a, type_b: variance_b.sqrt(), standard: variance.sqrt(), dof, coverage: coverage_factor(dof) }
+}
+
+/// Two-sided 95 % quantile of Student's t.
+#[must_use]
+pub fn coverage_factor(dof: f64) -> f64 {
+    // Beyond 10⁶ degrees of freedom t differs from the normal quantile by less than 3e-6.
+    let dof = dof.clamp(1.0, 1e6);
+    StudentsT::new(0.0, 1.0, dof).map_or(f64::NAN, |t| t.inverse_cdf(0.975))
+}
+
+/// Type B covariance by Monte Carlo (JCGM 101:2008): every shared error drawn, the fit repeated.
+///
+/// `refit` fits perturbed observations and gives the coefficients. Seeded: draw `d` uses stream `d`,
+/// so the answer does not depend on the number of threads. Returns the covariance of the draws that fitted.
+pub fn monte_carlo(
+    data: &Dataset,
+    budget: &[BudgetEntry],
+    draws: usize,
+    seed: u64,
+    refit: impl Fn(&Dataset) -> Option<Vec<f64>> + Sync,
+) -> Option<Mat<f64>> {
+    let samples: Vec<Vec<f64>> = (0..draws)
+        .into_par_iter()
+        .filter_map(|d| {
+            let mut rng = Pcg64::new(u128::from(seed), d as u128);
+            let mut moved = data.clone();
+            for entry in budget {
+                let quantity = aliased(&entry.quantity);
+                let groups = groups(data, entry.shared);
+                let count = groups.iter().max().map_or(0, |m| m + 1);
+                let errors: Vec<f64> = (0..count).map(|_| StandardNormal.sample(&mut rng)).collect();
+                let values = data.values(quantity)?;
+                let shift: Vec<f64> = (0..data.rows)
+                    .map(|i| {
+                        let scale = if entry.relative { entry.standard * values[i] } else { entry.standard };
+                        scale * errors[groups[i]]
+                    })
+                    .collect();
+                moved = moved.shifted(quantity, &shift);
+            }
+            refit(&moved)
+        })
+        .collect();
+    let p = samples.first()?.len();
+    let count = samples.len() as f64;
+    let mean: Vec<f64> = (0..p).map(|j| samples.iter().map(|s| s[j]).sum::<f64>() / count).collect();
+    Some(Mat::from_fn(p, p, |a, b| {
+        samples.iter().map(|s| (s[a] - mean[a]) * (s[b] - mean[b])).sum::<f64>() / (count - 1.0)
+    }))
+}
+
+/// A generator for seeded draws elsewhere in the crate.
+#[must_use]
+pub fn generator(seed: u64) -> Pcg64 {
+    Pcg64::seed_from_u64(seed)
+}
+
+/// Share of each part in the variance of coefficient `j`, scatter first.
+#[must_use]
+pub fn shares(type_a: f64, j: usize, parts: &[Contribution]) -> IndexMap<String, (f64, &'static str)> {
+    let mut out = IndexMap::new();
+    out.insert("scatter of the observations".to_owned(), (type_a, "sample"));
+    for part in parts.iter().filter(|c| !c.in_scatter) {
+        out.insert(part.name.clone(), (part.covariance[(j, j)].max(0.0).sqrt(), part.shared));
+    }
+    out
+}

@@ -1,0 +1,111 @@
+//! Where the observations lie: speed, angle and the similarity numbers of the water and the tank.
+//!
+//! The ranges go into every record. A prediction outside them is extrapolation.
+
+use froude_hydro::similarity;
+use froude_records::campaign::Campaign;
+use froude_records::estimate::Range;
+use froude_records::finding::{Finding, Severity};
+use indexmap::IndexMap;
+
+use crate::dataset::Dataset;
+
+/// Blockage above which a correction or a remark is due (ITTC 7.5-02-02-01 corrects resistance for blockage well below it).
+const BLOCKAGE_LIMIT: f64 = 0.05;
+/// Submergence Froude number above which a body near the surface makes waves that matter.
+const WAVE_LIMIT: f64 = 0.4;
+
+/// Ranges of the observations, by name, with the findings that they give rise to.
+#[must_use]
+pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, Vec<Finding>) {
+    let mut out = IndexMap::new();
+    let mut findings = Vec::new();
+    let mut put = |name: &str, values: &[f64], unit: &str| {
+        if !values.is_empty() {
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            out.insert(name.to_owned(), Range { low, high, unit: unit.to_owned() });
+        }
+    };
+    for (name, unit) in [("speed", "m/s"), ("angle", "rad"), ("n_links", "1"), ("temperature", "K")] {
+        if let Some(values) = data.values(name) {
+            put(name, values, unit);
+        }
+    }
+    for (name, channel) in &data.channels {
+        let is_rate = matches!(name.as_str(), "v_z" | "w_x" | "w_y" | "w_z") || name.ends_with("_dot");
+        if is_rate {
+            put(name, &channel.values, &channel.dimension.to_string());
+        }
+    }
+    let body = campaign.body.as_ref();
+    let length = body.and_then(|b| b.reference_length_m);
+    let tank = campaign.tank.as_ref();
+    if let Some(speed) = data.values("speed") {
+        if let (Some(l), Some(nu)) = (length, data.values("kinematic_viscosity")) {
+            let re: Vec<f64> = speed.iter().zip(nu).map(|(u, nu)| similarity::reynolds(*u, l, *nu)).collect();
+            put("Re", &re, "1");
+        }
+        if let Some(l) = length {
+            let fr: Vec<f64> = speed.iter().map(|u| similarity::froude(*u, l)).collect();
+            put("Fr_length", &fr, "1");
+        }
+        if let Some(depth) = tank.and_then(|t| t.depth_m) {
+            let fr: Vec<f64> = speed.iter().map(|u| similarity::froude(*u, depth)).collect();
+            put("Fr_depth", &fr, "1");
+        }
+        if let Some(h) = tank.and_then(|t| t.submergence_m) {
+            let fr: Vec<f64> = speed.iter().map(|u| similarity::froude(*u, h)).collect();
+            let worst = fr.iter().copied().fold(0.0, f64::max);
+            put("Fr_submergence", &fr, "1");
+            if worst > WAVE_LIMIT {
+                findings.push(Finding::new(
+                    Severity::Warning,
+                    "wave-making",
+                    format!("U/√(g h) reaches {worst:.2} at a submergence of {h} m: the drag contains wave making, which a deeply submerged body does not have"),
+                ));
+            }
+        }
+        if let (Some(l), Some(amplitude), Some(period)) = (length, data.values("amplitude"), data.values("period")) {
+            let kc: Vec<f64> = amplitude
+                .iter()
+                .zip(period)
+                .map(|(a, t)| similarity::keulegan_carpenter(std::f64::consts::TAU * a / t, *t, l))
+                .collect();
+            put("KC", &kc, "1");
+        }
+    }
+    if let (Some(area), Some((w, d))) =
+        (body.and_then(|b| b.reference_area_m2), tank.and_then(|t| Some((t.width_m?, t.depth_m?))))
+    {
+        let blockage = similarity::blockage(area, w * d);
+        put("blockage", &[blockage], "1");
+        if blockage > BLOCKAGE_LIMIT {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "blockage",
+                format!(
+                    "the body takes {:.1} % of the tank's section: the water speeds up around it, and the drag is not that of open water",
+                    100.0 * blockage
+                ),
+            ));
+        }
+    }
+    (out, findings)
+}
+
+/// The words for a prediction outside the ranges of an estimate, if it is outside.
+#[must_use]
+pub fn extrapolation(name: &str, low: f64, high: f64, fitted: &Range) -> Option<Finding> {
+    let slack = 1e-9 * fitted.high.abs().max(fitted.low.abs());
+    (low < fitted.low - slack || high > fitted.high + slack).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "extrapolation",
+            format!(
+                "{name} {low:.4} to {high:.4} {} is outside the fitted range {:.4} to {:.4}: this is extrapolation",
+                fitted.unit, fitted.low, fitted.high
+            ),
+        )
+    })
+}

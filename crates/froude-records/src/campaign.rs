@@ -1,0 +1,468 @@
+//! A campaign as a person writes it: what is to be found, on which body, from which data.
+//!
+//! The TOML is read with its places, so that every message names file and line:
+//! an unknown key with the nearest known one, a quantity of the wrong kind with
+//! both units, a file that does not exist where it is named.
+//!
+//! Quantities are SI here; paths are joined to the campaign's folder.
+
+use std::path::{Path, PathBuf};
+
+use indexmap::IndexMap;
+
+use crate::campaign_toml;
+use crate::error::{Place, RecordError, read_bytes, utf8};
+pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
+use crate::units::Dimension;
+
+/// A whole campaign.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Campaign {
+    /// The file.
+    pub path: PathBuf,
+    /// Its title.
+    pub name: String,
+    /// What a report on it has to cite.
+    pub cite: Vec<String>,
+    /// The water.
+    pub fluid: Fluid,
+    /// The body.
+    pub body: Option<BodySpec>,
+    /// The tank.
+    pub tank: Option<Tank>,
+    /// Where observations and records come from.
+    pub sources: Vec<Source>,
+    /// How to fit.
+    pub identify: Identify,
+    /// How to make up observations.
+    pub simulate: Option<Simulate>,
+}
+
+/// The water: density, or temperature and salinity.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Fluid {
+    /// Density.
+    pub density_kg_m3: Option<f64>,
+    /// Kinematic viscosity.
+    pub kinematic_viscosity_m2_s: Option<f64>,
+    /// Temperature.
+    pub temperature_degc: Option<f64>,
+    /// Salinity, grams of salt per kilogram of water.
+    pub salinity_g_kg: Option<f64>,
+}
+
+/// The body: modules, areas, volumes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BodySpec {
+    /// One module.
+    pub link: Option<LinkSpec>,
+    /// Side area of the head, A_yH.
+    pub head_side_area_m2: Option<f64>,
+    /// Side area of the tail, A_yT.
+    pub tail_side_area_m2: Option<f64>,
+    /// Length for Reynolds and Froude numbers.
+    pub reference_length_m: Option<f64>,
+    /// Area for drag coefficients and blockage.
+    pub reference_area_m2: Option<f64>,
+    /// Displaced volume.
+    pub volume_m3: Option<f64>,
+    /// Displaced volume by configuration.
+    pub volumes: IndexMap<String, f64>,
+    /// Displaced volume of one link.
+    pub link_volume_m3: Option<f64>,
+}
+
+/// Elliptic section and length of one module.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkSpec {
+    /// Major semi-axis a, vertical.
+    pub major_semi_axis_m: f64,
+    /// Minor semi-axis b, lateral.
+    pub minor_semi_axis_m: f64,
+    /// Half the length, l.
+    pub half_length_m: f64,
+}
+
+/// The tank.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tank {
+    /// Width of the water.
+    pub width_m: Option<f64>,
+    /// Depth of the water.
+    pub depth_m: Option<f64>,
+    /// Depth of the body's axis below the surface.
+    pub submergence_m: Option<f64>,
+}
+
+/// One source of observations or of published coefficients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// Its name, unique in the campaign.
+    pub name: String,
+    /// What it is.
+    pub kind: SourceKind,
+    /// Where its numbers lie.
+    pub input: Input,
+    /// Sidecar of the table, where it is not the one beside it.
+    pub sidecar: Option<PathBuf>,
+    /// Force models for this source; empty for those of `[identify]`.
+    pub models: Vec<String>,
+    /// Which observations are used.
+    pub keep: Option<Keep>,
+    /// Text column whose values belong together (clusters, cross-validation).
+    pub group: Option<String>,
+    /// The sensor budget (type B).
+    pub uncertainty: Vec<BudgetEntry>,
+    /// A fitted tare that is subtracted.
+    pub tare: Option<Tare>,
+    /// What is to be run.
+    pub plan: Vec<PlanBlock>,
+    /// Where it stands in the campaign.
+    pub place: Place,
+}
+
+/// Kind of a source.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SourceKind {
+    /// Circulation tank: the body is held in a stream.
+    Tank,
+    /// Towing tank.
+    Towing,
+    /// Flow computation: residuals are model error, not noise.
+    Cfd,
+    /// Potential flow.
+    Potential,
+    /// Published coefficients.
+    Published,
+}
+
+impl SourceKind {
+    pub(crate) const NAMES: [&'static str; 5] = ["tank", "towing", "cfd", "potential", "published"];
+
+    /// As written in the campaign.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// Where the numbers of a source lie.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Input {
+    /// A table of observations.
+    Table(PathBuf),
+    /// An estimate record.
+    Record {
+        /// The `estimate.json`.
+        path: PathBuf,
+        /// `source/model` in it, where it holds several.
+        select: Option<String>,
+    },
+    /// A folder of runs.
+    Runs(PathBuf),
+    /// A folder of CFD cases.
+    Cases(PathBuf),
+    /// A surface mesh.
+    Mesh(PathBuf),
+}
+
+impl Input {
+    /// The file or folder.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Table(path) | Self::Runs(path) | Self::Cases(path) | Self::Mesh(path) => path,
+            Self::Record { path, .. } => path,
+        }
+    }
+}
+
+/// One entry of the sensor budget.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BudgetEntry {
+    /// What is uncertain: a column, `density`, `head_side_area`, …
+    pub quantity: String,
+    /// Standard uncertainty in SI, or as a fraction when `relative`.
+    pub standard: f64,
+    /// Whether `standard` was given in per cent of the value.
+    pub relative: bool,
+    /// Who shares the same error.
+    pub shared: Shared,
+    /// Degrees of freedom behind it; infinite when not given.
+    pub dof: Option<f64>,
+    /// A name for the budget table.
+    pub name: Option<String>,
+    /// What `standard` measures; a pure number when `relative`.
+    pub dimension: Dimension,
+    /// Where it stands in the campaign.
+    pub place: Place,
+}
+
+/// Who shares one error of the budget: shared errors do not average down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Shared {
+    /// Each observation has its own.
+    Sample,
+    /// All observations of a run.
+    Run,
+    /// All observations of a setup.
+    Setup,
+    /// All observations.
+    Campaign,
+}
+
+impl Shared {
+    pub(crate) const NAMES: [&'static str; 4] = ["sample", "run", "setup", "campaign"];
+
+    /// As written in the campaign.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// A tare record that is subtracted from the loads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Tare {
+    /// The `estimate.json`.
+    pub record: PathBuf,
+    /// `source/model` in it.
+    pub select: Option<String>,
+}
+
+/// One block of the run matrix: every speed at every angle for every configuration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlanBlock {
+    /// Configurations; empty where the body has only one.
+    pub configurations: Vec<String>,
+    /// Speeds.
+    pub speed_m_s: Vec<f64>,
+    /// Angles; 0 when not given.
+    pub angle_rad: Vec<f64>,
+    /// How often each point is run; 1 when not given.
+    pub repeats: usize,
+}
+
+/// How to fit.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Identify {
+    /// Force models; empty for all that apply.
+    pub models: Vec<String>,
+    /// Bounds of coefficients.
+    pub bounds: BoundsSpec,
+    /// Coefficients held at a value (SI).
+    pub fixed: IndexMap<String, f64>,
+    /// Coefficients left out.
+    pub exclude: Vec<String>,
+    /// Published values used as priors.
+    pub prior: Vec<PriorSpec>,
+    /// `classical`, `HC3` or `cluster`; `None` to choose by the data.
+    pub covariance: Option<String>,
+    /// Declared blocks: train inside, predict outside.
+    pub cross_validation: Vec<RangeBlock>,
+    /// What to do about the angle between sensor and body.
+    pub angle_offset: AngleOffset,
+    /// Huber's constant in standard deviations; squares when `None`.
+    pub huber: Option<f64>,
+    /// Whether the fit is held to f·v ≤ 0.
+    pub dissipative: bool,
+    /// Draws of a Monte Carlo propagation of the budget; linear only when `None`.
+    pub monte_carlo: Option<usize>,
+    /// Models written by the user.
+    pub user_models: Vec<UserModel>,
+    /// Whether speed and angle are uncertain too (`errors_in_variables = true`).
+    pub errors_in_variables: bool,
+}
+
+/// Bounds of coefficients.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct BoundsSpec {
+    /// For all that are not named.
+    pub default: BoundKind,
+    /// By coefficient.
+    pub named: IndexMap<String, BoundKind>,
+}
+
+/// Bound of one coefficient.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BoundKind {
+    /// `none` or `free`.
+    #[default]
+    None,
+    /// `non-negative`.
+    NonNegative,
+}
+
+/// A published value used as prior.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PriorSpec {
+    /// The coefficient.
+    pub coefficient: String,
+    /// Its value (SI).
+    pub value: f64,
+    /// Its standard uncertainty (SI).
+    pub standard_uncertainty: f64,
+    /// The model; `None` for all that have the coefficient.
+    pub model: Option<String>,
+}
+
+/// A declared block of cross-validation: fitted to rows inside, held against the rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RangeBlock {
+    /// The column.
+    pub column: String,
+    /// Smallest value fitted to (SI).
+    pub low: f64,
+    /// Largest value fitted to (SI).
+    pub high: f64,
+}
+
+/// What to do about the angle between sensor and body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AngleOffset {
+    /// Take it as zero.
+    #[default]
+    Ignore,
+    /// Estimate one per setup, where pairs of ±θ exist.
+    Estimate,
+}
+
+/// A model written by the user.
+#[derive(Debug, Clone, PartialEq)]
+pub struct UserModel {
+    /// Its name.
+    pub name: String,
+    /// Formula by load (`f_x`, or `X`), or by any other column of numbers.
+    pub formulas: IndexMap<String, String>,
+}
+
+/// How to make up observations for chosen true coefficients.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulate {
+    /// Seed: the same seed gives the same table.
+    pub seed: u64,
+    /// The true coefficients.
+    pub truth: Truth,
+    /// The sensors.
+    pub sensors: Vec<SensorSpec>,
+    /// Angle between sensor and body.
+    pub misalignment_rad: Option<f64>,
+}
+
+/// True coefficients of a simulation.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Truth {
+    /// From an estimate record.
+    Record {
+        /// The `estimate.json`.
+        path: PathBuf,
+        /// `source/model` in it.
+        select: Option<String>,
+    },
+    /// Written in the campaign (SI).
+    Coefficients {
+        /// The force model.
+        model: String,
+        /// Its coefficients by name.
+        values: IndexMap<String, f64>,
+    },
+}
+
+/// One sensor of a simulation; everything in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SensorSpec {
+    /// The column that it makes.
+    pub quantity: String,
+    /// Standard deviation of its noise.
+    pub noise: Option<f64>,
+    /// Step of its reading.
+    pub resolution: Option<f64>,
+    /// Standard deviation of a linear drift over one setup.
+    pub drift: Option<f64>,
+    /// Constant error.
+    pub bias: Option<f64>,
+}
+
+/// The largest campaign that is read.
+const LARGEST_BYTES: u64 = 4 << 20;
+
+/// Reads a campaign; the files that it names must exist, except a table that a plan will make.
+///
+/// # Errors
+///
+/// See [`RecordError`].
+pub fn read_campaign(path: &Path) -> Result<Campaign, RecordError> {
+    let bytes = read_bytes(path, LARGEST_BYTES, "a campaign")?;
+    let campaign = campaign_toml::parse(path, utf8(path, &bytes)?)?;
+    campaign.check_files()?;
+    Ok(campaign)
+}
+
+/// The same from text, without looking at the files that it names.
+///
+/// # Errors
+///
+/// See [`RecordError`].
+pub fn parse_campaign(path: &Path, text: &str) -> Result<Campaign, RecordError> {
+    campaign_toml::parse(path, text)
+}
+
+impl Campaign {
+    /// The campaign that a bare table stands for: one source, no body, no water.
+    #[must_use]
+    pub fn of_table(table: &Path, sidecar: Option<PathBuf>) -> Self {
+        let name = table.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        Self {
+            path: table.to_owned(),
+            name: name.clone(),
+            cite: Vec::new(),
+            fluid: Fluid::default(),
+            body: None,
+            tank: None,
+            sources: vec![Source {
+                name,
+                kind: SourceKind::Towing,
+                input: Input::Table(table.to_owned()),
+                sidecar,
+                models: Vec::new(),
+                keep: None,
+                group: None,
+                uncertainty: Vec::new(),
+                tare: None,
+                plan: Vec::new(),
+                place: Place::whole(table),
+            }],
+            identify: Identify::default(),
+            simulate: None,
+        }
+    }
+
+    /// A table with a plan may still have to be simulated or run; everything else must be there.
+    fn check_files(&self) -> Result<(), RecordError> {
+        for source in &self.sources {
+            let key = match source.input {
+                Input::Table(_) if !source.plan.is_empty() => continue,
+                Input::Table(_) => "table",
+                Input::Record { .. } => "record",
+                Input::Runs(_) => "runs",
+                Input::Cases(_) => "cases",
+                Input::Mesh(_) => "mesh",
+            };
+            must_exist(&source.place, key, source.input.path())?;
+            if let Some(sidecar) = &source.sidecar {
+                must_exist(&source.place, "sidecar", sidecar)?;
+            }
+            if let Some(tare) = &source.tare {
+                must_exist(&source.place, "tare.record", &tare.record)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn must_exist(place: &Place, key: &str, path: &Path) -> Result<(), RecordError> {
+    if path.exists() {
+        return Ok(());
+    }
+    Err(RecordError::MissingFile { place: place.clone(), key: key.to_owned(), path: path.to_owned() })
+}

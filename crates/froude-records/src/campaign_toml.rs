@@ -1,0 +1,467 @@
+//! The campaign's TOML, section by section. Names and defaults are the contract of the book's conventions page.
+
+use std::path::Path;
+
+use indexmap::IndexMap;
+use toml::Spanned;
+use toml::de::DeValue;
+
+use crate::campaign::{
+    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, LinkSpec, PlanBlock,
+    PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
+};
+use crate::error::RecordError;
+use crate::keep::parse_keep;
+use crate::nearest::suggestion;
+use crate::section::{Section, Source as Text, found, parse as parse_toml};
+use crate::table::known_dimension;
+use crate::units::Dimension;
+
+/// Most values of one range of a plan: a million runs is a slip of the step.
+const MOST_STEPS: f64 = 100_000.0;
+
+/// Reads a campaign from text.
+pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
+    let source = Text { path, text };
+    let document = parse_toml(source)?;
+    let root = Section::new(source, "", document.get_ref(), 0);
+    root.schema("campaign")?;
+    let campaign = Campaign {
+        path: path.to_owned(),
+        name: root
+            .text("name")?
+            .ok_or_else(|| root.missing("name", "write name = \"what this campaign is\""))?
+            .to_owned(),
+        cite: root.texts("cite")?,
+        fluid: root.section("fluid")?.map(|s| fluid(&s)).transpose()?.unwrap_or_default(),
+        body: root.section("body")?.map(|s| body(&s)).transpose()?,
+        tank: root.section("tank")?.map(|s| tank(&s)).transpose()?,
+        sources: root.sections("source")?.iter().map(read_source).collect::<Result<_, _>>()?,
+        identify: root.section("identify")?.map(|s| identify(&s)).transpose()?.unwrap_or_default(),
+        simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
+    };
+    root.finish()?;
+    for (i, a) in campaign.sources.iter().enumerate() {
+        if campaign.sources[..i].iter().any(|b| b.name == a.name) {
+            return Err(RecordError::Value {
+                place: a.place.clone(),
+                key: "name".to_owned(),
+                problem: format!("{:?} is the name of two sources; give each its own", a.name),
+            });
+        }
+    }
+    Ok(campaign)
+}
+
+fn fluid(s: &Section<'_>) -> Result<Fluid, RecordError> {
+    let out = Fluid {
+        density_kg_m3: s.positive("density", Dimension::DENSITY)?,
+        kinematic_viscosity_m2_s: s.positive("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY)?,
+        temperature_degc: s.quantity("temperature", Dimension::TEMPERATURE)?.map(|kelvin| kelvin - 273.15),
+        salinity_g_kg: s.quantity("salinity", Dimension::ONE)?.map(|fraction| fraction * 1e3),
+    };
+    s.finish()?;
+    Ok(out)
+}
+
+fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
+    let link = s
+        .section("link")?
+        .map(|l| -> Result<LinkSpec, RecordError> {
+            let need = |key| {
+                l.positive(key, Dimension::LENGTH)?
+                    .ok_or_else(|| l.missing(key, "a link needs major_semi_axis, minor_semi_axis and half_length"))
+            };
+            let out = LinkSpec {
+                major_semi_axis_m: need("major_semi_axis")?,
+                minor_semi_axis_m: need("minor_semi_axis")?,
+                half_length_m: need("half_length")?,
+            };
+            l.finish()?;
+            Ok(out)
+        })
+        .transpose()?;
+    let mut volumes = IndexMap::new();
+    if let Some(table) = s.section("volumes")? {
+        for (configuration, _, value) in table.entries() {
+            volumes.insert(configuration.to_owned(), table.as_quantity_of(configuration, value, Dimension::VOLUME)?);
+        }
+    }
+    let out = BodySpec {
+        link,
+        head_side_area_m2: s.positive("head_side_area", Dimension::AREA)?,
+        tail_side_area_m2: s.positive("tail_side_area", Dimension::AREA)?,
+        reference_length_m: s.positive("reference_length", Dimension::LENGTH)?,
+        reference_area_m2: s.positive("reference_area", Dimension::AREA)?,
+        volume_m3: s.positive("volume", Dimension::VOLUME)?,
+        volumes,
+        link_volume_m3: s.positive("link_volume", Dimension::VOLUME)?,
+    };
+    s.finish()?;
+    Ok(out)
+}
+
+fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
+    let out = Tank {
+        width_m: s.positive("width", Dimension::LENGTH)?,
+        depth_m: s.positive("depth", Dimension::LENGTH)?,
+        submergence_m: s.positive("submergence", Dimension::LENGTH)?,
+    };
+    s.finish()?;
+    Ok(out)
+}
+
+fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
+    let name = s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"circulation tank\", say"))?.to_owned();
+    let kinds = [SourceKind::Tank, SourceKind::Towing, SourceKind::Cfd, SourceKind::Potential, SourceKind::Published];
+    let kind = one_of(s, "kind", &SourceKind::NAMES, &kinds)?.ok_or_else(|| {
+        s.missing("kind", "write kind = \"tank\", \"towing\", \"cfd\", \"potential\" or \"published\"")
+    })?;
+    let path =
+        |key: &'static str| -> Result<Option<_>, RecordError> { Ok(s.text(key)?.map(|text| s.source.relative(text))) };
+    let select = s.text("select")?.map(str::to_owned);
+    let given = [
+        path("table")?.map(Input::Table),
+        path("record")?.map(|path| Input::Record { path, select: select.clone() }),
+        path("runs")?.map(Input::Runs),
+        path("cases")?.map(Input::Cases),
+        path("mesh")?.map(Input::Mesh),
+    ];
+    let mut given: Vec<Input> = given.into_iter().flatten().collect();
+    if given.len() != 1 {
+        return Err(s.missing(
+            "table",
+            &format!("it needs exactly one of table, runs, cases, mesh and record, and has {}", given.len()),
+        ));
+    }
+    let input = given.remove(0);
+    let keep = s
+        .get("keep")
+        .map(|v| parse_keep(s.as_text("keep", v)?).map_err(|e| s.wrong("keep", v, format!("cannot be read: {e}"))))
+        .transpose()?;
+    let tare = s
+        .section("tare")?
+        .map(|t| -> Result<Tare, RecordError> {
+            let record = t.text("record")?.ok_or_else(|| t.missing("record", "name the estimate.json of the tare"))?;
+            let out = Tare { record: s.source.relative(record), select: t.text("select")?.map(str::to_owned) };
+            t.finish()?;
+            Ok(out)
+        })
+        .transpose()?;
+    let out = Source {
+        name,
+        kind,
+        sidecar: path("sidecar")?,
+        models: s.texts("models")?,
+        keep,
+        group: s.text("group")?.map(str::to_owned),
+        uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
+        tare,
+        plan: s.sections("plan")?.iter().map(plan_block).collect::<Result<_, _>>()?,
+        place: ["table", "record", "runs", "cases", "mesh"]
+            .into_iter()
+            .find_map(|key| s.get(key))
+            .map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
+        input,
+    };
+    s.finish()?;
+    Ok(out)
+}
+
+/// One of a few words, with the nearest known one in the message.
+fn one_of<T: Copy>(
+    s: &Section<'_>,
+    key: &'static str,
+    names: &[&'static str],
+    values: &[T],
+) -> Result<Option<T>, RecordError> {
+    let Some(value) = s.get(key) else { return Ok(None) };
+    let text = s.as_text(key, value)?;
+    names
+        .iter()
+        .zip(values)
+        .find(|(name, _)| **name == text)
+        .map(|(_, v)| Some(*v))
+        .ok_or_else(|| s.wrong(key, value, format!("is {text:?}; {}", suggestion(text, names.iter().copied()))))
+}
+
+fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
+    let quantity = s
+        .text("quantity")?
+        .ok_or_else(|| s.missing("quantity", "name the uncertain column: f_x, speed, angle, density, …"))?;
+    let value = s.get("standard").ok_or_else(|| {
+        s.missing("standard", "write the standard uncertainty with its unit: \"0.01 N\" or \"0.5 %\"")
+    })?;
+    let standard = s.as_quantity("standard", value)?;
+    let relative = standard.unit.text.trim() == "%";
+    let dimension = standard.unit.dimension;
+    if let Some(expected) = known_dimension(quantity)
+        && !relative
+        && expected != dimension
+    {
+        return Err(s.wrong(
+            "standard",
+            value,
+            format!("is {}, but {quantity} is {}", found(value), expected.describe()),
+        ));
+    }
+    let si = standard.unit.difference_to_si(standard.value);
+    if si < 0.0 {
+        return Err(s.wrong("standard", value, format!("is {}; a standard uncertainty is not negative", found(value))));
+    }
+    let levels = [Shared::Sample, Shared::Run, Shared::Setup, Shared::Campaign];
+    let shared = one_of(s, "shared", &Shared::NAMES, &levels)?.ok_or_else(|| {
+        s.missing("shared", "say who shares the error: \"sample\", \"run\", \"setup\" or \"campaign\"")
+    })?;
+    let out = BudgetEntry {
+        quantity: quantity.to_owned(),
+        standard: si,
+        relative,
+        shared,
+        dof: s.number("dof")?.filter(|d| *d > 0.0),
+        name: s.text("name")?.map(str::to_owned),
+        dimension,
+        place: s.place(),
+    };
+    s.finish()?;
+    Ok(out)
+}
+
+fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
+    let speed =
+        s.get("speed").ok_or_else(|| s.missing("speed", "write \"0.1 m/s\", a list, or { start, stop, step }"))?;
+    let out = PlanBlock {
+        configurations: s.texts("configurations")?,
+        speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
+        angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
+        repeats: s.integer("repeats")?.unwrap_or(1).min(10_000) as usize,
+    };
+    if out.configurations.is_empty() {
+        return Err(s.missing("configurations", "write configurations = [\"H1LT\"], say"));
+    }
+    s.finish()?;
+    Ok(out)
+}
+
+/// One value, a list, or start, stop and step.
+fn series<'a>(
+    s: &Section<'a>,
+    key: &'static str,
+    value: &'a Spanned<DeValue<'a>>,
+    dimension: Dimension,
+) -> Result<Vec<f64>, RecordError> {
+    if let Some(list) = value.get_ref().as_array() {
+        return list.iter().map(|v| s.as_quantity_of(key, v, dimension)).collect();
+    }
+    if value.get_ref().as_table().is_none() {
+        return Ok(vec![s.as_quantity_of(key, value, dimension)?]);
+    }
+    let range = s.as_section(key, value)?;
+    let need = |end: &'static str| {
+        let value = range.get(end).ok_or_else(|| range.missing(end, "a range needs start, stop and step"))?;
+        range.as_quantity(end, value).and_then(|q| range.as_quantity_of(end, value, dimension).map(|_| q))
+    };
+    let (start, stop, step) = (need("start")?, need("stop")?, need("step")?);
+    range.finish()?;
+    let count = (stop.value_si - start.value_si) / step.value_si;
+    if !(count.is_finite() && (0.0..=MOST_STEPS).contains(&count)) {
+        return Err(s.wrong(
+            key,
+            value,
+            "must go from start to stop in at most 100000 steps of the step's sign".to_owned(),
+        ));
+    }
+    let steps = (count + 1e-9).floor() as usize;
+    // In the written unit 0.02 + 49·0.02 is exactly what a person means; converted once.
+    Ok((0..=steps)
+        .map(|k| {
+            let value = start.unit.from_si(start.value_si) + k as f64 * start.unit.from_si(step.value_si);
+            start.unit.to_si((value * 1e12).round() / 1e12)
+        })
+        .collect())
+}
+
+fn bound_kind(s: &Section<'_>, key: &str, value: &Spanned<DeValue<'_>>) -> Result<BoundKind, RecordError> {
+    match value.get_ref().as_str() {
+        Some("none" | "free") => Ok(BoundKind::None),
+        Some("non-negative") => Ok(BoundKind::NonNegative),
+        _ => Err(s.wrong(key, value, format!("is {}; expected \"none\", \"free\" or \"non-negative\"", found(value)))),
+    }
+}
+
+fn bounds(s: &Section<'_>) -> Result<BoundsSpec, RecordError> {
+    let Some(value) = s.get("bounds") else { return Ok(BoundsSpec::default()) };
+    if value.get_ref().as_table().is_none() {
+        return Ok(BoundsSpec { default: bound_kind(s, "bounds", value)?, named: IndexMap::new() });
+    }
+    let table = s.as_section("bounds", value)?;
+    let mut out = BoundsSpec::default();
+    for (name, _, value) in table.entries() {
+        let kind = bound_kind(&table, name, value)?;
+        if name == "default" {
+            out.default = kind;
+        } else {
+            out.named.insert(name.to_owned(), kind);
+        }
+    }
+    Ok(out)
+}
+
+/// A value of a coefficient: a plain number in SI, or a quantity in quotes.
+fn coefficient_value<'a>(s: &Section<'a>, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<f64, RecordError> {
+    if value.get_ref().is_str() { s.as_quantity(key, value).map(|q| q.value_si) } else { s.as_number(key, value) }
+}
+
+fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
+    let mut fixed = IndexMap::new();
+    if let Some(table) = s.section("fixed")? {
+        for (name, _, value) in table.entries() {
+            fixed.insert(name.to_owned(), coefficient_value(&table, name, value)?);
+        }
+    }
+    let angle_offset =
+        one_of(s, "angle_offset", &["ignore", "estimate"], &[AngleOffset::Ignore, AngleOffset::Estimate])?
+            .unwrap_or_default();
+    let huber = s.get("huber").map(|v| s.as_number("huber", v)).transpose()?;
+    if let Some(k) = huber.filter(|k| *k <= 0.0) {
+        return Err(RecordError::Value {
+            place: s.place(),
+            key: "huber".to_owned(),
+            problem: format!("is {k}; it must be larger than zero"),
+        });
+    }
+    let out = Identify {
+        models: s.texts("models")?,
+        bounds: bounds(s)?,
+        fixed,
+        exclude: s.texts("exclude")?,
+        prior: s.sections("prior")?.iter().map(prior).collect::<Result<_, _>>()?,
+        covariance: s.text("covariance")?.map(str::to_owned),
+        cross_validation: s.sections("cross_validation")?.iter().map(range_block).collect::<Result<_, _>>()?,
+        angle_offset,
+        huber,
+        dissipative: s.flag("dissipative")?.unwrap_or(false),
+        monte_carlo: s.integer("monte_carlo")?.map(|n| n.min(1_000_000) as usize),
+        user_models: s.sections("model")?.iter().map(user_model).collect::<Result<_, _>>()?,
+        errors_in_variables: s.flag("errors_in_variables")?.unwrap_or(false),
+    };
+    s.finish()?;
+    Ok(out)
+}
+
+fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
+    let need = |key: &'static str| -> Result<f64, RecordError> {
+        let value =
+            s.get(key).ok_or_else(|| s.missing(key, "a prior needs coefficient, value and standard_uncertainty"))?;
+        coefficient_value(s, key, value)
+    };
+    let out = PriorSpec {
+        coefficient: s.text("coefficient")?.ok_or_else(|| s.missing("coefficient", "name the coefficient"))?.to_owned(),
+        value: need("value")?,
+        standard_uncertainty: need("standard_uncertainty")?,
+        model: s.text("model")?.map(str::to_owned),
+    };
+    if out.standard_uncertainty <= 0.0 {
+        return Err(RecordError::Value {
+            place: s.place(),
+            key: "standard_uncertainty".to_owned(),
+            problem: "must be larger than zero; a value without uncertainty is no prior, hold it with fixed".to_owned(),
+        });
+    }
+    s.finish()?;
+    Ok(out)
+}
+
+fn range_block(s: &Section<'_>) -> Result<RangeBlock, RecordError> {
+    let column = s.text("column")?.ok_or_else(|| s.missing("column", "name the column of the range"))?.to_owned();
+    let end = |key: &'static str, open: f64| -> Result<f64, RecordError> {
+        s.get(key).map_or(Ok(open), |v| match known_dimension(&column) {
+            Some(dimension) => s.as_quantity_of(key, v, dimension),
+            None => s.as_quantity(key, v).map(|q| q.value_si),
+        })
+    };
+    let out = RangeBlock { low: end("low", f64::NEG_INFINITY)?, high: end("high", f64::INFINITY)?, column };
+    if out.low >= out.high {
+        return Err(RecordError::Value {
+            place: s.place(),
+            key: "low".to_owned(),
+            problem: "is not below high".to_owned(),
+        });
+    }
+    s.finish()?;
+    Ok(out)
+}
+
+fn user_model(s: &Section<'_>) -> Result<UserModel, RecordError> {
+    let name = s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"sway\", say"))?.to_owned();
+    let mut formulas = IndexMap::new();
+    for (load, _, value) in s.others() {
+        formulas.insert(load.to_owned(), s.as_text(load, value)?.to_owned());
+    }
+    if formulas.is_empty() {
+        return Err(s.missing("f_x", "a model needs a formula: f_y = \"Y_v*v + Y_vav*v*abs(v)\""));
+    }
+    Ok(UserModel { name, formulas })
+}
+
+fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
+    let select = s.text("select")?.map(str::to_owned);
+    let model = s.text("model")?;
+    let record = s.text("record")?.map(|r| Truth::Record { path: s.source.relative(r), select });
+    let written = s
+        .section("coefficients")?
+        .map(|table| -> Result<Truth, RecordError> {
+            let model =
+                model.ok_or_else(|| s.missing("model", "name the force model that the coefficients belong to"))?;
+            let values = table
+                .entries()
+                .map(|(name, _, v)| Ok((name.to_owned(), coefficient_value(&table, name, v)?)))
+                .collect::<Result<_, RecordError>>()?;
+            Ok(Truth::Coefficients { model: model.to_owned(), values })
+        })
+        .transpose()?;
+    let truth = match (record, written) {
+        (Some(truth), None) | (None, Some(truth)) => truth,
+        _ => {
+            return Err(s.missing(
+                "record",
+                "a twin needs its truth once: record (with select), or model and [simulate.coefficients]",
+            ));
+        }
+    };
+    let out = Simulate {
+        seed: s
+            .integer("seed")?
+            .ok_or_else(|| s.missing("seed", "write seed = 1, say; the same seed gives the same table"))?,
+        truth,
+        sensors: s.sections("sensor")?.iter().map(sensor).collect::<Result<_, _>>()?,
+        misalignment_rad: s.quantity("misalignment", Dimension::ONE)?,
+    };
+    s.finish()?;
+    Ok(out)
+}
+
+fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
+    let quantity = s
+        .text("quantity")?
+        .ok_or_else(|| s.missing("quantity", "name the measured column: f_x, f_y, speed, angle"))?
+        .to_owned();
+    let dimension = known_dimension(&quantity);
+    let part = |key: &'static str| -> Result<Option<f64>, RecordError> {
+        s.get(key)
+            .map(|v| match dimension {
+                Some(d) => s.as_quantity_of(key, v, d),
+                None => s.as_quantity(key, v).map(|q| q.value_si),
+            })
+            .transpose()
+    };
+    let out = SensorSpec {
+        noise: part("noise")?,
+        resolution: part("resolution")?,
+        drift: part("drift")?,
+        bias: part("bias")?,
+        quantity,
+    };
+    s.finish()?;
+    Ok(out)
+}

@@ -1,0 +1,376 @@
+//! Why a file cannot be read or written, with the place where it went wrong.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// Where in a file something stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file, as it was asked for.
+    pub path: PathBuf,
+    /// Where in it.
+    pub position: Position,
+}
+
+/// Position in a file, counted from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Position {
+    /// The file as a whole.
+    Whole,
+    /// A line of a text file.
+    Line(usize),
+    /// A row of a table without lines (Parquet).
+    Row(usize),
+}
+
+impl Place {
+    /// The file as a whole.
+    #[must_use]
+    pub fn whole(path: &Path) -> Self {
+        Self { path: path.to_owned(), position: Position::Whole }
+    }
+
+    /// A line, counted from 1.
+    #[must_use]
+    pub fn line(path: &Path, line: usize) -> Self {
+        Self { path: path.to_owned(), position: Position::Line(line) }
+    }
+
+    /// A row, counted from 1.
+    #[must_use]
+    pub fn row(path: &Path, row: usize) -> Self {
+        Self { path: path.to_owned(), position: Position::Row(row) }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let path = self.path.display();
+        match self.position {
+            Position::Whole => write!(f, "{path}"),
+            Position::Line(line) => write!(f, "{path}:{line}"),
+            Position::Row(row) => write!(f, "{path}, row {row}"),
+        }
+    }
+}
+
+/// Why a record cannot be read or written.
+///
+/// Every message names the file and, where there is one, the line; says what was
+/// found and what was expected; and ends with what to do where that is not plain.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RecordError {
+    /// The file cannot be opened or read.
+    #[error("cannot read {}: {reason}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// A file that another file names does not exist.
+    #[error("{place}: `{key}` names {}, which does not exist", path.display())]
+    MissingFile {
+        /// Where it is named.
+        place: Place,
+        /// The key that names it.
+        key: String,
+        /// The file that was looked for.
+        path: PathBuf,
+    },
+    /// The file cannot be written; what stood there before is untouched.
+    #[error("cannot write {}: {reason}; nothing was changed", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+    /// The file is larger than its kind should ever be.
+    #[error("{} has {bytes} bytes; the limit for {what} is {limit}", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        bytes: u64,
+        /// The most that is read.
+        limit: u64,
+        /// What kind of file it was read as.
+        what: &'static str,
+    },
+    /// The name of the file does not say what it is.
+    #[error("{}: tables are read from .csv and .parquet files", path.display())]
+    Extension {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The text is not what its format asks for.
+    #[error("{place}: {problem}")]
+    Syntax {
+        /// Where.
+        place: Place,
+        /// What is wrong and what to do.
+        problem: String,
+    },
+    /// A binary file is cut off or damaged.
+    #[error(
+        "{}: not a whole Parquet file ({reason}); it is truncated or damaged: copy or export it again",
+        path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What the reader says.
+        reason: String,
+    },
+    /// The record was written for a later version of the format.
+    #[error("{place}: this is {found}; this program reads up to {known}: use a newer Froude")]
+    NewerSchema {
+        /// Where.
+        place: Place,
+        /// The version in the file.
+        found: String,
+        /// The newest version that is understood.
+        known: String,
+    },
+    /// The schema is missing or of another kind.
+    #[error("{place}: `schema` is {found}; expected {known}")]
+    Schema {
+        /// Where.
+        place: Place,
+        /// What is in the file.
+        found: String,
+        /// What belongs there.
+        known: String,
+    },
+    /// A key that the format does not have.
+    #[error("{place}: unknown key `{key}` in {section}; {advice}")]
+    UnknownKey {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// The section that it stands in.
+        section: String,
+        /// The nearest known key, or all of them.
+        advice: String,
+    },
+    /// A key that the format needs.
+    #[error("{place}: {section} has no `{key}`; {advice}")]
+    MissingKey {
+        /// Where the section begins.
+        place: Place,
+        /// The section.
+        section: String,
+        /// The key.
+        key: String,
+        /// What to write.
+        advice: String,
+    },
+    /// A value that the key cannot take.
+    #[error("{place}: `{key}` {problem}")]
+    Value {
+        /// Where.
+        place: Place,
+        /// The key.
+        key: String,
+        /// What is wrong, as the rest of a sentence about the key.
+        problem: String,
+    },
+    /// A column of numbers without a unit.
+    #[error("{place}: column `{column}` has no unit; {advice}")]
+    MissingUnit {
+        /// Where.
+        place: Place,
+        /// Its header.
+        column: String,
+        /// What to write.
+        advice: String,
+    },
+    /// A unit that cannot be read.
+    #[error("{place}: column `{column}`: {problem}")]
+    BadUnit {
+        /// Where.
+        place: Place,
+        /// Its header.
+        column: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A column whose unit measures something else.
+    #[error("{place}: column `{column}`: wrong unit: expected {expected}, found {found}")]
+    WrongDimension {
+        /// Where.
+        place: Place,
+        /// Its header.
+        column: String,
+        /// In words, with the SI unit.
+        expected: String,
+        /// In words, with the SI unit.
+        found: String,
+    },
+    /// A column that the table does not have.
+    #[error("{place}: there is no column `{column}`; {advice}")]
+    UnknownColumn {
+        /// Where it was asked for, or the table.
+        place: Place,
+        /// The name.
+        column: String,
+        /// The nearest name, or all of them.
+        advice: String,
+    },
+    /// A column of text where numbers are needed, or the reverse.
+    #[error("{place}: column `{column}` holds {found}; {expected} are needed")]
+    ColumnKind {
+        /// The table.
+        place: Place,
+        /// The name.
+        column: String,
+        /// `text` or `numbers`.
+        found: &'static str,
+        /// `numbers` or `text`.
+        expected: &'static str,
+    },
+    /// Two columns of one name.
+    #[error("{place}: column `{column}` appears twice; rename or delete one")]
+    DuplicateColumn {
+        /// Where.
+        place: Place,
+        /// The name.
+        column: String,
+    },
+    /// A cell without content.
+    #[error("{place}: column `{column}`: the cell is empty; fill it in or delete the row")]
+    EmptyCell {
+        /// Where.
+        place: Place,
+        /// The header.
+        column: String,
+    },
+    /// A cell that is not a number.
+    #[error("{place}: column `{column}`: `{found}` is not a number")]
+    NotANumber {
+        /// Where.
+        place: Place,
+        /// The header.
+        column: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A cell with NaN or an infinity.
+    #[error("{place}: column `{column}`: `{found}` is not a finite number; correct it or delete the row")]
+    NotFinite {
+        /// Where.
+        place: Place,
+        /// The header.
+        column: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A row with too few or too many cells.
+    #[error("{place}: the row has {found} cells, the header has {expected}")]
+    RaggedRow {
+        /// Where.
+        place: Place,
+        /// Cells in the row.
+        found: usize,
+        /// Cells in the header.
+        expected: usize,
+    },
+    /// A table without observations.
+    #[error("{}: the table has no rows; at least one observation is needed", path.display())]
+    NoRows {
+        /// The file.
+        path: PathBuf,
+    },
+    /// `n_links` contradicts `configuration`.
+    #[error(
+        "{place}: `configuration` {configuration} has {expected} links, but `n_links` is {found}; \
+         correct one of them"
+    )]
+    LinksContradictConfiguration {
+        /// Where.
+        place: Place,
+        /// As written.
+        configuration: String,
+        /// Links by its name.
+        expected: f64,
+        /// Links by the column.
+        found: f64,
+    },
+    /// A number that JSON cannot hold.
+    #[error("cannot write {}: {item} is {value}, not a finite number; nothing was changed", path.display())]
+    NonFinite {
+        /// The file.
+        path: PathBuf,
+        /// Which number.
+        item: String,
+        /// Its value.
+        value: String,
+    },
+    /// Two estimates of one id.
+    #[error("{place}: the id `{id}` appears twice; every estimate needs its own")]
+    DuplicateId {
+        /// Where the second one stands.
+        place: Place,
+        /// The id.
+        id: String,
+    },
+}
+
+impl RecordError {
+    /// True where writing failed: the machine is at fault, not the input.
+    #[must_use]
+    pub fn is_output(&self) -> bool {
+        matches!(self, Self::Write { .. } | Self::NonFinite { .. })
+    }
+}
+
+/// The system's words for a failed operation, in the words of a person where they differ.
+pub(crate) fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file or folder".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        std::io::ErrorKind::NotADirectory => "its folder is not a folder".to_owned(),
+        std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        std::io::ErrorKind::ReadOnlyFilesystem => "the disk is read-only".to_owned(),
+        _ => error.to_string(),
+    }
+}
+
+/// Read a whole file, refusing what is larger than its kind should be.
+pub(crate) fn read_bytes(path: &Path, limit: u64, what: &'static str) -> Result<Vec<u8>, RecordError> {
+    use std::io::Read as _;
+    let failed = |error: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&error) };
+    let file = std::fs::File::open(path).map_err(failed)?;
+    let metadata = file.metadata().map_err(failed)?;
+    if metadata.is_dir() {
+        return Err(RecordError::Read { path: path.to_owned(), reason: "it is a folder".to_owned() });
+    }
+    let bytes = metadata.len();
+    if bytes > limit {
+        return Err(RecordError::TooLarge { path: path.to_owned(), bytes, limit, what });
+    }
+    let mut content = Vec::with_capacity(bytes as usize + 1);
+    // A pipe or a growing file has no honest length: stop one byte past the limit.
+    file.take(limit + 1).read_to_end(&mut content).map_err(failed)?;
+    if content.len() as u64 > limit {
+        let bytes = content.len() as u64;
+        return Err(RecordError::TooLarge { path: path.to_owned(), bytes, limit, what });
+    }
+    Ok(content)
+}
+
+/// UTF-8 text without a byte order mark, or the line of the first byte that is not.
+pub(crate) fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, RecordError> {
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|error| {
+        let line = 1 + memchr::memchr_iter(b'\n', &bytes[..error.valid_up_to()]).count();
+        RecordError::Syntax {
+            place: Place::line(path, line),
+            problem: "the text is not UTF-8; save the file as UTF-8".to_owned(),
+        }
+    })
+}

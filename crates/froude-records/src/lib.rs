@@ -1,0 +1,34 @@
+//! What lies in files: units, campaigns, tables and estimates.
+//!
+//! One module per format. Every number in a file carries its unit; every error
+//! names file, line, what was found and what was expected. No physics here.
+//!
+//! | file            | module                                     |
+//! |-----------------|--------------------------------------------|
+//! | campaign (TOML) | [`campaign`]                               |
+//! | table (CSV)     | [`csv_table`], in memory |
+//! | table (Parquet) | [`parquet_table`]                          |
+//! | sidecar (TOML)  | [`sidecar`]                                |
+//! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod campaign;
+mod campaign_toml;
+pub mod csv_table;
+mod error;
+pub mod estimate;
+pub mod finding;
+pub mod hash;
+pub mod json;
+pub mod keep;
+mod nearest;
+pub mod parquet_table;
+pub mod scale;
+pub mod schema;
+mod section;
+pub mod sidecar;
+pub mod table;
+pub mod units;
+pub mod write;
+
+pub use error::{Place, Position, RecordError};

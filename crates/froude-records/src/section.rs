@@ -1,0 +1,268 @@
+//! A TOML table being read: every value with its line, every key accounted for.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{Place, RecordError};
+use crate::nearest::suggestion;
+use crate::units::{Dimension, Quantity, parse_quantity};
+
+/// A file's text and path, for lines in messages.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Source<'a> {
+    pub path: &'a Path,
+    pub text: &'a str,
+}
+
+impl Source<'_> {
+    /// The line of a byte offset, from 1.
+    pub fn line(&self, offset: usize) -> usize {
+        let end = offset.min(self.text.len());
+        1 + memchr::memchr_iter(b'\n', &self.text.as_bytes()[..end]).count()
+    }
+
+    pub fn place(&self, offset: usize) -> Place {
+        Place::line(self.path, self.line(offset))
+    }
+
+    /// A path written in the file, seen from the file's folder.
+    pub fn relative(&self, written: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(written)
+    }
+}
+
+/// Parses the whole document.
+pub(crate) fn parse<'a>(source: Source<'a>) -> Result<Spanned<DeTable<'a>>, RecordError> {
+    DeTable::parse(source.text).map_err(|e| RecordError::Syntax {
+        place: source.place(e.span().map_or(0, |s| s.start)),
+        problem: format!("not TOML: {}", e.message().trim()),
+    })
+}
+
+/// One table of the document. Keys that are asked for are known; [`Section::finish`] refuses all others.
+pub(crate) struct Section<'a> {
+    pub source: Source<'a>,
+    pub name: String,
+    table: &'a DeTable<'a>,
+    start: usize,
+    asked: RefCell<BTreeSet<&'static str>>,
+}
+
+impl<'a> Section<'a> {
+    pub fn new(source: Source<'a>, name: &str, table: &'a DeTable<'a>, start: usize) -> Self {
+        Self { source, name: name.to_owned(), table, start, asked: RefCell::default() }
+    }
+
+    pub fn place(&self) -> Place {
+        self.source.place(self.start)
+    }
+
+    pub fn get(&self, key: &'static str) -> Option<&'a Spanned<DeValue<'a>>> {
+        self.asked.borrow_mut().insert(key);
+        self.raw(key)
+    }
+
+    fn raw(&self, key: &str) -> Option<&'a Spanned<DeValue<'a>>> {
+        self.table.iter().find(|(k, _)| k.get_ref().as_ref() == key).map(|(_, v)| v)
+    }
+
+    /// All keys with their values and the offset of the key.
+    pub fn entries(&self) -> impl Iterator<Item = (&'a str, usize, &'a Spanned<DeValue<'a>>)> {
+        self.table.iter().map(|(k, v)| (k.get_ref().as_ref(), k.span().start, v))
+    }
+
+    /// Entries whose keys were not asked for by name.
+    pub fn others(&self) -> Vec<(&'a str, usize, &'a Spanned<DeValue<'a>>)> {
+        let asked = self.asked.borrow();
+        self.entries().filter(|(k, ..)| !asked.contains(k)).collect()
+    }
+
+    pub fn wrong(&self, key: &str, value: &Spanned<DeValue<'_>>, problem: impl Into<String>) -> RecordError {
+        RecordError::Value {
+            place: self.source.place(value.span().start),
+            key: key.to_owned(),
+            problem: problem.into(),
+        }
+    }
+
+    pub fn missing(&self, key: &str, advice: &str) -> RecordError {
+        RecordError::MissingKey {
+            place: self.place(),
+            section: self.name.clone(),
+            key: key.to_owned(),
+            advice: advice.to_owned(),
+        }
+    }
+
+    pub fn text(&self, key: &'static str) -> Result<Option<&'a str>, RecordError> {
+        self.get(key).map(|v| self.as_text(key, v)).transpose()
+    }
+
+    pub fn as_text(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<&'a str, RecordError> {
+        value
+            .get_ref()
+            .as_str()
+            .ok_or_else(|| self.wrong(key, value, format!("is {}; expected a text in quotes", found(value))))
+    }
+
+    pub fn flag(&self, key: &'static str) -> Result<Option<bool>, RecordError> {
+        self.get(key)
+            .map(|v| {
+                v.get_ref()
+                    .as_bool()
+                    .ok_or_else(|| self.wrong(key, v, format!("is {}; expected true or false", found(v))))
+            })
+            .transpose()
+    }
+
+    pub fn number(&self, key: &'static str) -> Result<Option<f64>, RecordError> {
+        self.get(key).map(|v| self.as_number(key, v)).transpose()
+    }
+
+    pub fn as_number(&self, key: &str, value: &Spanned<DeValue<'_>>) -> Result<f64, RecordError> {
+        let text = match value.get_ref() {
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str(),
+            DeValue::Float(f) => f.as_str(),
+            _ => return Err(self.wrong(key, value, format!("is {}; expected a number", found(value)))),
+        };
+        match text.replace('_', "").parse::<f64>() {
+            Ok(x) if x.is_finite() => Ok(x),
+            _ => Err(self.wrong(key, value, format!("is {text}; expected a finite number"))),
+        }
+    }
+
+    pub fn integer(&self, key: &'static str) -> Result<Option<u64>, RecordError> {
+        self.get(key)
+            .map(|v| {
+                let parsed = match v.get_ref() {
+                    DeValue::Integer(i) if i.radix() == 10 => i.as_str().replace('_', "").parse().ok(),
+                    _ => None,
+                };
+                parsed.ok_or_else(|| {
+                    self.wrong(key, v, format!("is {}; expected a whole number, zero or larger", found(v)))
+                })
+            })
+            .transpose()
+    }
+
+    /// A quantity of a given dimension, SI.
+    pub fn quantity(&self, key: &'static str, dimension: Dimension) -> Result<Option<f64>, RecordError> {
+        self.get(key).map(|v| self.as_quantity_of(key, v, dimension)).transpose()
+    }
+
+    /// The same, larger than zero.
+    pub fn positive(&self, key: &'static str, dimension: Dimension) -> Result<Option<f64>, RecordError> {
+        let Some(value) = self.get(key) else { return Ok(None) };
+        let si = self.as_quantity_of(key, value, dimension)?;
+        if si > 0.0 {
+            Ok(Some(si))
+        } else {
+            Err(self.wrong(key, value, format!("is {}; it must be larger than zero", found(value))))
+        }
+    }
+
+    pub fn as_quantity(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<Quantity, RecordError> {
+        let Some(text) = value.get_ref().as_str() else {
+            return Err(self.wrong(
+                key,
+                value,
+                format!("is {}; expected a quantity with its unit in quotes, such as \"0.4 m/s\"", found(value)),
+            ));
+        };
+        parse_quantity(text).map_err(|e| self.wrong(key, value, format!("cannot be read: {e}")))
+    }
+
+    pub fn as_quantity_of(
+        &self,
+        key: &str,
+        value: &'a Spanned<DeValue<'a>>,
+        dimension: Dimension,
+    ) -> Result<f64, RecordError> {
+        self.as_quantity(key, value)?
+            .expect(dimension)
+            .map_err(|e| self.wrong(key, value, format!("is {}: {e}", found(value))))
+    }
+
+    /// A list of texts; a single text counts as a list of one.
+    pub fn texts(&self, key: &'static str) -> Result<Vec<String>, RecordError> {
+        let Some(value) = self.get(key) else { return Ok(Vec::new()) };
+        if let Some(one) = value.get_ref().as_str() {
+            return Ok(vec![one.to_owned()]);
+        }
+        let Some(list) = value.get_ref().as_array() else {
+            return Err(self.wrong(key, value, format!("is {}; expected a list of texts", found(value))));
+        };
+        list.iter().map(|v| self.as_text(key, v).map(str::to_owned)).collect()
+    }
+
+    /// A table inside this one.
+    pub fn section(&self, key: &'static str) -> Result<Option<Section<'a>>, RecordError> {
+        self.get(key).map(|v| self.as_section(key, v)).transpose()
+    }
+
+    pub fn as_section(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<Section<'a>, RecordError> {
+        let Some(table) = value.get_ref().as_table() else {
+            return Err(self.wrong(key, value, format!("is {}; expected a table", found(value))));
+        };
+        let name = if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) };
+        Ok(Section::new(self.source, &name, table, value.span().start))
+    }
+
+    /// An array of tables (`[[key]]`).
+    pub fn sections(&self, key: &'static str) -> Result<Vec<Section<'a>>, RecordError> {
+        let Some(value) = self.get(key) else { return Ok(Vec::new()) };
+        let Some(list) = value.get_ref().as_array() else {
+            return Err(self.wrong(key, value, format!("is {}; expected tables, written [[{key}]]", found(value))));
+        };
+        list.iter().map(|v| self.as_section(key, v)).collect()
+    }
+
+    /// Refuses keys that nobody asked for.
+    pub fn finish(&self) -> Result<(), RecordError> {
+        let Some((key, offset, _)) = self.others().into_iter().next() else { return Ok(()) };
+        let asked = self.asked.borrow();
+        Err(RecordError::UnknownKey {
+            place: self.source.place(offset),
+            key: key.to_owned(),
+            section: if self.name.is_empty() { "the file".to_owned() } else { format!("[{}]", self.name) },
+            advice: suggestion(key, asked.iter().copied()),
+        })
+    }
+
+    /// Checks `schema = 1`.
+    pub fn schema(&self, what: &str) -> Result<(), RecordError> {
+        let known = format!("{what} schema 1");
+        match self.integer("schema") {
+            Ok(Some(1)) => Ok(()),
+            Ok(Some(newer)) if newer > 1 => Err(RecordError::NewerSchema {
+                place: self.get("schema").map_or_else(|| self.place(), |v| self.source.place(v.span().start)),
+                found: format!("{what} schema {newer}"),
+                known,
+            }),
+            Ok(Some(other)) => {
+                Err(RecordError::Schema { place: self.place(), found: other.to_string(), known: "1".to_owned() })
+            }
+            Ok(None) => Err(RecordError::Schema {
+                place: Place::line(self.source.path, 1),
+                found: "missing".to_owned(),
+                known: "schema = 1".to_owned(),
+            }),
+            Err(e) => Err(e),
+        }
+    }
+}
+
+/// A value in a message: texts in quotes, others by their kind.
+pub(crate) fn found(value: &Spanned<DeValue<'_>>) -> String {
+    match value.get_ref() {
+        DeValue::String(s) => format!("{:?}", s.chars().take(80).collect::<String>()),
+        DeValue::Integer(i) => i.as_str().to_owned(),
+        DeValue::Float(f) => f.as_str().to_owned(),
+        DeValue::Boolean(b) => b.to_string(),
+        other => format!("a {}", other.type_str()),
+    }
+}

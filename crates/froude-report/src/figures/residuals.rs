@@ -1,0 +1,149 @@
+//! Residuals: against the fitted load, against the abscissa, against normal quantiles.
+
+use std::collections::HashMap;
+
+use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, evenly, recommended, thinned};
+use crate::canvas::{Align, Canvas, shortened};
+use crate::input::{Point, SourceSection};
+use crate::plot::{
+    ACCENT, AXIS, Entry, LABEL_SIZE, Panel, Span, Swatch, TEXT, WIDTH, draw_legend, drawable, legend_height, level_ink,
+};
+use crate::statistics::{mean_and_deviation, normal_quantile};
+use crate::symbol::{Rich, symbol_and_unit};
+
+/// Components in one residual figure: three rows of three panels.
+const RESIDUAL_ROWS: usize = 3;
+
+pub(super) fn residual_drawings(section: &SourceSection) -> Vec<Drawing> {
+    let usable: Vec<&Point> = section.points.iter().filter(|p| drawable(p.measured) && drawable(p.fitted)).collect();
+    let components = distinct(usable.iter().map(|p| p.component.as_str()));
+    let configurations = distinct(usable.iter().map(|p| p.configuration.as_str()));
+    let n_figures = components.len().div_ceil(RESIDUAL_ROWS);
+    components
+        .chunks(RESIDUAL_ROWS)
+        .enumerate()
+        .map(|(i, chunk)| {
+            let part = if n_figures > 1 { format!(" ({} of {n_figures})", i + 1) } else { String::new() };
+            draw_residuals(section, &usable, chunk, &configurations, &part)
+        })
+        .collect()
+}
+
+fn draw_residuals(
+    section: &SourceSection,
+    points: &[&Point],
+    components: &[&str],
+    configurations: &[&str],
+    part: &str,
+) -> Drawing {
+    let rank: HashMap<&str, usize> = configurations.iter().enumerate().map(|(i, c)| (*c, i)).collect();
+    let ink_of = |p: &Point| {
+        if configurations.len() < 2 {
+            ACCENT
+        } else {
+            level_ink(rank.get(p.configuration.as_str()).copied().unwrap_or(0), configurations.len())
+        }
+    };
+    let left = 66.0;
+    let legend: Vec<Entry> = if configurations.len() > 1 {
+        evenly(configurations, MOST_NAMED + 1)
+            .into_iter()
+            .map(|c| Entry {
+                swatch: Swatch::Dot,
+                ink: level_ink(rank.get(c).copied().unwrap_or(0), configurations.len()),
+                text: Rich::plain(&shortened(if c.is_empty() { "(no configuration)" } else { c }, 24)),
+            })
+            .collect()
+    } else {
+        Vec::new()
+    };
+    let gap = 20.0;
+    let (head, height, foot) = (14.0, 190.0, 46.0);
+    let width = (WIDTH - left - 12.0 - 2.0 * gap) / 3.0;
+    let legend_tall = legend_height(&legend, left);
+    let total = legend_tall + components.len() as f64 * (head + height + foot);
+    let mut canvas = Canvas::new(WIDTH, total);
+    draw_legend(&mut canvas, &legend, left, 0.0);
+    let mut is_thinned = false;
+    for (row, component) in components.iter().enumerate() {
+        let mine: Vec<&Point> = points.iter().copied().filter(|p| p.component == *component).collect();
+        let unit = mine.first().map_or("", |p| p.unit.as_str());
+        let residual = |p: &Point| p.measured - p.fitted;
+        let Some(y) = Span::of(mine.iter().map(|p| residual(p))) else { continue };
+        let largest = y.low.abs().max(y.high.abs());
+        let y = Span { low: -largest, high: largest }.aired(0.08);
+        let y_ticks = y.ticks(4);
+        let drawn = thinned(&mine, MOST_POINTS);
+        is_thinned |= drawn.len() < mine.len();
+        let mut sorted: Vec<&Point> = mine.clone();
+        sorted.sort_by(|a, b| residual(a).total_cmp(&residual(b)));
+        let n = sorted.len() as f64;
+        let ranked: Vec<(f64, &Point)> =
+            sorted.iter().enumerate().map(|(i, p)| (normal_quantile((i as f64 + 0.625) / (n + 0.25)), *p)).collect();
+        let columns: [(Vec<(f64, &Point)>, Rich); 3] = [
+            (
+                drawn.iter().map(|p| (p.fitted, *p)).collect(),
+                Rich::plain("Fitted ").then(symbol_and_unit(component, unit)),
+            ),
+            if Span::of(drawn.iter().map(|p| p.speed_m_s)).is_none_or(|s| s.width() < 1e-9)
+                && drawn.iter().all(|p| p.other.is_some())
+            {
+                let name = drawn.iter().find_map(|p| p.other.as_ref());
+                let places = drawn.iter().filter_map(|p| p.other.as_ref().map(|o| (o.value, *p))).collect();
+                (places, name.map_or_else(Rich::default, |o| symbol_and_unit(&o.quantity, &o.unit)))
+            } else {
+                (drawn.iter().map(|p| (p.speed_m_s, *p)).collect(), Rich::plain("Speed [m/s]"))
+            },
+            (thinned(&ranked, MOST_POINTS), Rich::plain("Normal quantile [1]")),
+        ];
+        for (column, (places, title)) in columns.into_iter().enumerate() {
+            let x = Span::of(places.iter().map(|p| p.0)).unwrap_or(Span { low: 0.0, high: 0.0 }).aired(0.05);
+            let panel = Panel {
+                left: left + column as f64 * (width + gap),
+                top: legend_tall + row as f64 * (head + height + foot) + head,
+                width,
+                height,
+                x,
+                y,
+            };
+            let x_ticks = x.ticks(4);
+            panel.axes(&mut canvas, Some(&x_ticks), (column == 0).then_some(&y_ticks), (&x_ticks, &y_ticks));
+            if column == 2 {
+                let (mean, deviation) = mean_and_deviation(mine.iter().map(|p| residual(p)));
+                let line = |z: f64| mean + deviation * z;
+                for stroke in panel.strokes(
+                    &(0..=60).map(|i| x.low + x.width() * f64::from(i) / 60.0).collect::<Vec<_>>(),
+                    &(0..=60).map(|i| line(x.low + x.width() * f64::from(i) / 60.0)).collect::<Vec<_>>(),
+                ) {
+                    canvas.path(stroke, AXIS, 1.2);
+                }
+            }
+            for (x, p) in places {
+                if let Some(at) = panel.at(x, residual(p)) {
+                    canvas.speck(at, if mine.len() > 300 { 1.7 } else { 2.4 }, ink_of(p).faint(0.75));
+                }
+            }
+            let below = (panel.left + panel.width / 2.0, panel.bottom() + 34.0);
+            canvas.text(x_ticks.titled(title), below, LABEL_SIZE, TEXT, Align::Center);
+            if column == 0 {
+                let title = y_ticks.titled(Rich::plain("Residual ").then(symbol_and_unit(component, unit)));
+                canvas.upward_text(title, (12.0, panel.top + panel.height / 2.0), LABEL_SIZE, TEXT);
+            }
+        }
+    }
+    let model = recommended(section).map_or_else(String::new, |e| format!(" of model {}", e.model));
+    let mut caption = format!(
+        "Residuals{model} (measured − fitted), {}{part}: against the fitted load, against the abscissa of the test, \
+         and ordered against normal quantiles (line: normal distribution with the residuals' mean and standard deviation).",
+        section.name
+    );
+    if is_thinned {
+        caption.push_str(" Points are thinned evenly.");
+    }
+    Drawing {
+        slug: format!("{}-residuals", section.name),
+        title: format!("{}: residuals{part}", section.name),
+        caption,
+        canvas,
+    }
+}

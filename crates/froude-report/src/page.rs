@@ -1,0 +1,607 @@
+//! The report as one HTML page.
+//!
+//! Everything stands in the file: style, figures, text. It loads nothing, runs
+//! no script, and prints on A4. All text from records is escaped.
+
+use froude_records::estimate::{Estimate, Measured};
+use froude_records::finding::{Finding, Severity};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs, recommended, slug};
+use crate::input::{InputFile, Report, ReportError, SourceSection};
+use crate::number;
+use crate::symbol::unit_text;
+use crate::tables::{self, Tables, html_symbol};
+
+const STYLE: &str = include_str!("report.css");
+
+/// The report as one self-contained HTML file.
+///
+/// # Errors
+///
+/// [`ReportError::Figure`] when the drawing library refuses a figure.
+pub fn html(report: &Report) -> Result<String, ReportError> {
+    let figures = placed_figures(report)?;
+    let mut page = Page { report, figures, sections: Vec::new(), tables: Tables::default() };
+    let summary = page.summary();
+    let mut body = Vec::new();
+    body.push(page.method());
+    body.push(page.data());
+    body.push(page.findings());
+    for i in 0..report.sources.len() {
+        body.push(page.source(i));
+    }
+    body.push(page.published());
+    body.push(page.side_by_side());
+    body.push(page.citations());
+    body.push(page.versions());
+    let title = if report.title.trim().is_empty() { "Report" } else { report.title.trim() };
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="generator" content="Froude";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                div class="sheet" {
+                    (page.navigation())
+                    main {
+                        header class="title" {
+                            p class="sort" { "Test report · hydrodynamic coefficients" }
+                            h1 { (title) }
+                            @if !report.subtitle.is_empty() { p class="subtitle" { (report.subtitle) } }
+                            p class="meta" {
+                                @if let Some(date) = &report.date { span { (date) } }
+                                span { (counted(report.sources.len(), "source", "sources")) }
+                                span { (counted(report.data.len(), "data file", "data files")) }
+                                @for (name, version) in report.versions.iter().take(1) { span { (name) " " (version) } }
+                            }
+                        }
+                        (summary)
+                        @for part in &body { (part) }
+                    }
+                }
+            }
+        }
+    };
+    Ok(page.into_string())
+}
+
+fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{} {}", number::count(n), if n == 1 { one } else { many })
+}
+
+/// An entry of the navigation.
+struct Section {
+    id: String,
+    number: String,
+    title: String,
+    parts: Vec<(String, String)>,
+}
+
+struct Page<'a> {
+    report: &'a Report,
+    figures: Vec<(Place, Figure)>,
+    sections: Vec<Section>,
+    tables: Tables,
+}
+
+impl Page<'_> {
+    /// Opens a numbered section and gives its heading.
+    fn open(&mut self, id: &str, title: &str, kind: &str) -> Markup {
+        let number = (self.sections.len() + 1).to_string();
+        let markup = html! {
+            h2 id=(id) {
+                span class="n" { (number) } (title)
+                @if !kind.is_empty() { span class="kind" { (kind) } }
+            }
+        };
+        self.sections.push(Section { id: id.to_owned(), number, title: title.to_owned(), parts: Vec::new() });
+        markup
+    }
+
+    /// Opens a part of the current section.
+    fn part(&mut self, name: &str, title: &str) -> Markup {
+        let Some(section) = self.sections.last_mut() else { return html! { h3 { (title) } } };
+        let id = format!("{}-{name}", section.id);
+        let number = format!("{}.{}", section.number, section.parts.len() + 1);
+        section.parts.push((id.clone(), title.to_owned()));
+        html! { h3 id=(id) { span class="n" { (number) } (title) } }
+    }
+
+    fn navigation(&self) -> Markup {
+        html! {
+            nav aria-label="Sections" {
+                p { "Contents" }
+                ol {
+                    li { a href="#summary" { span {} "Summary" } }
+                    @for section in &self.sections {
+                        li {
+                            a href={ "#" (section.id) } { span { (section.number) } (section.title) }
+                            @if section.parts.len() > 1 {
+                                ol { @for (id, title) in &section.parts { li { a href={ "#" (id) } { (title) } } } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// All figures of one place, each with its number and caption.
+    fn figures_at(&self, place: Place) -> Markup {
+        html! {
+            @for (i, (_, figure)) in self.figures.iter().enumerate().filter(|(_, (p, _))| *p == place) {
+                figure id={ "fig-" (i + 1) } {
+                    (PreEscaped(&figure.svg))
+                    figcaption { b { "Figure " (i + 1) ". " } (figure.caption) }
+                }
+            }
+        }
+    }
+
+    fn has_figures_at(&self, place: Place) -> bool {
+        self.figures.iter().any(|(p, _)| *p == place)
+    }
+
+    fn summary(&self) -> Markup {
+        let n = |severity| self.report.findings.iter().filter(|f| f.severity == severity).count();
+        let (errors, warnings, notes) = (n(Severity::Error), n(Severity::Warning), n(Severity::Note));
+        html! {
+            section class="summary" id="summary" aria-labelledby="summary-title" {
+                h2 id="summary-title" { "Summary" }
+                div class="chips" {
+                    @if errors > 0 { span class="error" { (counted(errors, "error", "errors")) } }
+                    @if warnings > 0 { span class="warning" { (counted(warnings, "warning", "warnings")) } }
+                    @if notes > 0 { span class="note" { (counted(notes, "note", "notes")) } }
+                    @if self.report.findings.is_empty() { span { "no findings" } }
+                    @else { span { a href="#findings" { "read the findings" } } }
+                }
+                @if self.report.sources.is_empty() { p { "No source was fitted." } }
+                @for (i, source) in self.report.sources.iter().enumerate() { (summary_of(i, source)) }
+                @if !self.report.sources.is_empty() {
+                    p class="legend" {
+                        "± is the expanded uncertainty: half of the 95 % interval. Digits in brackets, as in 0.0133(12), are \
+                         the standard uncertainty in the last digits of the value. (bound): the constrained fit lies on a \
+                         bound. —: the data do not determine the coefficient. †: no uncertainty is stated."
+                    }
+                }
+            }
+        }
+    }
+
+    fn method(&mut self) -> Markup {
+        if self.report.method.is_empty() {
+            return Markup::default();
+        }
+        let heading = self.open("method", "Method", "");
+        html! { section { (heading) @for paragraph in &self.report.method { p { (paragraph) } } } }
+    }
+
+    fn data(&mut self) -> Markup {
+        let heading = self.open("data", "Data", "");
+        let data = &self.report.data;
+        if data.is_empty() {
+            return html! { section { (heading) p { "No data file is recorded." } } };
+        }
+        let has_source = data.iter().any(|f| f.source.is_some());
+        let has_rows = data.iter().any(|f| f.n_rows.is_some());
+        let has_used = data.iter().any(|f| f.n_used.is_some());
+        let count = |n: Option<usize>| n.map_or_else(|| number::MISSING.to_owned(), number::count);
+        let row = |file: &InputFile| {
+            html! {
+                tr {
+                    th scope="row" { code { (file.path) } }
+                    @if has_source { td { (file.source.as_deref().unwrap_or(number::MISSING)) } }
+                    @if has_rows { td class="num" { (count(file.n_rows)) } }
+                    @if has_used { td class="num" { (count(file.n_used)) } }
+                    td class="hash" { (if file.sha256.is_empty() { number::MISSING } else { file.sha256.as_str() }) }
+                }
+            }
+        };
+        let caption = self.tables.caption("Files that the numbers come from, with their fingerprints.");
+        html! {
+            section {
+                (heading)
+                div class="table wide" {
+                    table {
+                        (caption)
+                        thead {
+                            tr {
+                                th scope="col" { "File" }
+                                @if has_source { th scope="col" { "Source" } }
+                                @if has_rows { th scope="col" class="num" { "Rows" } }
+                                @if has_used { th scope="col" class="num" { "Used" } }
+                                th scope="col" { "SHA-256" }
+                            }
+                        }
+                        tbody { @for file in data { (row(file)) } }
+                    }
+                }
+            }
+        }
+    }
+
+    fn findings(&mut self) -> Markup {
+        let heading = self.open("findings", "Findings", "");
+        if self.report.findings.is_empty() {
+            return html! { section { (heading) p { "The checks found nothing to report." } } };
+        }
+        let groups = [
+            (
+                Severity::Error,
+                "Errors",
+                "error",
+                "contradict physics or the file itself: do not use the numbers as they are.",
+            ),
+            (Severity::Warning, "Warnings", "warning", "doubtful: look before trusting the numbers."),
+            (Severity::Note, "Notes", "note", "worth knowing; nothing was changed because of them."),
+        ];
+        let mut parts = Vec::new();
+        for (severity, word, class, meaning) in groups {
+            let group: Vec<&Finding> = self.report.findings.iter().filter(|f| f.severity == severity).collect();
+            if group.is_empty() {
+                continue;
+            }
+            let caption = self.tables.caption(&format!("{word}: {meaning}"));
+            parts.push(findings_table(&group, class, &caption));
+        }
+        html! { section { (heading) @for part in &parts { (part) } } }
+    }
+
+    fn source(&mut self, i: usize) -> Markup {
+        let report = self.report;
+        let Some(source) = report.sources.get(i) else { return Markup::default() };
+        let id = format!("source-{}", i + 1);
+        let heading = self.open(&id, &source.name, &source.kind);
+        let best = recommended(source);
+        let shown = best.or_else(|| source.estimates.first());
+        let mut parts: Vec<Markup> = Vec::new();
+
+        if !source.estimates.is_empty() {
+            parts.push(self.part("coefficients", "Coefficients"));
+            parts.push(self.tables.coefficients(&source.name, &source.estimates));
+            if let Some(best) = best {
+                parts.push(self.tables.detail(best));
+            }
+            parts.push(determined(&source.estimates));
+            parts.push(notes(&source.estimates));
+        }
+        if self.has_figures_at(Place::Loads(i)) {
+            parts.push(self.part("loads", "Loads and model"));
+            parts.push(self.figures_at(Place::Loads(i)));
+        }
+        if self.has_figures_at(Place::Residuals(i)) {
+            parts.push(self.part("residuals", "Residuals"));
+            parts.push(self.figures_at(Place::Residuals(i)));
+        }
+        if !source.budget.is_empty() {
+            parts.push(self.part("budget", "Uncertainty budget"));
+            parts.push(improve_first(source));
+            parts.push(self.figures_at(Place::Budget(i)));
+            parts.push(self.tables.budget(source));
+        }
+        if !source.selection.is_empty() || !source.tests.is_empty() {
+            parts.push(self.part("selection", "Model selection"));
+            if !source.selection.is_empty() {
+                parts.push(self.tables.selection(source));
+            }
+            if !source.tests.is_empty() {
+                parts.push(self.tables.nested(source));
+            }
+        }
+        if let Some(estimate) = shown
+            && !estimate.validity.is_empty()
+        {
+            parts.push(self.part("validity", "Range of validity"));
+            parts.push(self.tables.validity(estimate));
+        }
+        html! {
+            section {
+                (heading)
+                @if !source.recommendation.is_empty() { p class="lead" { (source.recommendation) } }
+                (facts(source, shown))
+                @for part in &parts { (part) }
+            }
+        }
+    }
+
+    fn published(&mut self) -> Markup {
+        let report = self.report;
+        if report.published.is_empty() {
+            return Markup::default();
+        }
+        let heading = self.open("published", "Published coefficients", "");
+        let mut sources: Vec<&str> = Vec::new();
+        for estimate in &report.published {
+            if !sources.contains(&estimate.source.as_str()) {
+                sources.push(&estimate.source);
+            }
+        }
+        let tables: Vec<Markup> = sources
+            .into_iter()
+            .map(|source| {
+                let own: Vec<Estimate> = report.published.iter().filter(|e| e.source == source).cloned().collect();
+                html! { (self.tables.coefficients(source, &own)) (determined(&own)) (notes(&own)) }
+            })
+            .collect();
+        html! {
+            section {
+                (heading)
+                p { "As published. A value without an uncertainty is marked †: nothing is known about how far it can be trusted, \
+                     which is not the same as being exact." }
+                @for table in &tables { (table) }
+            }
+        }
+    }
+
+    fn side_by_side(&mut self) -> Markup {
+        let report = self.report;
+        let has_forest = self.has_figures_at(Place::Forest);
+        if !has_forest && report.comparison.is_none() {
+            return Markup::default();
+        }
+        let heading = self.open("comparison", "Sources side by side", "");
+        let mut parts: Vec<Markup> = Vec::new();
+        if let Some(comparison) = &report.comparison {
+            parts.push(html! { @for paragraph in &comparison.intro { p { (paragraph) } } });
+        }
+        if has_forest {
+            parts.push(self.part("forest", "Coefficients by source"));
+            parts.push(self.figures_at(Place::Forest));
+        }
+        if let Some(comparison) = &report.comparison {
+            if !comparison.coefficients.is_empty() {
+                parts.push(self.part("differences", "Normalised differences"));
+                parts.push(self.tables.differences(comparison));
+            }
+            if !comparison.joint.is_empty() {
+                parts.push(self.part("joint", "Joint test"));
+                parts.push(self.tables.joint(comparison));
+            }
+            if !comparison.forces.is_empty() {
+                parts.push(self.part("predictions", "Predicted loads"));
+                parts.push(self.tables.predictions(comparison));
+            }
+            if !comparison.notes.is_empty() {
+                parts.push(html! { ul class="plain" { @for note in &comparison.notes { li { (note) } } } });
+            }
+        }
+        html! { section { (heading) @for part in &parts { (part) } } }
+    }
+
+    fn citations(&mut self) -> Markup {
+        if self.report.citations.is_empty() {
+            return Markup::default();
+        }
+        let heading = self.open("citations", "How to cite", "");
+        html! {
+            section { (heading) ol class="citations" { @for work in &self.report.citations { li { (work) } } } }
+        }
+    }
+
+    fn versions(&mut self) -> Markup {
+        if self.report.versions.is_empty() {
+            return Markup::default();
+        }
+        let heading = self.open("versions", "Versions", "");
+        let caption = self.tables.caption(
+            "Programs that made this report. Together with the fingerprints of the data they allow it to be made again.",
+        );
+        html! {
+            section {
+                (heading)
+                div class="table wide" {
+                    table class="compact" {
+                        (caption)
+                        thead { tr { th scope="col" { "Program" } th scope="col" { "Version" } } }
+                        tbody {
+                            @for (name, version) in &self.report.versions {
+                                tr { th scope="row" { (name) } td { code { (version) } } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn summary_of(i: usize, source: &SourceSection) -> Markup {
+    let best = recommended(source);
+    let reason = if source.recommendation.is_empty() {
+        best.and_then(|e| e.reason.as_deref()).unwrap_or("")
+    } else {
+        &source.recommendation
+    };
+    html! {
+        article {
+            h3 {
+                a href={ "#source-" (i + 1) } { (source.name) }
+                @match best {
+                    Some(best) => span class="chosen" { "model " (best.model) },
+                    None => span class="chosen" { "no model is recommended" },
+                }
+                span class="kind" {
+                    (source.kind)
+                    @if let Some(best) = best {
+                        @if best.n_observations > 0 { " · " (counted(best.n_observations, "observation", "observations")) }
+                        @for (component, sigma) in &best.sigma {
+                            @if sigma.value.is_finite() {
+                                " · σ(" (html_symbol(component)) ") " (number::significant(sigma.value, 2)) " " (unit_text(&sigma.unit))
+                            }
+                        }
+                    }
+                }
+            }
+            @if !reason.is_empty() { p class="reason" { (reason) } }
+            @if let Some(best) = best {
+                ul class="keys" {
+                    @for (name, c) in &best.coefficients {
+                        li { (html_symbol(name)) span { (tables::expanded(c, best)) } }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn findings_table(group: &[&Finding], class: &str, caption: &Markup) -> Markup {
+    let has_source = group.iter().any(|f| f.source.is_some());
+    let has_place = group.iter().any(|f| f.place.is_some());
+    html! {
+        div class="table wide" {
+            table {
+                (caption)
+                thead {
+                    tr {
+                        th scope="col" { "Check" }
+                        @if has_source { th scope="col" { "Source" } }
+                        th scope="col" { "Finding" }
+                        @if has_place { th scope="col" { "Place" } }
+                    }
+                }
+                tbody {
+                    @for finding in group {
+                        tr {
+                            th scope="row" { span class={ "tag " (class) } { (finding.code) } }
+                            @if has_source { td { (finding.source.as_deref().unwrap_or("")) } }
+                            td class="message" { (finding.message) }
+                            @if has_place {
+                                td class="place" { @if let Some(place) = &finding.place { code { (place) } } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Facts that the caller gives, and what the coefficients refer to.
+fn facts(source: &SourceSection, estimate: Option<&Estimate>) -> Markup {
+    let mut rows: Vec<(String, Markup)> =
+        source.facts.iter().map(|(name, value)| (name.clone(), html! { (value) })).collect();
+    let said: Vec<String> = rows.iter().map(|(name, _)| name.to_lowercase()).collect();
+    let measured = |m: &Measured| {
+        html! { (number::plain(m.value, 6)) @if m.unit != "1" { " " (unit_text(&m.unit)) } }
+    };
+    let mut add = |name: &str, value: Markup| {
+        if !said.contains(&name.to_lowercase()) {
+            rows.push((name.to_owned(), value));
+        }
+    };
+    if let Some(e) = estimate {
+        if !e.method.is_empty() {
+            add("Method", html! { (e.method) });
+        }
+        if !e.covariance_kind.is_empty() {
+            add("Covariance", html! { (e.covariance_kind) });
+        }
+        if !e.frame.is_empty() {
+            add("Axes", html! { (e.frame) });
+        }
+        if !e.reference_point.is_empty() {
+            add("Reference point", html! { (e.reference_point) });
+        }
+        if let Some(density) = &e.density {
+            add("Density", measured(density));
+        }
+        let list = |entries: &indexmap::IndexMap<String, Measured>| {
+            html! {
+                @for (i, (name, m)) in entries.iter().enumerate() {
+                    @if i > 0 { "; " }
+                    (name.replace('_', " ")) " " (measured(m))
+                }
+            }
+        };
+        if !e.geometry.is_empty() {
+            add("Geometry", list(&e.geometry));
+        }
+        if !e.law.constants.is_empty() {
+            let constants = html! {
+                @for (i, (name, m)) in e.law.constants.iter().enumerate() {
+                    @if i > 0 { "; " }
+                    (html_symbol(name)) " = " (measured(m))
+                }
+            };
+            add("Constants of the law", constants);
+        }
+        for (load, formula) in &e.law.formulas {
+            add(&format!("Formula of {load}"), html! { code { (load) " = " (formula) } });
+        }
+    }
+    html! {
+        @if !rows.is_empty() {
+            dl class="facts" { @for (name, value) in &rows { dt { (name) } dd { (value) } } }
+        }
+    }
+}
+
+/// Combinations that the data do determine although their members are not.
+fn determined(estimates: &[Estimate]) -> Markup {
+    html! {
+        @for e in estimates.iter().filter(|e| !e.undetermined.is_empty()) {
+            p {
+                "Model " (e.model) " is not determined coefficient by coefficient; determined are the combinations "
+                @for (i, combination) in e.undetermined.iter().enumerate() {
+                    @if i > 0 { ", " }
+                    code { (combination) }
+                }
+                "."
+            }
+        }
+    }
+}
+
+/// Sentences of the diagnostics, by model.
+fn notes(estimates: &[Estimate]) -> Markup {
+    let rows: Vec<(&str, &str)> = estimates
+        .iter()
+        .flat_map(|e| {
+            let note = e.diagnostics.cross_validation_note.as_deref();
+            e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (e.model.as_str(), n))
+        })
+        .collect();
+    // The same sentence of several models is told once.
+    let mut told: Vec<(Vec<&str>, &str)> = Vec::new();
+    for (model, note) in rows {
+        match told.iter_mut().find(|(_, n)| *n == note) {
+            Some((models, _)) => models.push(model),
+            None => told.push((vec![model], note)),
+        }
+    }
+    html! {
+        @if !told.is_empty() {
+            ul class="plain" { @for (models, note) in &told { li { b { (models.join(", ")) } ": " (note) } } }
+        }
+    }
+}
+
+/// The sentence that says which input to improve first.
+fn improve_first(source: &SourceSection) -> Markup {
+    let rows = budget_rows(source);
+    let ranked = ranked_inputs(&rows);
+    let model = rows.first().map_or("", |r| r.model.as_str());
+    html! {
+        @if let Some((input, part)) = ranked.first() {
+            p class="lead" {
+                "Improve first: " b { (input) } ". It makes " (number::percent(*part))
+                " of the variance, averaged over the coefficients of model " (model)
+                @if let Some((next, part)) = ranked.get(1) { "; then " (next) " with " (number::percent(*part)) }
+                "."
+            }
+        }
+    }
+}
+
+/// A file name for the page: the title, made safe.
+#[must_use]
+pub fn file_stem(report: &Report) -> String {
+    let stem = slug(&report.title);
+    if stem.is_empty() { "report".to_owned() } else { stem }
+}

@@ -1,0 +1,540 @@
+//! What every report holds, whatever it is made from.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod sample;
+
+use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
+use froude_records::finding::{Finding, Severity};
+use froude_report::{
+    Abscissa, Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile,
+    JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection, figures, html,
+};
+use proptest::prelude::*;
+
+/// The text between tags, entities left as they are.
+fn visible_text(page: &str) -> String {
+    let body = page.split_once("</style>").expect("a style element").1;
+    let mut out = String::new();
+    let mut is_tag = false;
+    for c in body.chars() {
+        match c {
+            '<' => is_tag = true,
+            '>' => {
+                is_tag = false;
+                out.push(' ');
+            }
+            c if !is_tag => out.push(c),
+            _ => {}
+        }
+    }
+    out
+}
+
+/// Values of all attributes that load or link.
+fn links(page: &str) -> Vec<String> {
+    ["src=\"", "href=\"", "url(", "@import", "action=\"", "data=\""]
+        .iter()
+        .flat_map(|key| {
+            page.match_indices(key)
+                .map(|(at, _)| page[at + key.len()..].split(['"', ')']).next().unwrap_or("").to_owned())
+                .collect::<Vec<_>>()
+        })
+        .collect()
+}
+
+/// A small check that elements close in the order in which they open.
+fn is_well_formed(svg: &str) -> bool {
+    let mut open: Vec<&str> = Vec::new();
+    for piece in svg.split('<').skip(1) {
+        let Some((tag, _)) = piece.split_once('>') else { return false };
+        if let Some(name) = tag.strip_prefix('/') {
+            if open.pop() != Some(name.trim()) {
+                return false;
+            }
+        } else if !tag.ends_with('/') {
+            open.push(tag.split_whitespace().next().unwrap_or(""));
+        }
+    }
+    open.is_empty()
+}
+
+#[test]
+fn every_coefficient_of_every_estimate_appears() {
+    let report = sample::report();
+    let page = html(&report).unwrap();
+    let estimates = report.sources.iter().flat_map(|s| &s.estimates).chain(&report.published);
+    for estimate in estimates {
+        for name in estimate.coefficients.keys() {
+            assert!(page.contains(&format!("<code>{name}</code>")), "{name} of {}", estimate.id);
+        }
+    }
+    // Values, in the short form and with their expanded uncertainty.
+    assert!(page.contains("0.01330(96)") && page.contains("0.0133 ± 0.0019"));
+    assert!(page.contains("k*G_T*C_f_II + G_HTx*C_fHT_II"));
+}
+
+#[test]
+fn the_page_loads_nothing_and_runs_nothing() {
+    let page = html(&sample::report()).unwrap();
+    for link in links(&page) {
+        assert!(link.starts_with('#'), "{link}");
+    }
+    assert!(!page.contains("<script") && !page.contains("<link") && !page.contains("<img"));
+}
+
+#[test]
+fn every_link_of_the_navigation_has_its_place_and_ids_are_unique() {
+    let page = html(&sample::report()).unwrap();
+    for link in links(&page) {
+        assert!(page.contains(&format!("id=\"{}\"", &link[1..])), "{link}");
+    }
+    let mut ids: Vec<&str> =
+        page.match_indices(" id=\"").map(|(at, _)| page[at + 5..].split('"').next().unwrap()).collect();
+    let n = ids.len();
+    ids.sort_unstable();
+    ids.dedup();
+    assert_eq!(ids.len(), n);
+}
+
+#[test]
+fn tables_have_captions_and_figures_have_titles_and_descriptions() {
+    let report = sample::report();
+    let page = html(&report).unwrap();
+    assert_eq!(page.matches("<table").count(), page.matches("<caption>").count());
+    let figures = figures(&report).unwrap();
+    assert_eq!(page.matches("<figure").count(), figures.len());
+    assert_eq!(page.matches("<figcaption>").count(), figures.len());
+    for figure in &figures {
+        assert!(figure.svg.contains("<title") && figure.svg.contains("<desc") && figure.svg.contains("role=\"img\""));
+        assert!(page.contains(&figure.svg), "{}", figure.file_name);
+    }
+}
+
+#[test]
+fn figures_are_well_formed_and_have_names_of_their_own() {
+    let figures = figures(&sample::report()).unwrap();
+    assert!(figures.len() > 15);
+    let mut names: Vec<&str> = figures.iter().map(|f| f.file_name.as_str()).collect();
+    for figure in &figures {
+        assert!(is_well_formed(&figure.svg), "{}", figure.file_name);
+        assert!(!figure.svg.contains("NaN") && !figure.svg.contains("inf"), "{}", figure.file_name);
+        assert_eq!(figure.file_name.rsplit_once('.').map(|(_, end)| end), Some("svg"));
+        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.".contains(c);
+        assert!(figure.file_name.chars().all(allowed), "{}", figure.file_name);
+    }
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), figures.len());
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes() {
+    assert_eq!(html(&sample::report()).unwrap(), html(&sample::report()).unwrap());
+}
+
+fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
+    Coefficient {
+        value,
+        unit: "1".to_owned(),
+        status,
+        standard_uncertainty: None,
+        type_a: None,
+        type_b: None,
+        interval_95: None,
+        effective_dof: None,
+    }
+}
+
+fn estimate(source: &str, model: &str, coefficients: &[(&str, Coefficient)]) -> Estimate {
+    Estimate {
+        id: format!("{source}/{model}"),
+        source: source.to_owned(),
+        kind: "tank".to_owned(),
+        model: model.to_owned(),
+        law: froude_records::estimate::Law::default(),
+        geometry: indexmap::IndexMap::new(),
+        density: None,
+        frame: String::new(),
+        reference_point: String::new(),
+        method: String::new(),
+        covariance_kind: String::new(),
+        dof: indexmap::IndexMap::new(),
+        sigma: indexmap::IndexMap::new(),
+        n_observations: 0,
+        coefficients: coefficients.iter().map(|(n, c)| ((*n).to_owned(), c.clone())).collect(),
+        covariance: None,
+        undetermined: Vec::new(),
+        validity: indexmap::IndexMap::new(),
+        diagnostics: froude_records::estimate::Diagnostics::default(),
+        recommended: true,
+        reason: None,
+    }
+}
+
+fn report_of(estimates: Vec<Estimate>) -> Report {
+    let section = SourceSection { name: "tank".to_owned(), estimates, ..SourceSection::default() };
+    let data = vec![InputFile { path: "tank.csv".to_owned(), ..InputFile::default() }];
+    Report { title: "t".to_owned(), sources: vec![section], data, ..Report::default() }
+}
+
+/// A value of zero or NaN behind an undetermined coefficient must not leak.
+#[test]
+fn undetermined_is_a_dash_and_never_a_number() {
+    for value in [None, Some(0.0), Some(f64::NAN), Some(7.25)] {
+        let mut undetermined = coefficient(value, Status::Undetermined);
+        undetermined.standard_uncertainty = Some(0.0);
+        undetermined.type_a = Some(3.25);
+        undetermined.effective_dof = Some(f64::NAN);
+        undetermined.interval_95 = Some([6.5, 8.5]);
+        let page = html(&report_of(vec![estimate("tank", "f3", &[("C_f_II", undetermined)])])).unwrap();
+        let text = visible_text(&page);
+        assert!(text.contains('—'), "{value:?}");
+        for wrong in ["NaN", "7.25", "3.25", "3.2", "6.5", " 0 ", "inf"] {
+            assert!(!text.contains(wrong), "{value:?}: {wrong}");
+        }
+        assert!(page.contains("not determined by these data"));
+    }
+}
+
+#[test]
+fn marks_tell_what_became_of_a_coefficient() {
+    let mut prior = coefficient(Some(0.5), Status::Prior);
+    prior.standard_uncertainty = Some(0.012);
+    let page = html(&report_of(vec![estimate(
+        "tank",
+        "f4",
+        &[
+            ("C_f_I", coefficient(Some(0.0), Status::AtBound)),
+            ("C_d_I", coefficient(Some(0.0), Status::BoundContradicted)),
+            ("C_f_II", coefficient(Some(0.0133), Status::Fixed)),
+            ("C_d_II", prior),
+            ("C_XY_I", coefficient(Some(0.0), Status::Excluded)),
+            ("C_XY_II", coefficient(Some(0.46), Status::Free)),
+        ],
+    )]))
+    .unwrap();
+    let text = visible_text(&page).split_whitespace().collect::<Vec<_>>().join(" ");
+    for sentence in [
+        "0 (bound)",
+        "0 (bound contradicted)",
+        "0.0133 (fixed)",
+        "0.500(12) (prior)",
+        "excluded",
+        "0.46 †",
+        "† no uncertainty stated",
+    ] {
+        assert!(text.contains(sentence), "{sentence}");
+    }
+}
+
+#[test]
+fn a_published_value_without_uncertainty_is_open_and_says_so() {
+    let report = sample::report();
+    let page = html(&report).unwrap();
+    assert!(page.contains("no uncertainty stated"));
+    let forest = figures(&report).unwrap().into_iter().find(|f| f.title.contains("model f4")).unwrap();
+    assert!(forest.svg.contains("no uncertainty stated"));
+    assert!(!page.contains("± 0<") && !page.contains("(0)"));
+}
+
+const HOSTILE: &str = "\"><script>alert('x')</script><svg onload=x>&amp;\u{0}\u{7}\u{e000}";
+
+#[test]
+fn hostile_names_are_escaped_everywhere() {
+    let h = || HOSTILE.to_owned();
+    let mut e = estimate(HOSTILE, HOSTILE, &[(HOSTILE, coefficient(Some(1.0), Status::Free))]);
+    for text in [&mut e.method, &mut e.frame, &mut e.kind, &mut e.reference_point, &mut e.covariance_kind] {
+        *text = h();
+    }
+    e.undetermined = vec![h()];
+    e.diagnostics.notes = vec![h()];
+    e.law.formulas.insert(h(), h());
+    e.geometry.insert(h(), Measured { value: 1.0, unit: h() });
+    e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
+    e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
+    let side = || Side { source: h(), value: Some(1.0), standard: None };
+    let report = Report {
+        title: h(),
+        subtitle: h(),
+        date: Some(h()),
+        method: vec![h()],
+        sources: vec![SourceSection {
+            name: h(),
+            kind: h(),
+            facts: vec![(h(), h())],
+            estimates: vec![e.clone()],
+            points: vec![Point { configuration: h(), component: h(), unit: h(), measured: 1.0, ..Point::default() }],
+            curves: vec![Curve {
+                configuration: h(),
+                component: h(),
+                unit: h(),
+                model: h(),
+                against: Against::Other { quantity: h(), unit: h() },
+                x: vec![0.0, 1.0],
+                y: vec![0.0, 1.0],
+                low: vec![],
+                high: vec![],
+            }],
+            budget: vec![BudgetRow {
+                model: h(),
+                coefficient: h(),
+                input: h(),
+                shared: h(),
+                unit: h(),
+                contribution: 1.0,
+                share: 1.0,
+            }],
+            selection: vec![SelectionRow {
+                model: h(),
+                component: h(),
+                cross_validation: Err(h()),
+                ..SelectionRow::default()
+            }],
+            tests: vec![NestedTest { simple: h(), general: h(), component: h(), ..NestedTest::default() }],
+            recommendation: h(),
+        }],
+        published: vec![e],
+        findings: vec![Finding { place: Some(h()), ..Finding::new(Severity::Error, HOSTILE, h()).of_source(HOSTILE) }],
+        data: vec![InputFile { path: h(), sha256: h(), n_rows: None, n_used: None, source: Some(h()) }],
+        versions: [(h(), h())].into(),
+        citations: vec![h()],
+        comparison: Some(ComparisonSection {
+            intro: vec![h()],
+            coefficients: vec![CoefficientComparison {
+                model: h(),
+                coefficient: h(),
+                unit: h(),
+                first: side(),
+                second: side(),
+                e_n: None,
+                note: h(),
+            }],
+            joint: vec![JointComparison {
+                model: h(),
+                first: h(),
+                second: h(),
+                note: h(),
+                ..JointComparison::default()
+            }],
+            forces: vec![ForceComparison {
+                configuration: h(),
+                component: h(),
+                unit: h(),
+                first: side(),
+                second: side(),
+                ..ForceComparison::default()
+            }],
+            notes: vec![h()],
+        }),
+    };
+    let page = html(&report).unwrap();
+    assert!(!page.contains("<script") && !page.contains("<svg onload"));
+    for figure in figures(&report).unwrap() {
+        assert!(is_well_formed(&figure.svg), "{}", figure.file_name);
+        assert!(!figure.svg.contains('\u{0}') && !figure.svg.contains("<script"));
+    }
+}
+
+#[test]
+fn an_empty_report_is_a_page() {
+    let page = html(&Report::default()).unwrap();
+    assert!(page.contains("No source was fitted") && page.contains("No data file is recorded"));
+    assert!(figures(&Report::default()).unwrap().is_empty());
+}
+
+#[test]
+fn many_configurations_are_spread_over_figures_of_at_most_nine_panels() {
+    let points: Vec<Point> = (0..23)
+        .flat_map(|k| {
+            (0..5).map(move |i| Point {
+                configuration: format!("body {k}"),
+                component: "f_x".to_owned(),
+                unit: "N".to_owned(),
+                speed_m_s: f64::from(i) * 0.1,
+                measured: -f64::from(i * i),
+                fitted: -f64::from(i * i) + 0.1,
+                ..Point::default()
+            })
+        })
+        .collect();
+    let section = SourceSection { name: "tank".to_owned(), points, ..SourceSection::default() };
+    let report = Report { sources: vec![section], ..Report::default() };
+    let figures = figures(&report).unwrap();
+    let loads: Vec<_> = figures.iter().filter(|f| f.title.contains("against speed")).collect();
+    assert_eq!(loads.len(), 3);
+    for k in 0..23 {
+        assert!(loads.iter().any(|f| f.svg.contains(&format!(">body {k}</tspan>"))), "body {k}");
+    }
+    assert!(loads[0].caption.contains("(1 of 3)"));
+}
+
+#[test]
+fn a_million_points_give_a_picture_that_can_be_opened() {
+    let points: Vec<Point> = (0..200_000u32)
+        .map(|i| Point {
+            component: "f_x".to_owned(),
+            unit: "N".to_owned(),
+            speed_m_s: f64::from(i) * 1e-5,
+            measured: f64::from(i % 97),
+            fitted: 48.0,
+            ..Point::default()
+        })
+        .collect();
+    let section = SourceSection { name: "tank".to_owned(), points, ..SourceSection::default() };
+    let page = html(&Report { sources: vec![section], ..Report::default() }).unwrap();
+    assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    assert!(page.contains("observations are not drawn") && page.contains("thinned"));
+}
+
+/// Loads against a channel of its own: a rotor's rate at no speed.
+#[test]
+fn another_abscissa_gets_its_own_axis() {
+    let points = (0..6)
+        .map(|i| Point {
+            component: "m_x".to_owned(),
+            unit: "N m".to_owned(),
+            other: Some(Abscissa { quantity: "w_x".to_owned(), unit: "rad/s".to_owned(), value: f64::from(i) }),
+            measured: -0.849 + 0.01 * f64::from(i),
+            fitted: -0.849 + 0.01 * f64::from(i),
+            ..Point::default()
+        })
+        .collect();
+    let section = SourceSection { name: "tare".to_owned(), points, ..SourceSection::default() };
+    let figures = figures(&Report { sources: vec![section], ..Report::default() }).unwrap();
+    assert!(figures[0].title.contains("against w_x"), "{}", figures[0].title);
+    assert!(figures[0].svg.contains(" [rad/s]"));
+}
+
+/// A 6×6 added mass stands as a matrix; what does not fit into it stands below.
+#[test]
+fn an_added_mass_is_printed_as_a_matrix() {
+    let mut own: Vec<(String, Coefficient)> = (1..=6)
+        .flat_map(|i| (1..=6).map(move |j| (format!("A{i}{j}"), f64::from(i * 10 + j) / 8.0)))
+        .map(|(name, value)| (name, coefficient(Some(value), Status::Free)))
+        .collect();
+    own.push(("A11_body_2".to_owned(), coefficient(Some(0.33), Status::Free)));
+    let borrowed: Vec<(&str, Coefficient)> = own.iter().map(|(n, c)| (n.as_str(), c.clone())).collect();
+    let page = html(&report_of(vec![estimate("tank", "added_mass_6x6", &borrowed)])).unwrap();
+    for word in ["surge", "yaw", "title=\"A66\"", "A11_body_2"] {
+        assert!(page.contains(word), "{word}");
+    }
+}
+
+/// Numbers that hurt: the edges of the doubles among ordinary ones.
+fn any_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        any::<f64>(),
+        -10.0..10.0f64,
+        prop::sample::select(vec![
+            0.0,
+            -0.0,
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            f64::MAX,
+            f64::MIN,
+            f64::MIN_POSITIVE,
+            5e-324,
+            1e300,
+            -1e300,
+        ]),
+    ]
+}
+
+fn any_status() -> impl Strategy<Value = Status> {
+    prop::sample::select(vec![
+        Status::Free,
+        Status::AtBound,
+        Status::Fixed,
+        Status::Excluded,
+        Status::Prior,
+        Status::Undetermined,
+        Status::BoundContradicted,
+    ])
+}
+
+fn numbers(n: std::ops::Range<usize>) -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(any_number(), n)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    /// No numbers bring the report down, and none of them is printed as NaN.
+    #[test]
+    fn any_numbers_give_a_page(
+        status in any_status(),
+        values in numbers(8..9),
+        loads in prop::collection::vec((any_number(), any_number(), any_number(), any_number()), 0..12),
+        x in numbers(0..6),
+        y in numbers(0..6),
+        band in numbers(0..6),
+        against in 0..3,
+    ) {
+        let mut c = coefficient(Some(values[0]), status);
+        c.standard_uncertainty = Some(values[1]);
+        c.interval_95 = Some([values[2], values[3]]);
+        (c.type_a, c.type_b, c.effective_dof) = (Some(values[4]), Some(values[5]), Some(values[6]));
+        let mut e = estimate("tank", "f4", &[("C_d_II", c.clone()), ("C_f_II", c)]);
+        e.validity.insert("speed".to_owned(), Range { low: values[0], high: values[1], unit: "rad".to_owned() });
+        e.sigma.insert("f_x".to_owned(), Measured { value: values[2], unit: "N".to_owned() });
+        e.density = Some(Measured { value: values[7], unit: "kg/m^3".to_owned() });
+        e.diagnostics.relative_residual.insert("f_x".to_owned(), values[3]);
+        e.diagnostics.condition_number = Some(values[4]);
+        let side = Side { source: "s".to_owned(), value: Some(values[0]), standard: Some(values[1]) };
+        let section = SourceSection {
+            name: "tank".to_owned(),
+            estimates: vec![e.clone()],
+            points: loads.iter().enumerate().map(|(i, (a, b, f, g))| Point {
+                configuration: format!("H{}LT", i % 3),
+                component: "f_x".to_owned(),
+                unit: "N".to_owned(),
+                speed_m_s: *a,
+                angle_rad: *b,
+                measured: *f,
+                fitted: *g,
+                standard: Some(values[5]),
+                other: None,
+            }).collect(),
+            curves: vec![Curve {
+                configuration: "H1LT".to_owned(),
+                component: "f_x".to_owned(),
+                unit: "N".to_owned(),
+                model: "f4".to_owned(),
+                against: match against {
+                    0 => Against::Speed { angle_rad: values[0] },
+                    1 => Against::Angle { speed_m_s: values[0] },
+                    _ => Against::Other { quantity: "w_x".to_owned(), unit: "rad/s".to_owned() },
+                },
+                x, y,
+                low: band.clone(),
+                high: band,
+            }],
+            budget: vec![BudgetRow { model: "f4".to_owned(), coefficient: "C_d_II".to_owned(), input: "speed".to_owned(),
+                shared: "run".to_owned(), contribution: values[6], unit: "1".to_owned(), share: values[7] }],
+            selection: vec![SelectionRow { model: "f4".to_owned(), component: "f_x".to_owned(), sigma: values[0],
+                delta_aicc: Some(values[1]), cross_validation: Ok(values[2]), range_blocks: vec![("r".to_owned(), values[3])],
+                lack_of_fit_p: Some(values[4]), ..SelectionRow::default() }],
+            tests: vec![NestedTest { f: values[5], dof: [values[6], values[7]], p: values[0], ..NestedTest::default() }],
+            ..SourceSection::default()
+        };
+        let report = Report {
+            sources: vec![section],
+            published: vec![e],
+            comparison: Some(ComparisonSection {
+                coefficients: vec![CoefficientComparison { first: side.clone(), second: side.clone(), e_n: Some(values[2]), ..CoefficientComparison::default() }],
+                joint: vec![JointComparison { chi_squared: Some(values[3]), p: Some(values[4]), dof: values[5], ..JointComparison::default() }],
+                forces: vec![ForceComparison { first: side.clone(), second: side, speed_m_s: values[6], angle_rad: values[7], e_n: Some(values[0]), ..ForceComparison::default() }],
+                ..ComparisonSection::default()
+            }),
+            ..Report::default()
+        };
+        let page = html(&report).unwrap();
+        prop_assert!(!visible_text(&page).contains("NaN"));
+        prop_assert!(!page.contains("=\"NaN") && !page.contains("=\"inf"));
+        for figure in figures(&report).unwrap() {
+            prop_assert!(is_well_formed(&figure.svg));
+            prop_assert!(figure.svg.len() < 500_000, "{} bytes", figure.svg.len());
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Lines of the validation page.
+
+/// How a line ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The figure is within the stated band.
+    Pass,
+    /// The figure is outside the stated band.
+    Miss,
+    /// A figure that contradicts a paper or a data set, as expected to be found.
+    Finding,
+    /// A figure without a bar.
+    Measured,
+    /// The data are not there.
+    Skipped,
+}
+
+/// One line.
+#[derive(Debug, Clone)]
+pub struct Line {
+    /// Section of the page.
+    pub section: &'static str,
+    /// What is claimed.
+    pub claim: String,
+    /// What was expected, with its source.
+    pub expected: String,
+    /// What was found.
+    pub found: String,
+    /// How it ended.
+    pub verdict: Verdict,
+}
+
+/// All lines.
+#[derive(Debug, Default)]
+pub struct Claims {
+    /// In order.
+    pub lines: Vec<Line>,
+}
+
+impl Claims {
+    /// A line that is what it is.
+    pub fn add(&mut self, section: &'static str, claim: &str, expected: &str, found: String, verdict: Verdict) {
+        eprintln!("[{verdict:?}] {section}: {claim}: {found}");
+        self.lines.push(Line { section, claim: claim.to_owned(), expected: expected.to_owned(), found, verdict });
+    }
+
+    /// A number against a value and a half-width, both stated before the run.
+    pub fn near(
+        &mut self,
+        section: &'static str,
+        claim: &str,
+        found: f64,
+        expected: f64,
+        half_width: f64,
+        source: &str,
+    ) {
+        let verdict = if (found - expected).abs() <= half_width { Verdict::Pass } else { Verdict::Miss };
+        self.add(section, claim, &format!("{expected} ± {half_width} ({source})"), format!("{found:.5}"), verdict);
+    }
+
+    /// Something that must hold.
+    pub fn holds(&mut self, section: &'static str, claim: &str, expected: &str, found: String, holds: bool) {
+        self.add(section, claim, expected, found, if holds { Verdict::Pass } else { Verdict::Miss });
+    }
+
+    /// The lines for a terminal.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        let mut section = "";
+        for l in &self.lines {
+            if l.section != section {
+                section = l.section;
+                out += &format!("\n{section}\n");
+            }
+            out += &format!("  [{}] {}: {} (expected {})\n", mark(l.verdict), l.claim, l.found, l.expected);
+        }
+        out
+    }
+
+    /// The page of the book.
+    pub fn page(&self, repetitions: usize) -> String {
+        let mut out = format!(
+            "# Validation\n\nThis page is written by `cargo xtask validate`; no figure is typed by hand. Coverage cases ran \
+             {repetitions} seeded repetitions. *Pass*: within the band stated before the run. *Miss*: outside it. *Finding*: \
+             a figure that contradicts a paper or a data set. *Measured*: a figure without a bar. *Skipped*: the data are not \
+             part of this repository and were not there.\n"
+        );
+        let mut section = "";
+        for l in &self.lines {
+            if l.section != section {
+                section = l.section;
+                out += &format!("\n## {section}\n\n| | claim | expected | found |\n| --- | --- | --- | --- |\n");
+            }
+            let cell = |t: &str| t.replace('|', "\\|").replace('\n', "<br>");
+            out +=
+                &format!("| {} | {} | {} | {} |\n", mark(l.verdict), cell(&l.claim), cell(&l.expected), cell(&l.found));
+        }
+        out
+    }
+}
+
+fn mark(v: Verdict) -> &'static str {
+    match v {
+        Verdict::Pass => "pass",
+        Verdict::Miss => "MISS",
+        Verdict::Finding => "finding",
+        Verdict::Measured => "measured",
+        Verdict::Skipped => "skipped",
+    }
+}

@@ -1,0 +1,65 @@
+//! The validation page: every claim of the project beside the figure that a run gives.
+//!
+//! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
+//! `book/src/validation.md`. A line that misses its bar fails the run. A line whose data are absent counts as
+//! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
+
+mod claims;
+mod coverage;
+mod kvlcc2;
+mod rm2;
+mod snake;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use claims::{Claims, Verdict};
+
+/// Repetitions per coverage case.
+const FULL_REPETITIONS: usize = 20_000;
+/// Repetitions in the short run.
+const SHORT_REPETITIONS: usize = 2_000;
+
+fn main() -> ExitCode {
+    let full = std::env::args().any(|a| a == "--full");
+    let repetitions = if full { FULL_REPETITIONS } else { SHORT_REPETITIONS };
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let shared = std::env::var_os("FROUDE_SHARED_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from);
+    let mut claims = Claims::default();
+    let run = |claims: &mut Claims| -> Result<(), Box<dyn std::error::Error>> {
+        snake::added_mass(claims, &root)?;
+        snake::contradictions(claims, &root)?;
+        snake::undetermined(claims)?;
+        snake::dissipativity(claims, &root)?;
+        snake::residuals(claims, &root)?;
+        snake::recommendation(claims, &root)?;
+        rm2::all(claims, &root)?;
+        kvlcc2::hmri(claims, &shared)?;
+        kvlcc2::fhr(claims, &shared)?;
+        coverage::all(claims, &root, repetitions)?;
+        Ok(())
+    };
+    if let Err(error) = run(&mut claims) {
+        eprintln!("validate: {error}");
+        return ExitCode::FAILURE;
+    }
+    print!("{}", claims.text());
+    if full {
+        let page = root.join("book/src/validation.md");
+        if let Err(error) = std::fs::write(&page, claims.page(repetitions)) {
+            eprintln!("validate: {}: {error}", page.display());
+            return ExitCode::FAILURE;
+        }
+        println!("written {}", page.display());
+    }
+    let count = |v: Verdict| claims.lines.iter().filter(|l| l.verdict == v).count();
+    println!(
+        "validate: {} passed, {} findings, {} measured, {} skipped, {} missed",
+        count(Verdict::Pass),
+        count(Verdict::Finding),
+        count(Verdict::Measured),
+        count(Verdict::Skipped),
+        count(Verdict::Miss)
+    );
+    if count(Verdict::Miss) == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}

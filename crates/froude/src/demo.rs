@@ -1,0 +1,58 @@
+//! `froude demo`: the main job with nothing prepared.
+//!
+//! Real tow-tank data (UNH RM2, CC BY 4.0) and the snake robot's twin beside the
+//! published sets are embedded in the program, written to a folder and run.
+
+use std::path::{Path, PathBuf};
+
+use froude_records::write::write_atomically;
+use include_dir::{Dir, include_dir};
+
+use crate::Error;
+use crate::pipeline::{Job, Outcome, identify};
+
+static EXAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../examples");
+
+/// The folders of the demo.
+const FOLDERS: [&str; 2] = ["unh-rm2", "mamba"];
+/// Its campaigns, in the order in which they run; results lie beside each.
+pub const CAMPAIGNS: [&str; 3] = ["unh-rm2/tare.toml", "unh-rm2/rotor.toml", "mamba/campaign.toml"];
+
+/// Writes the example campaigns into `folder` and runs both; `progress` is told each step.
+///
+/// # Errors
+///
+/// A folder that is not empty or cannot be written; anything that [`identify`] finds.
+pub fn run(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result<Vec<Outcome>, Error> {
+    let occupied = std::fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
+    if occupied {
+        return Err(Error::NotEmpty { path: folder.to_owned() });
+    }
+    for name in FOLDERS {
+        progress(&format!("writing {}", folder.join(name).display()));
+        if let Some(dir) = EXAMPLES.get_dir(name) {
+            write_files(dir, folder)?;
+        }
+    }
+    progress("mamba: simulating the circulation tank");
+    crate::twin::simulate(&folder.join("mamba/campaign.toml"), true)?;
+    CAMPAIGNS
+        .iter()
+        .map(|name| {
+            let mut job = Job::new(folder.join(name));
+            job.date.clone_from(&date);
+            identify(&job, &|step| progress(&format!("{name}: {step}")))
+        })
+        .collect()
+}
+
+fn write_files(dir: &Dir<'_>, folder: &Path) -> Result<(), Error> {
+    for file in dir.files() {
+        let path: PathBuf = folder.join(file.path());
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent).map_err(|source| Error::Output { path: parent.to_owned(), source })?;
+        }
+        write_atomically(&path, file.contents())?;
+    }
+    dir.dirs().try_for_each(|inner| write_files(inner, folder))
+}

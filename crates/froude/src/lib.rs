@@ -1,0 +1,47 @@
+//! Froude: hydrodynamic coefficients that can be trusted.
+//!
+//! The facade that a Rust user depends on: the rooms under their short names,
+//! and the pipeline that the program `froude` runs.
+//!
+//! ```no_run
+//! use froude::pipeline::{Job, identify};
+//! let done = identify(&Job::new("campaign.toml"), &|_| {})?;
+//! println!("{}", done.report.display());
+//! # Ok::<(), froude::Error>(())
+//! ```
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub use froude_fit as fit;
+pub use froude_hydro as hydro;
+pub use froude_identify as identify;
+pub use froude_records as records;
+pub use froude_report as report;
+
+pub mod demo;
+mod error;
+pub mod inspect;
+pub mod pipeline;
+mod sections;
+pub mod twin;
+
+pub use error::Error;
+
+/// What most programs need.
+pub mod prelude {
+    pub use crate::pipeline::{Job, Outcome, identify};
+    pub use crate::records::estimate::{Coefficient, Estimate, EstimateFile, Status};
+    pub use crate::records::finding::{Finding, Severity};
+}
+
+/// Compares the estimates of several records.
+///
+/// # Errors
+///
+/// A record that cannot be read.
+pub fn compare_files(paths: &[std::path::PathBuf]) -> Result<identify::compare::Comparison, Error> {
+    let files = paths
+        .iter()
+        .map(|path| Ok((path.display().to_string(), records::json::read_estimates(path)?)))
+        .collect::<Result<Vec<_>, Error>>()?;
+    Ok(identify::compare::compare(&identify::compare::named(&files)))
+}

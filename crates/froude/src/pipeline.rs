@@ -1,0 +1,179 @@
+//! From a campaign or a bare table to estimates and a report.
+
+use std::path::{Path, PathBuf};
+
+use froude_identify::compare::{Comparison, compare, named};
+use froude_identify::source::{SourceResult, identify_source};
+use froude_records::campaign::{Campaign, Input, read_campaign};
+use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
+use froude_records::finding::Finding;
+use froude_records::hash::sha256_of_file;
+use froude_records::json::{read_estimates, write_estimates};
+use froude_records::write::write_atomically;
+use indexmap::IndexMap;
+
+use crate::Error;
+use crate::sections;
+
+/// What to identify and where the results go.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// A campaign (`.toml`) or a bare table (`.csv`, `.parquet`).
+    pub input: PathBuf,
+    /// Folder of the results; beside the input, named after it, unless said.
+    pub out: Option<PathBuf>,
+    /// A sidecar for a bare table that is not beside it.
+    pub sidecar: Option<PathBuf>,
+    /// Models for a bare table, or instead of the campaign's.
+    pub models: Vec<String>,
+    /// Date for the report's title page, as text; the pipeline reads no clock.
+    pub date: Option<String>,
+}
+
+impl Job {
+    /// A job with nothing but its input.
+    #[must_use]
+    pub fn new(input: impl Into<PathBuf>) -> Self {
+        Self { input: input.into(), out: None, sidecar: None, models: Vec::new(), date: None }
+    }
+}
+
+/// What came out.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// The record, as it stands in `estimate.json`.
+    pub file: EstimateFile,
+    /// Where the record lies.
+    pub estimate: PathBuf,
+    /// Where the report lies.
+    pub report: PathBuf,
+    /// The figures beside it.
+    pub figures: Vec<PathBuf>,
+    /// Everything that is known about each fitted source.
+    pub sources: Vec<SourceResult>,
+    /// Sources side by side.
+    pub comparison: Comparison,
+}
+
+/// Reads, fits, chooses, reports; `progress` is told each step.
+///
+/// Nothing is written before everything is computed, and every file is written under a temporary name first.
+///
+/// # Errors
+///
+/// See [`Error`].
+pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
+    let mut campaign = campaign_of(job)?;
+    if !job.models.is_empty() {
+        campaign.identify.models.clone_from(&job.models);
+        for source in &mut campaign.sources {
+            source.models.clear();
+        }
+    }
+    let mut sources = Vec::new();
+    let mut published: Vec<(String, EstimateFile)> = Vec::new();
+    let mut files: Vec<PathBuf> = if is_campaign(&job.input) { vec![campaign.path.clone()] } else { Vec::new() };
+    let mut findings: Vec<Finding> = Vec::new();
+    for source in &campaign.sources {
+        if let Input::Record { path, select } = &source.input {
+            progress(&format!("{}: reading the record", source.name));
+            let mut record = read_estimates(path)?;
+            if let Some(select) = select {
+                let one = froude_identify::select::one_estimate(&record, Some(select), path)?.clone();
+                record.estimates = vec![one];
+            }
+            files.push(path.clone());
+            findings.push(froude_identify::source::published_note(source));
+            published.push((relative(path, &campaign.path), record));
+        } else {
+            let result = identify_source(&campaign, source, &|model| {
+                progress(&format!("{}: fitting {model}", source.name));
+            })?;
+            files.extend(result.files.iter().cloned());
+            findings.extend(result.findings.iter().cloned());
+            sources.push(result);
+        }
+    }
+    if sources.is_empty() && published.is_empty() {
+        return Err(Error::Nothing(format!("{}: the campaign has no [[source]]", job.input.display())));
+    }
+    progress("comparing the sources");
+    let fitted = EstimateFile {
+        schema: ESTIMATE_SCHEMA.to_owned(),
+        data: Vec::new(),
+        versions: IndexMap::new(),
+        estimates: sources.iter().flat_map(|s| s.estimates.iter().cloned()).collect(),
+        findings: Vec::new(),
+    };
+    let mut all = vec![("this campaign".to_owned(), fitted)];
+    all.extend(published.iter().cloned());
+    let comparison =
+        if all.iter().map(|f| f.1.estimates.len()).sum::<usize>() > 1 && (sources.len() > 1 || !published.is_empty()) {
+            compare(&named(&all))
+        } else {
+            Comparison::default()
+        };
+    findings.extend(comparison.findings.iter().cloned());
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    files.dedup();
+    let data = files
+        .iter()
+        .map(|path| Ok(DataFile { path: relative(path, &campaign.path), sha256: sha256_of_file(path)? }))
+        .collect::<Result<Vec<_>, Error>>()?;
+    let file = EstimateFile {
+        schema: ESTIMATE_SCHEMA.to_owned(),
+        data,
+        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
+        estimates: all[0].1.estimates.clone(),
+        findings,
+    };
+    progress("writing the report");
+    let records: Vec<_> = published.iter().flat_map(|(_, f)| f.estimates.iter().cloned()).collect();
+    let report = sections::report(&campaign, &sources, &records, &comparison, &file, job.date.clone())?;
+    let html = froude_report::html(&report)?;
+    let figures = froude_report::figures(&report)?;
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
+    std::fs::create_dir_all(&out).map_err(|source| Error::Output { path: out.clone(), source })?;
+    let estimate = out.join("estimate.json");
+    write_estimates(&estimate, &file)?;
+    let mut drawn = Vec::new();
+    if !figures.is_empty() {
+        let folder = out.join("figures");
+        std::fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
+        for figure in figures {
+            let path = folder.join(&figure.file_name);
+            write_atomically(&path, figure.svg.as_bytes())?;
+            drawn.push(path);
+        }
+    }
+    let report_path = out.join("report.html");
+    write_atomically(&report_path, html.as_bytes())?;
+    Ok(Outcome { file, estimate, report: report_path, figures: drawn, sources, comparison })
+}
+
+/// A campaign as it is read, or the one that a bare table stands for.
+///
+/// # Errors
+///
+/// Whatever the campaign reader finds.
+pub fn campaign_of(job: &Job) -> Result<Campaign, Error> {
+    if is_campaign(&job.input) {
+        return Ok(read_campaign(&job.input)?);
+    }
+    Ok(Campaign::of_table(&job.input, job.sidecar.clone()))
+}
+
+fn is_campaign(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+fn default_out(input: &Path) -> PathBuf {
+    let stem = input.file_stem().map_or_else(|| "froude".to_owned(), |s| s.to_string_lossy().into_owned());
+    input.with_file_name(format!("{stem}-results"))
+}
+
+/// A path as seen from the campaign's folder, where it lies below it.
+fn relative(path: &Path, campaign: &Path) -> String {
+    let base = campaign.parent().unwrap_or(Path::new(""));
+    path.strip_prefix(base).unwrap_or(path).display().to_string()
+}

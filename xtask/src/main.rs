@@ -1,0 +1,157 @@
+//! Project tasks: one command runs what the pipeline runs, its parts run alone.
+//!
+//! `cargo xtask test` is the whole of `.ci/run`: format, lints, tests, documentation, the demo and the short
+//! validation. It needs nothing but Rust. What takes longer or needs more programs has its own task, which
+//! installs what it needs.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+use std::time::Instant;
+
+use clap::{Parser, Subcommand};
+
+/// Project tasks.
+#[derive(Parser)]
+struct Cli {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Everything that the pipeline runs: format, lints, tests, docs, demo, short validation.
+    Test,
+    /// The validation, full length: coverage with 20,000 repetitions, real data, licences, book.
+    Validate {
+        /// 2,000 repetitions, no licences, no book: as the pipeline runs it.
+        #[arg(long)]
+        short: bool,
+    },
+    /// Fuzz every parser of our own (needs cargo-fuzz; installs it).
+    Fuzz {
+        /// Executions per target.
+        #[arg(long, default_value_t = 1_000_000)]
+        runs: u64,
+    },
+    /// Benches against numpy, pandas and scipy in the same run (installs them into bench/peers/.venv).
+    Bench,
+    /// Licences and advisories of the dependencies (needs cargo-deny; installs it).
+    Deny,
+    /// The book as HTML (needs mdbook; installs it).
+    Book,
+}
+
+fn main() -> ExitCode {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().map_or_else(PathBuf::new, Path::to_owned);
+    let started = Instant::now();
+    let done = match Cli::parse().task {
+        Task::Test => test(&root),
+        Task::Validate { short } => validate(&root, short),
+        Task::Fuzz { runs } => fuzz(&root, runs),
+        Task::Bench => run(&root, "sh", &["bench/peers/run.sh"]),
+        Task::Deny => deny(&root),
+        Task::Book => book(&root),
+    };
+    println!("xtask: {:.0} s", started.elapsed().as_secs_f64());
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(what) => {
+            eprintln!("xtask: failed: {what}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs a program; an error names the command line.
+fn run(root: &Path, program: &str, args: &[&str]) -> Result<(), String> {
+    let line = format!("{program} {}", args.join(" "));
+    println!("xtask: {line}");
+    let status = Command::new(program).args(args).current_dir(root).status().map_err(|e| format!("{line}: {e}"))?;
+    if status.success() { Ok(()) } else { Err(line) }
+}
+
+fn cargo(root: &Path, args: &str) -> Result<(), String> {
+    let args: Vec<&str> = args.split(' ').collect();
+    run(root, "cargo", &args)
+}
+
+fn test(root: &Path) -> Result<(), String> {
+    cargo(root, "fmt --all --check")?;
+    cargo(root, "clippy --workspace --all-targets --locked -- -D warnings")?;
+    cargo(root, "test --workspace --locked")?;
+    run_env(root, "cargo", &["doc", "--workspace", "--no-deps", "--locked"], "RUSTDOCFLAGS", "-D warnings")?;
+    demo(root)?;
+    validate(root, true)
+}
+
+fn run_env(root: &Path, program: &str, args: &[&str], key: &str, value: &str) -> Result<(), String> {
+    println!("xtask: {key}={value:?} {program} {}", args.join(" "));
+    let status = Command::new(program).args(args).env(key, value).current_dir(root).status();
+    match status {
+        Ok(s) if s.success() => Ok(()),
+        Ok(_) => Err(args.join(" ")),
+        Err(e) => Err(e.to_string()),
+    }
+}
+
+/// The demo as the README runs it, into a folder of its own below target.
+fn demo(root: &Path) -> Result<(), String> {
+    let folder = root.join("target").join("demo");
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).map_err(|e| e.to_string())?;
+    }
+    run(root, "cargo", &["run", "--locked", "--", "demo", &folder.to_string_lossy()])
+}
+
+fn validate(root: &Path, short: bool) -> Result<(), String> {
+    let length = if short { "--short" } else { "--full" };
+    run(root, "cargo", &["run", "--locked", "--package", "froude", "--example", "validate", "--", length])?;
+    if short {
+        return Ok(());
+    }
+    deny(root)?;
+    book(root)
+}
+
+/// Installs a cargo program unless it is there.
+fn need(root: &Path, program: &str) -> Result<(), String> {
+    let there = Command::new("cargo").args([program, "--version"]).output().is_ok_and(|o| o.status.success());
+    if there { Ok(()) } else { run(root, "cargo", &["install", "--locked", &format!("cargo-{program}")]) }
+}
+
+fn fuzz(root: &Path, runs: u64) -> Result<(), String> {
+    need(root, "fuzz")?;
+    let targets = std::fs::read_dir(root.join("fuzz/fuzz_targets")).map_err(|e| e.to_string())?;
+    let mut names: Vec<String> = targets
+        .filter_map(Result::ok)
+        .filter_map(|entry| Some(entry.path().file_stem()?.to_string_lossy().into_owned()))
+        .collect();
+    names.sort();
+    for name in names {
+        // The sanitizer flags are unstable; the stable compiler accepts them in bootstrap mode.
+        println!("xtask: cargo fuzz run {name} ({runs} executions)");
+        let status = Command::new("cargo")
+            .args(["fuzz", "run", &name, "--", &format!("-runs={runs}"), "-max_len=4096"])
+            .env("RUSTC_BOOTSTRAP", "1")
+            .current_dir(root)
+            .status()
+            .map_err(|e| e.to_string())?;
+        if !status.success() {
+            return Err(format!("fuzz target {name}"));
+        }
+    }
+    Ok(())
+}
+
+fn deny(root: &Path) -> Result<(), String> {
+    need(root, "deny")?;
+    cargo(root, "deny check bans licenses sources")
+}
+
+fn book(root: &Path) -> Result<(), String> {
+    let there = Command::new("mdbook").arg("--version").output().is_ok_and(|o| o.status.success());
+    if !there {
+        run(root, "cargo", &["install", "--locked", "mdbook"])?;
+    }
+    run(root, "mdbook", &["build", "book"])
+}
