@@ -23,6 +23,8 @@ use crate::report::{End, Report};
 const FEASIBILITY: f64 = 1e-11;
 /// Multipliers may be negative by this part of `‖b‖`.
 const MULTIPLIER: f64 = 1e-11;
+/// What the dual's solution may break a constraint by, relative to the coefficients.
+const FEASIBLE_DUAL: f64 = 1e-9;
 /// Keeps the interior-point solver bounded in directions no data determine.
 const RIDGE: f64 = 1e-9;
 
@@ -61,12 +63,19 @@ pub(crate) fn constrained(a: MatRef<'_, f64>, b: &[f64], constraints: &[Inequali
         Some((x, active, kkt)) => {
             Ok(Constrained { x, active, kkt, report: Report { end: End::Converged, iterations } })
         }
-        None => Ok(Constrained {
-            active: (0..constraints.len()).filter(|&k| excess(&constraints[k], &start) > -1e-7).collect(),
-            x: start,
-            kkt: 1e-7,
-            report: Report { end: End::Stalled, iterations },
-        }),
+        // Nearly parallel constraints can leave the interior-point solver short of digits and make the exchange
+        // of active constraints go in circles; the dual by non-negative least squares does not.
+        None => least_distance(&qr, &free, constraints).map_or_else(
+            || {
+                Ok(Constrained {
+                    active: (0..constraints.len()).filter(|&k| excess(&constraints[k], &start) > -1e-7).collect(),
+                    x: start,
+                    kkt: 1e-7,
+                    report: Report { end: End::Stalled, iterations },
+                })
+            },
+            Ok,
+        ),
     }
 }
 
@@ -201,6 +210,71 @@ fn polish(
     None
 }
 
+/// The same minimiser as the point of a polyhedron nearest to the origin, through non-negative least squares.
+///
+/// With `z = R (x − x₀)`, `x₀` unconstrained, the problem is `min ‖z‖` under `G z ≥ h`. Its dual is
+/// `min ‖E u − f‖, u ≥ 0` with `E = [Gᵀ; hᵀ]`, `f = (0, …, 0, 1)`; from the residual `ρ`, `z_j = −ρ_j/ρ_last`.
+/// `None` when the design does not determine `x`, or the result breaks a constraint.
+///
+/// # Source
+///
+/// Lawson & Hanson (1974), *Solving Least Squares Problems*, 23.4 (LDP).
+fn least_distance(qr: &PivotedQr, free: &[f64], constraints: &[Inequality]) -> Option<Constrained> {
+    let (n, m) = (qr.n_columns(), constraints.len());
+    if qr.rank < n {
+        return None;
+    }
+    let broken = constraints.iter().map(|c| excess(c, free).abs()).fold(0.0, f64::max);
+    if broken == 0.0 {
+        return None;
+    }
+    // Row k of G is −(row · R⁻¹), by forward substitution on Rᵀ in pivoted order.
+    let mut e = Mat::<f64>::zeros(n + 1, m);
+    for (k, constraint) in constraints.iter().enumerate() {
+        for i in 0..n {
+            let mut value = constraint.0[qr.order[i]];
+            for l in 0..i {
+                value += e[(l, k)] * qr.r[(l, i)];
+            }
+            e[(i, k)] = -value / qr.r[(i, i)];
+        }
+        e[(n, k)] = excess(constraint, free) / broken;
+    }
+    // G and h are brought to the same size, whatever the unit of the design.
+    let steep = (0..m).map(|k| (0..n).map(|i| e[(i, k)].powi(2)).sum::<f64>().sqrt()).fold(0.0, f64::max);
+    if steep == 0.0 || !steep.is_finite() {
+        return None;
+    }
+    for k in 0..m {
+        for i in 0..n {
+            e[(i, k)] /= steep;
+        }
+    }
+    let mut target = vec![0.0; n + 1];
+    target[n] = 1.0;
+    let dual = crate::bounded::bounded_least_squares(e.as_ref(), &target, &vec![0.0; m], &vec![f64::INFINITY; m]);
+    let rest: Vec<f64> = mul_vec(e.as_ref(), &dual.x).iter().zip(&target).map(|(x, y)| x - y).collect();
+    if rest[n] == 0.0 {
+        return None;
+    }
+    let z: Vec<f64> = rest[..n].iter().map(|r| -broken / steep * r / rest[n]).collect();
+    let mut x = free.to_vec();
+    let mut step = vec![0.0; n];
+    for i in (0..n).rev() {
+        let known: f64 = (i + 1..n).map(|l| qr.r[(i, l)] * step[l]).sum();
+        step[i] = (z[i] - known) / qr.r[(i, i)];
+        x[qr.order[i]] += step[i];
+    }
+    let size = norm(&x);
+    let worst = constraints.iter().map(|c| excess(c, &x) - FEASIBLE_DUAL * (size + c.1.abs())).fold(f64::MIN, f64::max);
+    (worst <= 0.0 && dual.report.end == End::Converged).then(|| Constrained {
+        active: (0..m).filter(|&k| dual.x[k] > 0.0).collect(),
+        kkt: dual.kkt,
+        x,
+        report: dual.report,
+    })
+}
+
 /// `min ‖A x − b‖` with the active constraints as equalities, near `x`.
 fn on_active(
     a: MatRef<'_, f64>,
@@ -222,4 +296,27 @@ fn on_active(
     let residual: Vec<f64> = mul_vec(a, &base).iter().zip(b).map(|(f, y)| y - f).collect();
     let step = mul_vec(basis.as_ref(), &PivotedQr::new(reduced.as_ref()).solve(&residual));
     Some(base.iter().zip(step).map(|(x, s)| x + s).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_dual_finds_the_corner_that_can_be_drawn() {
+        // min (2 x₁ − 2)² + (x₂ − 1)² under x₁ + x₂ ≤ 1, x₁ − x₂ ≤ 0.2: by hand 2·2(2x₁−2) = 2(x₂−1) on the first
+        // line alone gives x₁ = 4/5 + …; the corner x₁ = 0.6, x₂ = 0.4 is where both hold.
+        let a = Mat::from_fn(2, 2, |i, j| if i == j { 2.0 - i as f64 } else { 0.0 });
+        let b = [2.0, 1.0];
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let constraints = [(vec![half, half], half), (vec![half, -half], 0.2 * half)];
+        let qr = PivotedQr::new(a.as_ref());
+        let free = qr.solve(&b);
+        let one = least_distance(&qr, &free, &constraints[..1]).unwrap();
+        // Lagrange: 8(x₁ − 1) = 2(x₂ − 1), x₁ + x₂ = 1 → x₁ = 0.8, x₂ = 0.2.
+        assert!((one.x[0] - 0.8).abs() < 1e-12 && (one.x[1] - 0.2).abs() < 1e-12, "{:?}", one.x);
+        let two = least_distance(&qr, &free, &constraints).unwrap();
+        assert!((two.x[0] - 0.6).abs() < 1e-12 && (two.x[1] - 0.4).abs() < 1e-12, "{:?}", two.x);
+        assert_eq!(two.active, [0, 1]);
+    }
 }

@@ -24,6 +24,7 @@
 //! Not here: correlated inputs, inputs whose error is shared by many
 //! observations (see [`crate::propagate`]), bounds.
 
+mod bias;
 mod model;
 mod solve;
 mod variance;
@@ -64,8 +65,12 @@ pub struct OdrSigma {
 /// The result of [`odr`].
 #[derive(Debug, Clone)]
 pub struct OdrFit {
-    /// One per column.
+    /// One per column. The value is the minimiser; the interval is centred at the
+    /// value less its bias.
     pub coefficients: Vec<FitCoefficient>,
+    /// Second-order bias of each value, from the curvature of the model
+    /// (Box 1971); zero where inputs are exact or not determined.
+    pub bias: Vec<f64>,
     /// Covariance, `p × p`, zero rows where not determined.
     pub covariance: Mat<f64>,
     /// One per component.
@@ -134,6 +139,12 @@ fn finish<M: InputModel>(
     let full = mul(lift.as_ref(), lift.transpose());
     let covariance =
         Mat::from_fn(p, p, |i, j| if null.determined[i] && null.determined[j] { full[(i, j)] } else { 0.0 });
+    let mut bias = bias::bias(model, problem, state, &linear, &rows, &full);
+    for (bias, is_determined) in bias.iter_mut().zip(&null.determined) {
+        if !is_determined {
+            *bias = 0.0;
+        }
+    }
     let spread = variance.spread(problem, &linear, &full);
     let coefficients = (0..p)
         .map(|j| {
@@ -159,7 +170,7 @@ fn finish<M: InputModel>(
                 status: Status::Free,
                 value: Some(value),
                 standard: Some(standard),
-                interval: Some([value - half, value + half]),
+                interval: Some([value - bias[j] - half, value - bias[j] + half]),
                 dof: Some(dof),
                 unconstrained: Some(value),
                 inflation: None,
@@ -170,6 +181,7 @@ fn finish<M: InputModel>(
     let n = problem.response.nrows();
     OdrFit {
         coefficients,
+        bias,
         covariance,
         sigma: (0..c)
             .map(|k| OdrSigma {

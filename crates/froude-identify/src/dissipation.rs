@@ -10,8 +10,6 @@ use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 
-/// Directions of the grid for the constraints: 5° apart, corners and axes among them.
-const CONSTRAINT_DIRECTIONS: usize = 72;
 /// A power below this part of |f||v| is the rounding of its sum.
 const ROUNDING: f64 = 1e-12;
 
@@ -19,9 +17,9 @@ const ROUNDING: f64 = 1e-12;
 ///
 /// The force is affine in the number of links, so what holds at both ends holds between them.
 #[must_use]
-pub fn grid(data: &Dataset, n_directions: usize) -> Dataset {
+pub fn grid(data: &Dataset) -> Dataset {
     let largest = data.values("speed").map_or(0.0, |u| u.iter().copied().fold(0.0, f64::max));
-    let velocities: Vec<[f64; 2]> = VelocityGrid { n_directions, ..VelocityGrid::over(largest) }.points().collect();
+    let velocities: Vec<[f64; 2]> = VelocityGrid::over(largest).points().collect();
     let links = |i: usize| data.values("n_links").map_or(0.0, |v| v[i]);
     let ends = [
         (0..data.rows).min_by(|&a, &b| links(a).total_cmp(&links(b))),
@@ -44,7 +42,7 @@ pub fn grid(data: &Dataset, n_directions: usize) -> Dataset {
 ///
 /// A channel that the law needs and the data lack.
 pub fn largest_power_w(law: &ForceLaw, data: &Dataset, coefficients: &[f64]) -> Result<f64, IdentifyError> {
-    let grid = grid(data, VelocityGrid::over(1.0).n_directions);
+    let grid = grid(data);
     let force = law.predict(&grid, coefficients)?;
     let n = grid.rows;
     let mut largest = f64::NEG_INFINITY;
@@ -72,7 +70,7 @@ pub fn largest_power_w(law: &ForceLaw, data: &Dataset, coefficients: &[f64]) -> 
 ///
 /// A channel that the law needs and the data lack.
 pub fn constraints(law: &ForceLaw, data: &Dataset, p: usize) -> Result<Vec<Constraint>, IdentifyError> {
-    let grid = grid(data, CONSTRAINT_DIRECTIONS);
+    let grid = grid(data);
     let x = law.regressors(&grid, &vec![0.0; law.coefficients.len()])?;
     let n = grid.rows;
     let mut out = Vec::new();

@@ -37,7 +37,7 @@ pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
     if let Some(body) = &campaign.body {
         findings.extend(volumes(body));
     }
-    findings.extend(volume_channel(data));
+    findings.extend(volume_channel(data, campaign.body.as_ref().and_then(|b| b.link_volume_m3)));
     findings
 }
 
@@ -264,12 +264,12 @@ fn volumes(body: &BodySpec) -> Vec<Finding> {
 }
 
 /// The same for a `volume` channel of the table.
-fn volume_channel(data: &Dataset) -> Vec<Finding> {
+fn volume_channel(data: &Dataset, link_m3: Option<f64>) -> Vec<Finding> {
     let (Some(k), Some(v)) = (data.values("n_links"), data.values("volume")) else { return Vec::new() };
     let mut points: Vec<(f64, f64)> = k.iter().copied().zip(v.iter().copied()).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points.dedup();
-    volume_steps(&points, None)
+    volume_steps(&points, link_m3)
 }
 
 /// Steps of volume between configurations against their median and the stated link.

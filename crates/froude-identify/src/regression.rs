@@ -17,6 +17,13 @@ const MOST_ITERATIONS: usize = 50;
 /// Relative change of the coefficients at which they stop.
 const CONVERGED: f64 = 1e-12;
 
+/// Rounds of cutting planes for the constraint that no power is delivered.
+const MOST_CUTS: usize = 40;
+/// Violation of a constraint, relative to the coefficients, that counts as none.
+const VIOLATED: f64 = 1e-9;
+/// Cosine above which two cuts say the same.
+const NEARLY_PARALLEL: f64 = 0.999;
+
 /// What a regression needs besides its data and law.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a> {
@@ -100,7 +107,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     }));
     let mut findings = Vec::new();
     let (covariance, covariance_kind) = covariance_choice(data, settings, &mut findings)?;
-    let options = options(law, &specs, data, settings, covariance)?;
+    let mut options = options(law, &specs, settings, covariance);
     let mut beta = start(law, data, &newtons, specs.len());
     let iterate = law.is_nonlinear() || !setups.names.is_empty();
     let mut problem = problem(law, data, &specs, &measured, &setups, &beta)?;
@@ -125,6 +132,29 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
                 format!("model {}: the iteration did not settle within {MOST_ITERATIONS} steps", law.name),
             ));
         }
+    }
+    if settings.identify.dissipative && law.factor_symbols().is_some() {
+        let rows = dissipation::constraints(law, data, specs.len())?;
+        if !hold(&problem, &mut options, &mut fitted, &rows).map_err(refuse)? {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "not-converged",
+                format!(
+                    "model {}: the constraint that it delivers no power is not met everywhere after {MOST_CUTS} rounds",
+                    law.name
+                ),
+            ));
+        }
+    }
+    if fitted.report.end != fit::End::Converged {
+        findings.push(Finding::new(
+            Severity::Warning,
+            "not-converged",
+            format!(
+                "model {}: the solver stopped early ({:?}); its values are not the best ones",
+                law.name, fitted.report.end
+            ),
+        ));
     }
     let coefficients: Vec<f64> = if iterate {
         step(law, data, &setups, &fitted, &beta)
@@ -407,10 +437,9 @@ fn covariance_choice(
 fn options(
     law: &ForceLaw,
     specs: &[CoefficientSpec],
-    data: &Dataset,
     settings: Settings<'_>,
     covariance: fit::CovarianceKind,
-) -> Result<fit::Options, IdentifyError> {
+) -> fit::Options {
     let identify = settings.identify;
     let position = |name: &str| specs.iter().position(|s| s.name == name);
     let is_drag = law.factor_symbols().is_some();
@@ -428,11 +457,8 @@ fn options(
             }
         })
         .collect();
-    let inequalities =
-        if identify.dissipative && is_drag { dissipation::constraints(law, data, specs.len())? } else { Vec::new() };
-    Ok(fit::Options {
+    fit::Options {
         bounds,
-        inequalities,
         priors: identify
             .prior
             .iter()
@@ -450,5 +476,46 @@ fn options(
         loss: identify.huber.map_or(fit::Loss::Squares, |k| fit::Loss::Huber { k }),
         covariance,
         ..fit::Options::default()
-    })
+    }
+}
+
+/// Holds a fit to many inequalities by cutting planes: the most violated ones are added until none is violated.
+///
+/// At the solution at most as many are active as there are coefficients; thousands of nearly parallel rows at
+/// once would leave the solver without digits. False when some are still violated after the last round.
+fn hold(
+    problem: &fit::Problem,
+    options: &mut fit::Options,
+    fitted: &mut fit::Fit,
+    rows: &[fit::Constraint],
+) -> Result<bool, fit::FitError> {
+    for _ in 0..MOST_CUTS {
+        let beta: Vec<f64> = fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
+        let size: f64 = beta.iter().map(|b| b.abs()).sum();
+        let excess = |c: &fit::Constraint| c.row.iter().zip(&beta).map(|(a, b)| a * b).sum::<f64>() - c.value;
+        let mut violated: Vec<(f64, &fit::Constraint)> =
+            rows.iter().map(|c| (excess(c), c)).filter(|(e, _)| *e > VIOLATED * size).collect();
+        if violated.is_empty() {
+            return Ok(true);
+        }
+        violated.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // One cut a round per end of the chain and sign of the velocity; parallel neighbours add nothing.
+        let mut cuts: Vec<&fit::Constraint> = Vec::new();
+        for (_, c) in violated {
+            if cuts.iter().all(|k| cosine(&k.row, &c.row) < NEARLY_PARALLEL) {
+                cuts.push(c);
+            }
+            if cuts.len() == 4 {
+                break;
+            }
+        }
+        options.inequalities.extend(cuts.into_iter().cloned());
+        *fitted = fit::fit(problem, options)?;
+    }
+    Ok(false)
+}
+
+fn cosine(a: &[f64], b: &[f64]) -> f64 {
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
+    dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
 }

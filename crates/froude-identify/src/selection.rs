@@ -1,8 +1,9 @@
 //! Which force model the data support, and why.
 //!
-//! Candidates are the models whose coefficients are all determined. The best by
-//! AICc is taken first; then a simpler model nested in it is preferred as long
-//! as no F test rejects it at 1 % in any load component. The reason is written
+//! Candidates are the models whose coefficients are all determined. The one with
+//! the fewest coefficients is taken among those whose AICc lies within 2 of the
+//! smallest: smaller differences are no evidence (Burnham and Anderson 2002,
+//! § 2.6). F tests of nested models are stated beside it. The reason is written
 //! with its numbers.
 
 use froude_fit as fit;
@@ -15,7 +16,7 @@ use crate::regression::ModelFit;
 
 /// Level below which an F test rejects the simpler model.
 const REJECTED_BELOW: f64 = 0.01;
-/// AICc differences below this are no evidence (Burnham and Anderson 2002, § 2.6).
+/// AICc differences below this are no evidence.
 const NO_EVIDENCE_BELOW: f64 = 2.0;
 
 /// F test of a simpler model inside a more general one, for one load.
@@ -259,54 +260,43 @@ pub fn recommend(
         .or_else(|| models.iter().position(determined).map(|i| (i, f64::NAN)))
         .or_else(|| (!models.is_empty()).then_some((0, f64::NAN)))?;
     let size = |m: &ModelFit| m.law.coefficients.len();
-    let mut chosen = best;
-    let mut simplified = None;
-    for (i, model) in models.iter().enumerate() {
-        if !determined(model) || size(model) >= size(&models[chosen]) {
-            continue;
-        }
-        let against: Vec<&NestedTest> =
-            tests.iter().filter(|t| t.simple == model.law.name && t.general == models[best].law.name).collect();
-        let smallest = against.iter().map(|t| t.p).fold(f64::INFINITY, f64::min);
-        if !against.is_empty() && smallest >= REJECTED_BELOW {
-            chosen = i;
-            simplified = Some(smallest);
-        }
-    }
+    let behind = |i: usize| score[i].map(|s| s - best_aicc);
+    let chosen = (0..models.len())
+        .filter(|&i| i == best || behind(i).is_some_and(|d| d < NO_EVIDENCE_BELOW))
+        .min_by(|&a, &b| {
+            let key = |i: usize| (size(&models[i]), behind(i).unwrap_or(0.0));
+            key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
+        })
+        .unwrap_or(best);
     let name = &models[chosen].law.name;
     let mut reason = if models.len() == 1 {
         format!("{name} is the only model asked for")
-    } else if let Some(p) = simplified {
+    } else if chosen == best {
+        let runner = (0..models.len())
+            .filter(|&i| i != best)
+            .filter_map(|i| behind(i).map(|d| (i, d)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        let next = runner.map_or_else(String::new, |(i, d)| format!(" ({} is {d:.1} behind)", models[i].law.name));
+        format!("{name} has the smallest AICc{next}")
+    } else {
         format!(
-            "{name}: {} has the smallest AICc, but no F test rejects {name} inside it (smallest p = {p:.3}), and {name} has {} coefficients instead of {}",
+            "{name}: {} has the smallest AICc, but {name} is only {:.1} behind, which is no evidence against it, and has {} \
+             coefficient{} instead of {}",
             models[best].law.name,
+            behind(chosen).unwrap_or(0.0),
             size(&models[chosen]),
+            if size(&models[chosen]) == 1 { "" } else { "s" },
             size(&models[best])
         )
-    } else {
-        let mut text = format!("{name} has the smallest AICc");
-        let runner = score
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| *i != best)
-            .filter_map(|(i, s)| s.map(|s| (i, s - best_aicc)))
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((i, behind)) = runner {
-            text += &format!(" ({} is {behind:.1} behind)", models[i].law.name);
-            if behind < NO_EVIDENCE_BELOW {
-                text += ", which is no evidence against it";
-            }
-        }
-        let rejected: Vec<String> = tests
-            .iter()
-            .filter(|t| t.general == *name && t.p < REJECTED_BELOW)
-            .map(|t| format!("{} in {} (p = {:.1e})", t.simple, t.component, t.p))
-            .collect();
-        if !rejected.is_empty() {
-            text += &format!("; F tests reject {}", rejected.join(", "));
-        }
-        text
     };
+    let rejected: Vec<String> = tests
+        .iter()
+        .filter(|t| t.general == *name && t.p < REJECTED_BELOW)
+        .map(|t| format!("{} in {} (p = {:.1e})", t.simple, t.component, t.p))
+        .collect();
+    if !rejected.is_empty() {
+        reason += &format!("; F tests reject {}", rejected.join(", "));
+    }
     let out: Vec<String> = models.iter().filter(|m| !determined(m)).map(|m| m.law.name.clone()).collect();
     if !out.is_empty() {
         reason += &format!("; {} not in the running, the data do not determine all coefficients", out.join(", "));

@@ -92,8 +92,8 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
     }
     if sources.iter().any(|s| s.models.len() > 1) {
         out.push(
-            "Among several force models the one with the smallest AICc is preferred, unless a simpler model nested in it \
-             is not rejected by an F test at 1 % in any load component."
+            "Among several force models the one with the fewest coefficients is recommended whose AICc lies within 2 of the \
+             smallest; smaller differences are no evidence. F tests of nested models are stated beside it."
                 .to_owned(),
         );
     }

@@ -126,6 +126,8 @@ struct Moments {
     covariance: Mat<f64>,
     /// `V⁻¹ X`, `n` blocks of `c × p`.
     design: Vec<f64>,
+    /// `(XᵀV⁻¹X)⁻¹ (V⁻¹ X)ᵀ`, `n` blocks of `c × p`.
+    moved: Vec<f64>,
     /// `V⁻¹ (e − X dβ) = P e`, `n × c`.
     residual: Vec<f64>,
     /// `V⁻¹`, `n` blocks of `c × c`.
@@ -175,12 +177,25 @@ impl Moments {
                 }
             }
         }
-        Self { c, n, p, covariance, design, residual, inverse }
+        let mut projected = vec![0.0; n * c * p];
+        for (out, x) in projected.chunks_exact_mut(p).zip(design.chunks_exact(p)) {
+            for (j, &x) in x.iter().enumerate() {
+                for (k, out) in out.iter_mut().enumerate() {
+                    *out += covariance[(k, j)] * x;
+                }
+            }
+        }
+        Self { c, n, p, covariance, design, moved: projected, residual, inverse }
     }
 
     fn design_row(&self, i: usize, k: usize) -> &[f64] {
         let start = (i * self.c + k) * self.p;
         &self.design[start..start + self.p]
+    }
+
+    fn moved_row(&self, i: usize, k: usize) -> &[f64] {
+        let start = (i * self.c + k) * self.p;
+        &self.moved[start..start + self.p]
     }
 
     /// `Σ_i (V⁻¹X)_ik (V⁻¹X)_ilᵀ`.
@@ -202,7 +217,7 @@ impl Moments {
         (0..self.n)
             .map(|i| {
                 let x = self.design_row(i, k);
-                let trace = self.inverse[(i * self.c + k) * self.c + k] - dot(x, &mul_vec(self.covariance.as_ref(), x));
+                let trace = self.inverse[(i * self.c + k) * self.c + k] - dot(x, self.moved_row(i, k));
                 self.residual[i * self.c + k].powi(2) - trace
             })
             .sum()
@@ -218,8 +233,7 @@ impl Moments {
             let mut sum = 0.0;
             for i in 0..self.n {
                 let v = self.inverse[(i * self.c + k) * self.c + l];
-                let moved = mul_vec(self.covariance.as_ref(), self.design_row(i, l));
-                sum += v * v - 2.0 * v * dot(self.design_row(i, k), &moved);
+                sum += v * v - 2.0 * v * dot(self.design_row(i, k), self.moved_row(i, l));
             }
             for i in 0..self.p {
                 for j in 0..self.p {
