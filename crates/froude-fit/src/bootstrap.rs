@@ -43,10 +43,7 @@ pub struct Resampling {
 
 impl Default for Resampling {
     fn default() -> Self {
-        Self {
-            resamples: 10_000,
-            seed: 1,
-        }
+        Self { resamples: 10_000, seed: 1 }
     }
 }
 
@@ -161,11 +158,7 @@ fn quantile(values: &mut [f64], probability: f64) -> f64 {
     let (below, part) = (place.floor() as usize, place.fract());
     let (_, &mut low, above) = values.select_nth_unstable_by(below, f64::total_cmp);
     let high = above.iter().copied().fold(f64::INFINITY, f64::min);
-    if part == 0.0 || above.is_empty() {
-        low
-    } else {
-        low + part * (high - low)
-    }
+    if part == 0.0 || above.is_empty() { low } else { low + part * (high - low) }
 }
 
 /// Resamples rows of `(regressors, response)`.
@@ -195,7 +188,7 @@ pub fn pairs(
     options: Resampling,
 ) -> Result<Bootstrap, BootstrapError> {
     let whole = Whole::new(regressors, response, weight)?;
-    whole.resample(whole.products(whole.rows, |row| row), options)
+    whole.resample(&whole.products(whole.rows, |row| row), options)
 }
 
 /// Resamples whole clusters of rows: as many clusters as there are, with replacement.
@@ -216,20 +209,13 @@ pub fn cluster_pairs(
 ) -> Result<Bootstrap, BootstrapError> {
     let whole = Whole::new(regressors, response, weight)?;
     if cluster.len() != whole.rows {
-        return Err(BootstrapError::Length {
-            what: "clusters",
-            found: cluster.len(),
-            expected: whole.rows,
-        });
+        return Err(BootstrapError::Length { what: "clusters", found: cluster.len(), expected: whole.rows });
     }
     let mut names = cluster.to_vec();
     names.sort_unstable();
     names.dedup();
-    let place: Vec<usize> = cluster
-        .iter()
-        .map(|name| names.partition_point(|other| other < name))
-        .collect();
-    whole.resample(whole.products(names.len(), |row| place[row]), options)
+    let place: Vec<usize> = cluster.iter().map(|name| names.partition_point(|other| other < name)).collect();
+    whole.resample(&whole.products(names.len(), |row| place[row]), options)
 }
 
 /// The fit of all rows, and each row in the orthonormal basis.
@@ -242,28 +228,17 @@ struct Whole {
 }
 
 impl Whole {
-    fn new(
-        regressors: &[&[f64]],
-        response: &[f64],
-        weight: Option<&[f64]>,
-    ) -> Result<Self, BootstrapError> {
+    fn new(regressors: &[&[f64]], response: &[f64], weight: Option<&[f64]>) -> Result<Self, BootstrapError> {
         let (p, rows) = (regressors.len(), response.len());
         let mut columns: Vec<Vec<f64>> = regressors.iter().map(|column| column.to_vec()).collect();
         columns.push(response.to_vec());
         if let Some(weight) = weight {
             if weight.len() != rows {
-                return Err(BootstrapError::Length {
-                    what: "weights",
-                    found: weight.len(),
-                    expected: rows,
-                });
+                return Err(BootstrapError::Length { what: "weights", found: weight.len(), expected: rows });
             }
             let bad = weight.iter().position(|w| !(w.is_finite() && *w > 0.0));
             if let Some(row) = bad {
-                return Err(BootstrapError::Weight {
-                    row,
-                    weight: weight[row],
-                });
+                return Err(BootstrapError::Weight { row, weight: weight[row] });
             }
             for column in &mut columns {
                 for (value, weight) in column.iter_mut().zip(weight) {
@@ -271,31 +246,24 @@ impl Whole {
                 }
             }
         }
-        let mut rows_in = Accumulator::new(Shape {
-            regressors: p,
-            responses: 1,
-        });
+        let mut rows_in = Accumulator::new(Shape { regressors: p, responses: 1 });
         let slices: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
         rows_in.push(&slices[..p], &slices[p..])?;
         let factor = rows_in.finish();
         let estimate = factor.solve(0)?.coefficients;
         let mut basis = Vec::with_capacity(rows * (p + 1));
         for i in 0..rows {
-            let start = basis.len();
+            let (start, y) = (basis.len(), slices[p][i]);
+            let mut residual = y;
             // q·R = x, by substitution.
-            for j in 0..p {
+            for (j, column) in slices[..p].iter().enumerate() {
                 let known: f64 = (0..j).map(|l| basis[start + l] * factor.entry(l, j)).sum();
-                basis.push((columns[j][i] - known) / factor.entry(j, j));
+                basis.push((column[i] - known) / factor.entry(j, j));
+                residual -= column[i] * estimate[j];
             }
-            let fitted: f64 = (0..p).map(|j| columns[j][i] * estimate[j]).sum();
-            basis.push(columns[p][i] - fitted);
+            basis.push(residual);
         }
-        Ok(Self {
-            rows,
-            estimate,
-            factor,
-            basis,
-        })
+        Ok(Self { rows, estimate, factor, basis })
     }
 
     /// Products of the columns of each row, summed by unit of drawing.
@@ -308,29 +276,23 @@ impl Whole {
         table
     }
 
-    fn resample(&self, table: Table, options: Resampling) -> Result<Bootstrap, BootstrapError> {
+    fn resample(&self, table: &Table, options: Resampling) -> Result<Bootstrap, BootstrapError> {
         let p = self.estimate.len();
         let Ok(units) = u32::try_from(table.units()) else {
-            return Err(BootstrapError::TooManyRows {
-                rows: table.units(),
-            });
+            return Err(BootstrapError::TooManyRows { rows: table.units() });
         };
         let mut all = vec![0.0; options.resamples * p];
         all.par_chunks_mut(BATCH * p).enumerate().for_each_init(
-            || Sums::new(&table),
+            || Sums::new(table),
             |sums, (batch, out)| {
                 sums.draw(units, options.seed, (batch * BATCH) as u64);
-                sums.solve(&table, &self.factor, &self.estimate, out);
+                sums.solve(table, &self.factor, &self.estimate, out);
             },
         );
-        let good: Vec<&[f64]> = (all.chunks_exact(p))
-            .filter(|resample| resample.iter().all(|value| value.is_finite()))
-            .collect();
+        let good: Vec<&[f64]> =
+            (all.chunks_exact(p)).filter(|resample| resample.iter().all(|value| value.is_finite())).collect();
         if good.len() < 2 {
-            return Err(BootstrapError::TooFewResamples {
-                found: good.len(),
-                asked: options.resamples,
-            });
+            return Err(BootstrapError::TooFewResamples { found: good.len(), asked: options.resamples });
         }
         Ok(Bootstrap {
             estimate: self.estimate.clone(),

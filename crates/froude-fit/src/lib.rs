@@ -17,6 +17,8 @@
 //! | [`diagnostics`] | serial correlation, collinearity                                     |
 //! | [`select`]      | F tests, AICc, cross-validation, lack of fit                         |
 //! | [`odr`]         | orthogonal distance regression: uncertain inputs                     |
+//! | [`bootstrap`]   | pairs and cluster bootstrap                                          |
+//! | [`stream`]      | more rows than memory holds, one pass                                |
 //! | [`wild`]        | wild cluster bootstrap                                               |
 //! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
 //! | [`factored`]    | one design, many responses                                           |
@@ -35,6 +37,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod block;
+pub mod bootstrap;
 pub mod bounded;
 mod constrained;
 mod covariance;
@@ -57,6 +60,7 @@ mod report;
 pub mod robust;
 pub mod select;
 mod shape;
+pub mod stream;
 pub mod wild;
 
 pub use covariance::FEWEST_CLUSTERS;

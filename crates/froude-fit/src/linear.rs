@@ -1,9 +1,9 @@
 //! The linear fit: from a problem to coefficients with their uncertainty.
 //!
-//! 1. Check, then split into blocks that share no coefficient ([`crate::block`]).
-//! 2. Per block: estimate by pivoted QR, σ of each component ([`crate::estimate`]);
-//!    covariance ([`crate::covariance`]); what is determined ([`crate::determined`]);
-//!    the estimate under bounds and inequalities ([`crate::shape`]).
+//! 1. Check, then split into blocks that share no coefficient (`block`).
+//! 2. Per block: estimate by pivoted QR, σ of each component (`estimate`);
+//!    covariance (`covariance`); what is determined (`determined`);
+//!    the estimate under bounds and inequalities (`shape`).
 //! 3. Put the blocks together.
 //!
 //! The value of a coefficient is that of the constrained fit; its standard

@@ -17,15 +17,19 @@
 //! the linearised model. The minimum of the sum above over σ as well would not
 //! be consistent: the `δ` are as many as the observations.
 //!
+//! **Measured.** 42 towing points, speed and angle uncertain by 0.01 m/s and 1°,
+//! linear and quadratic drag, 20 000 repetitions: with known σ the 95 % intervals cover 94.6 to 95.0 %; with σ
+//! estimated (4000 repetitions) 94.4 to 94.8 %; at twice these errors 94.6 to 95.1 % and 94.4 to 95.0 %.
+//!
 //! **Source.** Boggs, Byrd & Schnabel (1987), SIAM J. Sci. Stat. Comput. 8 (the problem);
 //! Patterson & Thompson (1971), Biometrika 58 (σ); Giesbrecht & Burns (1985), Biometrics 41
-//! (degrees of freedom).
+//! (degrees of freedom); Kenward & Roger (1997), Biometrics 53 (σ estimated).
 //!
 //! Not here: correlated inputs, inputs whose error is shared by many
 //! observations (see [`crate::propagate`]), bounds.
 
-mod bias;
 mod model;
+mod second_order;
 mod solve;
 mod variance;
 
@@ -33,7 +37,7 @@ pub use model::{InputModel, OdrProblem, Sigma};
 
 use faer::Mat;
 
-use crate::dense::{mul, norm, row};
+use crate::dense::mul;
 use crate::determined::Indeterminacy;
 use crate::distribution::coverage_factor;
 use crate::error::FitError;
@@ -71,7 +75,9 @@ pub struct OdrFit {
     /// Second-order bias of each value, from the curvature of the model
     /// (Box 1971); zero where inputs are exact or not determined.
     pub bias: Vec<f64>,
-    /// Covariance, `p × p`, zero rows where not determined.
+    /// Covariance, `p × p`, zero rows where not determined. Beyond the first
+    /// order it allows for regressors taken at estimated inputs and for σ being
+    /// estimated: a few per cent, by which intervals would be too short without.
     pub covariance: Mat<f64>,
     /// One per component.
     pub sigma: Vec<OdrSigma>,
@@ -137,15 +143,23 @@ fn finish<M: InputModel>(
         }
     }
     let full = mul(lift.as_ref(), lift.transpose());
-    let covariance =
-        Mat::from_fn(p, p, |i, j| if null.determined[i] && null.determined[j] { full[(i, j)] } else { 0.0 });
-    let mut bias = bias::bias(model, problem, state, &linear, &rows, &full);
+    let second = second_order::second_order(model, problem, state, &linear, &rows, &full);
+    let mut bias = second.bias;
     for (bias, is_determined) in bias.iter_mut().zip(&null.determined) {
         if !is_determined {
             *bias = 0.0;
         }
     }
     let spread = variance.spread(problem, &linear, &full);
+    let excess = Mat::from_fn(p, p, |i, j| second.excess[(i, j)] + spread.excess[(i, j)]);
+    let correction = mul(mul(full.as_ref(), excess.as_ref()).as_ref(), full.as_ref());
+    let covariance = Mat::from_fn(p, p, |i, j| {
+        if null.determined[i] && null.determined[j] {
+            full[(i, j)] + correction[(i, j)] + correction[(j, i)]
+        } else {
+            0.0
+        }
+    });
     let coefficients = (0..p)
         .map(|j| {
             let name = problem.names[j].clone();
@@ -162,8 +176,8 @@ fn finish<M: InputModel>(
                 };
             }
             let value = state.beta[j];
-            let standard = norm(&row(lift.as_ref(), j));
-            let dof = spread.coefficient_dof(j, standard * standard);
+            let standard = covariance[(j, j)].sqrt();
+            let dof = spread.coefficient_dof(j, full[(j, j)]);
             let half = coverage_factor(confidence, dof) * standard;
             FitCoefficient {
                 name,

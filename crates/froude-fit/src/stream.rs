@@ -168,7 +168,7 @@ pub enum StreamError {
 
     /// More clusters than memory was granted for.
     #[error(
-        "cluster {cluster} is the {limit}th but one too many: each keeps a triangle of its \
+        "cluster {cluster} is one more than the limit of {limit}: each keeps a triangle of its \
          own; raise the limit, or use longer clusters"
     )]
     TooManyClusters {
@@ -243,11 +243,7 @@ impl Factor {
     /// The factor of no rows.
     #[must_use]
     pub fn empty(shape: Shape) -> Self {
-        Self {
-            shape,
-            rows: 0,
-            triangle: vec![0.0; shape.width() * shape.width()],
-        }
+        Self { shape, rows: 0, triangle: vec![0.0; shape.width() * shape.width()] }
     }
 
     /// Numbers of columns.
@@ -278,10 +274,7 @@ impl Factor {
     /// [`StreamError::Merge`] when the shapes differ.
     pub fn merge(&mut self, other: &Self) -> Result<(), StreamError> {
         if self.shape != other.shape {
-            return Err(StreamError::Merge {
-                found: other.shape,
-                expected: self.shape,
-            });
+            return Err(StreamError::Merge { found: other.shape, expected: self.shape });
         }
         Folder::new(self.shape).fold_triangle(&mut self.triangle, &other.triangle);
         self.rows += other.rows;
@@ -296,30 +289,19 @@ impl Factor {
     pub fn select(&self, regressors: &[usize], responses: &[usize]) -> Result<Self, StreamError> {
         let (p, width) = (self.shape.regressors, self.shape.width());
         if let Some(&bad) = regressors.iter().find(|&&j| j >= p) {
-            return Err(StreamError::Shape {
-                what: "regressors",
-                found: bad + 1,
-                expected: p,
-            });
+            return Err(StreamError::Shape { what: "regressors", found: bad + 1, expected: p });
         }
         for &k in responses {
             self.check_response(k)?;
         }
-        let columns: Vec<usize> = (regressors.iter().copied())
-            .chain(responses.iter().map(|k| p + k))
-            .collect();
+        let columns: Vec<usize> = (regressors.iter().copied()).chain(responses.iter().map(|k| p + k)).collect();
         let n = columns.len();
-        let mut matrix: Vec<f64> = (0..width)
-            .flat_map(|i| columns.iter().map(move |&j| self.entry(i, j)))
-            .collect();
+        let mut matrix: Vec<f64> = (0..width).flat_map(|i| columns.iter().map(move |&j| self.entry(i, j))).collect();
         reference::triangularise(&mut matrix, width, n);
         matrix.resize(width.max(n) * n, 0.0);
         matrix.truncate(n * n);
         Ok(Self {
-            shape: Shape {
-                regressors: regressors.len(),
-                responses: responses.len(),
-            },
+            shape: Shape { regressors: regressors.len(), responses: responses.len() },
             rows: self.rows,
             triangle: matrix,
         })
@@ -337,9 +319,7 @@ impl Factor {
     #[must_use]
     pub fn residual_product(&self, k: usize, l: usize) -> f64 {
         let p = self.shape.regressors;
-        (p..self.shape.width())
-            .map(|i| self.entry(i, p + k) * self.entry(i, p + l))
-            .sum()
+        (p..self.shape.width()).map(|i| self.entry(i, p + k) * self.entry(i, p + l)).sum()
     }
 
     /// Condition number of the design, its columns scaled to equal length.
@@ -365,47 +345,34 @@ impl Factor {
         let singular = svd.S().column_vector();
         let (largest, smallest) = (singular[0], singular[p - 1]);
         let weakest = svd.V().col(p - 1);
-        let column = (0..p)
-            .max_by(|&a, &b| weakest[a].abs().total_cmp(&weakest[b].abs()))
-            .unwrap_or(0);
+        let column = (0..p).max_by(|&a, &b| weakest[a].abs().total_cmp(&weakest[b].abs())).unwrap_or(0);
         (largest / smallest, column)
     }
 
     /// Euclidean length of each regressor.
     fn column_lengths(&self) -> Vec<f64> {
-        (0..self.shape.regressors)
-            .map(|j| (0..=j).map(|i| self.entry(i, j).powi(2)).sum::<f64>().sqrt())
-            .collect()
+        (0..self.shape.regressors).map(|j| (0..=j).map(|i| self.entry(i, j).powi(2)).sum::<f64>().sqrt()).collect()
     }
 
     fn check_response(&self, response: usize) -> Result<(), StreamError> {
         if response < self.shape.responses {
             return Ok(());
         }
-        Err(StreamError::NoSuchResponse {
-            response,
-            responses: self.shape.responses,
-        })
+        Err(StreamError::NoSuchResponse { response, responses: self.shape.responses })
     }
 
     /// Refuses a design that does not determine all its coefficients.
     fn check_determined(&self) -> Result<f64, StreamError> {
         let p = self.shape.regressors;
         if self.rows <= p as u64 {
-            return Err(StreamError::TooFewRows {
-                rows: self.rows,
-                regressors: p,
-            });
+            return Err(StreamError::TooFewRows { rows: self.rows, regressors: p });
         }
         let (condition_number, column) = self.conditioning();
         // Rounding alone gives parallel columns a condition number of about 1/(p·ε).
         if condition_number < 0.1 / (p.max(1) as f64 * f64::EPSILON) {
             return Ok(condition_number);
         }
-        Err(StreamError::Undetermined {
-            column,
-            condition_number,
-        })
+        Err(StreamError::Undetermined { column, condition_number })
     }
 
     /// `R⁻¹` of the design, `p × p`, upper triangular.
@@ -434,13 +401,8 @@ impl Factor {
 
     /// Coefficients of every response in turn, where products may stand in for QR.
     fn pilot(&self) -> Option<Vec<f64>> {
-        let inflation = largest_inflation(
-            &self.triangle,
-            self.shape.regressors,
-            self.shape.width(),
-        );
-        (inflation <= LARGEST_INFLATION)
-            .then(|| (0..self.shape.responses).flat_map(|k| self.minimiser(k)).collect())
+        let inflation = largest_inflation(&self.triangle, self.shape.regressors, self.shape.width());
+        (inflation <= LARGEST_INFLATION).then(|| (0..self.shape.responses).flat_map(|k| self.minimiser(k)).collect())
     }
 
     /// Ordinary least squares of response `k`, with classical covariance.
@@ -507,12 +469,7 @@ impl Folder {
 
     fn at_level(shape: Shape, level: Level) -> Self {
         let width = shape.width();
-        Self {
-            shape,
-            level,
-            block: vec![Lane::ZERO; width * groups_per_block(width)],
-            scratch: vec![0.0; 2 * width],
-        }
+        Self { shape, level, block: vec![Lane::ZERO; width * groups_per_block(width)], scratch: vec![0.0; 2 * width] }
     }
 
     fn put(&mut self, column: usize, row: usize, values: &[f64]) {
@@ -610,11 +567,7 @@ impl Accumulator {
     /// [`StreamError::Shape`], [`StreamError::Length`], and [`StreamError::NotFinite`]
     /// with the row counted over all chunks. After an error nothing of the chunk has
     /// been taken.
-    pub fn push(
-        &mut self,
-        regressors: &[&[f64]],
-        responses: &[&[f64]],
-    ) -> Result<(), StreamError> {
+    pub fn push(&mut self, regressors: &[&[f64]], responses: &[&[f64]]) -> Result<(), StreamError> {
         let columns = columns_of(self.total.shape, regressors, responses)?;
         let rows = check_lengths(&columns)?;
         check_finite(&columns, 0..rows, self.total.rows)?;
@@ -698,15 +651,8 @@ pub enum Method {
 /// # Errors
 ///
 /// [`StreamError::Length`], and [`StreamError::NotFinite`] with the first bad entry.
-pub fn reduce_columns(
-    regressors: &[&[f64]],
-    responses: &[&[f64]],
-    method: Method,
-) -> Result<Factor, StreamError> {
-    let shape = Shape {
-        regressors: regressors.len(),
-        responses: responses.len(),
-    };
+pub fn reduce_columns(regressors: &[&[f64]], responses: &[&[f64]], method: Method) -> Result<Factor, StreamError> {
+    let shape = Shape { regressors: regressors.len(), responses: responses.len() };
     let columns = columns_of(shape, regressors, responses)?;
     let n = check_lengths(&columns)?;
     let fill = |(): &mut (), folder: &mut Folder, rows: Range<usize>| {
@@ -757,12 +703,7 @@ fn two_blocks_on(rows: &Range<usize>, n: usize) -> Range<usize> {
 /// assert!((factor.solve(0)?.coefficients[1] - 7.0).abs() < 1e-11);
 /// # Ok::<(), froude_fit::stream::StreamError>(())
 /// ```
-pub fn reduce_features<F>(
-    raw: &[&[f64]],
-    shape: Shape,
-    method: Method,
-    make: F,
-) -> Result<Factor, StreamError>
+pub fn reduce_features<F>(raw: &[&[f64]], shape: Shape, method: Method, make: F) -> Result<Factor, StreamError>
 where
     F: Fn(&[&[f64]], &mut [&mut [f64]]) + Sync,
 {
@@ -771,9 +712,8 @@ where
     let made = |space: &mut Vec<f64>, rows: Range<usize>| {
         space.resize(shape.width() * stride, 0.0);
         let raw: Vec<&[f64]> = raw.iter().map(|column| &column[rows.clone()]).collect();
-        let mut columns: Vec<&mut [f64]> = (space.chunks_exact_mut(stride))
-            .map(|column| &mut column[..rows.len()])
-            .collect();
+        let mut columns: Vec<&mut [f64]> =
+            (space.chunks_exact_mut(stride)).map(|column| &mut column[..rows.len()]).collect();
         make(&raw, &mut columns);
     };
     let fill = |space: &mut Vec<f64>, folder: &mut Folder, rows: Range<usize>| {
@@ -832,22 +772,15 @@ where
     F: Fn([f64; R]) -> [f64; W] + Sync,
 {
     let Some(regressors) = W.checked_sub(responses) else {
-        return Err(StreamError::Shape {
-            what: "responses",
-            found: responses,
-            expected: W,
-        });
+        return Err(StreamError::Shape { what: "responses", found: responses, expected: W });
     };
-    let shape = Shape {
-        regressors,
-        responses,
-    };
+    let shape = Shape { regressors, responses };
     let n = check_lengths(&raw)?;
     let fill = |(): &mut (), folder: &mut Folder, rows: Range<usize>| {
         for column in raw {
             fetch_ahead(&column[two_blocks_on(&rows, n)]);
         }
-        folder.level.run(MakeRows {
+        folder.level.for_compiler().run(MakeRows {
             raw: raw.map(|column| &column[rows.clone()]),
             block: &mut folder.block,
             make: &make,
@@ -890,11 +823,7 @@ where
     }
 
     /// A segment by reflections.
-    fn reflect<S>(
-        &self,
-        segment: usize,
-        (space, folder): &mut (S, Folder),
-    ) -> Result<Vec<f64>, StreamError>
+    fn reflect<S>(&self, segment: usize, (space, folder): &mut (S, Folder)) -> Result<Vec<f64>, StreamError>
     where
         F: Fn(&mut S, &mut Folder, Range<usize>),
     {
@@ -910,12 +839,7 @@ where
     }
 
     /// A segment by inner products; None when they would not do.
-    fn multiply<S>(
-        &self,
-        segment: usize,
-        pilot: &[f64],
-        (space, folder): &mut (S, Folder),
-    ) -> Option<Vec<f64>>
+    fn multiply<S>(&self, segment: usize, pilot: &[f64], (space, folder): &mut (S, Folder)) -> Option<Vec<f64>>
     where
         F: Fn(&mut S, &mut Folder, Range<usize>),
     {
@@ -930,13 +854,7 @@ where
 }
 
 /// Segments factored by themselves, then merged in order.
-fn reduce<S, F, L>(
-    shape: Shape,
-    n: usize,
-    method: Method,
-    fill: F,
-    locate: L,
-) -> Result<Factor, StreamError>
+fn reduce<S, F, L>(shape: Shape, n: usize, method: Method, fill: F, locate: L) -> Result<Factor, StreamError>
 where
     S: Default,
     F: Fn(&mut S, &mut Folder, Range<usize>) + Sync,
@@ -946,22 +864,17 @@ where
     if n == 0 {
         return Ok(total);
     }
-    let source = Source {
-        shape,
-        n,
-        fill,
-        locate,
-    };
+    let source = Source { shape, n, fill, locate };
     let mut memory = (S::default(), Folder::new(shape));
-    total.triangle = source.reflect(0, &mut memory)?;
+    let first = source.reflect(0, &mut memory)?;
+    memory.1.fold_triangle(&mut total.triangle, &first);
     let pilot = total.pilot().filter(|_| method == Method::Adaptive);
     let triangles: Vec<Result<Vec<f64>, StreamError>> = (1..n.div_ceil(shape.segment_rows()))
         .into_par_iter()
         .map_init(
             || (S::default(), Folder::new(shape)),
             |memory, segment| {
-                let quick = (pilot.as_ref())
-                    .and_then(|pilot| source.multiply(segment, pilot, memory));
+                let quick = (pilot.as_ref()).and_then(|pilot| source.multiply(segment, pilot, memory));
                 quick.map_or_else(|| source.reflect(segment, memory), Ok)
             },
         )
@@ -978,16 +891,11 @@ fn columns_of<'a>(
     regressors: &[&'a [f64]],
     responses: &[&'a [f64]],
 ) -> Result<Vec<&'a [f64]>, StreamError> {
-    for (what, found, expected) in [
-        ("regressors", regressors.len(), shape.regressors),
-        ("responses", responses.len(), shape.responses),
-    ] {
+    for (what, found, expected) in
+        [("regressors", regressors.len(), shape.regressors), ("responses", responses.len(), shape.responses)]
+    {
         if found != expected {
-            return Err(StreamError::Shape {
-                what,
-                found,
-                expected,
-            });
+            return Err(StreamError::Shape { what, found, expected });
         }
     }
     Ok(regressors.iter().chain(responses).copied().collect())
@@ -997,11 +905,7 @@ fn check_lengths(columns: &[&[f64]]) -> Result<usize, StreamError> {
     let expected = columns.first().map_or(0, |column| column.len());
     match columns.iter().position(|column| column.len() != expected) {
         None => Ok(expected),
-        Some(column) => Err(StreamError::Length {
-            column,
-            found: columns[column].len(),
-            expected,
-        }),
+        Some(column) => Err(StreamError::Length { column, found: columns[column].len(), expected }),
     }
 }
 
@@ -1021,11 +925,7 @@ fn check_finite(columns: &[&[f64]], rows: Range<usize>, before: u64) -> Result<(
         for (column, values) in columns.iter().enumerate() {
             let value = values[row];
             if value.is_nan() || value.abs() > LARGEST {
-                return Err(StreamError::NotFinite {
-                    row: before + row as u64,
-                    column,
-                    value,
-                });
+                return Err(StreamError::NotFinite { row: before + row as u64, column, value });
             }
         }
     }

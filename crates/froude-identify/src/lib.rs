@@ -15,6 +15,7 @@ pub mod compare;
 pub mod dataset;
 pub mod diagnosis;
 pub mod dissipation;
+pub mod eiv;
 mod error;
 pub mod formula;
 pub mod law;

@@ -79,6 +79,10 @@ fn method(model: &ModelFit) -> String {
         "linear least squares by orthogonal factorisation"
     };
     let mut out = base.to_owned();
+    if model.in_variables {
+        "orthogonal distance regression: speed and angle are uncertain too (σ by restricted maximum likelihood)"
+            .clone_into(&mut out);
+    }
     if model.options.bounds.iter().any(|b| b.lower == 0.0) {
         out += ", non-negative";
     }

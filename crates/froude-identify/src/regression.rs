@@ -6,11 +6,11 @@ use froude_records::campaign::{AngleOffset, BoundKind, BudgetEntry, Identify, So
 use froude_records::finding::{Finding, Severity};
 
 use crate::dataset::{Dataset, distinct, labels};
-use crate::dissipation;
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::reduce::SharedError;
 use crate::uncertainty::{Combined, Contribution, Linearised, combine, contributions};
+use crate::{dissipation, eiv};
 
 /// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
 const MOST_ITERATIONS: usize = 50;
@@ -60,6 +60,8 @@ pub struct ModelFit {
     pub covariance: Mat<f64>,
     /// The budget's parts.
     pub contributions: Vec<Contribution>,
+    /// True where errors of speed and angle were fitted too.
+    pub in_variables: bool,
     /// Words for the covariance kind.
     pub covariance_kind: String,
     /// What was found while fitting.
@@ -146,6 +148,10 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             ));
         }
     }
+    let mut in_variables = false;
+    if settings.identify.errors_in_variables {
+        in_variables = errors_in_variables(law, data, settings, &problem, &options, &mut fitted, &mut findings)?;
+    }
     if fitted.report.end != fit::End::Converged {
         findings.push(Finding::new(
             Severity::Warning,
@@ -201,9 +207,56 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         combined,
         covariance,
         contributions,
+        in_variables,
         covariance_kind,
         findings,
     })
+}
+
+/// Replaces the fit by an orthogonal distance regression where the budget gives row errors of speed or angle.
+fn errors_in_variables(
+    law: &ForceLaw,
+    data: &Dataset,
+    settings: Settings<'_>,
+    problem: &fit::Problem,
+    options: &fit::Options,
+    fitted: &mut fit::Fit,
+    findings: &mut Vec<Finding>,
+) -> Result<bool, IdentifyError> {
+    let place = || format!("source {:?}, model {}", settings.source_name, law.name);
+    let has_bounds = options.bounds.iter().any(|b| b.lower.is_finite() || b.upper.is_finite());
+    let has_more = !options.inequalities.is_empty() || !options.priors.is_empty() || !options.fixed.is_empty();
+    if has_bounds || has_more || !options.excluded.is_empty() || problem.weight.is_some() {
+        return Err(IdentifyError::Campaign {
+            place: place(),
+            what: "errors_in_variables goes with neither bounds, priors, fixed or excluded coefficients, dissipative, nor std \
+                   columns; leave one of them out"
+                .to_owned(),
+        });
+    }
+    let Some(standard) = eiv::input_standard(data, settings.budget) else {
+        findings.push(Finding::new(
+            Severity::Warning,
+            "no-input-errors",
+            format!(
+                "model {}: errors_in_variables was asked for, but the budget has no entry for speed or angle with shared = \
+                 \"sample\"; ordinary least squares is used",
+                law.name
+            ),
+        ));
+        return Ok(false);
+    };
+    if law.is_nonlinear() || fitted.coefficients.len() != law.coefficients.len() {
+        return Ok(false);
+    }
+    let result =
+        eiv::regress(law, data, standard, fit::odr::Sigma::Estimated).map_err(|source| IdentifyError::Fit {
+            source_name: settings.source_name.to_owned(),
+            model: law.name.clone(),
+            source: Box::new(source),
+        })?;
+    eiv::replace(fitted, &problem.design, &problem.response, result);
+    Ok(true)
 }
 
 /// The measured responses, stacked.

@@ -16,7 +16,6 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 use crate::dataset::{Dataset, labels};
 use crate::error::IdentifyError;
@@ -211,9 +210,7 @@ pub fn combine(type_a: f64, dof_a: f64, j: usize, parts: &[Contribution]) -> Com
 /// Two-sided 95 % quantile of Student's t.
 #[must_use]
 pub fn coverage_factor(dof: f64) -> f64 {
-    // Beyond 10⁶ degrees of freedom t differs from the normal quantile by less than 3e-6.
-    let dof = dof.clamp(1.0, 1e6);
-    StudentsT::new(0.0, 1.0, dof).map_or(f64::NAN, |t| t.inverse_cdf(0.975))
+    froude_fit::distribution::coverage_factor(0.95, dof)
 }
 
 /// Type B covariance by Monte Carlo (JCGM 101:2008): every shared error drawn, the fit repeated.

@@ -171,8 +171,9 @@ impl Input {
     #[must_use]
     pub fn path(&self) -> &Path {
         match self {
-            Self::Table(path) | Self::Runs(path) | Self::Cases(path) | Self::Mesh(path) => path,
-            Self::Record { path, .. } => path,
+            Self::Table(path) | Self::Runs(path) | Self::Cases(path) | Self::Mesh(path) | Self::Record { path, .. } => {
+                path
+            }
         }
     }
 }
@@ -455,6 +456,9 @@ impl Campaign {
             if let Some(tare) = &source.tare {
                 must_exist(&source.place, "tare.record", &tare.record)?;
             }
+        }
+        if let Some(Simulate { truth: Truth::Record { path, .. }, .. }) = &self.simulate {
+            must_exist(&Place::whole(&self.path), "simulate.record", path)?;
         }
         Ok(())
     }

@@ -20,6 +20,12 @@ use crate::units::Dimension;
 /// Most values of one range of a plan: a million runs is a slip of the step.
 const MOST_STEPS: f64 = 100_000.0;
 
+/// Kinds of covariance that can be asked for.
+const COVARIANCES: [&str; 3] = ["classical", "HC3", "cluster"];
+
+/// Where the numbers of a source can lie.
+const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
+
 /// Reads a campaign from text.
 pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     let source = Text { path, text };
@@ -84,7 +90,15 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
     let mut volumes = IndexMap::new();
     if let Some(table) = s.section("volumes")? {
         for (configuration, _, value) in table.entries() {
-            volumes.insert(configuration.to_owned(), table.as_quantity_of(configuration, value, Dimension::VOLUME)?);
+            let volume = table.as_quantity_of(configuration, value, Dimension::VOLUME)?;
+            if volume <= 0.0 {
+                return Err(table.wrong(
+                    configuration,
+                    value,
+                    format!("is {}; it must be larger than zero", found(value)),
+                ));
+            }
+            volumes.insert(configuration.to_owned(), volume);
         }
     }
     let out = BodySpec {
@@ -128,13 +142,18 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         path("mesh")?.map(Input::Mesh),
     ];
     let mut given: Vec<Input> = given.into_iter().flatten().collect();
-    if given.len() != 1 {
-        return Err(s.missing(
-            "table",
-            &format!("it needs exactly one of table, runs, cases, mesh and record, and has {}", given.len()),
-        ));
+    let Some(input) = given.pop().filter(|_| given.is_empty()) else {
+        let named: Vec<&str> = INPUTS.into_iter().filter(|key| s.get(key).is_some()).collect();
+        let named = if named.is_empty() { "none".to_owned() } else { named.join(" and ") };
+        return Err(RecordError::Value {
+            place: s.place(),
+            key: name,
+            problem: format!("names {named}; a source needs exactly one of table, runs, cases, mesh, record"),
+        });
+    };
+    if let (Some(value), false) = (s.get("select"), matches!(input, Input::Record { .. })) {
+        return Err(s.wrong("select", value, "picks an estimate of a record, but the source names no record"));
     }
-    let input = given.remove(0);
     let keep = s
         .get("keep")
         .map(|v| parse_keep(s.as_text("keep", v)?).map_err(|e| s.wrong("keep", v, format!("cannot be read: {e}"))))
@@ -158,7 +177,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
         plan: s.sections("plan")?.iter().map(plan_block).collect::<Result<_, _>>()?,
-        place: ["table", "record", "runs", "cases", "mesh"]
+        place: INPUTS
             .into_iter()
             .find_map(|key| s.get(key))
             .map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
@@ -218,13 +237,31 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
         standard: si,
         relative,
         shared,
-        dof: s.number("dof")?.filter(|d| *d > 0.0),
+        dof: positive_number(s, "dof")?,
         name: s.text("name")?.map(str::to_owned),
         dimension,
         place: s.place(),
     };
     s.finish()?;
     Ok(out)
+}
+
+/// A plain number larger than zero.
+fn positive_number(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, RecordError> {
+    match (s.number(key)?, s.get(key)) {
+        (Some(x), Some(value)) if x <= 0.0 => Err(s.wrong(key, value, format!("is {x}; it must be larger than zero"))),
+        (x, _) => Ok(x),
+    }
+}
+
+/// A whole number from 1 to `most`.
+fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>, RecordError> {
+    match (s.integer(key)?, s.get(key)) {
+        (Some(n), Some(value)) if n == 0 || n > most => {
+            Err(s.wrong(key, value, format!("is {n}; it must lie between 1 and {most}")))
+        }
+        (n, _) => Ok(n.map(|n| n as usize)),
+    }
 }
 
 fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
@@ -234,7 +271,7 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
         configurations: s.texts("configurations")?,
         speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
         angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
-        repeats: s.integer("repeats")?.unwrap_or(1).min(10_000) as usize,
+        repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
     };
     if out.configurations.is_empty() {
         return Err(s.missing("configurations", "write configurations = [\"H1LT\"], say"));
@@ -251,6 +288,9 @@ fn series<'a>(
     dimension: Dimension,
 ) -> Result<Vec<f64>, RecordError> {
     if let Some(list) = value.get_ref().as_array() {
+        if list.is_empty() {
+            return Err(s.wrong(key, value, "is an empty list; write at least one quantity"));
+        }
         return list.iter().map(|v| s.as_quantity_of(key, v, dimension)).collect();
     }
     if value.get_ref().as_table().is_none() {
@@ -322,26 +362,19 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
     let angle_offset =
         one_of(s, "angle_offset", &["ignore", "estimate"], &[AngleOffset::Ignore, AngleOffset::Estimate])?
             .unwrap_or_default();
-    let huber = s.get("huber").map(|v| s.as_number("huber", v)).transpose()?;
-    if let Some(k) = huber.filter(|k| *k <= 0.0) {
-        return Err(RecordError::Value {
-            place: s.place(),
-            key: "huber".to_owned(),
-            problem: format!("is {k}; it must be larger than zero"),
-        });
-    }
+    let huber = positive_number(s, "huber")?;
     let out = Identify {
         models: s.texts("models")?,
         bounds: bounds(s)?,
         fixed,
         exclude: s.texts("exclude")?,
         prior: s.sections("prior")?.iter().map(prior).collect::<Result<_, _>>()?,
-        covariance: s.text("covariance")?.map(str::to_owned),
+        covariance: one_of(s, "covariance", &COVARIANCES, &COVARIANCES)?.map(str::to_owned),
         cross_validation: s.sections("cross_validation")?.iter().map(range_block).collect::<Result<_, _>>()?,
         angle_offset,
         huber,
         dissipative: s.flag("dissipative")?.unwrap_or(false),
-        monte_carlo: s.integer("monte_carlo")?.map(|n| n.min(1_000_000) as usize),
+        monte_carlo: count(s, "monte_carlo", 1_000_000)?,
         user_models: s.sections("model")?.iter().map(user_model).collect::<Result<_, _>>()?,
         errors_in_variables: s.flag("errors_in_variables")?.unwrap_or(false),
     };
@@ -420,14 +453,11 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
             Ok(Truth::Coefficients { model: model.to_owned(), values })
         })
         .transpose()?;
-    let truth = match (record, written) {
-        (Some(truth), None) | (None, Some(truth)) => truth,
-        _ => {
-            return Err(s.missing(
-                "record",
-                "a twin needs its truth once: record (with select), or model and [simulate.coefficients]",
-            ));
-        }
+    let ((Some(truth), None) | (None, Some(truth))) = (record, written) else {
+        return Err(s.missing(
+            "record",
+            "a twin needs its truth once: record (with select), or model and [simulate.coefficients]",
+        ));
     };
     let out = Simulate {
         seed: s

@@ -1,22 +1,31 @@
 //! Tables as CSV: `name [unit]` headers, a row per observation.
+//!
+//! **Form.** UTF-8 (a byte order mark is skipped), commas, lines ending with LF or
+//! CRLF, cells in double quotes where they hold commas, quotes (doubled) or line
+//! breaks. Spaces around unquoted cells do not count. Blank lines may stand at the
+//! end only; comment lines are refused, because another program would read them as
+//! observations.
+//!
+//! The splitting is our own and not a library's: every message names the line on
+//! which the row begins, also after cells with line breaks, and nothing that is not
+//! a row is skipped in silence. The tests hold it against the `csv` crate.
 
+use std::borrow::Cow;
+use std::io::Write as _;
 use std::path::Path;
 
+use crate::assemble::{Raw, assemble, number, plan};
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::sidecar::Sidecar;
-use crate::table::{Column, ColumnData, Table, is_text_column, known_dimension};
-use crate::units::{Unit, UnitError, parse_unit};
+use crate::table::{ColumnData, Table};
+use crate::units::Unit;
 use crate::write::write_with;
 
 /// The largest CSV table that is read into memory; longer logs are streamed.
 const LARGEST_BYTES: u64 = 2 << 30;
 
-/// Raw cells of a CSV file.
-struct Cells {
-    header: Vec<String>,
-    rows: Vec<Vec<String>>,
-    lines: Vec<usize>,
-}
+/// Most columns of a table.
+const MOST_COLUMNS: usize = 10_000;
 
 /// Reads a CSV table, through a sidecar if there is one.
 ///
@@ -34,49 +43,33 @@ pub fn read_csv(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordE
 ///
 /// See [`RecordError`].
 pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    let cells = cells(path, text)?;
-    if cells.rows.is_empty() {
-        return Err(RecordError::NoRows { path: path.to_owned() });
-    }
-    let columns = match sidecar {
-        Some(sidecar) => {
-            let raw = |name: &str| {
-                cells
-                    .header
-                    .iter()
-                    .position(|h| h == name)
-                    .map(|j| cells.rows.iter().map(|row| row[j].clone()).collect::<Vec<_>>())
-            };
-            let place = |row: usize| Place::line(path, cells.lines[row]);
-            sidecar.columns(path, &cells.header, &raw, &place)?
-        }
-        None => (0..cells.header.len()).map(|j| column(path, &cells, j)).collect::<Result<_, _>>()?,
+    let mut records = Records::new(path, text.strip_prefix('\u{feff}').unwrap_or(text));
+    let mut cells = Vec::new();
+    let Some(line) = records.next(&mut cells)? else {
+        return Err(RecordError::Syntax {
+            place: Place::whole(path),
+            problem: "the file is empty; its first line names the columns as `name [unit]`".to_owned(),
+        });
     };
-    Ok(Table { path: path.to_owned(), columns, n_rows: cells.rows.len(), line_of_row: cells.lines, sidecar: None })
-}
-
-fn cells(path: &Path, text: &str) -> Result<Cells, RecordError> {
-    let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(text.as_bytes());
-    let mut header: Vec<String> = Vec::new();
-    let mut rows = Vec::new();
+    let header_place = Place::line(path, line);
+    let header: Vec<String> = cells.iter().map(|c| c.trim().to_owned()).collect();
+    if let [only] = header.as_slice()
+        && let Some(separator) = [';', '\t'].into_iter().find(|c| only.contains(*c))
+    {
+        let name = if separator == ';' { "`;`" } else { "tabs" };
+        return Err(RecordError::Syntax {
+            place: header_place,
+            problem: format!("the cells are separated by {name}; separate them by commas"),
+        });
+    }
+    let wants = plan(path, &header, sidecar, &header_place)?;
+    let mut raws: Vec<Raw> = wants
+        .iter()
+        .map(|want| if want.is_number() { Raw::Numbers(Vec::new()) } else { Raw::Texts(Vec::new()) })
+        .collect();
+    let is_left_out: Vec<bool> = wants.iter().map(|want| matches!(want, crate::assemble::Want::LeftOut)).collect();
     let mut lines = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| RecordError::Syntax {
-            place: e.position().map_or_else(|| Place::whole(path), |p| Place::line(path, p.line() as usize)),
-            problem: format!("not CSV: {e}"),
-        })?;
-        let line = record.position().map_or(0, |p| p.line() as usize);
-        let cells: Vec<String> = record.iter().map(|c| c.trim().to_owned()).collect();
-        if cells.first().is_some_and(|c| c.starts_with('#')) {
-            return Err(RecordError::Syntax {
-                place: Place::line(path, line),
-                problem: "a table has no comment lines; delete the line".to_owned(),
-            });
-        }
-        if header.is_empty() {
-            header = cells;
-            continue;
-        }
+    while let Some(line) = records.next(&mut cells)? {
         if cells.len() != header.len() {
             return Err(RecordError::RaggedRow {
                 place: Place::line(path, line),
@@ -84,126 +77,172 @@ fn cells(path: &Path, text: &str) -> Result<Cells, RecordError> {
                 expected: header.len(),
             });
         }
-        rows.push(cells);
+        for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
+            match raw {
+                Raw::Numbers(values) => values.push(number(cell.trim(), &header[j], &|| Place::line(path, line))?),
+                Raw::Texts(_) if is_left_out[j] => {}
+                Raw::Texts(texts) => texts.push(cell.clone().into_owned()),
+            }
+        }
         lines.push(line);
     }
-    let mut seen = std::collections::HashSet::new();
-    for name in &header {
-        if !seen.insert(name) {
-            return Err(RecordError::DuplicateColumn { place: Place::line(path, 1), column: name.clone() });
+    assemble(path, &header, &wants, raws, sidecar, &header_place, lines)
+}
+
+/// The rows of a CSV text, one after the other, each with the line on which it begins.
+struct Records<'a> {
+    path: &'a Path,
+    text: &'a str,
+    at: usize,
+    line: usize,
+}
+
+impl<'a> Records<'a> {
+    fn new(path: &'a Path, text: &'a str) -> Self {
+        Self { path, text, at: 0, line: 1 }
+    }
+
+    fn refuse<T>(&self, line: usize, problem: &str) -> Result<T, RecordError> {
+        Err(RecordError::Syntax { place: Place::line(self.path, line), problem: problem.to_owned() })
+    }
+
+    /// The next row's cells and line; `None` at the end.
+    fn next(&mut self, cells: &mut Vec<Cow<'a, str>>) -> Result<Option<usize>, RecordError> {
+        let mut blank = None;
+        while self.at < self.text.len() {
+            let line = self.line;
+            let start = self.at;
+            self.row(cells)?;
+            let is_blank = matches!(cells.as_slice(), [Cow::Borrowed("")]) && !self.text[start..].starts_with('"');
+            if is_blank {
+                blank.get_or_insert(line);
+                continue;
+            }
+            if let Some(line) = blank {
+                return self.refuse(line, "the line is blank; delete it");
+            }
+            if self.text[start..].trim_start().starts_with('#') {
+                return self.refuse(line, "a table has no comment lines; delete the line that begins with `#`");
+            }
+            return Ok(Some(line));
+        }
+        Ok(None)
+    }
+
+    /// Cells up to the end of the row; `at` stands behind its line break.
+    fn row(&mut self, cells: &mut Vec<Cow<'a, str>>) -> Result<(), RecordError> {
+        cells.clear();
+        loop {
+            if cells.len() == MOST_COLUMNS {
+                return self.refuse(self.line, &format!("the row has more than {MOST_COLUMNS} cells"));
+            }
+            let is_quoted = self.text.as_bytes().get(self.at) == Some(&b'"');
+            let cell = if is_quoted { self.quoted()? } else { self.plain() };
+            cells.push(cell);
+            let rest = &self.text.as_bytes()[self.at..];
+            let (step, is_end) = match rest {
+                [b',', ..] => (1, false),
+                [b'\n', ..] => (1, true),
+                [b'\r', b'\n', ..] => (2, true),
+                [] => (0, true),
+                [b'\r', ..] => {
+                    return self.refuse(
+                        self.line,
+                        "a carriage return stands without a line feed; save the file with LF or CRLF line ends",
+                    );
+                }
+                _ => {
+                    return self.refuse(
+                        self.line,
+                        "text follows the closing quote of a cell; double the quotes inside a cell",
+                    );
+                }
+            };
+            self.at += step;
+            if is_end {
+                self.line += usize::from(step > 0);
+                return Ok(());
+            }
         }
     }
-    Ok(Cells { header, rows, lines })
-}
 
-/// A column by its header.
-fn column(path: &Path, cells: &Cells, j: usize) -> Result<Column, RecordError> {
-    let header = &cells.header[j];
-    let (name, unit) = split_header(header);
-    let place = Place::line(path, 1);
-    let texts = || cells.rows.iter().map(|row| row[j].clone()).collect::<Vec<_>>();
-    if name.is_empty() {
-        return Err(RecordError::Syntax {
-            place,
-            problem: format!("column {} has no name; write `name [unit]`", j + 1),
-        });
+    fn plain(&mut self) -> Cow<'a, str> {
+        let rest = &self.text[self.at..];
+        let end = memchr::memchr3(b',', b'\n', b'\r', rest.as_bytes()).unwrap_or(rest.len());
+        self.at += end;
+        Cow::Borrowed(rest[..end].trim())
     }
-    let Some(unit) = unit else {
-        let numeric = cells.rows.iter().all(|row| row[j].parse::<f64>().is_ok());
-        if is_text_column(name) || (known_dimension(name).is_none() && !numeric) {
-            return Ok(Column { name: name.to_owned(), data: ColumnData::Text(texts()) });
+
+    fn quoted(&mut self) -> Result<Cow<'a, str>, RecordError> {
+        let begun = self.line;
+        let start = self.at + 1;
+        let mut end = start;
+        let mut has_doubled = false;
+        loop {
+            let Some(step) = memchr::memchr(b'"', &self.text.as_bytes()[end..]) else {
+                return self.refuse(begun, "a quote is opened and not closed");
+            };
+            end += step;
+            if self.text.as_bytes().get(end + 1) != Some(&b'"') {
+                break;
+            }
+            has_doubled = true;
+            end += 2;
         }
-        let unit = known_dimension(name).map_or_else(|| "unit".to_owned(), |d| d.to_string());
-        let sidecar = path.with_extension("toml");
-        let sidecar = sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-        return Err(RecordError::MissingUnit {
-            place,
-            column: name.to_owned(),
-            advice: format!("write `{name} [{unit}]`, or map it with a sidecar {sidecar}"),
-        });
-    };
-    if is_text_column(name) {
-        return Err(RecordError::BadUnit {
-            place,
-            column: header.clone(),
-            problem: format!("{name} is text and has no unit; write `{name}`"),
-        });
+        let cell = &self.text[start..end];
+        self.line += memchr::memchr_iter(b'\n', cell.as_bytes()).count();
+        self.at = end + 1;
+        Ok(if has_doubled { Cow::Owned(cell.replace("\"\"", "\"")) } else { Cow::Borrowed(cell) })
     }
-    let unit = parse_unit(unit).map_err(|e: UnitError| RecordError::BadUnit {
-        place: place.clone(),
-        column: header.clone(),
-        problem: e.to_string(),
-    })?;
-    check_dimension(&place, header, name, &unit)?;
-    let row_place = |row: usize| Place::line(path, cells.lines[row]);
-    let si = cells
-        .rows
-        .iter()
-        .enumerate()
-        .map(|(row, r)| number(&r[j], header, &|| row_place(row)).map(|v| unit.to_si(v)))
-        .collect::<Result<_, _>>()?;
-    Ok(Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si } })
-}
-
-/// `name [unit]` as name and unit.
-pub(crate) fn split_header(header: &str) -> (&str, Option<&str>) {
-    match header.split_once('[') {
-        Some((name, rest)) => (name.trim(), Some(rest.trim_end().trim_end_matches(']').trim())),
-        None => (header.trim(), None),
-    }
-}
-
-/// A known name with another dimension is an error.
-pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Unit) -> Result<(), RecordError> {
-    match known_dimension(name) {
-        Some(expected) if expected != unit.dimension => Err(RecordError::WrongDimension {
-            place: place.clone(),
-            column: header.to_owned(),
-            expected: expected.describe(),
-            found: unit.dimension.describe(),
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// A finite number in a cell.
-pub(crate) fn number(cell: &str, header: &str, place: &dyn Fn() -> Place) -> Result<f64, RecordError> {
-    if cell.is_empty() {
-        return Err(RecordError::EmptyCell { place: place(), column: header.to_owned() });
-    }
-    match fast_float2::parse::<f64, _>(cell) {
-        Ok(x) if x.is_finite() => Ok(x),
-        Ok(_) => Err(RecordError::NotFinite { place: place(), column: header.to_owned(), found: clip(cell) }),
-        Err(_) => Err(RecordError::NotANumber { place: place(), column: header.to_owned(), found: clip(cell) }),
-    }
-}
-
-fn clip(text: &str) -> String {
-    text.chars().take(40).collect()
 }
 
 /// Writes a table as CSV, whole or not at all; numbers in the units of their columns, in full precision.
 ///
 /// # Errors
 ///
-/// A file that cannot be written.
+/// A file that cannot be written, or a number that is not finite.
 pub fn write_csv(table: &Table, path: &Path) -> Result<(), RecordError> {
-    write_with(path, |file| {
-        let mut writer = csv::WriterBuilder::new().from_writer(file);
-        let header = table.columns.iter().map(|c| match &c.data {
-            ColumnData::Number { unit, .. } => format!("{} [{}]", c.name, unit.text),
-            ColumnData::Text(_) => c.name.clone(),
-        });
-        writer.write_record(header)?;
-        for row in 0..table.n_rows {
-            let cells = table.columns.iter().map(|c| match &c.data {
-                ColumnData::Number { unit, si, .. } => shortest(unit, si[row]),
-                ColumnData::Text(texts) => texts[row].clone(),
+    for column in &table.columns {
+        if let ColumnData::Number { si, .. } = &column.data
+            && let Some((row, value)) = si.iter().enumerate().find(|(_, v)| !v.is_finite())
+        {
+            return Err(RecordError::NonFinite {
+                path: path.to_owned(),
+                item: format!("column {}, row {}", column.name, row + 1),
+                value: value.to_string(),
             });
-            writer.write_record(cells)?;
         }
-        writer.flush()
+    }
+    write_with(path, |file| {
+        let header: Vec<_> = table.columns.iter().map(|c| quoted(c.header())).collect();
+        writeln!(file, "{}", header.join(","))?;
+        for row in 0..table.n_rows {
+            for (j, column) in table.columns.iter().enumerate() {
+                if j > 0 {
+                    file.write_all(b",")?;
+                }
+                match &column.data {
+                    ColumnData::Number { unit, si, .. } => {
+                        write!(file, "{}", si.get(row).map_or_else(String::new, |si| shortest(unit, *si)))?;
+                    }
+                    ColumnData::Text(texts) => {
+                        write!(file, "{}", quoted(texts.get(row).cloned().unwrap_or_default()))?;
+                    }
+                }
+            }
+            writeln!(file)?;
+        }
+        Ok(())
     })
+}
+
+/// A cell in quotes where it needs them; an empty one too, so that no row is a blank line.
+fn quoted(cell: String) -> String {
+    let needs = cell.is_empty()
+        || cell.trim() != cell
+        || cell.starts_with(['#', '\u{feff}'])
+        || cell.contains([',', '"', '\n', '\r']);
+    if needs { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell }
 }
 
 /// The number in its unit, in the fewest digits that read back to the same SI value.
@@ -211,5 +250,7 @@ fn shortest(unit: &Unit, si: f64) -> String {
     let value = unit.from_si(si);
     // 12 digits usually do, and hide the rounding of the unit's factor (0.3 rather than 0.30000000000000004).
     let short: f64 = format!("{value:.11e}").parse().unwrap_or(value);
-    if unit.to_si(short) == si { format!("{short}") } else { format!("{value}") }
+    let value = if unit.to_si(short) == si { short } else { value };
+    // Display never uses an exponent: tiny and huge numbers would be hundreds of digits long.
+    if value == 0.0 || (1e-5..1e15).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }

@@ -221,7 +221,7 @@ pub enum RecordError {
         advice: String,
     },
     /// A column of text where numbers are needed, or the reverse.
-    #[error("{place}: column `{column}` holds {found}; {expected} are needed")]
+    #[error("{place}: column `{column}` holds {found}; expected {expected}")]
     ColumnKind {
         /// The table.
         place: Place,

@@ -1,20 +1,36 @@
 //! `estimate.json`: read with checks, written whole.
+//!
+//! JSON has no NaN, and `null` means "undetermined" here: a number that is not finite
+//! is therefore an error when writing, never a silent null. Numbers read back to the
+//! bits that were written.
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
+use std::fmt;
 use std::path::Path;
 
+use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+
 use crate::error::{Place, RecordError, read_bytes, utf8};
-use crate::estimate::{ESTIMATE_SCHEMA, EstimateFile};
+use crate::estimate::{
+    Coefficient, Covariance, DataFile, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, NamedCorrelation,
+    Status,
+};
+use crate::hash::sha256_of_file;
 use crate::write::write_atomically;
 
 /// The largest record that is read; a thousand estimates with covariances have a few megabytes.
 const LARGEST_BYTES: u64 = 64 << 20;
 
+/// Newest major version that is read.
+const NEWEST: u64 = 1;
+
 /// Reads `estimate.json`.
 ///
 /// # Errors
 ///
-/// Not JSON, another or a newer schema, an id twice, a covariance that is not square.
+/// Not JSON, another or a newer schema, a key or an id twice, a covariance that is not
+/// square, a negative uncertainty, a value where the status says undetermined.
 pub fn read_estimates(path: &Path) -> Result<EstimateFile, RecordError> {
     let bytes = read_bytes(path, LARGEST_BYTES, "an estimate record")?;
     parse_estimates(path, utf8(path, &bytes)?)
@@ -26,97 +42,340 @@ pub fn read_estimates(path: &Path) -> Result<EstimateFile, RecordError> {
 ///
 /// As [`read_estimates`].
 pub fn parse_estimates(path: &Path, text: &str) -> Result<EstimateFile, RecordError> {
-    let at = |e: &serde_json::Error| RecordError::Syntax {
-        place: Place::line(path, e.line()),
-        problem: format!("not an estimate record: {e}"),
-    };
-    let value: serde_json::Value = serde_json::from_str(text).map_err(|e| at(&e))?;
-    let schema = value.get("schema").and_then(serde_json::Value::as_str);
-    check_schema(path, schema)?;
-    let file: EstimateFile = serde_json::from_str(text).map_err(|e| at(&e))?;
-    let mut ids = BTreeSet::new();
-    for estimate in &file.estimates {
-        if !ids.insert(&estimate.id) {
-            return Err(RecordError::DuplicateId { place: Place::whole(path), id: estimate.id.clone() });
-        }
-        if let Some(c) = &estimate.covariance
-            && (c.matrix.len() != c.names.len() || c.matrix.iter().any(|row| row.len() != c.names.len()))
-        {
-            return Err(RecordError::Syntax {
-                place: Place::whole(path),
-                problem: format!(
-                    "estimate {}: the covariance names {} coefficients, its matrix is not {} by {}",
-                    estimate.id,
-                    c.names.len(),
-                    c.names.len(),
-                    c.names.len()
-                ),
-            });
-        }
-    }
+    // Keys first: to the typed reader a key that appears twice is simply overwritten.
+    serde_json::from_str::<UniqueKeys>(text).map_err(|e| syntax(path, text, &e))?;
+    let head: Head = serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?;
+    check_schema(path, text, head.schema.as_ref())?;
+    let file: EstimateFile = serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?;
+    check(path, text, &file)?;
     Ok(file)
 }
 
-fn check_schema(path: &Path, found: Option<&str>) -> Result<(), RecordError> {
-    let place = Place::whole(path);
+impl EstimateFile {
+    /// Reads `estimate.json`; see [`read_estimates`].
+    ///
+    /// # Errors
+    ///
+    /// As [`read_estimates`].
+    pub fn read(path: &Path) -> Result<Self, RecordError> {
+        read_estimates(path)
+    }
+
+    /// Writes `estimate.json`; see [`write_estimates`].
+    ///
+    /// # Errors
+    ///
+    /// As [`write_estimates`].
+    pub fn write(&self, path: &Path) -> Result<(), RecordError> {
+        write_estimates(path, self)
+    }
+}
+
+impl DataFile {
+    /// A file with its fingerprint, named as `named`.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Read`] when the file cannot be read.
+    pub fn of(path: &Path, named: &str) -> Result<Self, RecordError> {
+        Ok(Self { path: named.to_owned(), sha256: sha256_of_file(path)? })
+    }
+}
+
+#[derive(Deserialize)]
+struct Head {
+    schema: Option<serde_json::Value>,
+}
+
+/// Any JSON value whose objects have no key twice.
+struct UniqueKeys;
+
+impl<'de> Deserialize<'de> for UniqueKeys {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(Walk)
+    }
+}
+
+struct Walk;
+
+impl<'de> Visitor<'de> for Walk {
+    type Value = UniqueKeys;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a JSON value")
+    }
+
+    fn visit_bool<E>(self, _: bool) -> Result<UniqueKeys, E> {
+        Ok(UniqueKeys)
+    }
+
+    fn visit_i64<E>(self, _: i64) -> Result<UniqueKeys, E> {
+        Ok(UniqueKeys)
+    }
+
+    fn visit_u64<E>(self, _: u64) -> Result<UniqueKeys, E> {
+        Ok(UniqueKeys)
+    }
+
+    fn visit_f64<E>(self, _: f64) -> Result<UniqueKeys, E> {
+        Ok(UniqueKeys)
+    }
+
+    fn visit_str<E>(self, _: &str) -> Result<UniqueKeys, E> {
+        Ok(UniqueKeys)
+    }
+
+    fn visit_unit<E>(self) -> Result<UniqueKeys, E> {
+        Ok(UniqueKeys)
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<UniqueKeys, A::Error> {
+        while list.next_element::<UniqueKeys>()?.is_some() {}
+        Ok(UniqueKeys)
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<UniqueKeys, A::Error> {
+        let mut keys = HashSet::new();
+        while let Some(key) = map.next_key::<String>()? {
+            if keys.contains(&key) {
+                return Err(A::Error::custom(format!("the key `{key}` appears twice")));
+            }
+            map.next_value::<UniqueKeys>()?;
+            keys.insert(key);
+        }
+        Ok(UniqueKeys)
+    }
+}
+
+/// serde's error with its place, and with a hint where people write NaN.
+fn syntax(path: &Path, text: &str, error: &serde_json::Error) -> RecordError {
+    let line = error.line();
+    let full = error.to_string();
+    let words = full.rfind(" at line ").map_or(full.as_str(), |at| &full[..at]);
+    let written = text.lines().nth(line.saturating_sub(1)).unwrap_or_default();
+    let has_nan = error.is_syntax() && ["NaN", "nan", "Infinity", "inf"].iter().any(|w| written.contains(w));
+    let hint = if has_nan { "; JSON has no NaN and no Infinity: an undetermined number is null" } else { "" };
+    RecordError::Syntax {
+        place: if line == 0 { Place::whole(path) } else { Place::line(path, line) },
+        problem: format!("not an estimate record: {words}{hint}"),
+    }
+}
+
+fn check_schema(path: &Path, text: &str, found: Option<&serde_json::Value>) -> Result<(), RecordError> {
+    let place = line_of(text, "schema", None, 0).map_or_else(|| Place::whole(path), |line| Place::line(path, line));
+    let known = ESTIMATE_SCHEMA.to_owned();
     let Some(found) = found else {
-        return Err(RecordError::Schema { place, found: "missing".to_owned(), known: ESTIMATE_SCHEMA.to_owned() });
+        return Err(RecordError::Schema { place: Place::whole(path), found: "missing".to_owned(), known });
     };
-    if found == ESTIMATE_SCHEMA {
+    if found.as_str() == Some(ESTIMATE_SCHEMA) {
         return Ok(());
     }
-    let newer = found.strip_prefix("froude/estimate/").and_then(|v| v.parse::<u32>().ok()).is_some_and(|v| v > 1);
-    if newer {
-        return Err(RecordError::NewerSchema { place, found: found.to_owned(), known: ESTIMATE_SCHEMA.to_owned() });
+    let version = found.as_str().and_then(|s| s.strip_prefix("froude/estimate/")).and_then(|v| v.parse::<u64>().ok());
+    match (version, found.as_str()) {
+        (Some(version), Some(found)) if version > NEWEST => {
+            Err(RecordError::NewerSchema { place, found: found.to_owned(), known })
+        }
+        _ => Err(RecordError::Schema { place, found: found.to_string().chars().take(80).collect(), known }),
     }
-    Err(RecordError::Schema { place, found: format!("{found:?}"), known: ESTIMATE_SCHEMA.to_owned() })
+}
+
+/// Line of the nth (from 0) `"key": "value"` in a JSON text; any value where `value` is `None`.
+fn line_of(text: &str, key: &str, value: Option<&str>, nth: usize) -> Option<usize> {
+    let key = format!("\"{key}\"");
+    let value = value.map(|v| serde_json::Value::from(v).to_string());
+    text.match_indices(&key)
+        .filter(|(at, _)| {
+            let after = text[at + key.len()..].trim_start().strip_prefix(':').map(str::trim_start);
+            after.is_some_and(|after| value.as_ref().is_none_or(|v| after.starts_with(v.as_str())))
+        })
+        .nth(nth)
+        .map(|(at, _)| 1 + memchr::memchr_iter(b'\n', &text.as_bytes()[..at]).count())
+}
+
+/// What the types cannot say.
+fn check(path: &Path, text: &str, file: &EstimateFile) -> Result<(), RecordError> {
+    let mut ids = HashSet::new();
+    let mut recommended = HashSet::new();
+    for estimate in &file.estimates {
+        let line = |nth| line_of(text, "id", Some(&estimate.id), nth);
+        let place = |nth| line(nth).map_or_else(|| Place::whole(path), |line| Place::line(path, line));
+        if !ids.insert(estimate.id.as_str()) {
+            return Err(RecordError::DuplicateId { place: place(1), id: estimate.id.clone() });
+        }
+        let refuse = |problem: String| {
+            Err(RecordError::Syntax { place: place(0), problem: format!("estimate {}: {problem}", estimate.id) })
+        };
+        if estimate.recommended && !recommended.insert(estimate.source.as_str()) {
+            return refuse(format!("it is the second of source {:?} to be recommended; one is", estimate.source));
+        }
+        for (name, coefficient) in &estimate.coefficients {
+            if let Some(problem) = contradiction(coefficient) {
+                return refuse(format!("coefficient {name} {problem}"));
+            }
+        }
+        if let Some(covariance) = &estimate.covariance {
+            let n = covariance.names.len();
+            if covariance.matrix.len() != n || covariance.matrix.iter().any(|row| row.len() != n) {
+                return refuse(format!("the covariance names {n} coefficients, its matrix is not {n} by {n}"));
+            }
+            if let Some(name) = covariance.names.iter().find(|name| !estimate.coefficients.contains_key(*name)) {
+                return refuse(format!("the covariance names {name}, which is no coefficient of it"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn contradiction(c: &Coefficient) -> Option<String> {
+    if c.status == Status::Undetermined && c.value.is_some() {
+        return Some("is undetermined and has a value; write null".to_owned());
+    }
+    let uncertainties = [("standard_uncertainty", c.standard_uncertainty), ("type_a", c.type_a), ("type_b", c.type_b)];
+    for (key, value) in uncertainties {
+        if let Some(value) = value.filter(|v| *v < 0.0) {
+            return Some(format!("has {key} {value}; an uncertainty is not negative"));
+        }
+    }
+    match c.interval_95 {
+        Some([low, high]) if low > high => Some(format!("has the interval [{low}, {high}]; its ends are exchanged")),
+        _ => None,
+    }
 }
 
 /// Writes `estimate.json`, pretty, whole or not at all.
 ///
 /// # Errors
 ///
-/// A number that JSON cannot hold, or a file that cannot be written.
+/// A number that JSON cannot hold, an id twice, or a file that cannot be written.
 pub fn write_estimates(path: &Path, file: &EstimateFile) -> Result<(), RecordError> {
-    check_numbers(path, file)?;
+    let mut ids = HashSet::new();
+    for estimate in &file.estimates {
+        if !ids.insert(estimate.id.as_str()) {
+            return Err(RecordError::DuplicateId { place: Place::whole(path), id: estimate.id.clone() });
+        }
+        let mut bad = None;
+        numbers(estimate, &mut |item, value| {
+            if !value.is_finite() && bad.is_none() {
+                bad = Some((item(), value));
+            }
+        });
+        if let Some((item, value)) = bad {
+            return Err(RecordError::NonFinite {
+                path: path.to_owned(),
+                item: format!("{}, {item}", estimate.id),
+                value: value.to_string(),
+            });
+        }
+    }
     let mut text = serde_json::to_string_pretty(file)
         .map_err(|e| RecordError::Write { path: path.to_owned(), reason: e.to_string() })?;
     text.push('\n');
     write_atomically(path, text.as_bytes())
 }
 
-/// JSON has no NaN; serde would write null, which means "undetermined".
-fn check_numbers(path: &Path, file: &EstimateFile) -> Result<(), RecordError> {
-    for e in &file.estimates {
-        let check = |item: String, value: f64| {
-            if value.is_finite() {
-                Ok(())
-            } else {
-                Err(RecordError::NonFinite { path: path.to_owned(), item, value: value.to_string() })
-            }
-        };
-        for (name, c) in &e.coefficients {
-            let numbers = [c.value, c.standard_uncertainty, c.type_a, c.type_b, c.effective_dof];
-            let ends = c.interval_95.iter().flatten().copied();
-            for x in numbers.into_iter().flatten().chain(ends) {
-                check(format!("{}, {name}", e.id), x)?;
-            }
-        }
-        for (name, r) in &e.validity {
-            check(format!("{}, validity.{name}", e.id), r.low)?;
-            check(format!("{}, validity.{name}", e.id), r.high)?;
-        }
-        for (name, s) in &e.sigma {
-            check(format!("{}, sigma.{name}", e.id), s.value)?;
-        }
-        for (name, d) in &e.dof {
-            check(format!("{}, dof.{name}", e.id), d.unwrap_or(0.0))?;
-        }
-        for row in e.covariance.iter().flat_map(|c| &c.matrix) {
-            for x in row {
-                check(format!("{}, covariance", e.id), *x)?;
-            }
+/// Every number of an estimate with its path. The patterns name all fields, so that a new
+/// one cannot be forgotten here.
+fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
+    let Estimate {
+        id: _,
+        source: _,
+        kind: _,
+        model: _,
+        law: Law { version: _, constants, formulas: _ },
+        geometry,
+        density,
+        frame: _,
+        reference_point: _,
+        method: _,
+        covariance_kind: _,
+        dof,
+        sigma,
+        n_observations: _,
+        coefficients,
+        covariance,
+        undetermined: _,
+        validity,
+        diagnostics,
+        recommended: _,
+        reason: _,
+    } = estimate;
+    for (section, measured) in [("law.constants", constants), ("geometry", geometry), ("sigma", sigma)] {
+        for (name, m) in measured {
+            see(&|| format!("{section}.{name}"), m.value);
         }
     }
-    Ok(())
+    if let Some(m) = density {
+        see(&|| "density".to_owned(), m.value);
+    }
+    for (name, dof) in dof {
+        if let Some(dof) = dof {
+            see(&|| format!("dof.{name}"), *dof);
+        }
+    }
+    for (name, coefficient) in coefficients {
+        let Coefficient { value, unit: _, status: _, standard_uncertainty, type_a, type_b, interval_95, effective_dof } =
+            coefficient;
+        let named = [
+            ("value", value),
+            ("standard_uncertainty", standard_uncertainty),
+            ("type_a", type_a),
+            ("type_b", type_b),
+            ("effective_dof", effective_dof),
+        ];
+        for (key, number) in named {
+            if let Some(number) = number {
+                see(&|| format!("coefficients.{name}.{key}"), *number);
+            }
+        }
+        for end in interval_95.iter().flatten() {
+            see(&|| format!("coefficients.{name}.interval_95"), *end);
+        }
+    }
+    if let Some(Covariance { names: _, matrix }) = covariance {
+        for number in matrix.iter().flatten() {
+            see(&|| "covariance.matrix".to_owned(), *number);
+        }
+    }
+    for (name, range) in validity {
+        see(&|| format!("validity.{name}"), range.low);
+        see(&|| format!("validity.{name}"), range.high);
+    }
+    let Diagnostics {
+        condition_number,
+        largest_correlation,
+        largest_leverage,
+        relative_residual,
+        durbin_watson,
+        aicc,
+        cross_validation_rmse,
+        cross_validation_note: _,
+        lack_of_fit_p,
+        largest_power_w,
+        notes: _,
+    } = diagnostics;
+    let single = [
+        ("condition_number", condition_number),
+        ("largest_leverage", largest_leverage),
+        ("aicc", aicc),
+        ("largest_power_w", largest_power_w),
+    ];
+    for (key, number) in single {
+        if let Some(number) = number {
+            see(&|| format!("diagnostics.{key}"), *number);
+        }
+    }
+    if let Some(NamedCorrelation { first: _, second: _, value }) = largest_correlation {
+        see(&|| "diagnostics.largest_correlation".to_owned(), *value);
+    }
+    let many = [
+        ("relative_residual", relative_residual),
+        ("durbin_watson", durbin_watson),
+        ("cross_validation_rmse", cross_validation_rmse),
+        ("lack_of_fit_p", lack_of_fit_p),
+    ];
+    for (key, by_name) in many {
+        for (name, number) in by_name {
+            see(&|| format!("diagnostics.{key}.{name}"), *number);
+        }
+    }
 }

@@ -1,5 +1,6 @@
 //! `keep = "angle <= 39 deg and configuration != H1LT"`: which observations are used.
 
+use crate::table::{expected, is_text_column};
 use crate::units::{Quantity, parse_quantity};
 
 /// Clauses that must all hold.
@@ -56,9 +57,6 @@ pub struct KeepError {
     pub problem: String,
 }
 
-/// Text columns, whose values are compared as they stand.
-const TEXT_COLUMNS: [&str; 3] = ["configuration", "setup", "run"];
-
 /// Reads the conditions.
 ///
 /// # Errors
@@ -93,7 +91,7 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
     if value.is_empty() {
         return Err(refuse("there is nothing to compare with".to_owned()));
     }
-    if TEXT_COLUMNS.contains(&column) {
+    if is_text_column(column) {
         if !matches!(comparison, Comparison::Eq | Comparison::Ne) {
             return Err(refuse(format!("{column} is text and can only be compared by == or !=")));
         }
@@ -105,5 +103,10 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
         Err(_) => parse_quantity(value),
     };
     let quantity = quantity.map_err(|e| refuse(e.to_string()))?;
+    if let Some((dimension, words)) = expected(column)
+        && dimension != quantity.unit.dimension
+    {
+        return Err(refuse(format!("{column} is {words}, {value} is {}", quantity.unit.dimension.describe())));
+    }
     Ok(KeepClause { column: column.to_owned(), comparison, value: KeepValue::Quantity(quantity) })
 }

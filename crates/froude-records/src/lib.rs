@@ -6,17 +6,19 @@
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
 //! | campaign (TOML) | [`campaign`]                               |
-//! | table (CSV)     | [`csv_table`], in memory |
+//! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | sidecar (TOML)  | [`sidecar`]                                |
 //! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod assemble;
 pub mod campaign;
 mod campaign_toml;
 pub mod csv_table;
 mod error;
 pub mod estimate;
+pub mod fast_csv;
 pub mod finding;
 pub mod hash;
 pub mod json;

@@ -36,7 +36,7 @@ impl Source<'_> {
 }
 
 /// Parses the whole document.
-pub(crate) fn parse<'a>(source: Source<'a>) -> Result<Spanned<DeTable<'a>>, RecordError> {
+pub(crate) fn parse(source: Source<'_>) -> Result<Spanned<DeTable<'_>>, RecordError> {
     DeTable::parse(source.text).map_err(|e| RecordError::Syntax {
         place: source.place(e.span().map_or(0, |s| s.start)),
         problem: format!("not TOML: {}", e.message().trim()),
@@ -47,6 +47,7 @@ pub(crate) fn parse<'a>(source: Source<'a>) -> Result<Spanned<DeTable<'a>>, Reco
 pub(crate) struct Section<'a> {
     pub source: Source<'a>,
     pub name: String,
+    is_listed: bool,
     table: &'a DeTable<'a>,
     start: usize,
     asked: RefCell<BTreeSet<&'static str>>,
@@ -54,7 +55,16 @@ pub(crate) struct Section<'a> {
 
 impl<'a> Section<'a> {
     pub fn new(source: Source<'a>, name: &str, table: &'a DeTable<'a>, start: usize) -> Self {
-        Self { source, name: name.to_owned(), table, start, asked: RefCell::default() }
+        Self { source, name: name.to_owned(), is_listed: false, table, start, asked: RefCell::default() }
+    }
+
+    /// As the section is written: `[fluid]`, `[[source]]`.
+    fn label(&self) -> String {
+        match (self.name.as_str(), self.is_listed) {
+            ("", _) => "the file".to_owned(),
+            (name, true) => format!("[[{name}]]"),
+            (name, false) => format!("[{name}]"),
+        }
     }
 
     pub fn place(&self) -> Place {
@@ -70,9 +80,12 @@ impl<'a> Section<'a> {
         self.table.iter().find(|(k, _)| k.get_ref().as_ref() == key).map(|(_, v)| v)
     }
 
-    /// All keys with their values and the offset of the key.
+    /// All keys in the order written, with the offset of the key and the value.
     pub fn entries(&self) -> impl Iterator<Item = (&'a str, usize, &'a Spanned<DeValue<'a>>)> {
-        self.table.iter().map(|(k, v)| (k.get_ref().as_ref(), k.span().start, v))
+        let mut entries: Vec<_> = self.table.iter().map(|(k, v)| (k.get_ref().as_ref(), k.span().start, v)).collect();
+        // The table is sorted by key; people mean the order that they wrote.
+        entries.sort_by_key(|(_, start, _)| *start);
+        entries.into_iter()
     }
 
     /// Entries whose keys were not asked for by name.
@@ -92,7 +105,7 @@ impl<'a> Section<'a> {
     pub fn missing(&self, key: &str, advice: &str) -> RecordError {
         RecordError::MissingKey {
             place: self.place(),
-            section: self.name.clone(),
+            section: self.label(),
             key: key.to_owned(),
             advice: advice.to_owned(),
         }
@@ -218,7 +231,13 @@ impl<'a> Section<'a> {
         let Some(list) = value.get_ref().as_array() else {
             return Err(self.wrong(key, value, format!("is {}; expected tables, written [[{key}]]", found(value))));
         };
-        list.iter().map(|v| self.as_section(key, v)).collect()
+        let mut sections = Vec::with_capacity(list.len());
+        for value in list {
+            let mut section = self.as_section(key, value)?;
+            section.is_listed = true;
+            sections.push(section);
+        }
+        Ok(sections)
     }
 
     /// Refuses keys that nobody asked for.
@@ -228,7 +247,7 @@ impl<'a> Section<'a> {
         Err(RecordError::UnknownKey {
             place: self.source.place(offset),
             key: key.to_owned(),
-            section: if self.name.is_empty() { "the file".to_owned() } else { format!("[{}]", self.name) },
+            section: self.label(),
             advice: suggestion(key, asked.iter().copied()),
         })
     }

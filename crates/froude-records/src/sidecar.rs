@@ -4,13 +4,12 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use crate::csv_table::{check_dimension, number};
+use crate::assemble::{Raw, check_dimension, unit_of_column};
 use crate::error::{Place, RecordError, read_bytes, utf8};
-use crate::nearest::suggestion;
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
 use crate::table::{Column, ColumnData, is_text_column, known_dimension};
-use crate::units::{Quantity, Unit, parse_unit};
+use crate::units::{Dimension, Quantity, Unit, parse_unit};
 
 const LARGEST_BYTES: u64 = 1 << 20;
 
@@ -40,9 +39,13 @@ pub struct Mapping {
     pub line: usize,
 }
 
-/// Whether a `.toml` beside a table is a sidecar (it has `[columns]`) and not a campaign.
+/// Whether a `.toml` beside a table is a sidecar (it has `[columns]` or `[constants]`) and not a campaign.
 pub(crate) fn is_sidecar(path: &Path) -> bool {
-    std::fs::read_to_string(path).is_ok_and(|text| text.lines().any(|l| l.trim_start().starts_with("[columns")))
+    let is_head = |line: &str| {
+        let line = line.trim_start();
+        line.starts_with("[columns") || line.starts_with("[constants")
+    };
+    read_bytes(path, LARGEST_BYTES, "a sidecar").is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(is_head))
 }
 
 /// Reads a sidecar.
@@ -93,7 +96,7 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
                 problem: format!("cannot be read: {e}"),
             })?;
             check_dimension(&place, &format!("{name} [{text}]"), &name, &unit)?;
-            Some(unit)
+            Some(unit_of_column(&name, unit))
         }
         None => None,
     };
@@ -116,7 +119,7 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
         })
         .transpose()?;
     section.finish()?;
-    if scale.is_some() && unit.as_ref().is_some_and(|u| u.dimension != crate::units::Dimension::ONE) {
+    if scale.is_some() && unit.as_ref().is_some_and(|u| u.dimension != Dimension::ONE) {
         return Err(RecordError::Value {
             place,
             key: "scale".to_owned(),
@@ -142,50 +145,89 @@ fn line_of(section: &Section<'_>) -> usize {
 
 impl Sidecar {
     /// The mapped columns of a table, in the order of the sidecar; columns that it does not name are left out.
+    ///
+    /// Columns with a unit come first, then those with a scale in the order written, so that a
+    /// scale may name every column with a unit and every scaled one above it.
     pub(crate) fn columns(
         &self,
-        table: &Path,
-        header: &[String],
-        raw: &dyn Fn(&str) -> Option<Vec<String>>,
+        take: &mut dyn FnMut(&str) -> Option<Raw>,
         place: &dyn Fn(usize) -> Place,
     ) -> Result<Vec<Column>, RecordError> {
-        let mut out: Vec<Column> = Vec::new();
-        for (written, mapping) in &self.columns {
-            let cells = raw(written).ok_or_else(|| RecordError::UnknownColumn {
-                place: Place::line(&self.path, mapping.line),
-                column: written.clone(),
-                advice: format!("{} has: {}", table.display(), suggestion(written, header.iter().map(String::as_str))),
-            })?;
-            if mapping.unit.is_none() && mapping.scale.is_none() {
-                out.push(Column { name: mapping.name.clone(), data: ColumnData::Text(cells) });
-                continue;
-            }
-            let values = cells
-                .iter()
-                .enumerate()
-                .map(|(row, cell)| number(cell, written, &|| place(row)))
-                .collect::<Result<Vec<f64>, _>>()?;
-            let data = match (&mapping.scale, &mapping.unit) {
-                (Some(scale), _) => self.scaled(mapping, scale, &values, &out)?,
-                (None, Some(unit)) => ColumnData::Number {
-                    unit: unit.clone(),
-                    dimension: unit.dimension,
-                    si: values.iter().map(|v| mapping.sign * unit.to_si(*v)).collect(),
-                },
-                (None, None) => ColumnData::Text(cells),
-            };
-            out.push(Column { name: mapping.name.clone(), data });
+        let mut done: Vec<(usize, Column)> = Vec::new();
+        let is_scaled = |mapping: &Mapping| mapping.scale.is_some();
+        let plain = self.columns.iter().enumerate().filter(|(_, (_, m))| !is_scaled(m));
+        let scaled = self.columns.iter().enumerate().filter(|(_, (_, m))| is_scaled(m));
+        for (order, (written, mapping)) in plain.chain(scaled) {
+            let Some(raw) = take(written) else { continue };
+            let data = self.data(written, mapping, raw, &done, place)?;
+            done.push((order, Column { name: mapping.name.clone(), data }));
         }
-        Ok(out)
+        done.sort_by_key(|(order, _)| *order);
+        Ok(done.into_iter().map(|(_, column)| column).collect())
     }
 
-    /// value · scale, over the constants and the columns mapped before this one.
+    fn data(
+        &self,
+        written: &str,
+        mapping: &Mapping,
+        raw: Raw,
+        done: &[(usize, Column)],
+        place: &dyn Fn(usize) -> Place,
+    ) -> Result<ColumnData, RecordError> {
+        let values = match (raw, mapping.unit.is_some() || mapping.scale.is_some()) {
+            (Raw::Numbers(values), true) => values,
+            (Raw::Numbers(values), false) => {
+                return Ok(ColumnData::Text(values.iter().map(f64::to_string).collect()));
+            }
+            (Raw::Texts(cells), false) => {
+                if is_text_column(&mapping.name)
+                    && let Some(row) = cells.iter().position(String::is_empty)
+                {
+                    return Err(RecordError::EmptyCell { place: place(row), column: written.to_owned() });
+                }
+                return Ok(ColumnData::Text(cells));
+            }
+            (Raw::Texts(_), true) => {
+                return Err(RecordError::ColumnKind {
+                    place: Place::line(&self.path, mapping.line),
+                    column: written.to_owned(),
+                    found: "text",
+                    expected: "numbers",
+                });
+            }
+        };
+        let data = match (&mapping.scale, &mapping.unit) {
+            (None, Some(unit)) => ColumnData::Number {
+                dimension: unit.dimension,
+                si: values.iter().map(|v| mapping.sign * unit.to_si(*v)).collect(),
+                unit: unit.clone(),
+            },
+            (Some(scale), unit) => {
+                let factor = unit.as_ref().map_or(1.0, |unit| unit.factor);
+                self.scaled(mapping, scale, factor, &values, done)?
+            }
+            (None, None) => ColumnData::Text(Vec::new()),
+        };
+        if let ColumnData::Number { si, .. } = &data
+            && let Some(row) = si.iter().position(|v| !v.is_finite())
+        {
+            return Err(RecordError::NotFinite {
+                place: place(row),
+                column: written.to_owned(),
+                found: si[row].to_string(),
+            });
+        }
+        Ok(data)
+    }
+
+    /// value · scale, over the constants and the columns that are done.
     fn scaled(
         &self,
         mapping: &Mapping,
         scale: &Scale,
+        factor: f64,
         values: &[f64],
-        before: &[Column],
+        done: &[(usize, Column)],
     ) -> Result<ColumnData, RecordError> {
         let refuse = |problem: String| RecordError::Value {
             place: Place::line(&self.path, mapping.line),
@@ -199,21 +241,23 @@ impl Sidecar {
                 if let Some(q) = self.constants.get(name) {
                     return Some(Value { si: q.value_si, dimension: q.unit.dimension });
                 }
-                before.iter().find(|c| c.name == name).and_then(|c| match &c.data {
-                    ColumnData::Number { si, dimension, .. } => Some(Value { si: si[row], dimension: *dimension }),
+                done.iter().find(|(_, c)| c.name == name).and_then(|(_, c)| match &c.data {
+                    ColumnData::Number { si, dimension, .. } => {
+                        Some(Value { si: *si.get(row)?, dimension: *dimension })
+                    }
                     ColumnData::Text(_) => None,
                 })
             };
-            let factor = scale.evaluate(&name).map_err(refuse)?;
-            if !factor.si.is_finite() {
+            let scale = scale.evaluate(&name).map_err(refuse)?;
+            if !scale.si.is_finite() {
                 return Err(refuse(format!("is not finite in row {}", row + 1)));
             }
-            dimension = Some(factor.dimension);
-            si.push(mapping.sign * value * factor.si);
+            dimension = Some(scale.dimension);
+            si.push(mapping.sign * value * factor * scale.si);
         }
-        let dimension = dimension.unwrap_or(crate::units::Dimension::ONE);
-        let unit = Unit::si(dimension);
-        check_dimension(&Place::line(&self.path, mapping.line), &mapping.name, &mapping.name, &unit)?;
-        Ok(ColumnData::Number { unit, dimension, si })
+        let unit = Unit::si(dimension.unwrap_or(Dimension::ONE));
+        let header = format!("{} [{unit}]", mapping.name);
+        check_dimension(&Place::line(&self.path, mapping.line), &header, &mapping.name, &unit)?;
+        Ok(ColumnData::Number { dimension: unit.dimension, unit, si })
     }
 }

@@ -1,6 +1,5 @@
 //! Observation tables: one row per observation, every number with its unit.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Place, RecordError};
@@ -48,6 +47,17 @@ pub enum ColumnData {
     Text(Vec<String>),
 }
 
+impl Column {
+    /// Name and unit as they stand in a header: `speed [m/s]`.
+    #[must_use]
+    pub fn header(&self) -> String {
+        match &self.data {
+            ColumnData::Number { unit, .. } => format!("{} [{unit}]", self.name),
+            ColumnData::Text(_) => self.name.clone(),
+        }
+    }
+}
+
 impl Table {
     /// Numbers of a column in SI, when it has the dimension asked for.
     ///
@@ -57,9 +67,9 @@ impl Table {
     pub fn number(&self, name: &str, dimension: Dimension) -> Result<&[f64], RecordError> {
         match &self.column(name)?.data {
             ColumnData::Number { si, dimension: own, .. } if *own == dimension => Ok(si),
-            ColumnData::Number { dimension: own, .. } => Err(RecordError::WrongDimension {
+            ColumnData::Number { dimension: own, unit, .. } => Err(RecordError::WrongDimension {
                 place: Place::whole(&self.path),
-                column: name.to_owned(),
+                column: format!("{name} [{unit}]"),
                 expected: dimension.describe(),
                 found: own.describe(),
             }),
@@ -92,6 +102,45 @@ impl Table {
         })
     }
 
+    /// Place of a row (from 0) in its file, for messages: a line of a CSV, a row of a Parquet file.
+    #[must_use]
+    pub fn place_of_row(&self, row: usize) -> Place {
+        let number = self.line_of_row.get(row).copied().unwrap_or(row + 1);
+        let has_lines = !self.path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
+        if has_lines { Place::line(&self.path, number) } else { Place::row(&self.path, number) }
+    }
+
+    /// What concerns more than one cell: links that contradict the configuration.
+    pub(crate) fn check(&self) -> Result<(), RecordError> {
+        let Some(ColumnData::Number { si: n_links, .. }) =
+            self.columns.iter().find(|c| c.name == "n_links").map(|c| &c.data)
+        else {
+            return Ok(());
+        };
+        let configurations = self.text("configuration").ok();
+        for (row, &found) in n_links.iter().enumerate() {
+            if found < 0.0 || found.fract() != 0.0 {
+                return Err(RecordError::Value {
+                    place: self.place_of_row(row),
+                    key: "n_links".to_owned(),
+                    problem: format!("is {found}; it counts links: 0, 1, 2, …"),
+                });
+            }
+            if let Some(configuration) = configurations.and_then(|c| c.get(row))
+                && let Some(expected) = links_of_configuration(configuration).map(f64::from)
+                && expected != found
+            {
+                return Err(RecordError::LinksContradictConfiguration {
+                    place: self.place_of_row(row),
+                    configuration: configuration.clone(),
+                    expected,
+                    found,
+                });
+            }
+        }
+        Ok(())
+    }
+
     fn kind(&self, name: &str, found: &'static str, expected: &'static str) -> RecordError {
         RecordError::ColumnKind { place: Place::whole(&self.path), column: name.to_owned(), found, expected }
     }
@@ -117,7 +166,6 @@ pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordEr
         _ => return Err(RecordError::Extension { path: path.to_owned() }),
     };
     table.sidecar = sidecar;
-    check(&table)?;
     Ok(table)
 }
 
@@ -154,42 +202,37 @@ pub fn is_text_column(name: &str) -> bool {
     matches!(name, "configuration" | "setup" | "run")
 }
 
-/// What holds for every table, whatever its format.
-fn check(table: &Table) -> Result<(), RecordError> {
-    if table.n_rows == 0 {
-        return Err(RecordError::NoRows { path: table.path.clone() });
-    }
-    let mut names = HashSet::new();
-    for column in &table.columns {
-        if !names.insert(&column.name) {
-            return Err(RecordError::DuplicateColumn {
-                place: Place::line(&table.path, 1),
-                column: column.name.clone(),
-            });
-        }
-    }
-    let links = |c: &Column| match &c.data {
-        ColumnData::Number { si, .. } if c.name == "n_links" => Some(si.clone()),
-        _ => None,
-    };
-    if let (Some(n_links), Ok(configurations)) = (table.columns.iter().find_map(links), table.text("configuration")) {
-        for (row, (found, configuration)) in n_links.iter().zip(configurations).enumerate() {
-            if let Some(expected) = links_of(configuration)
-                && expected != *found
-            {
-                return Err(RecordError::LinksContradictConfiguration {
-                    place: Place::line(&table.path, table.line_of_row.get(row).copied().unwrap_or(row + 1)),
-                    configuration: configuration.clone(),
-                    expected,
-                    found: *found,
-                });
-            }
-        }
-    }
-    Ok(())
+/// The usual unit of a known column, for advice.
+pub(crate) fn usual_unit(name: &str) -> Option<String> {
+    let dimension = known_dimension(name)?;
+    Some(match (name, dimension) {
+        ("angle", _) => "deg".to_owned(),
+        (_, Dimension::TEMPERATURE) => "degC".to_owned(),
+        (_, Dimension::ANGULAR_SPEED) => "rad/s".to_owned(),
+        (_, Dimension::ANGULAR_ACCELERATION) => "rad/s^2".to_owned(),
+        _ => dimension.to_string(),
+    })
 }
 
-/// k of a configuration named HkLT.
-fn links_of(configuration: &str) -> Option<f64> {
-    configuration.strip_prefix('H')?.strip_suffix("LT")?.parse::<u16>().ok().map(f64::from)
+/// What a known column measures, and the same in words for messages.
+pub(crate) fn expected(name: &str) -> Option<(Dimension, String)> {
+    let dimension = known_dimension(name)?;
+    let words = match (name, dimension) {
+        ("angle" | "std_angle", _) => "an angle (deg)".to_owned(),
+        (_, Dimension::ONE) => "a pure number (1)".to_owned(),
+        (_, Dimension::ANGULAR_SPEED) => "an angular speed (rad/s)".to_owned(),
+        (_, Dimension::ANGULAR_ACCELERATION) => "an angular acceleration (rad/s^2)".to_owned(),
+        (_, Dimension::MOMENT) => "a moment (N m)".to_owned(),
+        (_, Dimension::TEMPERATURE) => "a temperature (degC)".to_owned(),
+        _ => dimension.describe(),
+    };
+    Some((dimension, words))
+}
+
+/// Links k of a configuration named HkLT; `None` for any other name.
+#[must_use]
+pub fn links_of_configuration(configuration: &str) -> Option<u32> {
+    let digits = configuration.strip_prefix('H')?.strip_suffix("LT")?;
+    let is_plain = (1..=6).contains(&digits.len()) && digits.bytes().all(|b| b.is_ascii_digit());
+    if is_plain { digits.parse().ok() } else { None }
 }

@@ -88,40 +88,49 @@ impl Dimension {
         Self { m, kg, s, k: 0, a: 0 }
     }
 
-    /// Product; `None` when an exponent leaves −128..=127.
+    /// Product; `None` when an exponent leaves −127..=127.
     #[must_use]
     pub fn checked_mul(self, other: Self) -> Option<Self> {
-        Some(Self {
+        Self {
             m: self.m.checked_add(other.m)?,
             kg: self.kg.checked_add(other.kg)?,
             s: self.s.checked_add(other.s)?,
             k: self.k.checked_add(other.k)?,
             a: self.a.checked_add(other.a)?,
-        })
+        }
+        .bounded()
     }
 
-    /// Quotient; `None` when an exponent leaves −128..=127.
+    /// Quotient; `None` when an exponent leaves −127..=127.
     #[must_use]
     pub fn checked_div(self, other: Self) -> Option<Self> {
-        Some(Self {
+        Self {
             m: self.m.checked_sub(other.m)?,
             kg: self.kg.checked_sub(other.kg)?,
             s: self.s.checked_sub(other.s)?,
             k: self.k.checked_sub(other.k)?,
             a: self.a.checked_sub(other.a)?,
-        })
+        }
+        .bounded()
     }
 
-    /// Whole power; `None` when an exponent leaves −128..=127.
+    /// Whole power; `None` when an exponent leaves −127..=127.
     #[must_use]
     pub fn checked_powi(self, exponent: i8) -> Option<Self> {
-        Some(Self {
+        Self {
             m: self.m.checked_mul(exponent)?,
             kg: self.kg.checked_mul(exponent)?,
             s: self.s.checked_mul(exponent)?,
             k: self.k.checked_mul(exponent)?,
             a: self.a.checked_mul(exponent)?,
-        })
+        }
+        .bounded()
+    }
+
+    /// −128 has no opposite, so that `1/s^128` could not be written.
+    fn bounded(self) -> Option<Self> {
+        let is_written = [self.m, self.kg, self.s, self.k, self.a].iter().all(|e| *e != i8::MIN);
+        is_written.then_some(self)
     }
 
     /// Square root; `None` when an exponent is odd.
@@ -488,6 +497,7 @@ pub(crate) fn shorten(text: &str) -> String {
 }
 
 /// A factor kept as a quotient, so that km/h is 1000/3600 and no rounding is added.
+#[derive(Clone, Copy)]
 struct Scale {
     above: f64,
     below: f64,
@@ -606,7 +616,7 @@ impl Parser<'_> {
         Ok(Scale { above, below, dimension })
     }
 
-    /// exponent = "^" ["-"] digits | "^(" ["-"] digits ")" | digits | superscripts | nothing
+    /// `^-2`, `^(-2)`, `2`, `⁻²`, or nothing.
     fn exponent(&mut self) -> Result<i8, UnitError> {
         let bad = |found: &str| self.syntax(format!("`{}` is not a whole exponent", shorten(found)));
         let plain: String = self.rest.chars().map_while(superscript).collect();
@@ -739,13 +749,11 @@ fn advice(symbol: &str) -> String {
         "degree" | "degrees" => "deg",
         "radian" | "radians" => "rad",
         "kph" => "km/h",
-        "mph" => "ft/s",
         "knot" | "knots" | "kts" => "kn",
         "C" | "Celsius" | "celsius" => "degC",
         "newton" | "newtons" | "Newton" => "N",
         "meter" | "meters" | "metre" | "metres" => "m",
         "litre" | "liter" => "L",
-        "kgf" => "N",
         _ => {
             let known = PLAIN.iter().map(|u| u.0).chain(PREFIXED.iter().map(|u| u.0));
             match crate::nearest::nearest(symbol, known) {

@@ -4,6 +4,9 @@
 //! other, so that one product of columns, broadcast, meets all of them. The sums end
 //! up the same way, and the small systems are solved eight at a time.
 
+// What a kernel calls must become part of it, or it is compiled plainly.
+#![allow(clippy::inline_always)]
+
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
@@ -41,13 +44,7 @@ impl Table {
     pub(super) fn at_level(units: usize, p: usize, level: Level) -> Self {
         let tile = level.run(TileOf);
         let tiles = terms(p).div_ceil(tile);
-        Self {
-            level,
-            units,
-            p,
-            tile,
-            products: vec![0.0; tiles * tile * units],
-        }
+        Self { level, units, p, tile, products: vec![0.0; tiles * tile * units] }
     }
 
     pub(super) fn units(&self) -> usize {
@@ -96,7 +93,7 @@ pub(super) struct Sums {
     /// The counts of some rows as numbers.
     numbers: Vec<[Lane; 2]>,
     /// Sums of products, by term.
-    sums: Vec<[Lane; 2]>,
+    totals: Vec<[Lane; 2]>,
 }
 
 impl Sums {
@@ -104,7 +101,7 @@ impl Sums {
         Self {
             counts: vec![[0; BATCH]; table.units],
             numbers: vec![[Lane::ZERO; 2]; ROWS],
-            sums: vec![[Lane::ZERO; 2]; terms(table.p).next_multiple_of(table.tile)],
+            totals: vec![[Lane::ZERO; 2]; terms(table.p).next_multiple_of(table.tile)],
         }
     }
 
@@ -117,26 +114,15 @@ impl Sums {
     }
 
     /// Sums the products and solves; writes coefficients, a row per resample.
-    pub(super) fn solve(
-        &mut self,
-        table: &Table,
-        factor: &Factor,
-        estimate: &[f64],
-        out: &mut [f64],
-    ) {
-        self.sums.fill([Lane::ZERO; 2]);
+    pub(super) fn solve(&mut self, table: &Table, factor: &Factor, estimate: &[f64], out: &mut [f64]) {
+        self.totals.fill([Lane::ZERO; 2]);
         table.level.run(Multiply { table, memory: self });
-        let solve = Solve {
-            p: table.p,
-            factor,
-            estimate,
-            sums: &mut self.sums,
-        };
+        let solve = Solve { p: table.p, factor, estimate, sums: &mut self.totals };
         table.level.run(solve);
         let p = table.p;
         for (k, resample) in out.chunks_exact_mut(p).enumerate() {
             for (i, value) in resample.iter_mut().enumerate() {
-                *value = self.sums[pair(p, 0) + i][k / LANES].0[k % LANES];
+                *value = self.totals[pair(p, 0) + i][k / LANES].0[k % LANES];
             }
         }
     }
@@ -173,12 +159,7 @@ fn draw(counts: &mut [[u8; BATCH]], resample: usize, units: u32, mut generator: 
     }
 }
 
-fn draw_with<const BITS: u32>(
-    counts: &mut [[u8; BATCH]],
-    resample: usize,
-    units: u32,
-    generator: &mut Pcg64,
-) {
+fn draw_with<const BITS: u32>(counts: &mut [[u8; BATCH]], resample: usize, units: u32, generator: &mut Pcg64) {
     let mask = (1_u64 << BITS) - 1;
     let surplus = (1_u64 << BITS) % u64::from(units.max(1));
     let resample = resample % BATCH;
@@ -203,6 +184,14 @@ fn draw_with<const BITS: u32>(
     }
 }
 
+/// The counts of one resample.
+#[cfg(test)]
+pub(super) fn resample_counts(units: u32, seed: u64, resample: u64) -> Vec<u8> {
+    let mut counts = vec![[0; BATCH]; units as usize];
+    draw(&mut counts, 0, units, generator(seed, resample));
+    counts.iter().map(|row| row[0]).collect()
+}
+
 struct Multiply<'a> {
     table: &'a Table,
     memory: &'a mut Sums,
@@ -222,7 +211,7 @@ impl Kernel for Multiply<'_> {
                     number[k / LANES].0[k % LANES] = f64::from(*count);
                 }
             }
-            for (tile, sums) in memory.sums.chunks_exact_mut(table.tile).enumerate() {
+            for (tile, sums) in memory.totals.chunks_exact_mut(table.tile).enumerate() {
                 let first = (tile * table.units + rows.start) * table.tile;
                 let products = &table.products[first..first + rows.len() * table.tile];
                 match V::TERMS {
@@ -362,24 +351,15 @@ impl Kernel for Solve<'_> {
                         );
                     }
                     let diagonal = vectors.splat(self.factor.entry(i, i));
-                    vectors.store(
-                        &mut sums[right + i][lane],
-                        part,
-                        vectors.divide(rest, diagonal),
-                    );
+                    vectors.store(&mut sums[right + i][lane], part, vectors.divide(rest, diagonal));
                 }
                 for (i, estimate) in self.estimate.iter().enumerate() {
                     let change = vectors.load(&sums[right + i][lane], part);
-                    let value = vectors.multiply_add(
-                        change,
-                        vectors.splat(1.0),
-                        vectors.splat(*estimate),
-                    );
+                    let value = vectors.multiply_add(change, vectors.splat(1.0), vectors.splat(*estimate));
                     vectors.store(&mut sums[right + i][lane], part, value);
                 }
             }
-            for (k, is_determined) in is_determined[lane * LANES..].iter().take(LANES).enumerate()
-            {
+            for (k, is_determined) in is_determined[lane * LANES..].iter().take(LANES).enumerate() {
                 if !is_determined {
                     sums[right][lane].0[k] = f64::NAN;
                 }

@@ -13,7 +13,7 @@ use crate::dense::{Cholesky, dot, mul, mul_vec};
 /// σ below this part of its start is explained by the input errors alone.
 const FLOOR: f64 = 1e-4;
 /// Fisher steps for one linearisation.
-const STEPS: usize = 50;
+const STEPS: usize = 3;
 const STEP_TOLERANCE: f64 = 1e-11;
 
 #[derive(Debug, Clone)]
@@ -31,6 +31,9 @@ pub(super) struct Spread {
     covariance: Mat<f64>,
     /// `∂ Var(β_j)/∂σ_c²`, one vector over coefficients per component.
     slope: Vec<Vec<f64>>,
+    /// `Σ W_cd (Q_cd − B_c C B_d)`: by twice this, between `C`, the covariance of
+    /// `β` grows because σ is estimated (Kenward & Roger 1997, equation 3).
+    pub excess: Mat<f64>,
 }
 
 impl Variance {
@@ -81,23 +84,36 @@ impl Variance {
     }
 
     pub(super) fn spread(&self, problem: &OdrProblem, linear: &Linear, covariance: &Mat<f64>) -> Spread {
-        if self.estimated.is_empty() {
-            return Spread { estimated: Vec::new(), covariance: Mat::zeros(0, 0), slope: Vec::new() };
+        let p = covariance.nrows();
+        // At its floor, σ does not matter any more.
+        let estimated: Vec<usize> = self.estimated.iter().copied().filter(|&k| !self.is_at_floor(k)).collect();
+        let e = estimated.len();
+        let mut excess = Mat::zeros(p, p);
+        let mut of_sigma = Mat::zeros(e, e);
+        let mut slope = Vec::new();
+        if e > 0 {
+            let moments = Moments::new(problem, linear, &self.sigma);
+            let information = moments.information(&estimated);
+            of_sigma =
+                Cholesky::new(information.as_ref(), 0.0).map_or_else(|| Mat::zeros(e, e), |factor| factor.inverse());
+            let gram: Vec<Mat<f64>> = estimated.iter().map(|&k| moments.gram(k)).collect();
+            for gram in &gram {
+                let inner = mul(mul(covariance.as_ref(), gram.as_ref()).as_ref(), covariance.as_ref());
+                slope.push((0..p).map(|j| inner[(j, j)]).collect());
+            }
+            for a in 0..e {
+                for b in 0..e {
+                    let cross = moments.cross(estimated[a], estimated[b]);
+                    let through = mul(mul(gram[a].as_ref(), covariance.as_ref()).as_ref(), gram[b].as_ref());
+                    for i in 0..p {
+                        for j in 0..p {
+                            excess[(i, j)] += of_sigma[(a, b)] * (cross[(i, j)] - through[(i, j)]);
+                        }
+                    }
+                }
+            }
         }
-        let moments = Moments::new(problem, linear, &self.sigma);
-        let information = moments.information(&self.estimated);
-        let e = self.estimated.len();
-        let of_sigma =
-            Cholesky::new(information.as_ref(), 0.0).map_or_else(|| Mat::full(e, e, f64::INFINITY), |c| c.inverse());
-        let slope = self
-            .estimated
-            .iter()
-            .map(|&k| {
-                let inner = mul(mul(covariance.as_ref(), moments.gram(k, k).as_ref()).as_ref(), covariance.as_ref());
-                (0..covariance.nrows()).map(|j| inner[(j, j)]).collect()
-            })
-            .collect();
-        Spread { estimated: self.estimated.clone(), covariance: of_sigma, slope }
+        Spread { estimated, covariance: of_sigma, slope, excess }
     }
 }
 
@@ -198,14 +214,25 @@ impl Moments {
         &self.moved[start..start + self.p]
     }
 
-    /// `Σ_i (V⁻¹X)_ik (V⁻¹X)_ilᵀ`.
-    fn gram(&self, k: usize, l: usize) -> Mat<f64> {
+    /// `XᵀV⁻¹ D_k V⁻¹X`.
+    fn gram(&self, k: usize) -> Mat<f64> {
+        self.products(k, k, |_| 1.0)
+    }
+
+    /// `XᵀV⁻¹ D_k V⁻¹ D_l V⁻¹X`.
+    fn cross(&self, k: usize, l: usize) -> Mat<f64> {
+        self.products(k, l, |i| self.inverse[(i * self.c + k) * self.c + l])
+    }
+
+    /// `Σ_i factor_i (V⁻¹X)_ik (V⁻¹X)_ilᵀ`.
+    fn products(&self, k: usize, l: usize, factor: impl Fn(usize) -> f64) -> Mat<f64> {
         let mut out = Mat::zeros(self.p, self.p);
         for i in 0..self.n {
             let (x, y) = (self.design_row(i, k), self.design_row(i, l));
+            let factor = factor(i);
             for a in 0..self.p {
                 for b in 0..self.p {
-                    out[(a, b)] += x[a] * y[b];
+                    out[(a, b)] += factor * x[a] * y[b];
                 }
             }
         }
@@ -227,7 +254,7 @@ impl Moments {
     fn information(&self, estimated: &[usize]) -> Mat<f64> {
         let e = estimated.len();
         let projected: Vec<Mat<f64>> =
-            estimated.iter().map(|&k| mul(self.covariance.as_ref(), self.gram(k, k).as_ref())).collect();
+            estimated.iter().map(|&k| mul(self.covariance.as_ref(), self.gram(k).as_ref())).collect();
         Mat::from_fn(e, e, |a, b| {
             let (k, l) = (estimated[a], estimated[b]);
             let mut sum = 0.0;

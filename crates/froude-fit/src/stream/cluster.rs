@@ -5,9 +5,7 @@ use std::collections::BTreeMap;
 use faer::Mat;
 use faer::prelude::*;
 
-use super::{
-    Accumulator, Factor, Shape, StreamError, check_finite, check_lengths, columns_of,
-};
+use super::{Accumulator, Factor, Shape, StreamError, check_finite, check_lengths, columns_of};
 
 /// Fewest clusters for which a cluster-robust covariance is given.
 const FEWEST_CLUSTERS: usize = 5;
@@ -44,11 +42,7 @@ impl ClusterAccumulator {
         Self {
             current: None,
             rows: Accumulator::new(shape),
-            factors: ClusterFactors {
-                shape,
-                limit,
-                by_cluster: BTreeMap::new(),
-            },
+            factors: ClusterFactors { shape, limit, by_cluster: BTreeMap::new() },
             taken: 0,
         }
     }
@@ -59,20 +53,11 @@ impl ClusterAccumulator {
     /// # Errors
     ///
     /// Those of [`Accumulator::push`], and [`StreamError::TooManyClusters`].
-    pub fn push(
-        &mut self,
-        clusters: &[u64],
-        regressors: &[&[f64]],
-        responses: &[&[f64]],
-    ) -> Result<(), StreamError> {
+    pub fn push(&mut self, clusters: &[u64], regressors: &[&[f64]], responses: &[&[f64]]) -> Result<(), StreamError> {
         let columns = columns_of(self.factors.shape, regressors, responses)?;
         let rows = check_lengths(&columns)?;
         if clusters.len() != rows {
-            return Err(StreamError::Shape {
-                what: "clusters of rows",
-                found: clusters.len(),
-                expected: rows,
-            });
+            return Err(StreamError::Shape { what: "clusters of rows", found: clusters.len(), expected: rows });
         }
         check_finite(&columns, 0..rows, self.taken)?;
         let mut start = 0;
@@ -132,10 +117,7 @@ impl ClusterFactors {
             return known.merge(factor);
         }
         if self.by_cluster.len() >= self.limit {
-            return Err(StreamError::TooManyClusters {
-                cluster,
-                limit: self.limit,
-            });
+            return Err(StreamError::TooManyClusters { cluster, limit: self.limit });
         }
         self.by_cluster.insert(cluster, factor.clone());
         Ok(())
@@ -148,10 +130,7 @@ impl ClusterFactors {
     /// [`StreamError::Merge`] when the shapes differ, [`StreamError::TooManyClusters`].
     pub fn merge(&mut self, other: &Self) -> Result<(), StreamError> {
         if self.shape != other.shape {
-            return Err(StreamError::Merge {
-                found: other.shape,
-                expected: self.shape,
-            });
+            return Err(StreamError::Merge { found: other.shape, expected: self.shape });
         }
         other.iter().try_for_each(|(cluster, factor)| self.add(cluster, factor))
     }
@@ -186,17 +165,10 @@ impl ClusterFactors {
     ///
     /// Bell & McCaffrey (2002), Survey Methodology 28, 169; CV1 and CV3 of MacKinnon,
     /// Nielsen & Webb (2023), J. Econometrics 232, 272.
-    pub fn covariance(
-        &self,
-        k: usize,
-        kind: ClusterKind,
-    ) -> Result<ClusterCovariance, StreamError> {
+    pub fn covariance(&self, k: usize, kind: ClusterKind) -> Result<ClusterCovariance, StreamError> {
         let clusters = self.count();
         if clusters < FEWEST_CLUSTERS {
-            return Err(StreamError::TooFewClusters {
-                found: clusters,
-                needed: FEWEST_CLUSTERS,
-            });
+            return Err(StreamError::TooFewClusters { found: clusters, needed: FEWEST_CLUSTERS });
         }
         let total = self.total()?;
         let solution = total.solve(k)?;
@@ -244,9 +216,7 @@ impl Factor {
     /// The rows of `R_g` below `p` are zero in these columns.
     fn times_upper(&self, upper: &Mat<f64>) -> Mat<f64> {
         let p = self.shape.regressors;
-        Mat::from_fn(p, p, |i, j| {
-            (i..=j).map(|l| self.entry(i, l) * upper[(l, j)]).sum()
-        })
+        Mat::from_fn(p, p, |i, j| (i..=j).map(|l| self.entry(i, l) * upper[(l, j)]).sum())
     }
 
     /// `d_g − R_g β`, the first `p` entries: the rest is orthogonal to the regressors.

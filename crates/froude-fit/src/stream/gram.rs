@@ -6,6 +6,9 @@
 //! residuals of a pilot fit: what rounding there is then touches the correction
 //! to the pilot, not the coefficients themselves.
 
+// What a kernel calls must become part of it, or it is compiled plainly.
+#![allow(clippy::inline_always)]
+
 use super::lanes::{Kernel, Lane, Level, Vectors};
 
 /// Largest variance inflation factor at which products stand in for a QR factor.
@@ -36,13 +39,7 @@ pub(crate) fn add_products(
     pilot: &[f64],
     width: usize,
 ) {
-    level.run(AddProducts {
-        sums,
-        block,
-        regressors,
-        pilot,
-        width,
-    });
+    level.run(AddProducts { sums, block, regressors, pilot, width });
 }
 
 struct AddProducts<'a> {
@@ -58,26 +55,20 @@ impl Kernel for AddProducts<'_> {
 
     #[inline(always)]
     fn run<V: Vectors>(self, vectors: V) {
-        for group in self.block.chunks_exact_mut(self.width) {
-            let (x, y) = group.split_at_mut(self.regressors);
-            if x.is_empty() {
-                break;
-            }
-            for (y, pilot) in y.iter_mut().zip(self.pilot.chunks_exact(x.len())) {
-                for part in 0..V::PARTS {
-                    // Two chains, so that additions overlap.
-                    let mut residual = [vectors.load(y, part), vectors.splat(0.0)];
-                    for (j, (x, beta)) in x.iter().zip(pilot).enumerate() {
-                        residual[j % 2] = vectors.subtract_product(
-                            vectors.load(x, part),
-                            vectors.splat(*beta),
-                            residual[j % 2],
-                        );
-                    }
-                    let total =
-                        vectors.multiply_add(residual[1], vectors.splat(1.0), residual[0]);
-                    vectors.store(y, part, total);
+        for (r, pilot) in self.pilot.chunks_exact(self.regressors.max(1)).enumerate() {
+            for (k, betas) in pilot.chunks(V::TILE).enumerate() {
+                let place = [k * V::TILE, self.regressors + r];
+                macro_rules! tile {
+                    ($($m:literal)*) => {
+                        match betas.len() {
+                            $($m if $m <= V::TILE => subtract_fit::<V, $m>(
+                                vectors, self.block, self.width, place, betas,
+                            ),)*
+                            _ => {}
+                        }
+                    };
                 }
+                tile!(1 2 3 4 5 6 7 8 9 10);
             }
         }
         // Panels of columns, as even as they go.
@@ -102,6 +93,36 @@ impl Kernel for AddProducts<'_> {
                 }
                 panel!(1 2 3 4 5);
             }
+        }
+    }
+}
+
+/// Takes `M` columns from `start`, times their coefficients, off column `response`.
+#[inline(always)]
+fn subtract_fit<V: Vectors, const M: usize>(
+    vectors: V,
+    block: &mut [Lane],
+    width: usize,
+    [start, response]: [usize; 2],
+    betas: &[f64],
+) {
+    let mut beta = [vectors.splat(0.0); M];
+    for (beta, value) in beta.iter_mut().zip(betas) {
+        *beta = vectors.splat(*value);
+    }
+    for group in block.chunks_exact_mut(width) {
+        let (x, y) = group.split_at_mut(response);
+        let Some(x) = x[start..].first_chunk::<M>() else {
+            return;
+        };
+        for part in 0..V::PARTS {
+            // Two chains, so that their sums overlap.
+            let mut rest = [vectors.load(&y[0], part), vectors.splat(0.0)];
+            for m in 0..M {
+                rest[m % 2] = vectors.subtract_product(vectors.load(&x[m], part), beta[m], rest[m % 2]);
+            }
+            let total = vectors.multiply_add(rest[1], vectors.splat(1.0), rest[0]);
+            vectors.store(&mut y[0], part, total);
         }
     }
 }
@@ -171,10 +192,7 @@ fn cross_tile<V: Vectors, const M: usize, const N: usize>(
 ) {
     let mut products = [[vectors.splat(0.0); N]; M];
     for group in block.chunks_exact(width) {
-        let (Some(x), Some(y)) = (
-            group[start..].first_chunk::<M>(),
-            group[other..].first_chunk::<N>(),
-        ) else {
+        let (Some(x), Some(y)) = (group[start..].first_chunk::<M>(), group[other..].first_chunk::<N>()) else {
             return;
         };
         for part in 0..V::PARTS {
@@ -213,6 +231,7 @@ pub(crate) fn triangle(sums: &[Lane], regressors: usize, pilot: &[f64], width: u
     let lengths: Vec<f64> = (0..width).map(|i| product(i, i).sqrt()).collect();
     // Cholesky of the products of columns of length one, transposed in place: r[j][i] = L[i][j].
     let mut r = vec![0.0; width * width];
+    #[allow(clippy::needless_range_loop)] // as in the formula
     for i in 0..width {
         if lengths[i] == 0.0 && i >= regressors {
             continue; // a response that the pilot fits exactly
@@ -221,8 +240,7 @@ pub(crate) fn triangle(sums: &[Lane], regressors: usize, pilot: &[f64], width: u
             let known: f64 = (0..j).map(|l| r[l * width + i] * r[l * width + j]).sum();
             let rest = product(i, j) / (lengths[i] * lengths[j]) - known;
             if i == j {
-                // Also false for a NaN.
-                if !(rest * LARGEST_INFLATION >= 1.0) {
+                if rest.is_nan() || rest * LARGEST_INFLATION < 1.0 {
                     return None;
                 }
                 r[i * width + i] = rest.sqrt();

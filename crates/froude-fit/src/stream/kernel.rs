@@ -8,10 +8,13 @@
 //! and, while they are in registers, takes the inner products that step `k + 1`
 //! needs: one read and one write of the block a step, two multiply-adds each.
 
+// What a kernel calls must become part of it, or it is compiled plainly.
+#![allow(clippy::inline_always)]
+
 use super::lanes::{Kernel, LANES, Lane, Level, Vectors};
 
 /// Bytes that a block may take: it stays in a first-level cache of 32 KiB.
-const BLOCK_BYTES: usize = 24 * 1024;
+const BLOCK_BYTES: usize = 16 * 1024;
 
 /// Groups in a block of `width` columns.
 pub(crate) fn groups_per_block(width: usize) -> usize {
@@ -119,11 +122,7 @@ fn sweep<V: Vectors, const M: usize, const TURN: bool>(
             return;
         };
         for part in 0..V::PARTS {
-            let v = if TURN {
-                vectors.load(&before[first - 1], part)
-            } else {
-                vectors.splat(0.0)
-            };
+            let v = if TURN { vectors.load(&before[first - 1], part) } else { vectors.splat(0.0) };
             let mut pivot = v;
             if start != first {
                 pivot = vectors.load(&before[first], part);
@@ -167,9 +166,6 @@ pub(crate) fn put(block: &mut [Lane], width: usize, column: usize, row: usize, v
     }
 }
 
-/// Rows that are made at once: a small table that the compiler fills by lanes.
-const TILE_ROWS: usize = 64;
-
 /// Makes rows from raw columns, all of one length, into the block.
 pub(crate) struct MakeRows<'a, const R: usize, const W: usize, F> {
     pub(crate) raw: [&'a [f64]; R],
@@ -185,28 +181,34 @@ where
 
     #[inline(always)]
     fn run<V: Vectors>(self, _: V) {
-        let mut table = [[0.0; TILE_ROWS]; W];
-        let n = self.raw.first().map_or(0, |column| column.len());
-        let tiles = self.block.chunks_mut(W * TILE_ROWS / LANES);
-        for (start, tile) in (0..n).step_by(TILE_ROWS).zip(tiles) {
-            let mut raw = [[0.0; TILE_ROWS]; R];
-            let count = TILE_ROWS.min(n - start);
-            for (to, from) in raw.iter_mut().zip(self.raw) {
-                to[..count].copy_from_slice(&from[start..start + count]);
+        let parts = self.raw.map(|column| column.as_chunks::<LANES>());
+        let whole = parts.map(|(whole, _)| whole);
+        let count = whole.iter().map(|whole| whole.len()).min().unwrap_or(0);
+        let mut groups = self.block.chunks_exact_mut(W).filter_map(|group| group.first_chunk_mut::<W>());
+        for (g, group) in groups.by_ref().take(count).enumerate() {
+            make_group(self.make, &std::array::from_fn(|r| whole[r][g]), group);
+        }
+        if let Some(group) = groups.next() {
+            let mut rest = [[0.0; LANES]; R];
+            for (lane, (_, values)) in rest.iter_mut().zip(parts) {
+                lane[..values.len()].copy_from_slice(values);
             }
-            for i in 0..TILE_ROWS {
-                let row = (self.make)(std::array::from_fn(|r| raw[r][i]));
-                for (column, value) in table.iter_mut().zip(row) {
-                    column[i] = value;
-                }
-            }
-            for (g, group) in tile.chunks_exact_mut(W).enumerate() {
-                for (lane, column) in group.iter_mut().zip(&table) {
-                    if let Some(values) = column[g * LANES..].first_chunk::<LANES>() {
-                        lane.0 = *values;
-                    }
-                }
-            }
+            make_group(self.make, &rest, group);
+        }
+    }
+}
+
+/// Makes eight rows. Written row by row, compiled to work on all eight at once.
+#[inline(always)]
+fn make_group<const R: usize, const W: usize>(
+    make: impl Fn([f64; R]) -> [f64; W],
+    raw: &[[f64; LANES]; R],
+    group: &mut [Lane; W],
+) {
+    for i in 0..LANES {
+        let row = make(std::array::from_fn(|r| raw[r][i]));
+        for j in 0..W {
+            group[j].0[i] = row[j];
         }
     }
 }

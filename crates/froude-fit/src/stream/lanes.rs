@@ -5,6 +5,9 @@
 //! only after the processor was asked, so holding one is the proof that its
 //! instructions may be used: that is all the `unsafe` here rests on.
 
+// What a kernel calls must become part of it, or it is compiled plainly.
+#![allow(clippy::inline_always)]
+
 /// Rows in a group.
 pub(crate) const LANES: usize = 8;
 
@@ -75,10 +78,7 @@ impl Level {
     /// All that this processor has, the best first.
     pub(crate) fn available() -> impl Iterator<Item = Self> {
         #[cfg(target_arch = "x86_64")]
-        let vectors = [
-            x86::Avx512::detect().map(Self::Avx512),
-            x86::Avx2::detect().map(Self::Avx2),
-        ];
+        let vectors = [x86::Avx512::detect().map(Self::Avx512), x86::Avx2::detect().map(Self::Avx2)];
         #[cfg(not(target_arch = "x86_64"))]
         let vectors: [Option<Self>; 0] = [];
         vectors.into_iter().flatten().chain([Self::Plain(Plain)])
@@ -87,6 +87,16 @@ impl Level {
     /// The best that this processor has.
     pub(crate) fn detect() -> Self {
         Self::available().next().unwrap_or(Self::Plain(Plain))
+    }
+
+    /// The level for code that the compiler is left to put into lanes: four numbers a
+    /// register, where it does well; with eight it gave up in our measurements.
+    pub(crate) fn for_compiler(self) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Self::Avx512(_) = self {
+            return x86::Avx2::detect().map_or(self, Self::Avx2);
+        }
+        self
     }
 
     /// Runs a kernel.
@@ -157,10 +167,10 @@ impl Vectors for Plain {
 #[allow(unsafe_code)]
 mod x86 {
     use std::arch::x86_64::{
-        __m256d, __m512d, _mm256_castpd256_pd128, _mm256_div_pd, _mm256_sqrt_pd, _mm512_div_pd, _mm512_sqrt_pd, _mm256_extractf128_pd, _mm256_fmadd_pd,
-        _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_set1_pd, _mm256_storeu_pd, _mm512_fmadd_pd,
-        _mm512_fnmadd_pd, _mm512_load_pd, _mm512_reduce_add_pd, _mm512_set1_pd, _mm512_store_pd,
-        _mm_add_pd, _mm_add_sd, _mm_cvtsd_f64, _mm_unpackhi_pd,
+        __m256d, __m512d, _mm_add_pd, _mm_add_sd, _mm_cvtsd_f64, _mm_unpackhi_pd, _mm256_castpd256_pd128,
+        _mm256_div_pd, _mm256_extractf128_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_set1_pd,
+        _mm256_sqrt_pd, _mm256_storeu_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_load_pd,
+        _mm512_reduce_add_pd, _mm512_set1_pd, _mm512_sqrt_pd, _mm512_store_pd,
     };
 
     use super::{Kernel, Lane, Vectors};
@@ -212,7 +222,7 @@ mod x86 {
         const PARTS: usize = 1;
         const TILE: usize = 10;
         const TERMS: usize = 13;
-    const PANEL: usize = 5;
+        const PANEL: usize = 5;
 
         #[inline(always)]
         fn splat(self, value: f64) -> __m512d {
@@ -260,7 +270,7 @@ mod x86 {
         const PARTS: usize = 2;
         const TILE: usize = 5;
         const TERMS: usize = 6;
-    const PANEL: usize = 3;
+        const PANEL: usize = 3;
 
         #[inline(always)]
         fn splat(self, value: f64) -> __m256d {

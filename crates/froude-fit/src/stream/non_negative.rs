@@ -31,19 +31,11 @@ impl Factor {
     /// # Source
     ///
     /// Lawson & Hanson (1974), *Solving Least Squares Problems*, chapter 23.
-    pub fn solve_non_negative(
-        &self,
-        k: usize,
-        is_bounded: &[bool],
-    ) -> Result<NonNegative, StreamError> {
+    pub fn solve_non_negative(&self, k: usize, is_bounded: &[bool]) -> Result<NonNegative, StreamError> {
         self.check_response(k)?;
         let p = self.shape.regressors;
         if is_bounded.len() != p {
-            return Err(StreamError::Shape {
-                what: "bounds",
-                found: is_bounded.len(),
-                expected: p,
-            });
+            return Err(StreamError::Shape { what: "bounds", found: is_bounded.len(), expected: p });
         }
         self.check_determined()?;
         let lengths = self.column_lengths();
@@ -62,9 +54,7 @@ impl Factor {
             let gradient = self.gradient(&target, &beta);
             let steepest = (0..p)
                 .filter(|&j| !is_free[j] && !refused[j] && gradient[j] > zero * lengths[j])
-                .max_by(|&a, &b| {
-                    (gradient[a] / lengths[a]).total_cmp(&(gradient[b] / lengths[b]))
-                });
+                .max_by(|&a, &b| (gradient[a] / lengths[a]).total_cmp(&(gradient[b] / lengths[b])));
             let Some(entering) = steepest else { break };
             is_free[entering] = true;
             let mut trial = vec![0.0; p];
@@ -118,12 +108,9 @@ impl Factor {
     /// `Rᵀ(d − Rβ)`: half the descent of the squares along each coefficient.
     fn gradient(&self, target: &[f64], beta: &[f64]) -> Vec<f64> {
         let p = beta.len();
-        let residual: Vec<f64> = (0..p)
-            .map(|i| target[i] - (i..p).map(|j| self.entry(i, j) * beta[j]).sum::<f64>())
-            .collect();
-        (0..p)
-            .map(|j| (0..=j).map(|i| self.entry(i, j) * residual[i]).sum())
-            .collect()
+        let residual: Vec<f64> =
+            (0..p).map(|i| target[i] - (i..p).map(|j| self.entry(i, j) * beta[j]).sum::<f64>()).collect();
+        (0..p).map(|j| (0..=j).map(|i| self.entry(i, j) * residual[i]).sum()).collect()
     }
 
     /// Least squares on the free columns; the other coefficients become zero.

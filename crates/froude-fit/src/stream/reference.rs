@@ -10,10 +10,7 @@
 /// Golub & Van Loan (2013), *Matrix Computations*, 4th ed., algorithm 5.2.1.
 pub fn triangularise(matrix: &mut [f64], rows: usize, columns: usize) {
     for k in 0..columns.min(rows) {
-        let norm = (k..rows)
-            .map(|i| matrix[i * columns + k].powi(2))
-            .sum::<f64>()
-            .sqrt();
+        let norm = (k..rows).map(|i| matrix[i * columns + k].powi(2)).sum::<f64>().sqrt();
         if norm == 0.0 {
             continue;
         }

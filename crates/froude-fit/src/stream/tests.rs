@@ -1,1 +1,644 @@
+//! The fast path against the textbook, published numbers, and itself.
 
+use proptest::prelude::*;
+use rand_pcg::Pcg64;
+use rand_pcg::rand_core::Rng;
+
+use super::kernel::absorb;
+use super::*;
+use crate::stream::reference::triangularise;
+
+fn uniform(generator: &mut Pcg64) -> f64 {
+    (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+}
+
+fn slices(columns: &[Vec<f64>]) -> Vec<&[f64]> {
+    columns.iter().map(Vec::as_slice).collect()
+}
+
+/// Columns like those of a drag fit, with their response last.
+fn drag_columns(n: usize, seed: u128) -> Vec<Vec<f64>> {
+    let mut generator = Pcg64::new(seed, 1);
+    let mut columns: Vec<Vec<f64>> = (0..5).map(|_| Vec::with_capacity(n)).collect();
+    for _ in 0..n {
+        let (u, v) = (4.0 * uniform(&mut generator), 4.0 * uniform(&mut generator));
+        let row = [u, u * u.abs(), v, v * v.abs()];
+        let noise = 0.1 * uniform(&mut generator);
+        let force = 0.02 * row[0] + 1.2 * row[1] + 0.4 * row[2] + 2.2 * row[3] + noise;
+        for (column, value) in columns.iter_mut().zip(row.into_iter().chain([force])) {
+            column.push(value);
+        }
+    }
+    columns
+}
+
+fn assert_close(found: &[f64], expected: &[f64], relative: f64) {
+    assert_eq!(found.len(), expected.len());
+    for (found, expected) in found.iter().zip(expected) {
+        let error = (found - expected).abs();
+        assert!(
+            error <= relative * expected.abs().max(1e-300),
+            "{found} differs from {expected} by {:e}",
+            error / expected.abs()
+        );
+    }
+}
+
+/// `RᵀR`, which does not depend on the signs of the diagonal.
+fn products(r: &[f64], rows: usize, width: usize) -> Vec<f64> {
+    let mut out = Vec::new();
+    for i in 0..width {
+        for j in 0..width {
+            out.push((0..rows).map(|k| r[k * width + i] * r[k * width + j]).sum());
+        }
+    }
+    out
+}
+
+#[test]
+fn every_instruction_set_gives_the_textbook_triangle() {
+    let mut generator = Pcg64::new(3, 1);
+    for width in 1..24 {
+        for rows in [1, 7, 8, 50] {
+            let mut matrix: Vec<f64> = (0..rows * width).map(|_| uniform(&mut generator)).collect();
+            let mut old: Vec<f64> = vec![0.0; width * width];
+            for i in 0..width {
+                for j in i..width {
+                    old[i * width + j] = uniform(&mut generator);
+                }
+            }
+            let mut stacked = old.clone();
+            stacked.extend_from_slice(&matrix);
+            triangularise(&mut stacked, width + rows, width);
+            let expected = products(&stacked, width, width);
+            for level in Level::available() {
+                let mut block = vec![Lane::ZERO; rows.div_ceil(LANES) * width];
+                for j in 0..width {
+                    let column: Vec<f64> = (0..rows).map(|i| matrix[i * width + j]).collect();
+                    put(&mut block, width, j, 0, &column);
+                }
+                let mut found = old.clone();
+                absorb(level, &mut found, &mut block, &mut vec![0.0; 2 * width]);
+                let found_products = products(&found, width, width);
+                for (found, expected) in found_products.iter().zip(&expected) {
+                    assert!((found - expected).abs() < 1e-13 * (rows + width) as f64, "{level:?}");
+                }
+            }
+            matrix.clear();
+        }
+    }
+}
+
+#[test]
+fn products_of_every_instruction_set_are_sums_over_rows() {
+    let mut generator = Pcg64::new(4, 1);
+    for (p, q) in [(1, 1), (3, 2), (10, 1), (6, 0), (14, 3)] {
+        let (width, rows) = (p + q, 16);
+        let matrix: Vec<f64> = (0..rows * width).map(|_| uniform(&mut generator)).collect();
+        let pilot: Vec<f64> = (0..p * q).map(|_| uniform(&mut generator)).collect();
+        let mut shifted = matrix.clone();
+        for i in 0..rows {
+            for r in 0..q {
+                let fit: f64 = (0..p).map(|j| matrix[i * width + j] * pilot[r * p + j]).sum();
+                shifted[i * width + p + r] -= fit;
+            }
+        }
+        let expected = products(&shifted, rows, width);
+        for level in Level::available() {
+            let mut block = vec![Lane::ZERO; rows.div_ceil(LANES) * width];
+            for j in 0..width {
+                let column: Vec<f64> = (0..rows).map(|i| matrix[i * width + j]).collect();
+                put(&mut block, width, j, 0, &column);
+            }
+            let mut sums = vec![Lane::ZERO; pairs(width)];
+            add_products(level, &mut sums, &mut block, p, &pilot, width);
+            for i in 0..width {
+                for j in 0..=i {
+                    let found: f64 = sums[i * (i + 1) / 2 + j].0.iter().sum();
+                    let error = (found - expected[i * width + j]).abs();
+                    assert!(error < 1e-13, "{level:?}, {p} + {q}: {i}, {j}");
+                }
+            }
+        }
+    }
+}
+
+/// A whole-number design whose least-squares solution is known exactly.
+///
+/// Every row comes twice, with opposite noise, so the noise is orthogonal to all
+/// columns; the columns share a part `2^bits` times their own: the condition number.
+fn exact_problem(n: usize, p: usize, bits: i32) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let mut generator = Pcg64::new(5, 1);
+    let beta: Vec<f64> = (0..p).map(|j| (j as f64 - 1.5) * 2.0).collect();
+    let mut columns = vec![Vec::with_capacity(n); p + 1];
+    let mut whole = |size: f64| (uniform(&mut generator) * size).round();
+    for _ in 0..n / 2 {
+        let shared = whole(64.0) * 2.0_f64.powi(bits);
+        let row: Vec<f64> = (0..p).map(|_| shared + whole(64.0)).collect();
+        let clean: f64 = row.iter().zip(&beta).map(|(x, b)| x * b).sum();
+        let noise = whole(64.0);
+        for sign in [1.0, -1.0] {
+            for (column, value) in columns.iter_mut().zip(&row) {
+                column.push(*value);
+            }
+            columns[p].push(clean + sign * noise);
+        }
+    }
+    (columns, beta)
+}
+
+fn worst_error(found: &[f64], truth: &[f64]) -> f64 {
+    let size = truth.iter().fold(0.0_f64, |m, b| m.max(b.abs()));
+    found.iter().zip(truth).fold(0.0_f64, |m, (f, t)| m.max((f - t).abs())) / size
+}
+
+/// QR by `faer`, the whole design at once.
+fn by_faer(columns: &[Vec<f64>]) -> Vec<f64> {
+    use faer::prelude::*;
+    let p = columns.len() - 1;
+    let design = Mat::from_fn(columns[0].len(), p, |i, j| columns[j][i]);
+    let response = Mat::from_fn(columns[0].len(), 1, |i, _| columns[p][i]);
+    let solution = design.qr().solve_lstsq(&response);
+    solution.col(0).iter().copied().collect()
+}
+
+/// By normal equations, to show what is avoided.
+fn by_normal_equations(columns: &[Vec<f64>]) -> Vec<f64> {
+    let p = columns.len() - 1;
+    let product = |i: usize, j: usize| -> f64 { columns[i].iter().zip(&columns[j]).map(|(a, b)| a * b).sum() };
+    let mut matrix = Vec::new();
+    for i in 0..p {
+        matrix.extend((0..=p).map(|j| product(i, j)));
+    }
+    reference::least_squares(&mut matrix, p, p)
+}
+
+/// Both methods stay within this factor of `faer`'s QR (or of one rounding times the
+/// condition number): blocks of rows cost or win no more than a digit.
+const OF_QR: f64 = 10.0;
+
+#[test]
+fn coefficients_are_as_exact_as_by_qr_of_the_whole_design() {
+    for bits in [0, 3, 10, 17, 23] {
+        let (columns, truth) = exact_problem(300_000, 4, bits);
+        let all = slices(&columns);
+        let qr = worst_error(&by_faer(&columns), &truth);
+        let normal = worst_error(&by_normal_equations(&columns), &truth);
+        for method in [Method::Adaptive, Method::Reflections] {
+            let factor = reduce_columns(&all[..4], &all[4..], method).unwrap();
+            let fit = factor.solve(0).unwrap();
+            let error = worst_error(&fit.coefficients, &truth);
+            println!(
+                "condition number {:8.1e}: {method:?} {error:.1e}, QR {qr:.1e}, normal \
+                 equations {normal:.1e}",
+                fit.condition_number
+            );
+            let rounding = f64::EPSILON * fit.condition_number;
+            assert!(error <= OF_QR * qr.max(rounding), "{method:?} {error:e} against {qr:e}");
+        }
+    }
+}
+
+#[test]
+fn residual_scatter_of_the_exact_problem_is_exact() {
+    let (columns, _) = exact_problem(300_000, 4, 10);
+    let clean: f64 = {
+        // The noise is half the difference within each pair of rows.
+        let y = columns[4].as_chunks::<2>().0;
+        y.iter().map(|[a, b]| 2.0 * (0.5 * (a - b)).powi(2)).sum()
+    };
+    let all = slices(&columns);
+    for method in [Method::Adaptive, Method::Reflections] {
+        let factor = reduce_columns(&all[..4], &all[4..], method).unwrap();
+        assert_close(&[factor.residual_squares(0)], &[clean], 1e-12);
+    }
+}
+
+/// Longley's data (NIST StRD, linear regression, "Longley"): certified to 15 digits.
+#[test]
+fn longleys_certified_values() {
+    const RAW: [[f64; 7]; 16] = [
+        [60323., 83.0, 234289., 2356., 1590., 107608., 1947.],
+        [61122., 88.5, 259426., 2325., 1456., 108632., 1948.],
+        [60171., 88.2, 258054., 3682., 1616., 109773., 1949.],
+        [61187., 89.5, 284599., 3351., 1650., 110929., 1950.],
+        [63221., 96.2, 328975., 2099., 3099., 112075., 1951.],
+        [63639., 98.1, 346999., 1932., 3594., 113270., 1952.],
+        [64989., 99.0, 365385., 1870., 3547., 115094., 1953.],
+        [63761., 100.0, 363112., 3578., 3350., 116219., 1954.],
+        [66019., 101.2, 397469., 2904., 3048., 117388., 1955.],
+        [67857., 104.6, 419180., 2822., 2857., 118734., 1956.],
+        [68169., 108.4, 442769., 2936., 2798., 120445., 1957.],
+        [66513., 110.8, 444546., 4681., 2637., 121950., 1958.],
+        [68655., 112.6, 482704., 3813., 2552., 123366., 1959.],
+        [69564., 114.2, 502601., 3931., 2514., 125368., 1960.],
+        [69331., 115.7, 518173., 4806., 2572., 127852., 1961.],
+        [70551., 116.9, 554894., 4007., 2827., 130081., 1962.],
+    ];
+    const COEFFICIENTS: [f64; 7] = [
+        -3482258.63459582,
+        15.0618722713733,
+        -0.358191792925910e-01,
+        -2.02022980381683,
+        -1.03322686717359,
+        -0.511041056535807e-01,
+        1829.15146461355,
+    ];
+    const STANDARD: [f64; 7] = [
+        890420.383607373,
+        84.9149257747669,
+        0.334910077722432e-01,
+        0.488399681651699,
+        0.214274163161675,
+        0.226073200069370,
+        455.478499142212,
+    ];
+    let mut columns = vec![vec![1.0; 16]];
+    for j in 1..7 {
+        columns.push(RAW.iter().map(|row| row[j]).collect());
+    }
+    columns.push(RAW.iter().map(|row| row[0]).collect());
+    let all = slices(&columns);
+    let fit = reduce_columns(&all[..7], &all[7..], Method::Adaptive).unwrap().solve(0).unwrap();
+    // Scaled condition number 4.3e4; the intercept is far outside the data: some 9 digits.
+    assert_close(&fit.coefficients, &COEFFICIENTS, 1e-8);
+    assert_close(&fit.standard, &STANDARD, 1e-8);
+    assert_close(&[fit.sigma], &[304.854073561965], 1e-10);
+    assert_eq!(fit.dof, 9.0);
+}
+
+#[test]
+fn the_cut_into_chunks_and_the_number_of_threads_change_no_bit() {
+    let columns = drag_columns(300_000, 6);
+    let all = slices(&columns);
+    let whole = reduce_columns(&all[..4], &all[4..], Method::Reflections).unwrap();
+    let shape = whole.shape();
+    for sizes in [vec![300_000], vec![1, 2, 3, 499, 512, 513], vec![100_000], vec![7777, 1]] {
+        let mut rows = Accumulator::new(shape);
+        let mut start = 0;
+        for size in sizes.iter().cycle() {
+            let end = (start + size).min(300_000);
+            let chunk: Vec<&[f64]> = all.iter().map(|column| &column[start..end]).collect();
+            rows.push(&chunk[..4], &chunk[4..]).unwrap();
+            start = end;
+            if start == 300_000 {
+                break;
+            }
+        }
+        assert_eq!(rows.rows(), 300_000);
+        assert!(rows.finish() == whole, "chunks of {sizes:?}");
+    }
+    for method in [Method::Adaptive, Method::Reflections] {
+        let reduced = [1, 2, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| reduce_columns(&all[..4], &all[4..], method).unwrap())
+        });
+        assert!(reduced[0] == reduced[1] && reduced[1] == reduced[2]);
+    }
+}
+
+#[test]
+fn rows_made_on_the_fly_are_the_columns_in_memory() {
+    let columns = drag_columns(150_001, 7);
+    let all = slices(&columns);
+    let shape = Shape { regressors: 4, responses: 1 };
+    for method in [Method::Adaptive, Method::Reflections] {
+        let memory = reduce_columns(&all[..4], &all[4..], method).unwrap();
+        let rows = reduce_rows([all[0], all[2], all[4]], 1, method, |[u, v, y]| [u, u * u.abs(), v, v * v.abs(), y]);
+        assert!(rows.unwrap() == memory);
+        let features = reduce_features(&[all[0], all[2], all[4]], shape, method, |raw, out| {
+            for i in 0..raw[0].len() {
+                let (u, v) = (raw[0][i], raw[1][i]);
+                let row = [u, u * u.abs(), v, v * v.abs(), raw[2][i]];
+                for (out, value) in out.iter_mut().zip(row) {
+                    out[i] = value;
+                }
+            }
+        });
+        assert!(features.unwrap() == memory);
+    }
+}
+
+#[test]
+fn the_adaptive_method_falls_back_where_columns_are_parallel() {
+    // Nearly parallel everywhere: no segment may use products.
+    let (columns, _) = exact_problem(300_000, 4, 17);
+    let all = slices(&columns);
+    let adaptive = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap();
+    let reflected = reduce_columns(&all[..4], &all[4..], Method::Reflections).unwrap();
+    assert!(adaptive == reflected);
+
+    // A tow at one speed in the second segment: its columns are parallel there.
+    let mut columns = drag_columns(300_000, 8);
+    for i in 140_000..280_000 {
+        for (column, value) in columns.iter_mut().zip([0.5, 0.25, -0.5, -0.25]) {
+            column[i] = value;
+        }
+    }
+    let all = slices(&columns);
+    let adaptive = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap();
+    let reflected = reduce_columns(&all[..4], &all[4..], Method::Reflections).unwrap();
+    let (a, b) = (adaptive.solve(0).unwrap(), reflected.solve(0).unwrap());
+    assert_close(&a.coefficients, &b.coefficients, 1e-11);
+    assert_close(&a.standard, &b.standard, 1e-11);
+}
+
+#[test]
+fn a_noiseless_response_is_fitted_to_rounding() {
+    let mut columns = drag_columns(300_000, 9);
+    let exact: Vec<f64> = columns[0].iter().map(|u| 3.0 * u).collect();
+    columns[4] = exact;
+    let all = slices(&columns);
+    for method in [Method::Adaptive, Method::Reflections] {
+        let fit = reduce_columns(&all[..4], &all[4..], method).unwrap().solve(0).unwrap();
+        assert!((fit.coefficients[0] - 3.0).abs() < 1e-13);
+        assert!(fit.sigma < 1e-14, "{}", fit.sigma);
+    }
+}
+
+#[test]
+fn merged_factors_are_the_factor_of_all_rows() {
+    let columns = drag_columns(5000, 10);
+    let all = slices(&columns);
+    let whole = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap();
+    let part = |range: Range<usize>| {
+        let part: Vec<&[f64]> = all.iter().map(|column| &column[range.clone()]).collect();
+        reduce_columns(&part[..4], &part[4..], Method::Adaptive).unwrap()
+    };
+    let mut merged = part(0..3);
+    merged.merge(&part(3..1234)).unwrap();
+    merged.merge(&part(1234..5000)).unwrap();
+    assert_eq!(merged.rows(), 5000);
+    let (a, b) = (merged.solve(0).unwrap(), whole.solve(0).unwrap());
+    assert_close(&a.coefficients, &b.coefficients, 1e-12);
+    assert_close(&a.standard, &b.standard, 1e-12);
+}
+
+#[test]
+fn selected_regressors_are_fitted_as_if_alone() {
+    let columns = drag_columns(2000, 11);
+    let all = slices(&columns);
+    let both = [all[4], all[1]];
+    let whole = reduce_columns(&all[..4], &both, Method::Adaptive).unwrap();
+    let selected = whole.select(&[3, 0], &[1, 0]).unwrap().solve(1).unwrap();
+    let alone = reduce_columns(&[all[3], all[0]], &[all[4]], Method::Adaptive).unwrap();
+    let alone = alone.solve(0).unwrap();
+    assert_close(&selected.coefficients, &alone.coefficients, 1e-12);
+    assert_close(&selected.standard, &alone.standard, 1e-12);
+    assert_eq!(selected.dof, 1998.0);
+}
+
+#[test]
+fn two_responses_share_their_design_and_not_their_scatter() {
+    let columns = drag_columns(2000, 12);
+    let all = slices(&columns);
+    let other: Vec<f64> = columns[4].iter().zip(&columns[0]).map(|(y, u)| 2.0 * y + u).collect();
+    let factor = reduce_columns(&all[..4], &[all[4], &other], Method::Adaptive).unwrap();
+    let (a, b) = (factor.solve(0).unwrap(), factor.solve(1).unwrap());
+    assert_close(&[b.coefficients[3], b.sigma], &[2.0 * a.coefficients[3], 2.0 * a.sigma], 1e-11);
+    // The second's residual is twice the first's.
+    let [aa, ab] = [0, 1].map(|k| factor.residual_product(0, k));
+    assert_close(&[ab], &[2.0 * aa], 1e-11);
+}
+
+proptest! {
+    /// Under bounds at zero the minimiser is the best of all fits on subsets of columns
+    /// that keep the bounds.
+    #[test]
+    fn non_negative_fits_are_the_best_of_all_subsets(
+        seed in any::<u64>(),
+        p in 1_usize..6,
+        bounded in proptest::collection::vec(any::<bool>(), 5),
+        shared in 0.0_f64..3.0,
+    ) {
+        let mut generator = Pcg64::new(u128::from(seed), 1);
+        let n = 30;
+        let mut columns = vec![Vec::new(); p + 1];
+        for _ in 0..n {
+            let common = shared * uniform(&mut generator);
+            for column in &mut columns {
+                column.push(common + uniform(&mut generator));
+            }
+        }
+        let all = slices(&columns);
+        let bounded = &bounded[..p];
+        let factor = reduce_columns(&all[..p], &all[p..], Method::Adaptive).unwrap();
+        let found = factor.solve_non_negative(0, bounded).unwrap();
+
+        let mut best = f64::INFINITY;
+        for subset in 0..1_u32 << p {
+            let kept: Vec<usize> = (0..p).filter(|j| subset >> j & 1 == 1 || !bounded[*j]).collect();
+            let part = factor.select(&kept, &[0]).unwrap();
+            let beta = if kept.is_empty() { vec![] } else { part.solve(0).unwrap().coefficients };
+            if kept.iter().zip(&beta).all(|(j, b)| !bounded[*j] || *b >= 0.0) {
+                best = best.min(part.residual_squares(0));
+            }
+        }
+        prop_assert!((found.residual_squares - best).abs() <= 1e-11 * best);
+        for j in 0..p {
+            prop_assert!(!bounded[j] || found.coefficients[j] >= 0.0);
+            prop_assert_eq!(found.is_at_bound[j], bounded[j] && found.coefficients[j] == 0.0);
+        }
+    }
+}
+
+/// Rows in clusters of unequal size, with a shared part in the noise.
+fn clustered() -> (Vec<Vec<f64>>, Vec<u64>) {
+    let mut columns = drag_columns(600, 13);
+    let mut generator = Pcg64::new(14, 1);
+    let mut clusters = Vec::new();
+    for g in 0..9_u64 {
+        let shared = uniform(&mut generator);
+        for i in clusters.len()..clusters.len() + 13 * (g as usize + 1) {
+            columns[4][i] += shared;
+            clusters.push(10 * g);
+        }
+    }
+    clusters.resize(600, 80);
+    (columns, clusters)
+}
+
+fn clustered_factors(columns: &[Vec<f64>], clusters: &[u64]) -> ClusterFactors {
+    let all = slices(columns);
+    let shape = Shape { regressors: 4, responses: 1 };
+    let mut rows = ClusterAccumulator::new(shape, 100);
+    rows.push(clusters, &all[..4], &all[4..]).unwrap();
+    rows.finish().unwrap()
+}
+
+#[test]
+fn cr3_is_the_jackknife_over_clusters() {
+    let (columns, clusters) = clustered();
+    let factors = clustered_factors(&columns, &clusters);
+    let found = factors.covariance(0, ClusterKind::Cr3).unwrap();
+    let g = factors.count() as f64;
+    assert_eq!((factors.count(), found.dof), (9, 8.0));
+    let all = slices(&columns);
+    let whole = reduce_columns(&all[..4], &all[4..], Method::Adaptive).unwrap().solve(0).unwrap();
+    assert_close(&found.coefficients, &whole.coefficients, 1e-12);
+    let mut expected = Mat::<f64>::zeros(4, 4);
+    for left_out in factors.iter().map(|(cluster, _)| cluster) {
+        let kept: Vec<Vec<f64>> = (columns.iter())
+            .map(|column| {
+                let rows = column.iter().zip(&clusters);
+                rows.filter(|(_, c)| **c != left_out).map(|(x, _)| *x).collect()
+            })
+            .collect();
+        let kept = slices(&kept);
+        let fit = reduce_columns(&kept[..4], &kept[4..], Method::Adaptive).unwrap();
+        let beta = fit.solve(0).unwrap().coefficients;
+        for i in 0..4 {
+            for j in 0..4 {
+                let (a, b) = (beta[i] - whole.coefficients[i], beta[j] - whole.coefficients[j]);
+                expected[(i, j)] += (g - 1.0) / g * a * b;
+            }
+        }
+    }
+    for i in 0..4 {
+        for j in 0..4 {
+            assert_close(&[found.covariance[(i, j)]], &[expected[(i, j)]], 1e-8);
+        }
+    }
+}
+
+#[test]
+fn cr1_is_the_sandwich_of_cluster_scores() {
+    let (columns, clusters) = clustered();
+    let factors = clustered_factors(&columns, &clusters);
+    let found = factors.covariance(0, ClusterKind::Cr1).unwrap();
+    let beta = &found.coefficients;
+    let mut bread = vec![0.0; 4 * 8];
+    let mut scores = std::collections::BTreeMap::<u64, [f64; 4]>::new();
+    for i in 0..600 {
+        let residual = columns[4][i] - (0..4).map(|j| columns[j][i] * beta[j]).sum::<f64>();
+        let score = scores.entry(clusters[i]).or_default();
+        for a in 0..4 {
+            score[a] += columns[a][i] * residual;
+            for b in 0..4 {
+                bread[a * 8 + b] += columns[a][i] * columns[b][i];
+            }
+        }
+    }
+    // (XᵀX)⁻¹ s for each cluster.
+    let mut expected = [[0.0; 4]; 4];
+    for score in scores.values() {
+        let mut matrix = Vec::new();
+        for a in 0..4 {
+            matrix.extend_from_slice(&bread[a * 8..a * 8 + 4]);
+            matrix.push(score[a]);
+        }
+        let step = reference::least_squares(&mut matrix, 4, 4);
+        for a in 0..4 {
+            for b in 0..4 {
+                expected[a][b] += 9.0 / 8.0 * 599.0 / 596.0 * step[a] * step[b];
+            }
+        }
+    }
+    for a in 0..4 {
+        for b in 0..4 {
+            assert_close(&[found.covariance[(a, b)]], &[expected[a][b]], 1e-8);
+        }
+    }
+}
+
+#[test]
+fn clusters_may_come_in_any_order_and_in_parts() {
+    let (columns, clusters) = clustered();
+    let together = clustered_factors(&columns, &clusters);
+    let order: Vec<usize> = (0..600).map(|i| i * 7 % 600).collect();
+    let mixed: Vec<Vec<f64>> = (columns.iter()).map(|column| order.iter().map(|&i| column[i]).collect()).collect();
+    let mixed_clusters: Vec<u64> = order.iter().map(|&i| clusters[i]).collect();
+    let halves = [0..250, 250..600].map(|range| {
+        let part: Vec<Vec<f64>> = mixed.iter().map(|column| column[range.clone()].to_vec()).collect();
+        clustered_factors(&part, &mixed_clusters[range])
+    });
+    let mut merged = halves[0].clone();
+    merged.merge(&halves[1]).unwrap();
+    let (a, b) = (together.covariance(0, ClusterKind::Cr3).unwrap(), merged.covariance(0, ClusterKind::Cr3).unwrap());
+    assert_close(&a.coefficients, &b.coefficients, 1e-11);
+    assert_close(&a.standard, &b.standard, 1e-10);
+}
+
+#[test]
+fn what_is_wrong_is_said_with_its_place() {
+    let mut columns = drag_columns(200_000, 15);
+    columns[2][187_654] = f64::NAN;
+    let all = slices(&columns);
+    let message = "row 187654, column 2 is NaN; every entry must be finite and below 1e150 in size";
+    let shape = Shape { regressors: 4, responses: 1 };
+    for method in [Method::Adaptive, Method::Reflections] {
+        let error = reduce_columns(&all[..4], &all[4..], method).unwrap_err();
+        assert_eq!(error.to_string(), message);
+        let error = reduce_features(&all, shape, method, |raw, out| {
+            for (out, raw) in out.iter_mut().zip(raw) {
+                out.copy_from_slice(raw);
+            }
+        });
+        assert_eq!(error.unwrap_err().to_string(), message);
+        let raw = [all[0], all[1], all[2], all[3], all[4]];
+        let error = reduce_rows(raw, 1, method, |row| row).unwrap_err();
+        assert_eq!(error.to_string(), message);
+    }
+    let mut rows = Accumulator::new(shape);
+    for start in (0..200_000).step_by(1000) {
+        let chunk: Vec<&[f64]> = all.iter().map(|column| &column[start..start + 1000]).collect();
+        let pushed = rows.push(&chunk[..4], &chunk[4..]);
+        if start == 187_000 {
+            assert_eq!(pushed.unwrap_err().to_string(), message);
+        }
+    }
+    assert_eq!(rows.rows(), 199_000);
+
+    let (u, other) = (vec![1.0, 2.0, 3.0], vec![2.0, 4.0, 6.0]);
+    let error = |regressors: &[&[f64]], y: &[f64]| {
+        let factor = reduce_columns(regressors, &[y], Method::Adaptive);
+        factor.and_then(|factor| factor.solve(0)).unwrap_err().to_string()
+    };
+    assert!(error(&[&u, &other], &u).contains("the data do not determine coefficient"));
+    assert_eq!(error(&[&u], &[1.0]), "column 1 has 1 rows, column 0 has 3; give equal lengths");
+    assert_eq!(error(&[&u[..1]], &[1.0]), "1 rows do not determine 1 coefficients and their scatter");
+    let big = [1e200, 1.0, 1.0];
+    assert_eq!(
+        error(&[&u], &big),
+        format!("row 0, column 1 is {}; every entry must be finite and below 1e150 in size", 1e200)
+    );
+    let mut few = ClusterAccumulator::new(shape, 1);
+    let one: Vec<&[f64]> = all.iter().map(|column| &column[..2]).collect();
+    few.push(&[4, 7], &one[..4], &one[4..]).unwrap();
+    assert_eq!(
+        few.finish().unwrap_err().to_string(),
+        "cluster 7 is one more than the limit of 1: each keeps a triangle of its own; raise \
+         the limit, or use longer clusters"
+    );
+    let (columns, clusters) = clustered();
+    let three: Vec<u64> = clusters.iter().map(|c| c % 3).collect();
+    let error = clustered_factors(&columns, &three).covariance(0, ClusterKind::Cr3).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "3 clusters; cluster-robust covariance is refused below 5, where its interval is not \
+         honest"
+    );
+}
+
+#[test]
+fn cr3_names_the_cluster_that_alone_determines_a_coefficient() {
+    let (mut columns, clusters) = clustered();
+    for (x, cluster) in columns[3].iter_mut().zip(&clusters) {
+        if *cluster != 40 {
+            *x = 0.0;
+        }
+    }
+    let error = clustered_factors(&columns, &clusters).covariance(0, ClusterKind::Cr3);
+    assert_eq!(error.unwrap_err(), StreamError::ClusterDecides { cluster: 40 });
+}
+
+#[test]
+fn nothing_in_gives_nothing_out() {
+    let factor = reduce_columns(&[&[]], &[&[]], Method::Adaptive).unwrap();
+    assert_eq!(factor.rows(), 0);
+    let error = factor.solve(0).unwrap_err();
+    assert_eq!(error, StreamError::TooFewRows { rows: 0, regressors: 1 });
+    assert!(factor.solve(1).is_err());
+    let none = reduce_columns(&[], &[], Method::Adaptive).unwrap();
+    assert_eq!(none.shape().width(), 0);
+}

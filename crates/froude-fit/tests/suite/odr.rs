@@ -97,6 +97,30 @@ fn a_straight_line_is_demings() {
     }
 }
 
+/// Fuller (1987), *Measurement Error Models*, equation 1.3.33, for known variances:
+/// `Var b = (m_xx σ_vv + σ_uu σ_ee)/(n m_xx²)`, `m_xx` the scatter of the true inputs.
+#[test]
+fn the_variance_of_a_straight_line_is_fullers() {
+    let (x, y) = sample();
+    let (s, sigma) = (0.2, 0.3);
+    let found = odr(&Line, &line(&x, &y, s, Sigma::Known(sigma)), 0.95).unwrap();
+    let n = x.len() as f64;
+    let slope = found.coefficients[1].value.unwrap();
+    let sigma_vv = sigma * sigma + slope * slope * s * s;
+    let estimated: Vec<f64> = (0..x.len()).map(|i| x[i] + found.input_correction[(i, 0)]).collect();
+    let mean = estimated.iter().sum::<f64>() / n;
+    let scatter: f64 = estimated.iter().map(|x| (x - mean).powi(2)).sum();
+    // The estimated inputs scatter by their own error more than the true ones.
+    let own = s * s * sigma * sigma / sigma_vv;
+    let true_scatter = scatter - n * own;
+    let fuller = (true_scatter * sigma_vv + n * s * s * sigma * sigma) / true_scatter.powi(2);
+    let variance = found.coefficients[1].standard.unwrap().powi(2);
+    // They agree but for the square of the correction, 3 (n own/scatter)² of the variance.
+    let correction = n * own / scatter;
+    assert!((variance / fuller - 1.0).abs() < 4.0 * correction * correction, "{variance} {fuller}");
+    assert!(variance > sigma_vv / scatter * (1.0 + 1.9 * correction));
+}
+
 #[test]
 fn exact_inputs_make_it_least_squares() {
     let (x, y) = sample();

@@ -32,11 +32,11 @@ pub fn normal(rng: &mut Pcg64) -> f64 {
 }
 
 /// Hits per coefficient of one case.
-struct Case {
-    name: String,
-    coefficients: Vec<String>,
-    hits: Vec<u64>,
-    repetitions: u64,
+pub struct Case {
+    pub name: String,
+    pub coefficients: Vec<String>,
+    pub hits: Vec<u64>,
+    pub repetitions: u64,
 }
 
 pub fn all(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), Box<dyn Error>> {
@@ -68,6 +68,8 @@ pub fn all(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), B
             repetitions.min(4_000),
         )?);
     }
+    let mut within = crate::eiv::cases(root, repetitions / 2)?;
+    cases.append(&mut within);
     judge(claims, &cases)?;
     robust(claims, root, repetitions)
 }
@@ -159,7 +161,7 @@ fn bounded(
     Ok(Case { name: name.to_owned(), coefficients: problem.names, hits, repetitions: repetitions as u64 })
 }
 
-fn add(mut a: Vec<u64>, b: Vec<u64>) -> Vec<u64> {
+pub fn add(mut a: Vec<u64>, b: Vec<u64>) -> Vec<u64> {
     for (x, y) in a.iter_mut().zip(b) {
         *x += y;
     }

@@ -6,6 +6,7 @@
 
 mod claims;
 mod coverage;
+mod eiv;
 mod kvlcc2;
 mod rm2;
 mod snake;

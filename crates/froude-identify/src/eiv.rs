@@ -1,0 +1,152 @@
+//! Errors in variables: speed and angle that are uncertain from row to row.
+//!
+//! One error of the speed enters v and v|v| of both loads together. The rows'
+//! standard deviations come from the budget (entries of `speed` and `angle`
+//! whose error no two rows share); the fit is an orthogonal distance regression.
+
+use faer::Mat;
+use froude_fit::odr::{InputModel, OdrFit, OdrProblem, Sigma, odr};
+use froude_fit::{self as fit, FitError};
+use froude_hydro::{Axis, DragModel, Setting};
+use froude_records::campaign::{BudgetEntry, Shared};
+
+use crate::dataset::Dataset;
+use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S};
+use crate::regression::stacked;
+
+/// The inputs that may be uncertain, in the order of the regression.
+const INPUTS: [&str; 2] = ["speed", "angle"];
+
+/// Standard deviations of speed and angle per row, from the budget; `None` without any.
+#[must_use]
+pub fn input_standard(data: &Dataset, budget: &[BudgetEntry]) -> Option<Mat<f64>> {
+    let mut out = Mat::zeros(data.rows, INPUTS.len());
+    let mut has_any = false;
+    for entry in budget.iter().filter(|e| e.shared == Shared::Sample) {
+        let Some(k) = INPUTS.iter().position(|name| *name == entry.quantity) else { continue };
+        has_any = true;
+        for i in 0..data.rows {
+            let value = data.values(INPUTS[k]).map_or(0.0, |v| v[i]);
+            let standard = if entry.relative { entry.standard * value.abs() } else { entry.standard };
+            out[(i, k)] = f64::hypot(out[(i, k)], standard);
+        }
+    }
+    has_any.then_some(out)
+}
+
+/// A force law as a function of speed and angle of one observation.
+struct LawOfInputs<'a> {
+    law: &'a ForceLaw,
+    data: &'a Dataset,
+    settings: Vec<Setting>,
+}
+
+impl LawOfInputs<'_> {
+    fn drag(&self, model: DragModel, i: usize, inputs: &[f64], out: &mut [f64]) {
+        let p = self.law.coefficients.len();
+        let (sin, cos) = inputs[1].sin_cos();
+        let mut row = [0.0; froude_hydro::MAX_COEFFICIENTS];
+        model.regressor(&self.settings[i], [inputs[0] * cos, -inputs[0] * sin], &mut row);
+        out.fill(0.0);
+        for (j, info) in model.coefficients().iter().enumerate() {
+            let c = match info.axis {
+                Axis::X => 0,
+                Axis::Y => 1,
+            };
+            out[c * p + j] = row[j];
+        }
+    }
+}
+
+impl InputModel for LawOfInputs<'_> {
+    fn n_coefficients(&self) -> usize {
+        self.law.coefficients.len()
+    }
+
+    fn n_components(&self) -> usize {
+        self.law.responses.len()
+    }
+
+    fn n_inputs(&self) -> usize {
+        INPUTS.len()
+    }
+
+    fn regressors(&self, observation: usize, inputs: &[f64], out: &mut [f64]) {
+        if let Kind::Drag { model, .. } = &self.law.kind {
+            self.drag(*model, observation, inputs, out);
+            return;
+        }
+        let mut one = self.data.subset(&[observation]);
+        for (name, value) in INPUTS.iter().zip(inputs) {
+            if let Some(channel) = one.channels.get_mut(*name) {
+                channel.values[0] = *value;
+            }
+        }
+        one.velocity_from_speed_and_angle();
+        match self.law.regressors(&one, &[]) {
+            Ok(x) => {
+                for c in 0..x.nrows() {
+                    for j in 0..x.ncols() {
+                        out[c * x.ncols() + j] = x[(c, j)];
+                    }
+                }
+            }
+            // The channels were there when the law was made; NaN is refused by the regression.
+            Err(_) => out.fill(f64::NAN),
+        }
+    }
+}
+
+/// Fits a linear law with uncertain speed and angle.
+///
+/// # Errors
+///
+/// What the regression refuses.
+pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma) -> Result<OdrFit, FitError> {
+    let n = data.rows;
+    let value = |name: &str, i: usize| data.values(name).map_or(0.0, |v| v[i]);
+    let responses = stacked(law, data).unwrap_or_default();
+    let settings = match &law.kind {
+        Kind::Drag { body, cross_term, .. } => (0..n)
+            .map(|i| Setting {
+                body: *body,
+                n_links: value("n_links", i),
+                density_kg_m3: value("density", i),
+                v_ref_m_s: REFERENCE_SPEED_M_S,
+                cross_term: *cross_term,
+            })
+            .collect(),
+        _ => Vec::new(),
+    };
+    let c = law.responses.len();
+    if responses.len() != n * c {
+        return Err(FitError::NoRows);
+    }
+    let problem = OdrProblem {
+        inputs: Mat::from_fn(n, INPUTS.len(), |i, k| value(INPUTS[k], i)),
+        input_standard: standard,
+        response: Mat::from_fn(n, c, |i, r| responses[r * n + i]),
+        sigma: vec![sigma; c],
+        components: law.responses.clone(),
+        names: law.coefficients.iter().map(|c| c.name.clone()).collect(),
+    };
+    odr(&LawOfInputs { law, data, settings }, &problem, 0.95)
+}
+
+/// Puts the result in the place of the ordinary fit's coefficients; its design and leverages stay.
+pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], result: OdrFit) {
+    for (summary, sigma) in fitted.components.iter_mut().zip(&result.sigma) {
+        summary.sigma = Some(sigma.sigma);
+        if sigma.dof.is_finite() {
+            summary.dof = sigma.dof;
+        }
+    }
+    let beta: Vec<f64> = result.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
+    for i in 0..response.len() {
+        fitted.fitted[i] = (0..beta.len()).map(|j| design[(i, j)] * beta[j]).sum();
+        fitted.residuals[i] = response[i] - fitted.fitted[i];
+    }
+    fitted.covariance = result.covariance;
+    fitted.coefficients = result.coefficients;
+    fitted.report = result.report;
+}

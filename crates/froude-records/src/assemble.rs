@@ -1,0 +1,265 @@
+//! From headers and raw cells to a checked table, the same for every format.
+
+use std::path::Path;
+
+use crate::error::{Place, RecordError};
+use crate::nearest::suggestion;
+use crate::sidecar::{Mapping, Sidecar};
+use crate::table::{Column, ColumnData, Table, expected, is_text_column, known_dimension, usual_unit};
+use crate::units::{Unit, parse_unit};
+
+/// What a column of a file becomes, decided by its header alone.
+pub(crate) enum Want<'s> {
+    /// Numbers in a unit.
+    Number {
+        /// Name without unit.
+        name: String,
+        /// Unit as written.
+        unit: Unit,
+    },
+    /// Text.
+    Text {
+        /// The whole header.
+        name: String,
+    },
+    /// What the sidecar says.
+    Mapped(&'s Mapping),
+    /// A column that the sidecar does not name.
+    LeftOut,
+}
+
+impl Want<'_> {
+    /// Whether its cells must be numbers.
+    pub fn is_number(&self) -> bool {
+        match self {
+            Self::Number { .. } => true,
+            Self::Mapped(mapping) => mapping.unit.is_some() || mapping.scale.is_some(),
+            Self::Text { .. } | Self::LeftOut => false,
+        }
+    }
+}
+
+/// The cells of one column as the format gives them.
+pub(crate) enum Raw {
+    Numbers(Vec<f64>),
+    Texts(Vec<String>),
+}
+
+/// Decides what each column becomes; `header_place` is where the headers stand.
+pub(crate) fn plan<'s>(
+    path: &Path,
+    header: &[String],
+    sidecar: Option<&'s Sidecar>,
+    header_place: &Place,
+) -> Result<Vec<Want<'s>>, RecordError> {
+    for (j, name) in header.iter().enumerate() {
+        if header[..j].contains(name) {
+            return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: name.clone() });
+        }
+    }
+    let wants = match sidecar {
+        Some(sidecar) => {
+            for (written, mapping) in &sidecar.columns {
+                if !header.contains(written) {
+                    return Err(RecordError::UnknownColumn {
+                        place: Place::line(&sidecar.path, mapping.line),
+                        column: written.clone(),
+                        advice: format!(
+                            "in {}: {}",
+                            path.display(),
+                            suggestion(written, header.iter().map(String::as_str))
+                        ),
+                    });
+                }
+            }
+            header.iter().map(|h| sidecar.columns.get(h).map_or(Want::LeftOut, Want::Mapped)).collect()
+        }
+        None => header.iter().map(|h| want(path, h, header_place)).collect::<Result<Vec<_>, _>>()?,
+    };
+    let names: Vec<&str> = wants.iter().filter_map(name_of).collect();
+    for (j, name) in names.iter().enumerate() {
+        if names[..j].contains(name) {
+            return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: (*name).to_owned() });
+        }
+    }
+    Ok(wants)
+}
+
+fn name_of<'a>(want: &'a Want<'_>) -> Option<&'a str> {
+    match want {
+        Want::Number { name, .. } | Want::Text { name } => Some(name),
+        Want::Mapped(mapping) => Some(&mapping.name),
+        Want::LeftOut => None,
+    }
+}
+
+/// A header read as `name [unit]`.
+fn want(path: &Path, header: &str, place: &Place) -> Result<Want<'static>, RecordError> {
+    let (name, unit) = split_header(header).map_err(|problem| RecordError::Syntax {
+        place: place.clone(),
+        problem: format!("header `{header}`: {problem}"),
+    })?;
+    let Some(unit) = unit else {
+        if known_dimension(name).is_some() && !may_be_text(name) {
+            return Err(missing_unit(path, name, place));
+        }
+        return Ok(Want::Text { name: name.to_owned() });
+    };
+    let bad = |problem: String| RecordError::BadUnit { place: place.clone(), column: header.to_owned(), problem };
+    if is_text_column(name) {
+        return Err(bad(format!("{name} is text and has no unit; write `{name}`")));
+    }
+    let unit = parse_unit(unit).map_err(|e| bad(e.to_string()))?;
+    check_dimension(place, header, name, &unit)?;
+    Ok(Want::Number { name: name.to_owned(), unit: unit_of_column(name, unit) })
+}
+
+/// `repeat` counts (`repeat [1]`) or labels (`repeat`).
+fn may_be_text(name: &str) -> bool {
+    is_text_column(name) || name == "repeat"
+}
+
+fn missing_unit(path: &Path, name: &str, place: &Place) -> RecordError {
+    let unit = usual_unit(name).unwrap_or_else(|| "unit".to_owned());
+    let sidecar = path.with_extension("toml");
+    let sidecar = sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    RecordError::MissingUnit {
+        place: place.clone(),
+        column: name.to_owned(),
+        advice: format!("write `{name} [{unit}]`, or map it with a sidecar {sidecar}"),
+    }
+}
+
+/// A standard uncertainty in `degC` is one in K: differences have no offset.
+pub(crate) fn unit_of_column(name: &str, unit: Unit) -> Unit {
+    if name.starts_with("std_") { Unit { offset: 0.0, ..unit } } else { unit }
+}
+
+/// `name [unit]` as name and unit.
+pub(crate) fn split_header(header: &str) -> Result<(&str, Option<&str>), &'static str> {
+    let header = header.trim();
+    let Some((name, rest)) = header.split_once('[') else {
+        return match header {
+            "" => Err("the name is empty; write `name [unit]`"),
+            _ if header.contains(']') => Err("a bracket is not opened; write `name [unit]`"),
+            _ => Ok((header, None)),
+        };
+    };
+    let name = name.trim();
+    let unit = rest.strip_suffix(']').ok_or("the unit must end with `]`; write `name [unit]`")?;
+    if unit.contains(['[', ']']) {
+        return Err("there is more than one pair of brackets; write `name [unit]`");
+    }
+    if name.is_empty() {
+        return Err("the name is empty; write `name [unit]`");
+    }
+    Ok((name, Some(unit)))
+}
+
+/// A known name with another dimension is an error.
+pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Unit) -> Result<(), RecordError> {
+    match expected(name) {
+        Some((dimension, words)) if dimension != unit.dimension => Err(RecordError::WrongDimension {
+            place: place.clone(),
+            column: header.to_owned(),
+            expected: words,
+            found: unit.dimension.describe(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// A finite number in a cell.
+pub(crate) fn number(cell: &str, header: &str, place: &dyn Fn() -> Place) -> Result<f64, RecordError> {
+    let clip = || cell.chars().take(40).collect::<String>();
+    if cell.is_empty() {
+        return Err(RecordError::EmptyCell { place: place(), column: header.to_owned() });
+    }
+    match fast_float2::parse::<f64, _>(cell) {
+        Ok(x) if x.is_finite() => Ok(x),
+        Ok(_) => Err(RecordError::NotFinite { place: place(), column: header.to_owned(), found: clip() }),
+        Err(_) => Err(RecordError::NotANumber { place: place(), column: header.to_owned(), found: clip() }),
+    }
+}
+
+/// Makes the table of what was read, and checks what concerns more than one cell.
+pub(crate) fn assemble(
+    path: &Path,
+    header: &[String],
+    wants: &[Want<'_>],
+    raws: Vec<Raw>,
+    sidecar: Option<&Sidecar>,
+    header_place: &Place,
+    line_of_row: Vec<usize>,
+) -> Result<Table, RecordError> {
+    let n_rows = line_of_row.len();
+    if n_rows == 0 {
+        return Err(RecordError::NoRows { path: path.to_owned() });
+    }
+    let mut table = Table {
+        path: path.to_owned(),
+        columns: Vec::new(),
+        n_rows,
+        line_of_row,
+        sidecar: sidecar.map(|s| s.path.clone()),
+    };
+    match sidecar {
+        Some(sidecar) => {
+            let mut named: Vec<(&str, Option<Raw>)> =
+                header.iter().map(String::as_str).zip(raws.into_iter().map(Some)).collect();
+            let mut take =
+                |written: &str| named.iter_mut().find(|(h, _)| *h == written).and_then(|(_, raw)| raw.take());
+            table.columns = sidecar.columns(&mut take, &|row| table.place_of_row(row))?;
+        }
+        None => {
+            for (want, raw) in wants.iter().zip(raws) {
+                table.columns.extend(column(&table, want, raw, header_place)?);
+            }
+        }
+    }
+    table.check()?;
+    Ok(table)
+}
+
+fn column(table: &Table, want: &Want<'_>, raw: Raw, header_place: &Place) -> Result<Option<Column>, RecordError> {
+    Ok(Some(match (want, raw) {
+        (Want::Number { name, unit }, Raw::Numbers(values)) => {
+            let si: Vec<f64> = values.iter().map(|v| unit.to_si(*v)).collect();
+            if let Some(row) = si.iter().position(|v| !v.is_finite()) {
+                return Err(RecordError::NotFinite {
+                    place: table.place_of_row(row),
+                    column: format!("{name} [{unit}]"),
+                    found: si[row].to_string(),
+                });
+            }
+            Column {
+                name: name.clone(),
+                data: ColumnData::Number { dimension: unit.dimension, unit: unit.clone(), si },
+            }
+        }
+        (Want::Number { name, unit }, Raw::Texts(_)) => {
+            return Err(RecordError::ColumnKind {
+                place: header_place.clone(),
+                column: format!("{name} [{unit}]"),
+                found: "text",
+                expected: "numbers",
+            });
+        }
+        (Want::Text { name }, raw) => {
+            let cells = match raw {
+                Raw::Texts(cells) => cells,
+                Raw::Numbers(_) if !may_be_text(name) => return Err(missing_unit(&table.path, name, header_place)),
+                Raw::Numbers(values) => values.iter().map(f64::to_string).collect(),
+            };
+            if may_be_text(name) {
+                if let Some(row) = cells.iter().position(String::is_empty) {
+                    return Err(RecordError::EmptyCell { place: table.place_of_row(row), column: name.clone() });
+                }
+            } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
+                return Err(missing_unit(&table.path, name, header_place));
+            }
+            Column { name: name.clone(), data: ColumnData::Text(cells) }
+        }
+        (Want::Mapped(_) | Want::LeftOut, _) => return Ok(None),
+    }))
+}

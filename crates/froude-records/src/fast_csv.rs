@@ -1,0 +1,595 @@
+//! Long numeric CSV files, read a chunk at a time in bounded memory.
+//!
+//! For logs of millions of rows that need not lie in memory: the file is read in
+//! chunks of whole lines, each turned into columns of numbers and handed on. Memory
+//! is a few chunks, whatever the file's length. The small tables of a campaign, with
+//! units, text columns and sidecars, are read by [`csv_table`](crate::csv_table).
+//!
+//! **Format.** The first line names the columns, as `name` or `name [unit]`; cells are
+//! separated by commas, lines end in `\n` or `\r\n`. Names may be quoted. Every cell that is read is a
+//! finite decimal number. Quoted cells, rows of another length than the header, empty
+//! cells, NaN and blank lines are refused with their line and column. Columns that are
+//! not selected are passed over unread, so they may hold text (without quotes).
+//!
+//! **Exact.** Numbers are the same, bit for bit, as those of `str::parse::<f64>`: up to
+//! 8 digits before the point and 16 after, below 2⁵³ without the point, are an integer
+//! divided by a power of ten that is exact, which rounds once (Clinger 1990); all
+//! others go through `fast-float2`.
+//!
+//! **Order.** Chunks are cut by their place in the file and folded in that order, so a
+//! result does not depend on the number of threads, not even in the last bit.
+//!
+//! ```
+//! # use std::io::Write;
+//! # let mut file = tempfile::NamedTempFile::new()?;
+//! # write!(file, "speed [m/s],f_x [N]\n0.5,-1.25\n1.0,-5.0\n")?;
+//! # let path = file.path();
+//! use froude_records::fast_csv::{FastCsv, FastCsvError};
+//!
+//! let csv = FastCsv::open(path)?.select(&["f_x", "speed"])?;
+//! let mut power_w = 0.0;
+//! csv.for_each_chunk(|columns, _first_line| {
+//!     let [force, speed] = columns else { return Ok(()) };
+//!     power_w += force.iter().zip(*speed).map(|(f, u)| f * u).sum::<f64>();
+//!     Ok::<(), FastCsvError>(())
+//! })?;
+//! assert_eq!(power_w, -5.625);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod number;
+mod parallel;
+#[cfg(test)]
+mod tests;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use memchr::{memchr, memchr_iter, memchr2, memrchr};
+use number::{fast_number, slow_number, without_blanks};
+
+/// Bytes read at a time: raw text and columns stay in the second-level cache.
+const CHUNK_BYTES: usize = 256 * 1024;
+
+/// Readable zeros behind a chunk, so that words may be loaded at its end.
+const PADDING: usize = 32;
+
+/// Why a long CSV file cannot be read.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FastCsvError {
+    /// The file cannot be opened or read.
+    #[error("cannot read {}: {reason}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+    },
+
+    /// There is no header line, or it is not text.
+    #[error("{}:1: {problem}; the first line must name the columns", path.display())]
+    Header {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        problem: &'static str,
+    },
+
+    /// Two columns have the same name.
+    #[error("{}:1: column `{column}` appears twice; rename or delete one", path.display())]
+    DuplicateColumn {
+        /// The file.
+        path: PathBuf,
+        /// The name.
+        column: String,
+    },
+
+    /// No column has this name.
+    #[error("{}:1: there is no column `{column}`; the columns are {known}", path.display())]
+    NoSuchColumn {
+        /// The file.
+        path: PathBuf,
+        /// The name that was asked for.
+        column: String,
+        /// The names that exist.
+        known: String,
+    },
+
+    /// There is a header but nothing below it.
+    #[error("{}: the table has no rows; at least one observation is needed", path.display())]
+    NoRows {
+        /// The file.
+        path: PathBuf,
+    },
+
+    /// A cell is quoted.
+    #[error(
+        "{}:{line}: column `{column}` is quoted; long tables are read without quotes: write \
+         plain numbers, or read the file as a small table", path.display()
+    )]
+    Quoted {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// The column.
+        column: String,
+    },
+
+    /// A row has another number of cells than the header.
+    #[error("{}:{line}: the row has {found} cells, the header has {expected}", path.display())]
+    Ragged {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// Cells in the row.
+        found: usize,
+        /// Cells in the header.
+        expected: usize,
+    },
+
+    /// A line between rows is blank.
+    #[error("{}:{line}: the line is blank; delete it", path.display())]
+    Blank {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+    },
+
+    /// A cell is empty.
+    #[error(
+        "{}:{line}: column `{column}`: the cell is empty; fill it in or delete the row",
+        path.display()
+    )]
+    Empty {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// The column.
+        column: String,
+    },
+
+    /// A cell is not a number.
+    #[error("{}:{line}: column `{column}`: `{found}` is not a number", path.display())]
+    NotANumber {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// The cell.
+        found: String,
+    },
+
+    /// A cell is NaN, infinite, or beyond the range of double precision.
+    #[error(
+        "{}:{line}: column `{column}`: `{found}` is not a finite number; delete the row",
+        path.display()
+    )]
+    NotFinite {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// The column.
+        column: String,
+        /// The cell.
+        found: String,
+    },
+
+    /// A line does not fit into a chunk.
+    #[error(
+        "{}:{line}: the line is longer than {limit} bytes; is this a CSV file?", path.display()
+    )]
+    LineTooLong {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: u64,
+        /// The most that a line may have.
+        limit: usize,
+    },
+}
+
+/// What was read in the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Summary {
+    /// Rows, without the header.
+    pub rows: u64,
+    /// Bytes, with the header.
+    pub bytes: u64,
+    /// Chunks.
+    pub chunks: u64,
+}
+
+/// Some rows of the file.
+#[derive(Debug, Clone, Copy)]
+pub struct Chunk<'a> {
+    /// The selected columns in the order of selection, all equally long.
+    pub columns: &'a [&'a [f64]],
+    /// Line of the first row, counted from 1 (the header is line 1).
+    pub first_line: u64,
+    /// Number of the chunk, from 0.
+    pub index: u64,
+}
+
+/// A long CSV file, open at its first row.
+#[derive(Debug)]
+pub struct FastCsv {
+    reader: Reader,
+    layout: Layout,
+}
+
+impl FastCsv {
+    /// Opens a file and reads its header. All columns are selected.
+    ///
+    /// # Errors
+    ///
+    /// [`FastCsvError`]: `Read`, `Header`, `DuplicateColumn`.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, FastCsvError> {
+        Self::open_with(path.as_ref(), CHUNK_BYTES)
+    }
+
+    /// Opens a file that is to be read `chunk_bytes` at a time; at least 64.
+    ///
+    /// No line may be longer than a chunk.
+    ///
+    /// # Errors
+    ///
+    /// As [`FastCsv::open`].
+    pub fn open_with(path: &Path, chunk_bytes: usize) -> Result<Self, FastCsvError> {
+        let read = |error: &std::io::Error| FastCsvError::Read { path: path.to_owned(), reason: error.to_string() };
+        let header = |problem| FastCsvError::Header { path: path.to_owned(), problem };
+        let mut reader = Reader {
+            path: path.to_owned(),
+            file: File::open(path).map_err(|error| read(&error))?,
+            chunk_bytes: chunk_bytes.max(64),
+            carry: Vec::new(),
+            next_line: 1,
+            summary: Summary::default(),
+            has_ended: false,
+        };
+        let mut start = Vec::new();
+        reader.fill(&mut start)?;
+        let Some(end) = memchr(b'\n', &start) else {
+            return Err(if reader.has_ended { header("there is no line end") } else { reader.too_long() });
+        };
+        let line = start[..end].strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&start[..end]);
+        let line = line.strip_suffix(b"\r").unwrap_or(line);
+        let text = std::str::from_utf8(line).map_err(|_| header("it is not UTF-8 text"))?;
+        let headers: Vec<String> = text.split(',').map(|cell| unquoted(cell.trim())).collect();
+        if headers.iter().any(|column| column.contains('"')) {
+            return Err(header("a name holds a comma or a quote"));
+        }
+        if headers.iter().any(String::is_empty) {
+            return Err(header("a column has no name"));
+        }
+        for (i, column) in headers.iter().enumerate() {
+            if headers[..i].iter().any(|other| name_of(other) == name_of(column)) {
+                return Err(FastCsvError::DuplicateColumn {
+                    path: path.to_owned(),
+                    column: name_of(column).to_owned(),
+                });
+            }
+        }
+        reader.carry = start.split_off(end + 1);
+        reader.next_line = 2;
+        let slots = (0..headers.len()).map(Some).collect();
+        Ok(Self { reader, layout: Layout { selected: headers.len(), headers, slots } })
+    }
+
+    /// The headers as they stand in the file, with their units, without quotes.
+    #[must_use]
+    pub fn headers(&self) -> &[String] {
+        &self.layout.headers
+    }
+
+    /// Index of a column, by its name or by its whole header `name [unit]`.
+    ///
+    /// # Errors
+    ///
+    /// [`FastCsvError::NoSuchColumn`].
+    pub fn column(&self, name: &str) -> Result<usize, FastCsvError> {
+        let headers = &self.layout.headers;
+        headers.iter().position(|header| header == name || name_of(header) == name).ok_or_else(|| {
+            FastCsvError::NoSuchColumn {
+                path: self.reader.path.clone(),
+                column: name.to_owned(),
+                known: headers.join(", "),
+            }
+        })
+    }
+
+    /// Unit of a column as it is written between the brackets, if it is.
+    #[must_use]
+    pub fn unit(&self, column: usize) -> Option<&str> {
+        let header = self.layout.headers.get(column)?;
+        header.strip_suffix(']')?.split_once('[').map(|(_, unit)| unit.trim())
+    }
+
+    /// Reads only these columns, in this order; all others are passed over.
+    ///
+    /// # Errors
+    ///
+    /// [`FastCsvError::NoSuchColumn`], and [`FastCsvError::DuplicateColumn`] for a column
+    /// selected twice.
+    pub fn select(mut self, names: &[&str]) -> Result<Self, FastCsvError> {
+        let mut slots = vec![None; self.layout.headers.len()];
+        for (slot, name) in names.iter().enumerate() {
+            let column = self.column(name)?;
+            if slots[column].replace(slot).is_some() {
+                return Err(FastCsvError::DuplicateColumn {
+                    path: self.reader.path.clone(),
+                    column: (*name).to_owned(),
+                });
+            }
+        }
+        self.layout.slots = slots;
+        self.layout.selected = names.len();
+        Ok(self)
+    }
+
+    /// Hands on every chunk in order: the selected columns, and the line of their first
+    /// row (the header is line 1).
+    ///
+    /// # Errors
+    ///
+    /// The first [`FastCsvError`] in the file's order, or what `each` returns.
+    pub fn for_each_chunk<E, F>(self, mut each: F) -> Result<Summary, E>
+    where
+        F: FnMut(&[&[f64]], u64) -> Result<(), E>,
+        E: From<FastCsvError>,
+    {
+        let Self { mut reader, layout } = self;
+        let mut memory = Memory::default();
+        while let Some(lines) = reader.next(&mut memory.text)? {
+            let columns = layout.parse(&reader.path, &mut memory, &lines)?;
+            each(&columns, lines.first)?;
+        }
+        Ok(reader.finish()?)
+    }
+}
+
+/// A header cell without the quotes that some programs put around every name.
+fn unquoted(cell: &str) -> String {
+    let inner = cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"'));
+    inner.unwrap_or(cell).trim().to_owned()
+}
+
+/// The name in front of the unit.
+fn name_of(header: &str) -> &str {
+    match header.strip_suffix(']').and_then(|header| header.split_once('[')) {
+        Some((name, _)) if !name.trim().is_empty() => name.trim(),
+        _ => header,
+    }
+}
+
+/// Memory for one chunk.
+#[derive(Debug, Default)]
+struct Memory {
+    /// Whole lines, then zeros.
+    text: Vec<u8>,
+    /// Column after column.
+    numbers: Vec<f64>,
+}
+
+/// The lines of a chunk.
+#[derive(Debug, Clone, Copy)]
+struct Lines {
+    index: u64,
+    first: u64,
+    count: usize,
+}
+
+/// The file, cut into chunks of whole lines.
+#[derive(Debug)]
+struct Reader {
+    path: PathBuf,
+    file: File,
+    chunk_bytes: usize,
+    /// What was read beyond the last whole line.
+    carry: Vec<u8>,
+    next_line: u64,
+    summary: Summary,
+    has_ended: bool,
+}
+
+impl Reader {
+    /// Reads until `text` has a chunk's bytes or the file ends.
+    fn fill(&mut self, text: &mut Vec<u8>) -> Result<(), FastCsvError> {
+        let missing = self.chunk_bytes.saturating_sub(text.len());
+        text.reserve(missing + PADDING);
+        let got = (&mut self.file)
+            .take(missing as u64)
+            .read_to_end(text)
+            .map_err(|error| FastCsvError::Read { path: self.path.clone(), reason: error.to_string() })?;
+        self.summary.bytes += got as u64;
+        self.has_ended = got < missing;
+        Ok(())
+    }
+
+    /// The next whole lines, followed by padding; None at the end.
+    fn next(&mut self, text: &mut Vec<u8>) -> Result<Option<Lines>, FastCsvError> {
+        text.clear();
+        text.append(&mut self.carry);
+        if !self.has_ended {
+            self.fill(text)?;
+        }
+        if self.has_ended && text.last().is_some_and(|&last| last != b'\n') {
+            text.push(b'\n');
+        }
+        let Some(last) = memrchr(b'\n', text) else {
+            return if text.is_empty() { Ok(None) } else { Err(self.too_long()) };
+        };
+        // Blank lines at the end of the file do not count; elsewhere they are refused.
+        let mut end = last + 1;
+        while let Some(before) = end_of_line_before(&text[..end]) {
+            end = before;
+        }
+        if !self.has_ended {
+            self.carry.extend_from_slice(&text[end..]);
+            if end == 0 {
+                return Err(FastCsvError::Blank { path: self.path.clone(), line: self.next_line });
+            }
+        } else if end == 0 {
+            return Ok(None);
+        }
+        text.truncate(end);
+        let lines =
+            Lines { index: self.summary.chunks, first: self.next_line, count: memchr_iter(b'\n', text).count() };
+        text.resize(end + PADDING, 0);
+        self.next_line += lines.count as u64;
+        self.summary.chunks += 1;
+        self.summary.rows += lines.count as u64;
+        Ok(Some(lines))
+    }
+
+    fn too_long(&self) -> FastCsvError {
+        FastCsvError::LineTooLong { path: self.path.clone(), line: self.next_line, limit: self.chunk_bytes }
+    }
+
+    /// What was read; refuses a table without rows.
+    fn finish(self) -> Result<Summary, FastCsvError> {
+        if self.summary.rows == 0 {
+            return Err(FastCsvError::NoRows { path: self.path });
+        }
+        Ok(self.summary)
+    }
+}
+
+/// Where the text ends without its last line, if that line is blank.
+fn end_of_line_before(text: &[u8]) -> Option<usize> {
+    let line = text.strip_suffix(b"\n")?;
+    let line = line.strip_suffix(b"\r").unwrap_or(line);
+    (line.is_empty() || line.ends_with(b"\n")).then_some(line.len())
+}
+
+/// Which column goes where.
+#[derive(Debug)]
+struct Layout {
+    headers: Vec<String>,
+    /// For every column of the file its place among the selected.
+    slots: Vec<Option<usize>>,
+    selected: usize,
+}
+
+impl Layout {
+    /// Turns the lines in `memory` into columns.
+    fn parse<'a>(&self, path: &Path, memory: &'a mut Memory, lines: &Lines) -> Result<Vec<&'a [f64]>, FastCsvError> {
+        let rows = lines.count;
+        memory.numbers.resize(self.selected * rows, 0.0);
+        let mut at = 0;
+        for row in 0..rows {
+            let next = self.parse_line(&memory.text, at, rows, row, &mut memory.numbers);
+            let Some(next) = next else {
+                let line = lines.first + row as u64;
+                return Err(self.diagnose(path, &memory.text[at..], line));
+            };
+            at = next;
+        }
+        let numbers = &memory.numbers;
+        Ok((0..self.selected).map(|slot| &numbers[slot * rows..(slot + 1) * rows]).collect())
+    }
+
+    /// Reads the line at `at`; returns where the next one starts, None when anything is wrong.
+    #[inline]
+    fn parse_line(&self, text: &[u8], mut at: usize, rows: usize, row: usize, numbers: &mut [f64]) -> Option<usize> {
+        let (last, others) = self.slots.split_last()?;
+        for slot in others {
+            let end = parse_cell(text, at, *slot, rows, row, numbers)?;
+            if *text.get(end)? != b',' {
+                return None;
+            }
+            at = end + 1;
+        }
+        let end = parse_cell(text, at, *last, rows, row, numbers)?;
+        match text.get(end..end + 2)? {
+            [b'\n', _] => Some(end + 1),
+            b"\r\n" => Some(end + 2),
+            _ => None,
+        }
+    }
+
+    /// Says what is wrong with a line that could not be read.
+    #[cold]
+    fn diagnose(&self, path: &Path, text: &[u8], line: u64) -> FastCsvError {
+        let path = path.to_owned();
+        let row = &text[..memchr(b'\n', text).unwrap_or(text.len())];
+        let row = row.strip_suffix(b"\r").unwrap_or(row);
+        let cells: Vec<&[u8]> = row.split(|&byte| byte == b',').collect();
+        if row.is_empty() {
+            return FastCsvError::Blank { path, line };
+        }
+        let named = |k: usize| match self.headers.get(k) {
+            Some(header) => name_of(header).to_owned(),
+            None => format!("{}", k + 1),
+        };
+        if let Some(k) = cells.iter().position(|cell| cell.contains(&b'"')) {
+            let column = named(k);
+            return FastCsvError::Quoted { path, line, column };
+        }
+        if cells.len() != self.headers.len() {
+            return FastCsvError::Ragged { path, line, found: cells.len(), expected: self.headers.len() };
+        }
+        for (k, cell) in cells.iter().enumerate() {
+            let cell = without_blanks(cell);
+            let (column, found) = (named(k), String::from_utf8_lossy(cell).into_owned());
+            if self.slots[k].is_none() {
+                continue;
+            }
+            if cell.is_empty() {
+                return FastCsvError::Empty { path, line, column };
+            }
+            match fast_float2::parse::<f64, _>(cell) {
+                Err(_) => {
+                    return FastCsvError::NotANumber { path, line, column, found };
+                }
+                Ok(value) if !value.is_finite() => {
+                    return FastCsvError::NotFinite { path, line, column, found };
+                }
+                Ok(_) => {}
+            }
+        }
+        // Not reached: every cell that is read is good by itself.
+        FastCsvError::NotANumber { path, line, column: named(0), found: String::from_utf8_lossy(row).into_owned() }
+    }
+}
+
+/// Reads or passes over the cell at `at`; returns where it ends.
+#[inline]
+fn parse_cell(
+    text: &[u8],
+    at: usize,
+    slot: Option<usize>,
+    rows: usize,
+    row: usize,
+    numbers: &mut [f64],
+) -> Option<usize> {
+    let Some(slot) = slot else {
+        return pass_over(text, at);
+    };
+    let (value, end) = match fast_number(text, at) {
+        Some(found) => found,
+        None => slow_number(text, at)?,
+    };
+    *numbers.get_mut(slot * rows + row)? = value;
+    Some(end)
+}
+
+/// Where the cell at `at` ends, unread; None when it is quoted.
+fn pass_over(text: &[u8], at: usize) -> Option<usize> {
+    let rest = text.get(at..)?;
+    let length = memchr2(b',', b'\n', rest)?;
+    let cell = &rest[..length];
+    if memchr(b'"', cell).is_some() {
+        return None;
+    }
+    let has_return = rest[length] == b'\n' && cell.ends_with(b"\r");
+    Some(at + length - usize::from(has_return))
+}

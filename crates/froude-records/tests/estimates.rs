@@ -1,0 +1,303 @@
+//! `estimate.json`: whole, without NaN, in the published schema, bit for bit.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::Path;
+
+use froude_records::estimate::{
+    Coefficient, Covariance, DataFile, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, Measured,
+    NamedCorrelation, Range, Status,
+};
+use froude_records::finding::{Finding, Severity};
+use froude_records::json::{parse_estimates, read_estimates, write_estimates};
+use froude_records::schema::ESTIMATE_JSON_SCHEMA;
+use proptest::prelude::*;
+
+fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
+    Coefficient {
+        value,
+        unit: "m/s".to_owned(),
+        status,
+        standard_uncertainty: Some(0.1),
+        type_a: None,
+        type_b: Some(0.0),
+        interval_95: Some([-0.2, 0.3]),
+        effective_dof: Some(7.5),
+    }
+}
+
+fn measured(value: f64, unit: &str) -> Measured {
+    Measured { value, unit: unit.to_owned() }
+}
+
+fn sample() -> EstimateFile {
+    let estimate = Estimate {
+        id: "tank/f4".to_owned(),
+        source: "tank".to_owned(),
+        kind: "tank".to_owned(),
+        model: "f4".to_owned(),
+        law: Law {
+            version: 1,
+            constants: [("v_ref".to_owned(), measured(1.0, "m/s"))].into(),
+            formulas: [("f_y".to_owned(), "Y_v*v".to_owned())].into(),
+        },
+        geometry: [("a".to_owned(), measured(0.0588, "m"))].into(),
+        density: Some(measured(1025.0, "kg/m^3")),
+        frame: "body axes".to_owned(),
+        reference_point: "centre".to_owned(),
+        method: "least squares".to_owned(),
+        covariance_kind: "classical".to_owned(),
+        dof: [("f_x".to_owned(), Some(10.0)), ("f_y".to_owned(), None)].into(),
+        sigma: [("f_x".to_owned(), measured(0.02, "N"))].into(),
+        n_observations: 12,
+        coefficients: [
+            ("C_d_I".to_owned(), coefficient(Some(0.4), Status::Free)),
+            ("C_f_I".to_owned(), coefficient(None, Status::Undetermined)),
+        ]
+        .into(),
+        covariance: Some(Covariance { names: vec!["C_d_I".to_owned()], matrix: vec![vec![0.01]] }),
+        undetermined: vec!["k*G_T*C_f_II + G_HTx*C_fHT_II".to_owned()],
+        validity: [("speed".to_owned(), Range { low: 0.1, high: 1.0, unit: "m/s".to_owned() })].into(),
+        diagnostics: Diagnostics {
+            condition_number: Some(12.0),
+            largest_correlation: Some(NamedCorrelation { first: "a".to_owned(), second: "b".to_owned(), value: -0.9 }),
+            relative_residual: [("f_x".to_owned(), 0.05)].into(),
+            cross_validation_note: Some("needs three".to_owned()),
+            ..Diagnostics::default()
+        },
+        recommended: true,
+        reason: Some("smallest AICc".to_owned()),
+    };
+    EstimateFile {
+        schema: ESTIMATE_SCHEMA.to_owned(),
+        data: vec![DataFile { path: "tank.csv".to_owned(), sha256: "0".repeat(64) }],
+        versions: [("froude".to_owned(), "0.1.0".to_owned())].into(),
+        estimates: vec![estimate],
+        findings: vec![Finding::new(Severity::Warning, "one-sided", "only one sign of angle was run".to_owned())],
+    }
+}
+
+fn text(file: &EstimateFile) -> String {
+    serde_json::to_string_pretty(file).unwrap()
+}
+
+fn parse(text: &str) -> Result<EstimateFile, String> {
+    parse_estimates(Path::new("estimate.json"), text).map_err(|e| e.to_string())
+}
+
+/// The message for the sample with one passage changed.
+#[track_caller]
+fn refused(from: &str, to: &str, message: &str) {
+    let text = text(&sample());
+    assert!(text.contains(from), "{from} in {text}");
+    assert_eq!(parse(&text.replacen(from, to, 1)).expect_err("accepted"), message);
+}
+
+fn line_with(passage: &str) -> usize {
+    1 + text(&sample()).lines().position(|l| l.contains(passage)).unwrap()
+}
+
+#[test]
+fn a_record_survives_being_written_and_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("estimate.json");
+    let file = sample();
+    file.write(&path).unwrap();
+    assert_eq!(EstimateFile::read(&path).unwrap(), file);
+    assert!(std::fs::read_to_string(&path).unwrap().ends_with("}\n"));
+}
+
+#[test]
+fn records_are_valid_against_the_published_schema() {
+    let schema: serde_json::Value = serde_json::from_str(ESTIMATE_JSON_SCHEMA).unwrap();
+    jsonschema::meta::validate(&schema).unwrap();
+    let validator = jsonschema::draft202012::new(&schema).unwrap();
+    let value = serde_json::to_value(sample()).unwrap();
+    let errors: Vec<String> = validator.iter_errors(&value).map(|e| format!("{}: {e}", e.instance_path())).collect();
+    assert!(errors.is_empty(), "{errors:#?}");
+
+    // What the schema must refuse.
+    let spoilt = |pointer: &str, new: serde_json::Value| {
+        let mut value = value.clone();
+        *value.pointer_mut(pointer).unwrap() = new;
+        assert!(!validator.is_valid(&value), "{pointer}");
+    };
+    spoilt("/schema", "froude/estimate/2".into());
+    spoilt("/data/0/sha256", "xyz".into());
+    spoilt("/estimates/0/coefficients/C_d_I/status", "guessed".into());
+    spoilt("/estimates/0/coefficients/C_d_I/value", "0.4".into());
+    spoilt("/estimates/0/coefficients/C_d_I/interval_95", serde_json::json!([1.0]));
+    spoilt("/estimates/0/coefficients/C_d_I/standard_uncertainty", (-1.0).into());
+    spoilt("/estimates/0/coefficients/C_f_I/value", 0.0.into());
+    spoilt("/findings/0/severity", "fatal".into());
+    spoilt("/estimates/0/id", serde_json::Value::Null);
+}
+
+#[test]
+fn every_status_and_every_key_of_the_types_is_in_the_schema() {
+    let schema: serde_json::Value = serde_json::from_str(ESTIMATE_JSON_SCHEMA).unwrap();
+    let written = schema.to_string();
+    let value = serde_json::to_value(sample()).unwrap();
+    for level in [
+        &value,
+        &value["estimates"][0],
+        &value["estimates"][0]["diagnostics"],
+        &value["estimates"][0]["coefficients"]["C_d_I"],
+    ] {
+        for key in level.as_object().unwrap().keys() {
+            assert!(written.contains(&format!("\"{key}\"")), "{key}");
+        }
+    }
+    for status in [
+        Status::Free,
+        Status::AtBound,
+        Status::Fixed,
+        Status::Excluded,
+        Status::Prior,
+        Status::Undetermined,
+        Status::BoundContradicted,
+    ] {
+        assert!(written.contains(&serde_json::to_string(&status).unwrap()), "{status:?}");
+    }
+}
+
+#[test]
+fn versions_are_compared() {
+    refused(
+        "froude/estimate/1",
+        "froude/estimate/2",
+        "estimate.json:2: this is froude/estimate/2; this program reads up to froude/estimate/1: use a newer Froude",
+    );
+    refused(
+        "froude/estimate/1",
+        "froude/campaign/1",
+        "estimate.json:2: `schema` is \"froude/campaign/1\"; expected froude/estimate/1",
+    );
+    assert_eq!(
+        parse("{\"estimates\": []}").unwrap_err(),
+        "estimate.json: `schema` is missing; expected froude/estimate/1"
+    );
+    // A newer record may look quite different: the version is told first.
+    assert_eq!(
+        parse("{\"schema\": \"froude/estimate/7\", \"estimates\": 3}").unwrap_err(),
+        "estimate.json:1: this is froude/estimate/7; this program reads up to froude/estimate/1: use a newer Froude"
+    );
+}
+
+#[test]
+fn what_json_cannot_say_is_explained() {
+    let at = line_with("\"value\": 0.4");
+    refused(
+        "\"value\": 0.4",
+        "\"value\": NaN",
+        &format!(
+            "estimate.json:{at}: not an estimate record: expected value; JSON has no NaN and no Infinity: an undetermined number is null"
+        ),
+    );
+    refused(
+        "\"value\": 0.4",
+        "\"value\": 1e999",
+        &format!("estimate.json:{at}: not an estimate record: number out of range"),
+    );
+    refused(
+        "\"value\": 0.4",
+        "\"value\": \"0.4\"",
+        &format!("estimate.json:{at}: not an estimate record: invalid type: string \"0.4\", expected f64"),
+    );
+    refused(
+        "\"C_f_I\": {",
+        "\"C_d_I\": {",
+        &format!("estimate.json:{}: not an estimate record: the key `C_d_I` appears twice", line_with("\"C_f_I\": {")),
+    );
+    let cut = &text(&sample())[..300];
+    assert!(parse(cut).unwrap_err().contains(": not an estimate record: EOF while parsing"));
+}
+
+#[test]
+fn records_that_contradict_themselves_are_refused() {
+    let id = line_with("\"id\"");
+    refused(
+        "\"value\": null",
+        "\"value\": 0.0",
+        &format!("estimate.json:{id}: estimate tank/f4: coefficient C_f_I is undetermined and has a value; write null"),
+    );
+    refused(
+        "\"standard_uncertainty\": 0.1",
+        "\"standard_uncertainty\": -0.1",
+        &format!(
+            "estimate.json:{id}: estimate tank/f4: coefficient C_d_I has standard_uncertainty -0.1; an uncertainty is not negative"
+        ),
+    );
+    let mut file = sample();
+    file.estimates[0].covariance = Some(Covariance { names: vec!["C_d_I".to_owned()], matrix: vec![vec![0.01, 0.0]] });
+    assert_eq!(
+        parse(&text(&file)).unwrap_err(),
+        format!("estimate.json:{id}: estimate tank/f4: the covariance names 1 coefficients, its matrix is not 1 by 1")
+    );
+    file.estimates[0].covariance = Some(Covariance { names: vec!["C_q".to_owned()], matrix: vec![vec![0.01]] });
+    assert_eq!(
+        parse(&text(&file)).unwrap_err(),
+        format!("estimate.json:{id}: estimate tank/f4: the covariance names C_q, which is no coefficient of it")
+    );
+    let mut file = sample();
+    file.estimates.push(file.estimates[0].clone());
+    let second = 1 + text(&file).lines().enumerate().filter(|(_, l)| l.contains("\"id\"")).nth(1).unwrap().0;
+    assert_eq!(
+        parse(&text(&file)).unwrap_err(),
+        format!("estimate.json:{second}: the id `tank/f4` appears twice; every estimate needs its own")
+    );
+    file.estimates[1].id = "tank/f5".to_owned();
+    assert_eq!(
+        parse(&text(&file)).unwrap_err(),
+        format!(
+            "estimate.json:{second}: estimate tank/f5: it is the second of source \"tank\" to be recommended; one is"
+        )
+    );
+}
+
+type Spoil = fn(&mut Estimate);
+
+#[test]
+fn a_number_that_is_not_finite_is_never_written_as_null() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("estimate.json");
+    write_estimates(&path, &sample()).unwrap();
+    let before = std::fs::read(&path).unwrap();
+    let cases: [(&str, &str, Spoil); 6] = [
+        ("coefficients.C_d_I.value", "NaN", |e| e.coefficients["C_d_I"].value = Some(f64::NAN)),
+        ("coefficients.C_d_I.interval_95", "inf", |e| e.coefficients["C_d_I"].interval_95 = Some([0.0, f64::INFINITY])),
+        ("diagnostics.condition_number", "inf", |e| e.diagnostics.condition_number = Some(f64::INFINITY)),
+        ("covariance.matrix", "NaN", |e| e.covariance.as_mut().unwrap().matrix[0][0] = f64::NAN),
+        ("geometry.a", "NaN", |e| e.geometry["a"].value = f64::NAN),
+        ("dof.f_x", "inf", |e| e.dof["f_x"] = Some(f64::INFINITY)),
+    ];
+    for (item, value, spoil) in cases {
+        let mut file = sample();
+        spoil(&mut file.estimates[0]);
+        assert_eq!(
+            write_estimates(&path, &file).unwrap_err().to_string(),
+            format!(
+                "cannot write {}: tank/f4, {item} is {value}, not a finite number; nothing was changed",
+                path.display()
+            )
+        );
+        assert_eq!(std::fs::read(&path).unwrap(), before);
+    }
+    assert!(read_estimates(&path).is_ok());
+}
+
+proptest! {
+    /// Numbers come back bit for bit, whatever they are, and stay valid against the schema.
+    #[test]
+    fn numbers_read_back_to_the_bits_that_were_written(
+        value in proptest::num::f64::NORMAL | proptest::num::f64::SUBNORMAL | proptest::num::f64::ZERO,
+        other in -1e6..1e6_f64,
+    ) {
+        let mut file = sample();
+        file.estimates[0].coefficients["C_d_I"].value = Some(value);
+        file.estimates[0].density = Some(measured(other, "kg/m^3"));
+        let read = parse(&text(&file)).unwrap();
+        let found = read.estimates[0].coefficients["C_d_I"].value.unwrap();
+        prop_assert_eq!(found.to_bits(), value.to_bits());
+        prop_assert_eq!(read, file);
+    }
+}
