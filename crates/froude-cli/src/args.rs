@@ -58,7 +58,7 @@ pub enum Verb {
     },
     /// Write the observation tables that a campaign would give for its chosen true coefficients.
     Simulate {
-        /// The campaign, with [simulate] and [[source.plan]].
+        /// The campaign, with its `simulate` section and `source.plan` blocks.
         campaign: PathBuf,
         /// Write over an existing table.
         #[arg(long)]

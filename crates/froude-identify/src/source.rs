@@ -18,7 +18,7 @@ use crate::regression::{ModelFit, Settings, regress};
 use crate::selection::{
     BlockScore, NestedTest, Recommendation, Score, leave_one_out, nested_tests, range_block, recommend,
 };
-use crate::{diagnosis, lint, validity};
+use crate::{diagnosis, lint, uncertainty, validity};
 
 /// Everything that identification found out about one source.
 #[derive(Debug, Clone)]
@@ -91,8 +91,12 @@ pub fn identify_source(
     let recommendation = recommend(&models, &data, &tests, &scores);
     let mut estimates = Vec::new();
     for (i, model) in models.iter().enumerate() {
-        let diagnostics = diagnosis::diagnostics(model, &data, &scores[i])?;
+        let mut diagnostics = diagnosis::diagnostics(model, &data, &scores[i])?;
         let chosen = recommendation.as_ref().is_some_and(|r| r.index == i);
+        if let Some(draws) = campaign.identify.monte_carlo.filter(|_| chosen) {
+            progress(&format!("{} by {draws} Monte Carlo draws", model.law.name));
+            diagnostics.notes.extend(monte_carlo_note(model, &data, settings, draws));
+        }
         let found = diagnosis::findings(model, &data, campaign, &diagnostics);
         // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
         if chosen {
@@ -117,6 +121,39 @@ pub fn identify_source(
         findings,
         files,
     })
+}
+
+/// Type B uncertainties by Monte Carlo beside the linear ones: where they differ, the propagation is not linear.
+fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, draws: usize) -> Option<String> {
+    /// Seed of the draws; the same campaign gives the same note.
+    const SEED: u64 = 1;
+    // Entries that are part of the scatter are not drawn: the linear figure does not hold them either.
+    let shared: Vec<_> = settings
+        .budget
+        .iter()
+        .zip(&model.contributions)
+        .filter(|(_, part)| !part.in_scatter)
+        .map(|(entry, _)| entry.clone())
+        .collect();
+    if shared.is_empty() {
+        return None;
+    }
+    let bare = Settings { budget: &[], shared_errors: &[], ..settings };
+    let covariance = uncertainty::monte_carlo(data, &shared, draws, SEED, |moved| {
+        regress(&model.law, moved, bare)
+            .ok()
+            .map(|m| m.fit.coefficients.iter().map(|c| c.unconstrained.unwrap_or(0.0)).collect())
+    })?;
+    let parts: Vec<String> = model
+        .specs
+        .iter()
+        .enumerate()
+        .filter_map(|(j, s)| {
+            let combined = model.combined[j]?;
+            Some(format!("{} {:.2e} ({:.2e})", s.name, covariance[(j, j)].max(0.0).sqrt(), combined.type_b))
+        })
+        .collect();
+    Some(format!("type B by {draws} Monte Carlo draws (linear in parentheses): {}", parts.join(", ")))
 }
 
 /// The laws that the campaign asks for, over the channels of the table.

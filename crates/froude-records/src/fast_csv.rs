@@ -12,7 +12,7 @@
 //! not selected are passed over unread, so they may hold text (without quotes).
 //!
 //! **Exact.** Numbers are the same, bit for bit, as those of `str::parse::<f64>`: up to
-//! 8 digits before the point and 16 after, below 2⁵³ without the point, are an integer
+//! 8 digits before the point and 16 after, below 2⁵² without the point, are an integer
 //! divided by a power of ten that is exact, which rounds once (Clinger 1990); all
 //! others go through `fast-float2`.
 //!
@@ -46,8 +46,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use memchr::{memchr, memchr_iter, memchr2, memrchr};
-use number::{fast_number, slow_number, without_blanks};
+use memchr::{memchr, memchr_iter, memrchr};
+use number::{fast_number, separators, slow_number, without_blanks};
 
 /// Bytes read at a time: raw text and columns stay in the second-level cache.
 const CHUNK_BYTES: usize = 256 * 1024;
@@ -236,7 +236,7 @@ impl FastCsv {
         Self::open_with(path.as_ref(), CHUNK_BYTES)
     }
 
-    /// Opens a file that is to be read `chunk_bytes` at a time; at least 64.
+    /// Opens a file that is to be read `chunk_bytes` at a time; at least 64, at most 2³⁰.
     ///
     /// No line may be longer than a chunk.
     ///
@@ -249,7 +249,7 @@ impl FastCsv {
         let mut reader = Reader {
             path: path.to_owned(),
             file: File::open(path).map_err(|error| read(&error))?,
-            chunk_bytes: chunk_bytes.max(64),
+            chunk_bytes: chunk_bytes.clamp(64, 1 << 30),
             carry: Vec::new(),
             next_line: 1,
             summary: Summary::default(),
@@ -375,6 +375,8 @@ fn name_of(header: &str) -> &str {
 struct Memory {
     /// Whole lines, then zeros.
     text: Vec<u8>,
+    /// Where every cell ends.
+    ends: Vec<u32>,
     /// Column after column.
     numbers: Vec<f64>,
 }
@@ -443,7 +445,7 @@ impl Reader {
         text.truncate(end);
         let lines =
             Lines { index: self.summary.chunks, first: self.next_line, count: memchr_iter(b'\n', text).count() };
-        text.resize(end + PADDING, 0);
+        text.resize(end.next_multiple_of(8) + PADDING, 0);
         self.next_line += lines.count as u64;
         self.summary.chunks += 1;
         self.summary.rows += lines.count as u64;
@@ -482,49 +484,68 @@ struct Layout {
 impl Layout {
     /// Turns the lines in `memory` into columns.
     fn parse<'a>(&self, path: &Path, memory: &'a mut Memory, lines: &Lines) -> Result<Vec<&'a [f64]>, FastCsvError> {
-        let rows = lines.count;
-        memory.numbers.resize(self.selected * rows, 0.0);
-        let mut at = 0;
-        for row in 0..rows {
-            let next = self.parse_line(&memory.text, at, rows, row, &mut memory.numbers);
-            let Some(next) = next else {
-                let line = lines.first + row as u64;
-                return Err(self.diagnose(path, &memory.text[at..], line));
-            };
-            at = next;
+        let Memory { text, ends, numbers } = memory;
+        let (rows, width) = (lines.count, self.headers.len());
+        numbers.resize(self.selected * rows, 0.0);
+        let found = separators(text, ends);
+        // A quote could hide a separator in a cell that is passed over.
+        let is_plain = self.selected == width || memchr(b'"', text).is_none();
+        let bad_row = if is_plain { self.parse_rows(text, &ends[..found], rows, numbers).err() } else { Some(0) };
+        if let Some(first) = bad_row {
+            return Err(self.diagnose(path, text, lines, first));
         }
         let numbers = &memory.numbers;
         Ok((0..self.selected).map(|slot| &numbers[slot * rows..(slot + 1) * rows]).collect())
     }
 
-    /// Reads the line at `at`; returns where the next one starts, None when anything is wrong.
-    #[inline]
-    fn parse_line(&self, text: &[u8], mut at: usize, rows: usize, row: usize, numbers: &mut [f64]) -> Option<usize> {
-        let (last, others) = self.slots.split_last()?;
-        for slot in others {
-            let end = parse_cell(text, at, *slot, rows, row, numbers)?;
-            if *text.get(end)? != b',' {
-                return None;
+    /// Reads all rows, given where their cells end; stops at the first bad row.
+    fn parse_rows(&self, text: &[u8], ends: &[u32], rows: usize, numbers: &mut [f64]) -> Result<(), usize> {
+        let mut start = 0;
+        for (row, cells) in ends.chunks(self.slots.len()).enumerate() {
+            if cells.len() != self.slots.len() || row >= rows {
+                return Err(row);
             }
-            at = end + 1;
+            for (k, (slot, &end)) in self.slots.iter().zip(cells).enumerate() {
+                let end = end as usize;
+                let is_last = k + 1 == cells.len();
+                if text.get(end) != Some(if is_last { &b'\n' } else { &b',' }) {
+                    return Err(row);
+                }
+                if let Some(slot) = slot {
+                    let has_return = is_last && end > start && text[end - 1] == b'\r';
+                    let cell_end = end - usize::from(has_return);
+                    let value = match fast_number(text, start, cell_end) {
+                        Some(value) => value,
+                        None => text.get(start..cell_end).and_then(slow_number).ok_or(row)?,
+                    };
+                    *numbers.get_mut(slot * rows + row).ok_or(row)? = value;
+                }
+                start = end + 1;
+            }
         }
-        let end = parse_cell(text, at, *last, rows, row, numbers)?;
-        match text.get(end..end + 2)? {
-            [b'\n', _] => Some(end + 1),
-            b"\r\n" => Some(end + 2),
-            _ => None,
-        }
+        Ok(())
     }
 
-    /// Says what is wrong with a line that could not be read.
+    /// Says what is wrong with the first bad line, which is line `first` of the chunk or later.
     #[cold]
-    fn diagnose(&self, path: &Path, text: &[u8], line: u64) -> FastCsvError {
+    fn diagnose(&self, path: &Path, text: &[u8], lines: &Lines, first: usize) -> FastCsvError {
+        let rows = text.split(|&byte| byte == b'\n').take(lines.count);
+        for (k, row) in rows.enumerate().skip(first) {
+            let row = row.strip_suffix(b"\r").unwrap_or(row);
+            if let Err(error) = self.check_row(path, row, lines.first + k as u64) {
+                return error;
+            }
+        }
+        // Not reached: a row that is good by itself is read.
+        FastCsvError::Read { path: path.to_owned(), reason: "the rows do not add up".to_owned() }
+    }
+
+    /// Says what is wrong with a row, if anything is.
+    fn check_row(&self, path: &Path, row: &[u8], line: u64) -> Result<(), FastCsvError> {
         let path = path.to_owned();
-        let row = &text[..memchr(b'\n', text).unwrap_or(text.len())];
-        let row = row.strip_suffix(b"\r").unwrap_or(row);
         let cells: Vec<&[u8]> = row.split(|&byte| byte == b',').collect();
         if row.is_empty() {
-            return FastCsvError::Blank { path, line };
+            return Err(FastCsvError::Blank { path, line });
         }
         let named = |k: usize| match self.headers.get(k) {
             Some(header) => name_of(header).to_owned(),
@@ -532,10 +553,10 @@ impl Layout {
         };
         if let Some(k) = cells.iter().position(|cell| cell.contains(&b'"')) {
             let column = named(k);
-            return FastCsvError::Quoted { path, line, column };
+            return Err(FastCsvError::Quoted { path, line, column });
         }
         if cells.len() != self.headers.len() {
-            return FastCsvError::Ragged { path, line, found: cells.len(), expected: self.headers.len() };
+            return Err(FastCsvError::Ragged { path, line, found: cells.len(), expected: self.headers.len() });
         }
         for (k, cell) in cells.iter().enumerate() {
             let cell = without_blanks(cell);
@@ -544,52 +565,16 @@ impl Layout {
                 continue;
             }
             if cell.is_empty() {
-                return FastCsvError::Empty { path, line, column };
+                return Err(FastCsvError::Empty { path, line, column });
             }
             match fast_float2::parse::<f64, _>(cell) {
-                Err(_) => {
-                    return FastCsvError::NotANumber { path, line, column, found };
-                }
+                Err(_) => return Err(FastCsvError::NotANumber { path, line, column, found }),
                 Ok(value) if !value.is_finite() => {
-                    return FastCsvError::NotFinite { path, line, column, found };
+                    return Err(FastCsvError::NotFinite { path, line, column, found });
                 }
                 Ok(_) => {}
             }
         }
-        // Not reached: every cell that is read is good by itself.
-        FastCsvError::NotANumber { path, line, column: named(0), found: String::from_utf8_lossy(row).into_owned() }
+        Ok(())
     }
-}
-
-/// Reads or passes over the cell at `at`; returns where it ends.
-#[inline]
-fn parse_cell(
-    text: &[u8],
-    at: usize,
-    slot: Option<usize>,
-    rows: usize,
-    row: usize,
-    numbers: &mut [f64],
-) -> Option<usize> {
-    let Some(slot) = slot else {
-        return pass_over(text, at);
-    };
-    let (value, end) = match fast_number(text, at) {
-        Some(found) => found,
-        None => slow_number(text, at)?,
-    };
-    *numbers.get_mut(slot * rows + row)? = value;
-    Some(end)
-}
-
-/// Where the cell at `at` ends, unread; None when it is quoted.
-fn pass_over(text: &[u8], at: usize) -> Option<usize> {
-    let rest = text.get(at..)?;
-    let length = memchr2(b',', b'\n', rest)?;
-    let cell = &rest[..length];
-    if memchr(b'"', cell).is_some() {
-        return None;
-    }
-    let has_return = rest[length] == b'\n' && cell.ends_with(b"\r");
-    Some(at + length - usize::from(has_return))
 }

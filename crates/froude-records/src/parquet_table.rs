@@ -10,13 +10,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
+use parquet::column::page::{Page, PageMetadata, PageReader};
+use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::ParquetMetaData;
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{ChunkReader, FileReader as _, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
-use parquet::record::Field;
 use parquet::schema::types::Type;
 
 use crate::assemble::{Raw, Want, assemble, plan};
@@ -79,42 +80,167 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
             expected: "numbers or text",
         })?);
     }
-    let mut n_rows = 0;
-    for row in reader.get_row_iter(None).map_err(damaged)? {
-        let row = row.map_err(damaged)?;
-        n_rows += 1;
-        if row.len() != raws.len() {
-            return Err(RecordError::RaggedRow {
-                place: Place::row(path, n_rows),
-                found: row.len(),
-                expected: raws.len(),
-            });
-        }
-        for (j, (_, field)) in row.get_column_iter().enumerate() {
-            if matches!(wants[j], Want::LeftOut) {
+    if fields.is_empty() {
+        return Err(RecordError::NoRows { path: path.to_owned() });
+    }
+    let descriptions = reader.metadata().file_metadata().schema_descr_ptr();
+    let mut first_row = 1;
+    for g in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(g).map_err(damaged)?;
+        let n_rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        for (j, want) in wants.iter().enumerate() {
+            if matches!(want, Want::LeftOut) {
                 continue;
             }
-            let place = || Place::row(path, n_rows);
-            match (&mut raws[j], field) {
-                (Raw::Texts(cells), Field::Str(text)) => cells.push(text.clone()),
-                (Raw::Texts(cells), Field::Null) => cells.push(String::new()),
-                (Raw::Numbers(_), Field::Null) => {
-                    return Err(RecordError::EmptyCell { place: place(), column: header[j].clone() });
-                }
-                (Raw::Numbers(values), field) if number(field).is_some_and(f64::is_finite) => {
-                    values.extend(number(field));
-                }
-                (_, other) => {
-                    return Err(RecordError::NotFinite {
-                        place: place(),
-                        column: header[j].clone(),
-                        found: number(other).map_or_else(|| "binary".to_owned(), |x| x.to_string()),
-                    });
-                }
+            let pages = Box::new(Checked(group.get_column_page_reader(j).map_err(damaged)?));
+            let column = get_column_reader(descriptions.column(j), pages);
+            let is_unsigned = matches!(
+                fields[j].get_basic_info().logical_type_ref(),
+                Some(LogicalType::Integer(integer)) if !integer.is_signed
+            );
+            let cells = Cells { path, column: &header[j], first_row, n_rows };
+            cells.read(column, is_unsigned, &mut raws[j])?;
+        }
+        first_row += n_rows;
+    }
+    assemble(path, &header, &wants, raws, sidecar, &whole, (1..first_row).collect())
+}
+
+/// Pages whose claims are held against their bytes before the decoder allocates for them.
+///
+/// The decoder reserves memory for as many dictionary entries as a page's header says; a
+/// damaged header can say two thousand million, and running out of memory cannot be caught.
+struct Checked(Box<dyn PageReader>);
+
+impl PageReader for Checked {
+    fn get_next_page(&mut self) -> parquet::errors::Result<Option<Page>> {
+        let page = self.0.get_next_page()?;
+        // Numbers and lengths of texts take four bytes at least.
+        if let Some(Page::DictionaryPage { buf, num_values, .. }) = &page
+            && *num_values as usize > buf.len() / 4
+        {
+            return Err(ParquetError::General(format!(
+                "a dictionary of {} bytes claims {num_values} entries",
+                buf.len()
+            )));
+        }
+        Ok(page)
+    }
+
+    fn peek_next_page(&mut self) -> parquet::errors::Result<Option<PageMetadata>> {
+        self.0.peek_next_page()
+    }
+
+    fn skip_next_page(&mut self) -> parquet::errors::Result<()> {
+        self.0.skip_next_page()
+    }
+
+    fn at_record_boundary(&mut self) -> parquet::errors::Result<bool> {
+        self.0.at_record_boundary()
+    }
+}
+
+impl Iterator for Checked {
+    type Item = parquet::errors::Result<Page>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.get_next_page().transpose()
+    }
+}
+
+/// One column of one row group.
+struct Cells<'a> {
+    path: &'a Path,
+    column: &'a str,
+    first_row: usize,
+    n_rows: usize,
+}
+
+impl Cells<'_> {
+    fn place(&self, row: usize) -> Place {
+        Place::row(self.path, self.first_row + row)
+    }
+
+    fn damaged(&self, reason: String) -> RecordError {
+        RecordError::Damaged { path: self.path.to_owned(), reason }
+    }
+
+    fn read(&self, column: ColumnReader, is_unsigned: bool, raw: &mut Raw) -> Result<(), RecordError> {
+        match (column, raw) {
+            (ColumnReader::DoubleColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| *x),
+            (ColumnReader::FloatColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| f64::from(*x)),
+            (ColumnReader::Int32ColumnReader(c), Raw::Numbers(out)) if is_unsigned => {
+                self.numbers(c, out, |x| f64::from(x.cast_unsigned()))
             }
+            (ColumnReader::Int32ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| f64::from(*x)),
+            (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) if is_unsigned => {
+                self.numbers(c, out, |x| x.cast_unsigned() as f64)
+            }
+            (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| *x as f64),
+            (ColumnReader::ByteArrayColumnReader(c), Raw::Texts(out)) => self.each(c, |row, cell| {
+                let text = std::str::from_utf8(cell.map_or(&[], ByteArray::data)).map_err(|_| RecordError::Syntax {
+                    place: self.place(row),
+                    problem: format!("column `{}`: the text is not UTF-8", self.column),
+                })?;
+                out.push(text.to_owned());
+                Ok(())
+            }),
+            _ => Err(self.damaged(format!("column {} is of another type than its schema says", self.column))),
         }
     }
-    assemble(path, &header, &wants, raws, sidecar, &whole, (1..=n_rows).collect())
+
+    fn numbers<T: DataType>(
+        &self,
+        column: ColumnReaderImpl<T>,
+        out: &mut Vec<f64>,
+        number: impl Fn(&T::T) -> f64,
+    ) -> Result<(), RecordError> {
+        self.each(column, |row, cell| {
+            let Some(cell) = cell else {
+                return Err(RecordError::EmptyCell { place: self.place(row), column: self.column.to_owned() });
+            };
+            let value = number(cell);
+            if !value.is_finite() {
+                return Err(RecordError::NotFinite {
+                    place: self.place(row),
+                    column: self.column.to_owned(),
+                    found: value.to_string(),
+                });
+            }
+            out.push(value);
+            Ok(())
+        })
+    }
+
+    /// Every cell of the column, `None` for a null, with its row in the group from 0.
+    fn each<T: DataType>(
+        &self,
+        mut column: ColumnReaderImpl<T>,
+        mut see: impl FnMut(usize, Option<&T::T>) -> Result<(), RecordError>,
+    ) -> Result<(), RecordError> {
+        const BATCH: usize = 4096;
+        let mut row = 0;
+        let (mut levels, mut values) = (Vec::new(), Vec::new());
+        while row < self.n_rows {
+            levels.clear();
+            values.clear();
+            let most = BATCH.min(self.n_rows - row);
+            let (n, _, _) = column
+                .read_records(most, Some(&mut levels), None, &mut values)
+                .map_err(|e| self.damaged(in_words(&e)))?;
+            if n == 0 {
+                return Err(self.damaged(format!("column {} ends after {row} of {} rows", self.column, self.n_rows)));
+            }
+            // A required column has no levels: every cell has a value.
+            let mut given = values.iter();
+            for k in 0..n {
+                let cell = if levels.get(k).is_none_or(|level| *level > 0) { given.next() } else { None };
+                see(row + k, cell)?;
+            }
+            row += n;
+        }
+        Ok(())
+    }
 }
 
 /// Sizes that the footer claims, held against the file, before anything is allocated for them.
@@ -190,22 +316,6 @@ fn raw_of(field: &Type) -> Option<Raw> {
         Physical::BYTE_ARRAY => Some(Raw::Texts(Vec::new())),
         _ => None,
     }
-}
-
-fn number(field: &Field) -> Option<f64> {
-    Some(match field {
-        Field::Double(x) => *x,
-        Field::Float(x) => f64::from(*x),
-        Field::Byte(x) => f64::from(*x),
-        Field::Short(x) => f64::from(*x),
-        Field::Int(x) => f64::from(*x),
-        Field::Long(x) => *x as f64,
-        Field::UByte(x) => f64::from(*x),
-        Field::UShort(x) => f64::from(*x),
-        Field::UInt(x) => f64::from(*x),
-        Field::ULong(x) => *x as f64,
-        _ => return None,
-    })
 }
 
 /// Writes a table as Parquet (zstd), whole or not at all; numbers as doubles in the units of their columns.

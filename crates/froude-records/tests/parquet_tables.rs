@@ -2,12 +2,17 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use froude_records::csv_table::parse_csv;
 use froude_records::parquet_table::write_parquet;
 use froude_records::sidecar::parse_sidecar;
 use froude_records::table::{ColumnData, Table, read_table};
 use froude_records::units::Dimension;
+use parquet::data_type::{ByteArrayType, FloatType, Int32Type, Int64Type};
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::parser::parse_message_type;
+use parquet::schema::types::Type;
 
 const TEXT: &str = "configuration,speed [mm/s],angle [deg],temperature [degC]\nH1LT,100,3,14.9\nH2LT,250.5,-39,15\n";
 
@@ -125,5 +130,88 @@ fn no_rows_are_refused() {
     assert_eq!(
         read_table(&path, None).unwrap_err().to_string(),
         format!("{}: the table has no rows; at least one observation is needed", path.display())
+    );
+}
+
+/// Found by fuzzing: a dictionary page of a few bytes that claims thousands of millions of entries.
+#[test]
+fn a_page_that_claims_more_than_it_holds_takes_no_memory() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/damaged/dictionary_of_billions.parquet");
+    let message = read_table(&path, None).unwrap_err().to_string();
+    assert!(message.contains("not a whole Parquet file ("), "{message}");
+}
+
+/// A file as other programs write it: narrow and unsigned integers, floats, nulls, two row groups.
+fn foreign(path: &Path, with_null: bool) {
+    let schema = Arc::new(
+        parse_message_type(
+            "message schema {
+                required int32 run (INTEGER(8, true));
+                optional int64 n_links;
+                required float speed;
+                required int32 count (INTEGER(32, false));
+                optional binary note (STRING);
+            }",
+        )
+        .unwrap(),
+    );
+    // The text form of a schema has no spaces and brackets in its names.
+    let with_unit = |name: &str| match name {
+        "n_links" | "count" => format!("{name} [1]"),
+        "speed" => "speed [m/s]".to_owned(),
+        other => other.to_owned(),
+    };
+    let fields = schema.get_fields().iter().map(|f| {
+        let info = f.get_basic_info();
+        Arc::new(
+            Type::primitive_type_builder(&with_unit(f.name()), f.get_physical_type())
+                .with_repetition(info.repetition())
+                .with_logical_type(info.logical_type_ref().cloned())
+                .build()
+                .unwrap(),
+        )
+    });
+    let schema = Arc::new(Type::group_type_builder("schema").with_fields(fields.collect()).build().unwrap());
+    let file = std::fs::File::create(path).unwrap();
+    let mut writer = SerializedFileWriter::new(file, schema, Arc::default()).unwrap();
+    for first in [1, 3] {
+        let mut group = writer.next_row_group().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int32Type>().write_batch(&[first, first + 1], None, None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        let (values, levels): (&[i64], &[i16]) = if with_null { (&[3], &[1, 0]) } else { (&[3, 4], &[1, 1]) };
+        column.typed::<Int64Type>().write_batch(values, Some(levels), None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<FloatType>().write_batch(&[0.5, 0.25], None, None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int32Type>().write_batch(&[-1, 7], None, None).unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<ByteArrayType>().write_batch(&["wavy".into()], Some(&[0, 1]), None).unwrap();
+        column.close().unwrap();
+        group.close().unwrap();
+    }
+    writer.close().unwrap();
+}
+
+#[test]
+fn files_of_other_programs_are_read_in_all_their_types() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("other.parquet");
+    foreign(&path, false);
+    let table = read_table(&path, None).unwrap();
+    assert_eq!(table.n_rows, 4);
+    assert_eq!(table.text("run").unwrap(), ["1", "2", "3", "4"]);
+    assert_eq!(table.number("n_links", Dimension::ONE).unwrap(), [3.0, 4.0, 3.0, 4.0]);
+    assert_eq!(table.number("speed", Dimension::SPEED).unwrap(), [0.5, 0.25, 0.5, 0.25]);
+    assert_eq!(table.number("count", Dimension::ONE).unwrap(), [4294967295.0, 7.0, 4294967295.0, 7.0]);
+    assert_eq!(table.text("note").unwrap(), ["", "wavy", "", "wavy"]);
+    foreign(&path, true);
+    assert_eq!(
+        read_table(&path, None).unwrap_err().to_string(),
+        format!("{}, row 2: column `n_links [1]`: the cell is empty; fill it in or delete the row", path.display())
     );
 }

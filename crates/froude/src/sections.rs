@@ -145,6 +145,11 @@ fn facts(source: &SourceResult) -> Vec<(String, String)> {
     if let Some(model) = source.models.first() {
         out.push(("Covariance".to_owned(), model.covariance_kind.clone()));
     }
+    for estimate in source.estimates.iter().filter(|e| e.recommended) {
+        for note in &estimate.diagnostics.notes {
+            out.push(("Propagation".to_owned(), note.clone()));
+        }
+    }
     for block in &source.blocks {
         let rmse: Vec<String> =
             block.rmse.iter().map(|(c, e, r)| format!("{c} {e:.3e} ({:.0} %)", 100.0 * r)).collect();

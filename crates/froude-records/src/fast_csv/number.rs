@@ -3,28 +3,67 @@
 // The compiler's own judgement costs a third of the speed here.
 #![allow(clippy::inline_always)]
 
-use memchr::memchr2;
-
 /// Powers of ten that a double holds exactly, as far as they are needed.
 const POWERS: [f64; 17] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16];
 
 /// The same as integers, to eight digits.
 const SHIFTS: [u64; 9] = [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
-/// Largest integer up to which a double holds all.
-const EXACT: u64 = 1 << 53;
+/// Integers below this lie in the fraction of a double between 2⁵² and 2⁵³.
+const EXACT: u64 = 1 << 52;
 
-/// Reads `-12.345` and the like, up to the comma or line end behind it.
+/// The double 2⁵².
+const EXACT_BITS: u64 = 0x4330_0000_0000_0000;
+
+/// Reads the cell `start..end` if it has a point and at most eight digits: what logs
+/// are full of. Otherwise leaves it to [`longer_number`].
 ///
-/// None when the cell is anything but up to 8 digits, with up to 16 more behind a point,
-/// below 2⁵³ together: such a number is an exact integer over an exact power of ten, and
-/// their quotient rounds once, correctly. Returns the value and where the cell ends.
+/// `text` goes on for 16 bytes at least behind `end`.
+#[inline(always)]
+pub(super) fn fast_number(text: &[u8], start: usize, end: usize) -> Option<f64> {
+    let is_negative = *text.get(start)? == b'-';
+    let at = start + usize::from(is_negative);
+    let [first, rest @ ..] = *text.get(at..)?.first_chunk::<9>()?;
+    let behind = u64::from_le_bytes(rest);
+    let word = behind << 8 | u64::from(first);
+    let count = end.wrapping_sub(at + 1); // digits, if there is one point
+    // Bits up to the point; the digits behind it move up into its place.
+    let point = zero_bytes(word ^ 0x2E2E_2E2E_2E2E_2E2E).trailing_zeros() & !7;
+    if point >= 64 || count.wrapping_sub(1) >= 8 || point as usize > 8 * count {
+        return longer_number(text, start, end);
+    }
+    let before = (1 << point) - 1;
+    let joined = ((word & before) | (behind & !before)) ^ 0x3030_3030_3030_3030;
+    // Shifted up, what is missing in front counts as zeros.
+    let digits = joined << (64 - 8 * count);
+    if !are_digits(digits) {
+        return longer_number(text, start, end);
+    }
+    Some(quotient(eight_digits(digits), count - point as usize / 8, is_negative))
+}
+
+/// A number from its digits, all of them, and how many of them are behind the point.
+#[inline(always)]
+fn quotient(digits: u64, behind_point: usize, is_negative: bool) -> f64 {
+    // An integer as the fraction of a double: the processor's own conversion would wait
+    // for the division of the cell before (it keeps the other half of its register).
+    let whole = f64::from_bits(EXACT_BITS | digits) - EXACT as f64;
+    let size = whole / POWERS[behind_point];
+    // The sign by its bit: a branch on it would be guessed wrong half the time.
+    f64::from_bits(size.to_bits() | u64::from(is_negative) << 63)
+}
+
+/// Reads the cell `start..end` if it is `-12.345` or the like.
+///
+/// None when it is anything but up to 8 digits, with up to 16 more behind a point, below
+/// 2⁵² together: such a number is an exact integer over an exact power of ten, and their
+/// quotient rounds once, correctly. `text` goes on for 16 bytes at least behind `end`.
 ///
 /// # Source
 ///
 /// Clinger (1990), *How to read floating point numbers accurately*, PLDI '90, section 3.
-#[inline(always)]
-pub(super) fn fast_number(text: &[u8], start: usize) -> Option<(f64, usize)> {
+#[inline(never)]
+fn longer_number(text: &[u8], start: usize, end: usize) -> Option<f64> {
     let is_negative = *text.get(start)? == b'-';
     let mut at = start + usize::from(is_negative);
     let word = word_at(text, at)?;
@@ -35,8 +74,7 @@ pub(super) fn fast_number(text: &[u8], start: usize) -> Option<(f64, usize)> {
     let mut digits = value_of(word, count);
     let mut behind_point = 0;
     at += count;
-    let mut next = *text.get(at)?;
-    if next == b'.' {
+    if *text.get(at)? == b'.' {
         let word = word_at(text, at + 1)?;
         let count = leading_digits(word);
         if count == 0 {
@@ -55,13 +93,11 @@ pub(super) fn fast_number(text: &[u8], start: usize) -> Option<(f64, usize)> {
                 at += count;
             }
         }
-        next = *text.get(at)?;
     }
-    if digits > EXACT || !(next == b',' || next == b'\n' || next == b'\r') {
+    if digits >= EXACT || at != end {
         return None;
     }
-    let size = digits.cast_signed() as f64 / POWERS[behind_point];
-    Some((if is_negative { -size } else { size }, at))
+    Some(quotient(digits, behind_point, is_negative))
 }
 
 /// Eight bytes, the first one lowest.
@@ -80,12 +116,24 @@ fn leading_digits(word: u64) -> usize {
     (others.trailing_zeros() / 8) as usize
 }
 
+/// Whether all bytes are 0 to 9.
+#[inline(always)]
+fn are_digits(bytes: u64) -> bool {
+    let carried = (bytes & 0x7F7F_7F7F_7F7F_7F7F) + 0x7676_7676_7676_7676;
+    (carried | bytes) & 0x8080_8080_8080_8080 == 0
+}
+
 /// Value of the first `count` bytes, digits all, `1..=8`.
 #[inline(always)]
 fn value_of(word: u64, count: usize) -> u64 {
-    // Shifted up, what is missing in front counts as zeros. Then neighbours are joined:
-    // digits to pairs, pairs to fours, fours to eight.
-    let digits = (word << (64 - 8 * count)) & 0x0F0F_0F0F_0F0F_0F0F;
+    // Shifted up, what is missing in front counts as zeros.
+    eight_digits((word << (64 - 8 * count)) & 0x0F0F_0F0F_0F0F_0F0F)
+}
+
+/// Value of eight bytes of 0 to 9, the lowest byte first: digits are joined to pairs,
+/// pairs to fours, fours to eight.
+#[inline(always)]
+fn eight_digits(digits: u64) -> u64 {
     let pairs = (digits.wrapping_mul(10 << 8 | 1) >> 8) & 0x00FF_00FF_00FF_00FF;
     let fours = (pairs.wrapping_mul(100 << 16 | 1) >> 16) & 0x0000_FFFF_0000_FFFF;
     fours.wrapping_mul(10_000 << 32 | 1) >> 32
@@ -93,13 +141,9 @@ fn value_of(word: u64, count: usize) -> u64 {
 
 /// Reads any finite decimal number, blanks around it allowed.
 #[cold]
-pub(super) fn slow_number(text: &[u8], start: usize) -> Option<(f64, usize)> {
-    let rest = text.get(start..)?;
-    let length = memchr2(b',', b'\n', rest)?;
-    let has_return = rest[length] == b'\n' && rest[..length].ends_with(b"\r");
-    let length = length - usize::from(has_return);
-    let value: f64 = fast_float2::parse(without_blanks(&rest[..length])).ok()?;
-    value.is_finite().then_some((value, start + length))
+pub(super) fn slow_number(cell: &[u8]) -> Option<f64> {
+    let value: f64 = fast_float2::parse(without_blanks(cell)).ok()?;
+    value.is_finite().then_some(value)
 }
 
 /// A cell without the blanks around it.
@@ -108,4 +152,46 @@ pub(super) fn without_blanks(mut cell: &[u8]) -> &[u8] {
         cell = rest;
     }
     cell
+}
+
+/// Writes where the commas and line ends of `text` are, in order; returns how many.
+///
+/// `text` is whole words long, and `places` has room for as many as there are, and 8 more.
+///
+/// Where cells end is found beforehand so that reading one cell need not wait for the
+/// one before it.
+pub(super) fn separators(text: &[u8], places: &mut Vec<u32>) -> usize {
+    let mut found = 0;
+    for (k, block) in text.as_chunks::<16>().0.iter().enumerate() {
+        let mut marks = 0_u32;
+        for (i, &byte) in block.iter().enumerate() {
+            marks |= u32::from(byte == b',' || byte == b'\n') << i;
+        }
+        let count = marks.count_ones() as usize;
+        if places.len() < found + 16 {
+            places.resize(2 * found + 64, 0);
+        }
+        let Some(room) = places[found..].first_chunk_mut::<16>() else {
+            break;
+        };
+        let first = (16 * k) as u32;
+        for place in &mut room[..4] {
+            *place = first + marks.trailing_zeros();
+            marks &= marks.wrapping_sub(1);
+        }
+        if count > 4 {
+            for place in &mut room[4..count] {
+                *place = first + marks.trailing_zeros();
+                marks &= marks.wrapping_sub(1);
+            }
+        }
+        found += count;
+    }
+    found
+}
+
+/// The high bit of every byte that is zero.
+#[inline(always)]
+fn zero_bytes(word: u64) -> u64 {
+    !(((word & 0x7F7F_7F7F_7F7F_7F7F) + 0x7F7F_7F7F_7F7F_7F7F) | word) & 0x8080_8080_8080_8080
 }

@@ -68,7 +68,7 @@ pub fn all(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), B
             repetitions.min(4_000),
         )?);
     }
-    let mut within = crate::eiv::cases(root, repetitions / 2)?;
+    let mut within = crate::eiv::cases(root, if repetitions >= 20_000 { repetitions } else { 200 })?;
     cases.append(&mut within);
     judge(claims, &cases)?;
     robust(claims, root, repetitions)

@@ -1,0 +1,205 @@
+//! Froude's side of the comparison with other programs.
+//!
+//! ```text
+//! peer-bench make DIR ROWS      write the problem that both sides solve
+//! peer-bench CASE DIR THREADS   solve it, print one line of JSON
+//! ```
+//!
+//! Cases: `columns`, `columns-qr`, `rows`, `non-negative`, `bootstrap`, `csv`,
+//! `csv-cluster`. The problem and the peers are described in `bench/peers/README.md`.
+
+mod make;
+mod meter;
+
+use std::error::Error;
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+use froude_fit::bootstrap::{Resampling, pairs};
+use froude_fit::stream::{
+    Accumulator, ClusterAccumulator, ClusterKind, Factor, Method, Shape, StreamError, reduce_columns, reduce_rows,
+};
+use froude_records::fast_csv::{Chunk, FastCsv, FastCsvError};
+use meter::{Row, measure};
+
+type Outcome<T> = Result<T, Box<dyn Error + Send + Sync>>;
+
+fn main() -> Outcome<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [case, dir, number] = &arguments[..] else {
+        return Err("usage: peer-bench make DIR ROWS | peer-bench CASE DIR THREADS".into());
+    };
+    let dir = Path::new(dir);
+    if case == "make" {
+        return make::make(dir, number.parse::<f64>()? as usize);
+    }
+    let threads: NonZeroUsize = number.parse()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build()?;
+    let row = pool.install(|| match case.as_str() {
+        "columns" => columns(dir, Method::Adaptive, false),
+        "columns-qr" => columns(dir, Method::Reflections, false),
+        "non-negative" => columns(dir, Method::Adaptive, true),
+        "rows" => rows(dir),
+        "bootstrap" => bootstrap(dir),
+        "csv" => csv(dir, threads, false),
+        "csv-cluster" => csv(dir, threads, true),
+        other => Err(format!("there is no case {other}").into()),
+    })?;
+    println!("{}", row.json(case, threads.get()));
+    Ok(())
+}
+
+/// The ten regressors of the drag-like problem, and the response.
+#[inline]
+fn design([u, v, theta, w, y]: [f64; 5]) -> [f64; 11] {
+    let (uu, vv, ww) = (u * u.abs(), v * v.abs(), w * w.abs());
+    [u, uu, v, vv, w, ww, theta, v * u.abs(), u * v.abs(), 1.0, y]
+}
+
+/// The five raw columns, read from `dir`.
+fn raw(dir: &Path) -> Outcome<[Vec<f64>; 5]> {
+    let [u, v, theta, w, y] = make::RAW.map(|name| make::read(&dir.join(name)));
+    Ok([u?, v?, theta?, w?, y?])
+}
+
+/// The eleven columns in memory.
+fn in_memory(dir: &Path, limit: usize) -> Outcome<Vec<Vec<f64>>> {
+    let raw = raw(dir)?;
+    let n = raw[0].len().min(limit);
+    let mut columns = vec![vec![0.0; n]; 11];
+    for i in 0..n {
+        for (column, value) in columns.iter_mut().zip(design(std::array::from_fn(|k| raw[k][i]))) {
+            column[i] = value;
+        }
+    }
+    Ok(columns)
+}
+
+fn columns(dir: &Path, method: Method, is_bounded: bool) -> Outcome<Row> {
+    let columns = in_memory(dir, usize::MAX)?;
+    let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    measure(9, || {
+        let factor = reduce_columns(&all[..10], &all[10..], method)?;
+        Ok(if is_bounded {
+            factor.solve_non_negative(0, &[true; 10])?.coefficients
+        } else {
+            factor.solve(0)?.coefficients
+        })
+    })
+}
+
+fn rows(dir: &Path) -> Outcome<Row> {
+    let [u, v, theta, w, y] = &raw(dir)?;
+    measure(9, || {
+        let factor = reduce_rows([u, v, theta, w, y], 1, Method::Adaptive, design)?;
+        Ok(factor.solve(0)?.coefficients)
+    })
+}
+
+fn bootstrap(dir: &Path) -> Outcome<Row> {
+    let columns = in_memory(dir, 1000)?;
+    let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    let options = Resampling { resamples: 10_000, seed: 1 };
+    measure(15, || Ok(pairs(&all[..10], all[10], None, options)?.standard()))
+}
+
+/// The eight regressors of the force record, and both forces.
+#[inline]
+fn force_row([fx, fy, vx, vy, theta, omega]: [f64; 6]) -> [f64; 10] {
+    let (s, c) = theta.sin_cos();
+    let (u, v) = (c * vx + s * vy, c * vy - s * vx);
+    let (uu, vv, ww) = (u * u.abs(), v * v.abs(), omega * omega.abs());
+    [u, uu, v, vv, omega, ww, v * u.abs(), u * v.abs(), fx, fy]
+}
+
+const FORCES: Shape = Shape { regressors: 8, responses: 2 };
+
+/// Regressors and responses of a chunk.
+fn force_rows(chunk: &Chunk<'_>) -> Vec<Vec<f64>> {
+    let [_, fx, fy, vx, vy, theta, omega] = chunk.columns else {
+        return vec![Vec::new(); FORCES.width()];
+    };
+    let mut columns = vec![vec![0.0; fx.len()]; FORCES.width()];
+    for i in 0..fx.len() {
+        let row = force_row([fx[i], fy[i], vx[i], vy[i], theta[i], omega[i]]);
+        for (column, value) in columns.iter_mut().zip(row) {
+            column[i] = value;
+        }
+    }
+    columns
+}
+
+/// What stops the work on a chunk.
+#[derive(Debug)]
+enum Stop {
+    Csv(FastCsvError),
+    Fit(StreamError),
+}
+
+impl From<FastCsvError> for Stop {
+    fn from(error: FastCsvError) -> Self {
+        Self::Csv(error)
+    }
+}
+
+impl From<StreamError> for Stop {
+    fn from(error: StreamError) -> Self {
+        Self::Fit(error)
+    }
+}
+
+impl From<Stop> for Box<dyn Error + Send + Sync> {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::Csv(error) => error.into(),
+            Stop::Fit(error) => error.into(),
+        }
+    }
+}
+
+/// Both components from the file in one pass: coefficients, classical covariance, and
+/// with `clusters` CR3 over stretches of ten seconds.
+fn csv(dir: &Path, threads: NonZeroUsize, clusters: bool) -> Outcome<Row> {
+    let path = dir.join("record.csv");
+    measure(5, || {
+        let file = FastCsv::open(&path)?;
+        let file = file.select(&["t", "fx", "fy", "vx", "vy", "theta", "omega"])?;
+        let mut by_cluster = ClusterAccumulator::new(FORCES, 4000).finish()?;
+        let mut total = Factor::empty(FORCES);
+        if clusters {
+            file.fold_chunks(
+                threads,
+                |chunk| {
+                    let columns = force_rows(&chunk);
+                    let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                    let stretch: Vec<u64> = chunk.columns[0].iter().map(|t| (t / 10.0) as u64).collect();
+                    let mut rows = ClusterAccumulator::new(FORCES, 4000);
+                    rows.push(&stretch, &all[..8], &all[8..])?;
+                    Ok::<_, Stop>(rows.finish()?)
+                },
+                |part| Ok(by_cluster.merge(&part)?),
+            )?;
+            total = by_cluster.total()?;
+        } else {
+            file.fold_chunks(
+                threads,
+                |chunk| {
+                    let columns = force_rows(&chunk);
+                    let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+                    let mut rows = Accumulator::new(FORCES);
+                    rows.push(&all[..8], &all[8..])?;
+                    Ok::<_, Stop>(rows.finish())
+                },
+                |part| Ok(total.merge(&part)?),
+            )?;
+        }
+        let mut out = total.solve(0)?.coefficients;
+        out.extend(total.solve(1)?.coefficients);
+        if clusters {
+            for k in 0..2 {
+                std::hint::black_box(by_cluster.covariance(k, ClusterKind::Cr3)?);
+            }
+        }
+        Ok(out)
+    })
+}

@@ -1,0 +1,185 @@
+//! From a table to coefficients on made-up observations whose answer is known.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use froude_identify::source::{SourceResult, identify_source};
+use froude_records::campaign::read_campaign;
+
+/// Runs a campaign of one source over a table.
+fn identify(folder: &Path, table: &str, campaign: &str) -> SourceResult {
+    std::fs::write(folder.join("t.csv"), table).unwrap();
+    let head = "schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n";
+    std::fs::write(folder.join("c.toml"), format!("{head}{campaign}")).unwrap();
+    let campaign = read_campaign(&folder.join("c.toml")).unwrap();
+    identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap()
+}
+
+const SOURCE: &str = "[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n";
+const QUADRATIC: &str = "[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\nmodels = [\"quadratic\"]\n";
+
+/// f_x = −10 v|v| and a ripple of 0.01 N, at ten speeds.
+fn quadratic_table() -> String {
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for (k, sign) in [1, -1, 0, 1, -1, -1, 1, 0, -1, 1].into_iter().enumerate() {
+        let v = 0.1 * (k + 1) as f64;
+        writeln!(table, "{v},{}", -10.0 * v * v + 0.01 * f64::from(sign)).unwrap();
+    }
+    table
+}
+
+fn budget(quantity: &str, standard: &str, shared: &str) -> String {
+    format!(
+        "{QUADRATIC}[[source.uncertainty]]\nquantity = \"{quantity}\"\nstandard = \"{standard}\"\nshared = \"{shared}\"\n"
+    )
+}
+
+#[test]
+fn a_relative_calibration_error_shared_by_all_does_not_average_down() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = identify(folder.path(), &quadratic_table(), &budget("f_x", "1 %", "campaign"));
+    let c = &result.estimates[0].coefficients["D_x_II"];
+    // A gain error of 1 % is 1 % of the coefficient, however many rows share it.
+    let expected = 0.01 * c.value.unwrap();
+    assert!((c.type_b.unwrap() - expected).abs() < 1e-9 * expected, "{c:?}");
+    let combined = c.type_a.unwrap().hypot(c.type_b.unwrap());
+    assert!((c.standard_uncertainty.unwrap() - combined).abs() < 1e-12);
+}
+
+#[test]
+fn a_speed_error_enters_a_quadratic_law_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = identify(folder.path(), &quadratic_table(), &budget("speed", "1 %", "campaign"));
+    let c = &result.estimates[0].coefficients["D_x_II"];
+    let expected = 0.02 * c.value.unwrap();
+    // Central differences of a quadratic are exact to rounding.
+    assert!((c.type_b.unwrap() - expected).abs() < 1e-6 * expected, "{c:?}");
+}
+
+#[test]
+fn monte_carlo_agrees_with_linear_propagation_where_the_law_is_nearly_linear() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = budget("speed", "1 %", "campaign") + "[identify]\nmonte_carlo = 4000\n";
+    let result = identify(folder.path(), &quadratic_table(), &campaign);
+    let note = &result.estimates[0].diagnostics.notes[0];
+    let figures = note.split("D_x_II ").nth(1).unwrap().trim_end_matches(')');
+    let numbers: Vec<f64> = figures.split(" (").map(|t| t.parse().unwrap()).collect();
+    // 4,000 draws give a standard deviation to 1.1 %; three of these.
+    assert!((numbers[0] / numbers[1] - 1.0).abs() < 0.034, "{note}");
+}
+
+#[test]
+fn an_error_that_no_two_rows_share_is_part_of_the_scatter() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = identify(folder.path(), &quadratic_table(), &budget("f_x", "0.01 N", "sample"));
+    let c = &result.estimates[0].coefficients["D_x_II"];
+    assert_eq!(c.type_b, Some(0.0), "it is in type A already");
+}
+
+#[test]
+fn identical_copies_are_dropped_and_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = quadratic_table() + "0.55,-3.0\n0.55,-3.0\n0.55,-3.0\n";
+    let result = identify(folder.path(), &table, QUADRATIC);
+    let copy = result.findings.iter().find(|f| f.code == "identical-copies").unwrap();
+    assert_eq!(result.data.rows, 11);
+    assert_eq!(
+        copy.message,
+        "2 of 13 rows are identical copies of earlier ones and are dropped (lines 13 = 12, 14 = 12); real repeats differ in their loads"
+    );
+}
+
+#[test]
+fn an_angle_offset_is_found_from_pairs_of_opposite_angle_and_taken_out_of_the_cross_term() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!(
+        "schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1025 kg/m^3\"\n[body]\n\
+         link = {{ major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }}\n\
+         head_side_area = \"0.011 m^2\"\ntail_side_area = \"0.008 m^2\"\n{SOURCE}[[source.plan]]\n\
+         configurations = [\"H1LT\", \"H2LT\", \"H4LT\"]\nspeed = [\"0.2 m/s\", \"0.4 m/s\", \"0.6 m/s\", \"0.8 m/s\"]\n\
+         angle = {{ start = \"-39 deg\", stop = \"39 deg\", step = \"3 deg\" }}\n\
+         [identify]\nmodels = [\"f4\"]\nangle_offset = \"estimate\"\n\
+         [simulate]\nseed = 3\nmodel = \"f4\"\nmisalignment = \"1 deg\"\n[simulate.coefficients]\nC_f_I = 0.01\nC_d_I = 0.06\n\
+         C_f_II = 0.0133\nC_d_II = 1.4272\nC_fHT_I = 0.0148\nC_dHT_I = 0.1769\nC_fHT_II = 0.2451\nC_dHT_II = 1.177\n\
+         C_XY_I = 0.0351\nC_XY_II = 0.4612\n[[simulate.sensor]]\nquantity = \"f_x\"\nnoise = \"0.005 N\"\n\
+         [[simulate.sensor]]\nquantity = \"f_y\"\nnoise = \"0.005 N\"\n"
+    );
+    std::fs::write(folder.path().join("c.toml"), text).unwrap();
+    let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
+    let mut data = froude_identify::simulate::observations(&campaign, &campaign.sources[0], 0).unwrap();
+    // The sensor is mounted once: one setup.
+    data.setup = vec!["mount".to_owned(); data.rows];
+    let table = froude_identify::simulate::table(&data, &campaign.sources[0]).unwrap();
+    froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
+    let result = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
+    let c = &result.estimates[0].coefficients;
+    // One seeded draw: four standard uncertainties hold all but one in 10⁴.
+    let holds = |name: &str, truth: f64| {
+        let c = &c[name];
+        assert!(
+            (c.value.unwrap() - truth).abs() < 4.0 * c.standard_uncertainty.unwrap(),
+            "{name}: {c:?}, truth {truth}"
+        );
+    };
+    holds("angle_offset_mount", 1_f64.to_radians());
+    holds("C_XY_II", 0.4612);
+    assert!(c["angle_offset_mount"].standard_uncertainty.unwrap() < 0.1_f64.to_radians());
+    assert!(!result.findings.iter().any(|f| f.code == "one-sign-of-angle"));
+}
+
+#[test]
+fn a_fitted_tare_is_subtracted_with_its_covariance_as_a_shared_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = identify(folder.path(), &quadratic_table(), QUADRATIC);
+    let record = froude_records::estimate::EstimateFile {
+        schema: froude_records::estimate::ESTIMATE_SCHEMA.to_owned(),
+        data: Vec::new(),
+        versions: indexmap::IndexMap::new(),
+        estimates: first.estimates.clone(),
+        findings: Vec::new(),
+    };
+    froude_records::json::write_estimates(&folder.path().join("tare.json"), &record).unwrap();
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for k in 1..=10 {
+        let v = 0.1 * f64::from(k);
+        writeln!(table, "{v},{}", -15.0 * v * v).unwrap();
+    }
+    let result = identify(folder.path(), &table, &format!("{QUADRATIC}tare = {{ record = \"tare.json\" }}\n"));
+    let c = &result.estimates[0].coefficients["D_x_II"];
+    let tare = &first.estimates[0].coefficients["D_x_II"];
+    assert!((c.value.unwrap() - (15.0 - tare.value.unwrap())).abs() < 1e-9, "{c:?}");
+    let (got, expected) = (c.type_b.unwrap(), tare.standard_uncertainty.unwrap());
+    assert!((got - expected).abs() < 1e-9 * expected, "the whole tare uncertainty stays: {got} against {expected}");
+}
+
+#[test]
+fn a_drag_coefficient_that_no_body_has_is_told() {
+    // The MCD paper prints D_d = 0.0878 N s²/m² for a cylinder of 0.04 m²: C_D = 0.0044.
+    let finding = froude_identify::lint::drag_coefficient("D_d", 0.0878, 1000.0, 0.04).unwrap();
+    assert!(finding.message.contains("is C_D = 0.0044: no body has that"), "{}", finding.message);
+    assert!(froude_identify::lint::drag_coefficient("D_d", 20.0, 1000.0, 0.04).is_none());
+}
+
+#[test]
+fn a_force_along_the_motion_names_the_sign_to_write() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = identify(folder.path(), &quadratic_table().replace(",-", ","), QUADRATIC);
+    let finding = result.findings.iter().find(|f| f.code == "force-along-motion").unwrap();
+    assert!(finding.message.contains("say sign = -1 for its column"), "{}", finding.message);
+}
+
+#[test]
+fn zeros_before_and_after_a_run_are_subtracted_and_their_drift_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut table = "speed [m/s],f_x [N],zero_before_f_x [N],zero_after_f_x [N]\n".to_owned();
+    for k in 1..=6 {
+        let v = 0.2 * f64::from(k);
+        writeln!(table, "{v},{},0.3,0.5", -10.0 * v * v + 0.4).unwrap();
+    }
+    let result = identify(folder.path(), &table, QUADRATIC);
+    let d = result.estimates[0].coefficients["D_x_II"].value.unwrap();
+    assert!((d - 10.0).abs() < 1e-9, "{d}");
+    let finding = result.findings.iter().find(|f| f.code == "zero-drift").unwrap();
+    assert!(finding.message.contains("moved by up to 2.000e-1"), "{}", finding.message);
+}
