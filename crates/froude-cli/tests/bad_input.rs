@@ -172,3 +172,39 @@ fn radians_typed_into_a_column_of_degrees_are_suspected() {
         "{said}"
     );
 }
+
+/// A small file system of its own, unmounted at the end; `None` where this user may not mount.
+struct SmallDisk(tempfile::TempDir);
+
+impl SmallDisk {
+    fn mount(size: &str) -> Option<Self> {
+        let folder = tempfile::tempdir().unwrap();
+        let done = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &format!("size={size}"), "tmpfs"])
+            .arg(folder.path())
+            .output();
+        done.is_ok_and(|o| o.status.success()).then_some(Self(folder))
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(self.0.path()).status();
+    }
+}
+
+#[test]
+fn a_full_disk_leaves_nothing_half_written() {
+    let Some(disk) = SmallDisk::mount("40k") else {
+        eprintln!("this user may not mount a small disk; the failing writer of froude-records is tested instead");
+        return;
+    };
+    let folder = disk.0.path();
+    std::fs::write(folder.join("t.csv"), TABLE).unwrap();
+    let output = froude(folder, &["identify", "t.csv"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.trim_end().ends_with("the disk is full; nothing was changed"), "{said}");
+    let left: Vec<_> = std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name()).collect();
+    assert_eq!(left, ["t.csv"], "only the table is there");
+}

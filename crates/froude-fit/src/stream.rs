@@ -630,7 +630,7 @@ pub enum Method {
     /// By inner products where the rows themselves show that it is safe, by
     /// reflections elsewhere.
     ///
-    /// The first segment (some 10⁵ rows) is factored by reflections and fitted: the
+    /// The first segment (some ten thousand rows) is factored by reflections and fitted: the
     /// pilot. While variance inflation factors stay below 1000, the triangle of a
     /// further segment is the Cholesky factor of its columns' products, the responses
     /// taken as residuals of the pilot. At most three digits of sixteen are lost, and

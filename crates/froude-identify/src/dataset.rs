@@ -87,8 +87,10 @@ impl Dataset {
     pub fn velocity_from_speed_and_angle(&mut self) {
         let Some(speed) = self.values("speed").map(<[f64]>::to_vec) else { return };
         let angle = self.values("angle").map_or_else(|| vec![0.0; self.rows], <[f64]>::to_vec);
-        let v_x = speed.iter().zip(&angle).map(|(u, a)| u * a.cos()).collect();
-        let v_y = speed.iter().zip(&angle).map(|(u, a)| -u * a.sin()).collect();
+        // The axes exactly: the rounding of cos 90° is no motion.
+        let snap = |x: f64| if x.abs() < 1e-12 { 0.0 } else { x };
+        let v_x = speed.iter().zip(&angle).map(|(u, a)| u * snap(a.cos())).collect();
+        let v_y = speed.iter().zip(&angle).map(|(u, a)| -u * snap(a.sin())).collect();
         self.put("v_x", v_x, Dimension::SPEED);
         self.put("v_y", v_y, Dimension::SPEED);
         self.put("angle", angle, Dimension::ONE);

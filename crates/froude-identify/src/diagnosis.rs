@@ -214,7 +214,7 @@ fn drag_coefficients(model: &ModelFit, data: &Dataset, campaign: &Campaign) -> V
         .iter()
         .enumerate()
         .filter(|(j, s)| {
-            s.unit == "kg/m" && (s.name.ends_with("_II") || s.name.starts_with("D_d")) && model.coefficients[*j] != 0.0
+            s.unit == "kg/m" && (s.name == "D_x_II" || s.name.starts_with("D_d")) && model.coefficients[*j] != 0.0
         })
         .filter_map(|(j, s)| lint::drag_coefficient(&s.name, model.coefficients[j].abs(), density, area))
         .collect()

@@ -146,6 +146,8 @@ pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], resul
         fitted.fitted[i] = (0..beta.len()).map(|j| design[(i, j)] * beta[j]).sum();
         fitted.residuals[i] = response[i] - fitted.fitted[i];
     }
+    // The criteria of the ordinary fit do not belong to this one.
+    fitted.aicc = None;
     fitted.covariance = result.covariance;
     fitted.coefficients = result.coefficients;
     fitted.report = result.report;

@@ -131,13 +131,14 @@ impl ForceLaw {
     /// The power law along the axis of a load (`f_x` goes with `v_x`).
     #[must_use]
     pub fn power_law(response: &str, channel: &str, in_logarithms: bool) -> Self {
-        let axis = response.rsplit('_').next().unwrap_or(response);
+        let axis = response.replace("f_", "").replace("m_", "r");
+        let unit = if response.starts_with("m_") { "N m" } else { "N" };
         Self {
             name: if in_logarithms { "power_law_log" } else { "power_law" }.to_owned(),
             kind: Kind::PowerLaw { channel: channel.to_owned(), in_logarithms },
             responses: vec![response.to_owned()],
             coefficients: vec![
-                CoefficientSpec { name: format!("k_{axis}"), unit: "N".to_owned() },
+                CoefficientSpec { name: format!("k_{axis}"), unit: unit.to_owned() },
                 CoefficientSpec { name: format!("n_{axis}"), unit: "1".to_owned() },
             ],
             texts: IndexMap::new(),
@@ -164,8 +165,12 @@ impl ForceLaw {
         if estimate.model.starts_with("power_law")
             && let Some(axis) = estimate.coefficients.keys().find_map(|n| n.strip_prefix("n_"))
         {
-            let in_logarithms = estimate.model.ends_with("_log");
-            return Ok(Self::power_law(&format!("f_{axis}"), &format!("v_{axis}"), in_logarithms));
+            let in_logarithms = estimate.model.contains("_log");
+            let (response, channel) = match axis.strip_prefix('r') {
+                Some(axis) => (format!("m_{axis}"), format!("w_{axis}")),
+                None => (format!("f_{axis}"), format!("v_{axis}")),
+            };
+            return Ok(Self { name: estimate.model.clone(), ..Self::power_law(&response, &channel, in_logarithms) });
         }
         Err(IdentifyError::NoForceLaw { id: estimate.id.clone(), model: estimate.model.clone() })
     }

@@ -244,7 +244,10 @@ pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
                 let measured = LOADS.contains(&name.as_str())
                     || name.starts_with("std_")
                     || name.starts_with("zero_")
-                    || matches!(name.as_str(), "repeat" | "run" | "temperature" | "v_x" | "v_y");
+                    || matches!(
+                        name.as_str(),
+                        "repeat" | "run" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y"
+                    );
                 if !measured {
                     key.push((channel.values[i] * 1e9).round() as i64);
                 }

@@ -122,10 +122,7 @@ fn coefficients(model: &ModelFit) -> IndexMap<String, Coefficient> {
             };
             let combined = model.combined[j];
             // The interval is the unconstrained one, widened by the budget, cut by the bounds.
-            let centre = fitted.unconstrained.map(|u| {
-                // Offsets and the power law are stated at the converged point, not at the last linear step.
-                if model.law.is_nonlinear() || j >= model.law.coefficients.len() { model.coefficients[j] } else { u }
-            });
+            let centre = fitted.unconstrained;
             let interval_95 = match (combined, centre) {
                 (Some(c), Some(u)) => {
                     let half = c.coverage * c.standard;

@@ -117,7 +117,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     if iterate {
         let mut converged = false;
         for _ in 0..MOST_ITERATIONS {
-            let next = step(law, data, &setups, &fitted, &beta);
+            let next = step(&fitted);
             let change = next.iter().zip(&beta).map(|(a, b)| (a - b).abs() / (a.abs() + 1e-9)).fold(0.0, f64::max);
             beta = next;
             problem = self::problem(law, data, &specs, &measured, &setups, &beta)?;
@@ -162,11 +162,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             ),
         ));
     }
-    let coefficients: Vec<f64> = if iterate {
-        step(law, data, &setups, &fitted, &beta)
-    } else {
-        fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect()
-    };
+    let coefficients = step(&fitted);
     let contributions = contributions(
         Linearised {
             law,
@@ -208,7 +204,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         covariance,
         contributions,
         in_variables,
-        covariance_kind,
+        covariance_kind: if in_variables { "model-based, errors in variables".to_owned() } else { covariance_kind },
         findings,
     })
 }
@@ -226,11 +222,12 @@ fn errors_in_variables(
     let place = || format!("source {:?}, model {}", settings.source_name, law.name);
     let has_bounds = options.bounds.iter().any(|b| b.lower.is_finite() || b.upper.is_finite());
     let has_more = !options.inequalities.is_empty() || !options.priors.is_empty() || !options.fixed.is_empty();
-    if has_bounds || has_more || !options.excluded.is_empty() || problem.weight.is_some() {
+    let has_other = options.loss != fit::Loss::Squares || options.covariance != fit::CovarianceKind::Classical;
+    if has_bounds || has_more || has_other || !options.excluded.is_empty() || problem.weight.is_some() {
         return Err(IdentifyError::Campaign {
             place: place(),
-            what: "errors_in_variables goes with neither bounds, priors, fixed or excluded coefficients, dissipative, nor std \
-                   columns; leave one of them out"
+            what: "errors_in_variables goes with neither bounds, priors, fixed or excluded coefficients, dissipative, Huber, HC3, cluster, nor \
+                   std columns; leave one of them out"
                 .to_owned(),
         });
     }
@@ -247,6 +244,15 @@ fn errors_in_variables(
         return Ok(false);
     };
     if law.is_nonlinear() || fitted.coefficients.len() != law.coefficients.len() {
+        findings.push(Finding::new(
+            Severity::Warning,
+            "no-input-errors",
+            format!(
+                "model {}: errors in variables are fitted for laws that are linear in their coefficients, without angle offsets; \
+                 ordinary least squares is used",
+                law.name
+            ),
+        ));
         return Ok(false);
     }
     let result =
@@ -367,13 +373,16 @@ fn problem(
             response[n + i] = sin * x + cos * y;
             design[(i, p + s)] = current[n + i];
             design[(n + i, p + s)] = -current[i];
+            // Solved for the whole offset, so that a fixed value or a prior means the offset and not its last step.
+            response[i] += beta[p + s] * design[(i, p + s)];
+            response[n + i] += beta[p + s] * design[(n + i, p + s)];
         }
     }
     let component: Vec<usize> = (0..measured.len()).map(|row| row / n).collect();
     Ok(fit::Problem {
         design,
         response,
-        weight: weights(law, data),
+        weight: weights(law, data)?,
         component,
         components: law.responses.clone(),
         cluster: data.group.as_ref().map(|g| {
@@ -385,23 +394,38 @@ fn problem(
 }
 
 /// Relative weights from `std_*` columns, scaled so that their mean is one within a response.
-fn weights(law: &ForceLaw, data: &Dataset) -> Option<Vec<f64>> {
+fn weights(law: &ForceLaw, data: &Dataset) -> Result<Option<Vec<f64>>, IdentifyError> {
     let stds: Vec<Option<&[f64]>> = law.responses.iter().map(|r| data.values(&format!("std_{r}"))).collect();
     if stds.iter().all(Option::is_none) {
-        return None;
+        return Ok(None);
     }
     let mut out = Vec::with_capacity(stds.len() * data.rows);
-    for std in stds {
-        match std {
-            Some(std) if std.iter().all(|s| *s > 0.0) => {
-                let weight: Vec<f64> = std.iter().map(|s| 1.0 / (s * s)).collect();
-                let mean = weight.iter().sum::<f64>() / weight.len() as f64;
-                out.extend(weight.iter().map(|w| w / mean));
-            }
-            _ => out.extend(std::iter::repeat_n(1.0, data.rows)),
+    for (std, response) in stds.into_iter().zip(&law.responses) {
+        let Some(std) = std else {
+            out.extend(std::iter::repeat_n(1.0, data.rows));
+            continue;
+        };
+        if let Some(i) = std.iter().position(|s| *s <= 0.0) {
+            return Err(IdentifyError::Campaign {
+                place: format!("model {}", law.name),
+                what: format!(
+                    "std_{response} on line {} is {}: a weight needs a standard deviation above zero",
+                    data.line.get(i).copied().unwrap_or(i + 1),
+                    std[i]
+                ),
+            });
         }
+        // A logarithm has the relative standard deviation.
+        let loads = data.values(response).unwrap_or_default();
+        let weight: Vec<f64> = std
+            .iter()
+            .zip(loads)
+            .map(|(s, f)| if law.in_logarithms() { (f / s).powi(2) } else { 1.0 / (s * s) })
+            .collect();
+        let mean = weight.iter().sum::<f64>() / weight.len() as f64;
+        out.extend(weight.iter().map(|w| w / mean));
     }
-    Some(out)
+    Ok(Some(out))
 }
 
 /// Where the iteration starts: zero for linear laws, the log–log line for the power law.
@@ -428,19 +452,9 @@ fn start(law: &ForceLaw, data: &Dataset, measured: &[f64], p: usize) -> Vec<f64>
     beta
 }
 
-/// The next coefficients: the linear ones as fitted, an offset moved by its fitted step.
-fn step(law: &ForceLaw, _data: &Dataset, setups: &OffsetSetups, fitted: &fit::Fit, beta: &[f64]) -> Vec<f64> {
-    let p = law.coefficients.len();
-    fitted
-        .coefficients
-        .iter()
-        .enumerate()
-        .map(|(j, c)| match c.value {
-            Some(value) if j >= p && !setups.names.is_empty() => beta[j] + value,
-            Some(value) => value,
-            None => 0.0,
-        })
-        .collect()
+/// The next coefficients.
+fn step(fitted: &fit::Fit) -> Vec<f64> {
+    fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect()
 }
 
 /// Which covariance is used and what the record calls it.

@@ -3,8 +3,9 @@
 //! Candidates are the models whose coefficients are all determined. The one with
 //! the fewest coefficients is taken among those whose AICc lies within 2 of the
 //! smallest: smaller differences are no evidence (Burnham and Anderson 2002,
-//! § 2.6). F tests of nested models are stated beside it. The reason is written
-//! with its numbers.
+//! § 2.6), unless an F test rejects it inside the best one at 1 % in some load.
+//! Only models of the same loads are compared. The reason is written with its
+//! numbers.
 
 use froude_fit as fit;
 use froude_hydro::{DragModel, Setting};
@@ -171,6 +172,12 @@ fn drag_restrictions(simple: DragModel, general: DragModel, setting: &Setting) -
 /// Leave-one-configuration-out score of a model.
 #[must_use]
 pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
+    if model.law.is_nonlinear() {
+        return Score {
+            rmse: Vec::new(),
+            note: Some("not scorable: the law is not linear in its coefficients".to_owned()),
+        };
+    }
     let groups = labels(&data.configuration);
     let n = data.rows;
     let stacked: Vec<usize> = (0..model.problem.response.len()).map(|row| groups[row % n]).collect();
@@ -202,6 +209,10 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
 /// Fits inside a declared range, predicts outside.
 #[must_use]
 pub fn range_block(model: &ModelFit, data: &Dataset, block: &RangeBlock) -> Option<BlockScore> {
+    // The problem of a non-linear law holds its last linear step, not the loads.
+    if model.law.is_nonlinear() {
+        return None;
+    }
     let values = data.values(crate::law::aliased(&block.column))?;
     let inside = |i: usize| values[i] >= block.low - 1e-12 && values[i] <= block.high + 1e-12;
     let n = data.rows;
@@ -211,6 +222,9 @@ pub fn range_block(model: &ModelFit, data: &Dataset, block: &RangeBlock) -> Opti
     let mut worst = Vec::new();
     for (r, name) in model.law.responses.iter().enumerate() {
         let outside: Vec<usize> = (0..n).filter(|&i| !inside(i)).map(|i| r * n + i).collect();
+        if outside.is_empty() {
+            return None;
+        }
         let measured: Vec<f64> = outside.iter().map(|&row| model.problem.response[row]).collect();
         let predicted: Option<Vec<f64>> = outside.iter().map(|&row| result.predicted[row]).collect();
         let predicted = predicted?;
@@ -251,18 +265,33 @@ pub fn recommend(
     scores: &[Score],
 ) -> Option<Recommendation> {
     let determined = |m: &ModelFit| m.fit.coefficients.iter().all(|c| c.status != fit::Status::Undetermined);
-    let score: Vec<Option<f64>> = models.iter().map(|m| if determined(m) { aicc(m, data) } else { None }).collect();
+    // A criterion compares fits of the same loads only: the set of loads that most models explain is compared.
+    let loads = |m: &ModelFit| {
+        let mut names = m.law.responses.clone();
+        names.sort();
+        names
+    };
+    let count = |i: usize| models.iter().filter(|m| loads(m) == loads(&models[i])).count();
+    let reference = (0..models.len()).max_by_key(|&i| (count(i), models.len() - i))?;
+    let same = |m: &ModelFit| loads(m) == loads(&models[reference]);
+    let score: Vec<Option<f64>> =
+        models.iter().map(|m| if determined(m) && same(m) { aicc(m, data) } else { None }).collect();
     let (best, best_aicc) = score
         .iter()
         .enumerate()
         .filter_map(|(i, s)| s.map(|s| (i, s)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .or_else(|| models.iter().position(determined).map(|i| (i, f64::NAN)))
+        .or_else(|| models.iter().position(|m| determined(m) && same(m)).map(|i| (i, f64::NAN)))
         .or_else(|| (!models.is_empty()).then_some((0, f64::NAN)))?;
     let size = |m: &ModelFit| m.law.coefficients.len();
     let behind = |i: usize| score[i].map(|s| s - best_aicc);
     let chosen = (0..models.len())
-        .filter(|&i| i == best || behind(i).is_some_and(|d| d < NO_EVIDENCE_BELOW))
+        .filter(|&i| {
+            let is_rejected = tests
+                .iter()
+                .any(|t| t.simple == models[i].law.name && t.general == models[best].law.name && t.p < REJECTED_BELOW);
+            i == best || (behind(i).is_some_and(|d| d < NO_EVIDENCE_BELOW) && !is_rejected)
+        })
         .min_by(|&a, &b| {
             let key = |i: usize| (size(&models[i]), behind(i).unwrap_or(0.0));
             key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal)
@@ -271,6 +300,8 @@ pub fn recommend(
     let name = &models[chosen].law.name;
     let mut reason = if models.len() == 1 {
         format!("{name} is the only model asked for")
+    } else if best_aicc.is_nan() {
+        format!("{name} is the first determined model; none has an AICc (exact fit, robust loss, or too few rows)")
     } else if chosen == best {
         let runner = (0..models.len())
             .filter(|&i| i != best)
@@ -301,7 +332,15 @@ pub fn recommend(
     if !out.is_empty() {
         reason += &format!("; {} not in the running, the data do not determine all coefficients", out.join(", "));
     }
-    if let Some(score) = scores.get(chosen)
+    let other: Vec<String> = models.iter().filter(|m| !same(m)).map(|m| m.law.name.clone()).collect();
+    if !other.is_empty() {
+        reason += &format!(
+            "; {} not compared, {} other loads",
+            other.join(", "),
+            if other.len() == 1 { "it explains" } else { "they explain" }
+        );
+    }
+    if let Some(score) = scores.get(chosen).filter(|_| data.configurations().len() > 1)
         && let Some(note) = &score.note
     {
         reason += &format!("; cross-validation: {note}");

@@ -181,8 +181,13 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
                 "quadratic" => out.push(polynomial(name, data, source, false)?),
                 "linear_quadratic" => out.push(polynomial(name, data, source, true)?),
                 "power_law" | "power_law_log" => {
-                    for (load, channel) in moving_axes(data, source)? {
-                        out.push(ForceLaw::power_law(load, channel, name == "power_law_log"));
+                    let axes = moving_axes(data, source)?;
+                    for (load, channel) in &axes {
+                        let mut law = ForceLaw::power_law(load, channel, name == "power_law_log");
+                        if axes.len() > 1 {
+                            law.name = format!("{name}_{}", load.replace("f_", "").replace("m_", "r"));
+                        }
+                        out.push(law);
                     }
                 }
                 _ => {
@@ -201,7 +206,12 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
 fn moving_axes(data: &Dataset, source: &Source) -> Result<Vec<(&'static str, &'static str)>, IdentifyError> {
     const PAIRS: [(&str, &str); 6] =
         [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z"), ("m_x", "w_x"), ("m_y", "w_y"), ("m_z", "w_z")];
-    let moves = |channel: &str| data.values(channel).is_some_and(|v| v.iter().any(|x| *x != 0.0));
+    // cos 90° is 6e-17, not motion.
+    let largest = data.values("speed").map_or(0.0, |u| u.iter().copied().fold(0.0, f64::max));
+    let moves = |channel: &str| {
+        let least = if channel.starts_with("v_") { 1e-9 * largest } else { 0.0 };
+        data.values(channel).is_some_and(|v| v.iter().any(|x| x.abs() > least))
+    };
     let out: Vec<_> =
         PAIRS.into_iter().filter(|(load, motion)| data.channels.contains_key(*load) && moves(motion)).collect();
     if out.is_empty() {

@@ -21,8 +21,19 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
     let file: EstimateFile = read_estimates(&tare.record)?;
     let estimate = crate::select::one_estimate(&file, tare.select.as_deref(), &tare.record)?;
     let law = ForceLaw::of_estimate(estimate, data)?;
-    let values: Vec<f64> =
-        law.coefficients.iter().map(|c| estimate.coefficients[&c.name].value.unwrap_or(0.0)).collect();
+    let complaint = |what: String| IdentifyError::Campaign { place: tare.record.display().to_string(), what };
+    let values = law
+        .coefficients
+        .iter()
+        .map(|c| {
+            estimate.coefficients.get(&c.name).and_then(|c| c.value).ok_or_else(|| {
+                complaint(format!("{} does not determine {}; use another model as tare", estimate.id, c.name))
+            })
+        })
+        .collect::<Result<Vec<f64>, _>>()?;
+    if let Some(missing) = law.responses.iter().find(|r| data.values(r).is_none()) {
+        return Err(complaint(format!("{} gives {missing}, which the table does not measure", estimate.id)));
+    }
     let predicted = law.predict(data, &values)?;
     let slopes = law.regressors(data, &values)?;
     let n = data.rows;

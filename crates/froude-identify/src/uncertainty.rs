@@ -91,7 +91,7 @@ pub fn contributions(
         });
     }
     for error in shared_errors {
-        out.push(shared_error(fit, error));
+        out.push(shared_error(fit, error)?);
     }
     Ok(out)
 }
@@ -110,22 +110,52 @@ fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, Ident
             fit.data.channels.keys().cloned().collect::<Vec<_>>().join(", ")
         ),
     })?;
-    let standard = |i: usize| if entry.relative { entry.standard * values[i].abs() } else { entry.standard };
+    let standard = |i: usize| if entry.relative { entry.standard * values[i] } else { entry.standard };
     let mut out = vec![0.0; n * fit.law.responses.len()];
     if let Some(r) = fit.law.responses.iter().position(|name| name == quantity) {
         for i in 0..n {
-            out[r * n + i] = if entry.relative { entry.standard * values[i] } else { entry.standard };
+            out[r * n + i] = standard(i);
         }
+        as_logarithms(fit, &mut out)?;
         return Ok(out);
+    }
+    if quantity == "temperature" {
+        return Err(IdentifyError::Campaign {
+            place: "[[source.uncertainty]]".to_owned(),
+            what: "quantity = \"temperature\" acts through the density; state the uncertainty of density instead"
+                .to_owned(),
+        });
     }
     let scale = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(1e-3);
     let step = 1e-5 * scale;
-    let up = fit.law.predict(&fit.data.shifted(quantity, &vec![step; n]), fit.coefficients)?;
-    let down = fit.law.predict(&fit.data.shifted(quantity, &vec![-step; n]), fit.coefficients)?;
+    let (above, below) = (fit.data.shifted(quantity, &vec![step; n]), fit.data.shifted(quantity, &vec![-step; n]));
+    let up = fit.law.predict(&above, fit.coefficients)?;
+    let down = fit.law.predict(&below, fit.coefficients)?;
+    let here = fit.law.predict(fit.data, fit.coefficients)?;
     for row in 0..out.len() {
-        out[row] = -(up[row] - down[row]) / (2.0 * step) * standard(row % n);
+        let i = row % n;
+        // The cross terms turn their sign with v_x: at broadside the difference is taken on the row's own side.
+        let side = |d: &Dataset| d.velocity_m_s(i)[0] < 0.0;
+        let slope = match (side(&above) == side(fit.data), side(&below) == side(fit.data)) {
+            (true, false) => (up[row] - here[row]) / step,
+            (false, true) => (here[row] - down[row]) / step,
+            _ => (up[row] - down[row]) / (2.0 * step),
+        };
+        out[row] = -slope * standard(i);
     }
+    as_logarithms(fit, &mut out)?;
     Ok(out)
+}
+
+/// Errors of loads as errors of their logarithms, where the fit compares these: d ln|F| = dF/F.
+fn as_logarithms(fit: Linearised<'_>, errors: &mut [f64]) -> Result<(), IdentifyError> {
+    if fit.law.in_logarithms() {
+        let loads = fit.law.predict(fit.data, fit.coefficients)?;
+        for (error, load) in errors.iter_mut().zip(loads) {
+            *error /= load;
+        }
+    }
+    Ok(())
 }
 
 /// Group of every row that shares the error.
@@ -151,28 +181,30 @@ fn groups(data: &Dataset, shared: Shared) -> Vec<usize> {
 }
 
 /// A subtracted tare: S·D·C·Dᵀ·Sᵀ.
-fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Contribution {
+fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Contribution, IdentifyError> {
     let (p, n, q) = (fit.sensitivity.nrows(), fit.data.rows, error.covariance.len());
     let mut moved = Mat::<f64>::zeros(p, q);
+    let mut per_newton = vec![1.0; n * fit.law.responses.len()];
+    as_logarithms(fit, &mut per_newton)?;
     for (response, rows) in &error.directions {
         if let Some(r) = fit.law.responses.iter().position(|name| name == response) {
             for (i, row) in rows.iter().enumerate().take(n) {
                 for (k, d) in row.iter().enumerate() {
                     for j in 0..p {
-                        moved[(j, k)] += fit.sensitivity[(j, r * n + i)] * d;
+                        moved[(j, k)] += fit.sensitivity[(j, r * n + i)] * d * per_newton[r * n + i];
                     }
                 }
             }
         }
     }
     let c = Mat::from_fn(q, q, |a, b| error.covariance[a][b]);
-    Contribution {
+    Ok(Contribution {
         name: error.name.clone(),
         shared: "campaign",
         covariance: &moved * c * moved.transpose(),
         dof: f64::INFINITY,
         in_scatter: false,
-    }
+    })
 }
 
 /// Combined uncertainty of one coefficient.

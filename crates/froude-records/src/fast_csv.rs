@@ -445,7 +445,7 @@ impl Reader {
         text.truncate(end);
         let lines =
             Lines { index: self.summary.chunks, first: self.next_line, count: memchr_iter(b'\n', text).count() };
-        text.resize(end.next_multiple_of(8) + PADDING, 0);
+        text.resize(end.next_multiple_of(16) + PADDING, 0);
         self.next_line += lines.count as u64;
         self.summary.chunks += 1;
         self.summary.rows += lines.count as u64;
@@ -487,6 +487,7 @@ impl Layout {
         let Memory { text, ends, numbers } = memory;
         let (rows, width) = (lines.count, self.headers.len());
         numbers.resize(self.selected * rows, 0.0);
+        ends.resize(rows * width + 16, 0);
         let found = separators(text, ends);
         // A quote could hide a separator in a cell that is passed over.
         let is_plain = self.selected == width || memchr(b'"', text).is_none();

@@ -21,6 +21,7 @@ pub mod demo;
 mod error;
 pub mod inspect;
 pub mod pipeline;
+mod results;
 mod sections;
 pub mod twin;
 

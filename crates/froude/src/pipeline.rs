@@ -8,12 +8,11 @@ use froude_records::campaign::{Campaign, Input, read_campaign};
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::Finding;
 use froude_records::hash::sha256_of_file;
-use froude_records::json::{read_estimates, write_estimates};
-use froude_records::write::write_atomically;
+use froude_records::json::read_estimates;
 use indexmap::IndexMap;
 
 use crate::Error;
-use crate::sections;
+use crate::{results, sections};
 
 /// What to identify and where the results go.
 #[derive(Debug, Clone)]
@@ -57,7 +56,7 @@ pub struct Outcome {
 
 /// Reads, fits, chooses, reports; `progress` is told each step.
 ///
-/// Nothing is written before everything is computed, and every file is written under a temporary name first.
+/// Nothing is written before everything is computed, and the results are written all or none.
 ///
 /// # Errors
 ///
@@ -133,22 +132,15 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let html = froude_report::html(&report)?;
     let figures = froude_report::figures(&report)?;
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
-    std::fs::create_dir_all(&out).map_err(|source| Error::Output { path: out.clone(), source })?;
-    let estimate = out.join("estimate.json");
-    write_estimates(&estimate, &file)?;
-    let mut drawn = Vec::new();
-    if !figures.is_empty() {
-        let folder = out.join("figures");
-        std::fs::create_dir_all(&folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
-        for figure in figures {
-            let path = folder.join(&figure.file_name);
-            write_atomically(&path, figure.svg.as_bytes())?;
-            drawn.push(path);
-        }
-    }
-    let report_path = out.join("report.html");
-    write_atomically(&report_path, html.as_bytes())?;
-    Ok(Outcome { file, estimate, report: report_path, figures: drawn, sources, comparison })
+    let written = results::write(&out, &file, &figures, &html)?;
+    Ok(Outcome {
+        file,
+        estimate: written.estimate,
+        report: written.report,
+        figures: written.figures,
+        sources,
+        comparison,
+    })
 }
 
 /// A campaign as it is read, or the one that a bare table stands for.

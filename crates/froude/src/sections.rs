@@ -93,7 +93,7 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
     if sources.iter().any(|s| s.models.len() > 1) {
         out.push(
             "Among several force models the one with the fewest coefficients is recommended whose AICc lies within 2 of the \
-             smallest; smaller differences are no evidence. F tests of nested models are stated beside it."
+             smallest (smaller differences are no evidence), unless an F test rejects it inside the best model at 1 % in some load."
                 .to_owned(),
         );
     }
@@ -364,7 +364,12 @@ fn bands(
     let n = places.rows;
     let mut out = Vec::new();
     for (r, response) in model.law.responses.iter().enumerate() {
-        let dof = model.fit.components.get(r).map_or(f64::INFINITY, |c| c.dof);
+        // The fewest degrees of freedom among the coefficients of this load: those of the clusters, say.
+        let touches = |j: usize| (0..n).any(|i| slopes[(r * n + i, j)] != 0.0);
+        let dof = (0..slopes.ncols())
+            .filter(|&j| touches(j))
+            .filter_map(|j| model.combined[j].map(|c| c.dof))
+            .fold(f64::INFINITY, f64::min);
         let t = coverage_factor(dof);
         let half: Vec<f64> = (0..n)
             .map(|i| {

@@ -156,38 +156,58 @@ pub(super) fn without_blanks(mut cell: &[u8]) -> &[u8] {
 
 /// Writes where the commas and line ends of `text` are, in order; returns how many.
 ///
-/// `text` is whole words long, and `places` has room for as many as there are, and 8 more.
+/// `text` is a multiple of 16 bytes long. `places` has room for 16 more than are expected;
+/// when that is not enough, the rest is left out.
 ///
 /// Where cells end is found beforehand so that reading one cell need not wait for the
 /// one before it.
-pub(super) fn separators(text: &[u8], places: &mut Vec<u32>) -> usize {
+pub(super) fn separators(text: &[u8], places: &mut [u32]) -> usize {
     let mut found = 0;
-    for (k, block) in text.as_chunks::<16>().0.iter().enumerate() {
-        let mut marks = 0_u32;
-        for (i, &byte) in block.iter().enumerate() {
-            marks |= u32::from(byte == b',' || byte == b'\n') << i;
-        }
-        let count = marks.count_ones() as usize;
-        if places.len() < found + 16 {
-            places.resize(2 * found + 64, 0);
-        }
-        let Some(room) = places[found..].first_chunk_mut::<16>() else {
+    for (block, first) in text.as_chunks::<16>().0.iter().zip((0_u32..).step_by(16)) {
+        let mut marks = marks_in(block);
+        let Some(room) = places.get_mut(found..).and_then(|rest| rest.first_chunk_mut::<16>()) else {
             break;
         };
-        let first = (16 * k) as u32;
-        for place in &mut room[..4] {
+        // Three at once without asking: sixteen bytes seldom hold more, and which hold how
+        // many cannot be predicted.
+        for place in &mut room[..3] {
             *place = first + marks.trailing_zeros();
+            found += usize::from(marks != 0);
             marks &= marks.wrapping_sub(1);
         }
-        if count > 4 {
-            for place in &mut room[4..count] {
-                *place = first + marks.trailing_zeros();
-                marks &= marks.wrapping_sub(1);
+        for place in &mut room[3..] {
+            if marks == 0 {
+                break;
             }
+            *place = first + marks.trailing_zeros();
+            found += 1;
+            marks &= marks - 1;
         }
-        found += count;
     }
     found
+}
+
+/// A bit for every byte that is a comma or a line end.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn marks_in(block: &[u8; 16]) -> u32 {
+    use std::arch::x86_64::{_mm_cmpeq_epi8, _mm_movemask_epi8, _mm_or_si128, _mm_set_epi64x, _mm_set1_epi8};
+    let all = u128::from_le_bytes(*block);
+    #[allow(unsafe_code)]
+    // SAFETY: SSE2 belongs to every x86_64 processor, and no pointer is involved.
+    unsafe {
+        let bytes = _mm_set_epi64x((all >> 64) as i64, all as i64);
+        let commas = _mm_cmpeq_epi8(bytes, _mm_set1_epi8(b','.cast_signed()));
+        let ends = _mm_cmpeq_epi8(bytes, _mm_set1_epi8(b'\n'.cast_signed()));
+        _mm_movemask_epi8(_mm_or_si128(commas, ends)).cast_unsigned()
+    }
+}
+
+/// A bit for every byte that is a comma or a line end.
+#[cfg(not(target_arch = "x86_64"))]
+#[inline(always)]
+fn marks_in(block: &[u8; 16]) -> u32 {
+    (0..16).filter(|&i| matches!(block[i], b',' | b'\n')).fold(0, |marks, i| marks | 1 << i)
 }
 
 /// The high bit of every byte that is zero.

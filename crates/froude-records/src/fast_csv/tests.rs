@@ -115,8 +115,8 @@ proptest! {
             prop_oneof![Just(b','), Just(b'\n'), any::<u8>()], 0..200
         )
     ) {
-        bytes.resize(bytes.len().next_multiple_of(8), 0);
-        let mut places = Vec::new();
+        bytes.resize(bytes.len().next_multiple_of(16), 0);
+        let mut places = vec![0; bytes.len() + 16];
         let found = separators(&bytes, &mut places);
         let expected: Vec<u32> = (0_u32..)
             .zip(&bytes)

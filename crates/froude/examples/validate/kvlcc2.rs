@@ -59,6 +59,17 @@ pub fn hmri(claims: &mut Claims, shared: &Path) -> Result<(), Box<dyn Error>> {
         result.data.rows.to_string(),
         result.data.rows == 18,
     );
+    claims.holds(
+        HMRI,
+        "both models are scored outside 12°",
+        "2",
+        result.blocks.len().to_string(),
+        result.blocks.len() == 2,
+    );
+    let worst = |model: &str| {
+        let block = result.blocks.iter().find(|b| b.model == model);
+        block.and_then(|b| b.worst_ratio.iter().find(|(c, _)| c == "Y_prime")).map_or(f64::NAN, |w| w.1.abs())
+    };
     for block in &result.blocks {
         let ratio = block.worst_ratio.iter().find(|(c, _)| c == "Y_prime").map_or(f64::NAN, |w| w.1);
         let relative = block.rmse.iter().find(|(c, ..)| c == "Y_prime").map_or(f64::NAN, |w| w.2);
@@ -82,7 +93,7 @@ pub fn hmri(claims: &mut Claims, shared: &Path) -> Result<(), Box<dyn Error>> {
                 "v|v| fitted to |β| ≤ 12° does better outside",
                 "less than the cubic",
                 format!("worst {:+.1} %, RMSE {:.1} % of the loads", 100.0 * ratio, 100.0 * relative),
-                ratio.abs() < 0.5,
+                worst("crossflow") < worst("cubic"),
             );
         }
     }
@@ -151,10 +162,11 @@ pub fn fhr(claims: &mut Claims, shared: &Path) -> Result<(), Box<dyn Error>> {
                 })
                 .collect();
             let average = stds.iter().sum::<f64>() / stds.len() as f64;
-            // Printed with two decimals; ten repeats give a standard deviation to about 24 %.
-            let band = 0.005 + 0.24 * stated[k];
+            // Printed with two decimals; ten repeats give a standard deviation to 24 %, and the mean of several to less.
+            // Which settings the report averaged is not stated: 95 % of that scatter is the band.
+            let band = 0.005 + 1.96 * 0.24 / (stds.len().max(1) as f64).sqrt() * stated[k];
             let verdict = if stds.is_empty() {
-                Verdict::Skipped
+                Verdict::Miss
             } else if (average - stated[k]).abs() <= band {
                 Verdict::Pass
             } else {
