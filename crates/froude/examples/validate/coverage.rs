@@ -209,7 +209,7 @@ fn judge(claims: &mut Claims, cases: &[Case]) -> Result<(), Box<dyn Error>> {
 
 /// Clustered noise (half of the variance shared by a configuration) and noise that grows with the load.
 fn robust(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), Box<dyn Error>> {
-    let repetitions = if repetitions >= 20_000 { 300 } else { 100 };
+    let repetitions: usize = if repetitions >= 20_000 { 300 } else { 100 };
     let (_, data) = planned(TABLE_2, &configurations(1..=9), "")?;
     let (law, values) = published(root, "circulation_tank_restricted", "f2", &data)?;
     let force = law.predict(&data, &values)?;
