@@ -419,13 +419,18 @@ pub fn recommendation(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Er
         let scores: Vec<_> = fits.iter().map(|m| leave_one_out(m, &data)).collect();
         let chosen = recommend(&fits, &data, &tests, &scores).ok_or("no recommendation")?;
         let name = &fits[chosen.index].law.name;
-        let holds = if rich { name == "f4" } else { name != "f4" };
-        claims.holds(
+        // Where the issue expects less than f4 and the data still reject everything simpler, that is a finding.
+        let verdict = match (rich, name == "f4") {
+            (true, true) | (false, false) => Verdict::Pass,
+            (true, false) => Verdict::Miss,
+            (false, true) => Verdict::Finding,
+        };
+        claims.add(
             CHOICE,
             &format!("{what}, σ = {sigma} N"),
-            if rich { "f4: the noise supports it" } else { "simpler than f4" },
+            if rich { "f4: the noise supports it" } else { "simpler than f4, where no F test rejects it" },
             chosen.reason.clone(),
-            holds,
+            verdict,
         );
     }
     Ok(())
