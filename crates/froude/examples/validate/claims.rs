@@ -40,6 +40,9 @@ pub struct Claims {
 impl Claims {
     /// A line that is what it is.
     pub fn add(&mut self, section: &'static str, claim: &str, expected: &str, found: String, verdict: Verdict) {
+        // The page is read elsewhere: files are named from the project's root.
+        let here = concat!(env!("CARGO_MANIFEST_DIR"), "/../../");
+        let found = found.replace(here, "");
         eprintln!("[{verdict:?}] {section}: {claim}: {found}");
         self.lines.push(Line { section, claim: claim.to_owned(), expected: expected.to_owned(), found, verdict });
     }
