@@ -20,6 +20,7 @@ CASES = [
     ("columns", "gram", 3.0, "10^7 x 10 from memory", "numpy Gram + Cholesky"),
     ("columns-qr", "gelsy", 15.0, "the same by reflections (QR)", "scipy lstsq gelsy"),
     ("rows", "features", 30.0, "features on the fly from 5 columns", "numpy features + Gram"),
+    ("rows", "features-small-pages", None, "the same", "numpy on 4 KiB pages"),
     ("non-negative", "nnls-on-gram", 3.0, "non-negative", "scipy nnls on Gram"),
     ("csv", "csv-polars", 4.0, "CSV to two components", "polars + numpy"),
     ("csv-cluster", "csv-polars", 4.0, "the same with cluster CR3", "polars + numpy, no CR3"),
@@ -31,6 +32,8 @@ CASES = [
 def run(command, threads):
     names = ("OMP", "OPENBLAS", "MKL", "RAYON", "ARROW")
     env = dict(os.environ, POLARS_MAX_THREADS=str(threads), **{f"{n}_NUM_THREADS": str(threads) for n in names})
+    if "features-small-pages" in command:
+        env["NUMPY_MADVISE_HUGEPAGE"] = "0"
     cpus = ",".join(map(str, sorted(os.sched_getaffinity(0))[:threads]))
     pinned = ["taskset", "-c", cpus] if threads < os.cpu_count() else []
     done = subprocess.run(pinned + command, env=env, capture_output=True, text=True)

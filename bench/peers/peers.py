@@ -99,7 +99,7 @@ def main(case, folder):
         *x, y = raw(folder, 1000)
         X = regressors(*x)
         call, runs = (lambda: bootstrap(X, y)), 7
-    elif case == "features":
+    elif case.startswith("features"):
         *x, y = raw(folder)
         call = lambda: gram(regressors(*x), y)  # noqa: E731
     else:

@@ -72,9 +72,12 @@ use rayon::prelude::*;
 
 pub use cluster::{ClusterAccumulator, ClusterCovariance, ClusterFactors, ClusterKind};
 use gram::{LARGEST_INFLATION, add_products, largest_inflation, pairs};
-use kernel::{MakeRows, absorb, clear_from, fetch_ahead, groups_per_block, put};
+use kernel::{Ahead, MakeRows, absorb, clear_from, groups_per_block, put};
 use lanes::{LANES, Lane, Level};
 pub use non_negative::NonNegative;
+
+/// How many blocks before its turn a block is asked for.
+const BLOCKS_AHEAD: usize = 4;
 
 /// Blocks in a segment: the unit that one thread factors on its own.
 const BLOCKS_PER_SEGMENT: usize = 256;
@@ -480,24 +483,24 @@ impl Folder {
     ///
     /// False when an entry was not finite, or its square was not.
     #[must_use]
-    fn fold(&mut self, triangle: &mut [f64], rows: usize) -> bool {
+    fn fold(&mut self, triangle: &mut [f64], rows: usize, ahead: Ahead<'_>) -> bool {
         let width = self.shape.width();
         if rows == 0 || width == 0 {
             return true;
         }
         let used = rows.div_ceil(LANES) * width;
         clear_from(&mut self.block[..used], width, rows);
-        absorb(self.level, triangle, &mut self.block[..used], &mut self.scratch);
+        absorb(self.level, triangle, &mut self.block[..used], &mut self.scratch, ahead);
         // A bad entry spoils all columns to its right, hence always the last.
         triangle.last().is_none_or(|last| last.is_finite())
     }
 
     /// Adds the products of the first `rows` rows of the block to `sums`.
-    fn add_products(&mut self, sums: &mut [Lane], pilot: &[f64], rows: usize) {
+    fn add_products(&mut self, sums: &mut [Lane], pilot: &[f64], rows: usize, ahead: Ahead<'_>) {
         let (p, width) = (self.shape.regressors, self.shape.width());
         let used = rows.div_ceil(LANES) * width;
         clear_from(&mut self.block[..used], width, rows);
-        add_products(self.level, sums, &mut self.block[..used], p, pilot, width);
+        add_products(self.level, sums, &mut self.block[..used], p, pilot, width, ahead);
     }
 
     /// Folds another triangle in, a block of its rows after the other.
@@ -515,7 +518,7 @@ impl Folder {
                 }
             }
             // Both triangles are finite: each was checked when it was made.
-            let _ = self.fold(triangle, rows);
+            let _ = self.fold(triangle, rows, Ahead::nothing());
         }
     }
 }
@@ -598,7 +601,7 @@ impl Accumulator {
 
     fn fold(&mut self) {
         // The entries were checked when they came.
-        let _ = self.folder.fold(&mut self.segment, self.waiting);
+        let _ = self.folder.fold(&mut self.segment, self.waiting, Ahead::nothing());
         self.waiting = 0;
         self.blocks += 1;
     }
@@ -658,18 +661,10 @@ pub fn reduce_columns(regressors: &[&[f64]], responses: &[&[f64]], method: Metho
     let fill = |(): &mut (), folder: &mut Folder, rows: Range<usize>| {
         for (j, column) in columns.iter().enumerate() {
             folder.put(j, 0, &column[rows.clone()]);
-            fetch_ahead(&column[two_blocks_on(&rows, n)]);
         }
     };
     let locate = |rows: Range<usize>| check_finite(&columns, rows, 0);
-    reduce(shape, n, method, fill, locate)
-}
-
-/// The rows that are needed two blocks later: near enough to be still in the cache
-/// then, far enough to have arrived.
-fn two_blocks_on(rows: &Range<usize>, n: usize) -> Range<usize> {
-    let ahead = 2 * rows.len();
-    n.min(rows.start + ahead)..n.min(rows.end + ahead)
+    reduce(Source { shape, n, raw: &columns, fill, locate }, method)
 }
 
 /// Reduces rows whose regressors are made on the fly from raw columns in memory, on
@@ -717,9 +712,6 @@ where
         make(&raw, &mut columns);
     };
     let fill = |space: &mut Vec<f64>, folder: &mut Folder, rows: Range<usize>| {
-        for column in raw {
-            fetch_ahead(&column[two_blocks_on(&rows, n)]);
-        }
         made(space, rows.clone());
         for (j, column) in space.chunks_exact(stride).enumerate() {
             folder.put(j, 0, &column[..rows.len()]);
@@ -735,7 +727,7 @@ where
         }
         Ok(())
     };
-    reduce(shape, n, method, fill, locate)
+    reduce(Source { shape, n, raw, fill, locate }, method)
 }
 
 /// Reduces rows made on the fly, each by a formula: the quickest way where the
@@ -777,9 +769,6 @@ where
     let shape = Shape { regressors, responses };
     let n = check_lengths(&raw)?;
     let fill = |(): &mut (), folder: &mut Folder, rows: Range<usize>| {
-        for column in raw {
-            fetch_ahead(&column[two_blocks_on(&rows, n)]);
-        }
         folder.level.for_compiler().run(MakeRows {
             raw: raw.map(|column| &column[rows.clone()]),
             block: &mut folder.block,
@@ -793,20 +782,22 @@ where
         }
         Ok(())
     };
-    reduce(shape, n, method, fill, locate)
+    reduce(Source { shape, n, raw: &raw, fill, locate }, method)
 }
 
 /// Rows of a source, cut into segments that are factored by themselves.
-struct Source<F, L> {
+struct Source<'a, F, L> {
     shape: Shape,
     n: usize,
+    /// Columns in memory that the rows are made of.
+    raw: &'a [&'a [f64]],
     /// Writes rows into the folder's block.
     fill: F,
     /// Finds the first bad entry among rows.
     locate: L,
 }
 
-impl<F, L> Source<F, L>
+impl<F, L> Source<'_, F, L>
 where
     L: Fn(Range<usize>) -> Result<(), StreamError>,
 {
@@ -822,6 +813,13 @@ where
         rows.step_by(step).map(move |start| start..end.min(start + step))
     }
 
+    /// What is needed some blocks after `rows`: near enough to be still in the cache then, far enough
+    /// to have arrived.
+    fn ahead(&self, rows: &Range<usize>) -> Ahead<'_> {
+        let on = BLOCKS_AHEAD * self.shape.block_rows();
+        Ahead::new(self.raw, self.n.min(rows.start + on)..self.n.min(rows.end + on))
+    }
+
     /// A segment by reflections.
     fn reflect<S>(&self, segment: usize, (space, folder): &mut (S, Folder)) -> Result<Vec<f64>, StreamError>
     where
@@ -831,7 +829,7 @@ where
         let mut triangle = vec![0.0; width * width];
         for rows in self.blocks(segment) {
             (self.fill)(space, folder, rows.clone());
-            if !folder.fold(&mut triangle, rows.len()) {
+            if !folder.fold(&mut triangle, rows.len(), self.ahead(&rows)) {
                 (self.locate)(rows)?;
             }
         }
@@ -847,24 +845,24 @@ where
         let mut sums = vec![Lane::ZERO; pairs(width)];
         for rows in self.blocks(segment) {
             (self.fill)(space, folder, rows.clone());
-            folder.add_products(&mut sums, pilot, rows.len());
+            folder.add_products(&mut sums, pilot, rows.len(), self.ahead(&rows));
         }
         gram::triangle(&sums, p, pilot, width)
     }
 }
 
 /// Segments factored by themselves, then merged in order.
-fn reduce<S, F, L>(shape: Shape, n: usize, method: Method, fill: F, locate: L) -> Result<Factor, StreamError>
+fn reduce<S, F, L>(source: Source<'_, F, L>, method: Method) -> Result<Factor, StreamError>
 where
     S: Default,
     F: Fn(&mut S, &mut Folder, Range<usize>) + Sync,
     L: Fn(Range<usize>) -> Result<(), StreamError> + Sync,
 {
+    let (shape, n) = (source.shape, source.n);
     let mut total = Factor::empty(shape);
     if n == 0 {
         return Ok(total);
     }
-    let source = Source { shape, n, fill, locate };
     let mut memory = (S::default(), Folder::new(shape));
     let first = source.reflect(0, &mut memory)?;
     memory.1.fold_triangle(&mut total.triangle, &first);

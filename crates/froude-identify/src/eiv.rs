@@ -17,12 +17,21 @@ use crate::regression::stacked;
 /// The inputs that may be uncertain, in the order of the regression.
 const INPUTS: [&str; 2] = ["speed", "angle"];
 
+/// Step of the differences, in m/s and rad: rounding and truncation both near 10⁻¹⁰.
+const DIFFERENCE_STEP: f64 = 6e-6;
+
+/// Whether an entry of the budget is an error that the regression in variables takes care of.
+#[must_use]
+pub fn is_input_error(entry: &BudgetEntry) -> bool {
+    entry.shared == Shared::Sample && INPUTS.contains(&entry.quantity.as_str())
+}
+
 /// Standard deviations of speed and angle per row, from the budget; `None` without any.
 #[must_use]
 pub fn input_standard(data: &Dataset, budget: &[BudgetEntry]) -> Option<Mat<f64>> {
     let mut out = Mat::zeros(data.rows, INPUTS.len());
     let mut has_any = false;
-    for entry in budget.iter().filter(|e| e.shared == Shared::Sample) {
+    for entry in budget.iter().filter(|e| is_input_error(e)) {
         let Some(k) = INPUTS.iter().position(|name| *name == entry.quantity) else { continue };
         has_any = true;
         for i in 0..data.rows {
@@ -95,6 +104,35 @@ impl InputModel for LawOfInputs<'_> {
             Err(_) => out.fill(f64::NAN),
         }
     }
+
+    /// Central differences; at broadside one-sided ones of the same order, on the row's own side, since the
+    /// cross terms as printed jump where v_x turns its sign.
+    fn derivatives(&self, observation: usize, inputs: &[f64], out: &mut [f64]) {
+        let size = self.n_components() * self.n_coefficients();
+        let goes_back = |inputs: &[f64]| inputs[0] * inputs[1].cos() < 0.0;
+        let mut x = vec![vec![0.0; size]; 3];
+        for m in 0..self.n_inputs() {
+            let step = DIFFERENCE_STEP * inputs[m].abs().max(1.0);
+            let at = |k: f64| {
+                let mut moved = inputs.to_vec();
+                moved[m] += k * step;
+                moved
+            };
+            let stays = |k: f64| goes_back(&at(k)) == goes_back(inputs);
+            // Weights of f(z + k·step), divided by step: exact for quadratics.
+            let stencil: [(f64, f64); 3] = match (stays(1.0), stays(-1.0)) {
+                (true, false) => [(0.0, -1.5), (1.0, 2.0), (2.0, -0.5)],
+                (false, true) => [(0.0, 1.5), (-1.0, -2.0), (-2.0, 0.5)],
+                _ => [(1.0, 0.5), (-1.0, -0.5), (0.0, 0.0)],
+            };
+            for (x, (k, _)) in x.iter_mut().zip(stencil) {
+                self.regressors(observation, &at(k), x);
+            }
+            for i in 0..size {
+                out[m * size + i] = x.iter().zip(stencil).map(|(x, (_, weight))| weight * x[i]).sum::<f64>() / step;
+            }
+        }
+    }
 }
 
 /// Fits a linear law with uncertain speed and angle.
@@ -135,18 +173,27 @@ pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma)
 
 /// Puts the result in the place of the ordinary fit's coefficients; its design and leverages stay.
 pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], result: OdrFit) {
-    for (summary, sigma) in fitted.components.iter_mut().zip(&result.sigma) {
-        summary.sigma = Some(sigma.sigma);
-        if sigma.dof.is_finite() {
-            summary.dof = sigma.dof;
-        }
-    }
     let beta: Vec<f64> = result.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
     for i in 0..response.len() {
         fitted.fitted[i] = (0..beta.len()).map(|j| design[(i, j)] * beta[j]).sum();
         fitted.residuals[i] = response[i] - fitted.fitted[i];
     }
-    // The criteria of the ordinary fit do not belong to this one.
+    let n = response.len() / fitted.components.len().max(1);
+    for (c, (summary, sigma)) in fitted.components.iter_mut().zip(&result.sigma).enumerate() {
+        let rows = c * n..(c + 1) * n;
+        let squares = |v: &[f64]| v[rows.clone()].iter().map(|x| x * x).sum::<f64>();
+        summary.sigma = Some(sigma.sigma);
+        if sigma.dof.is_finite() {
+            summary.dof = sigma.dof;
+        }
+        summary.rss = squares(&fitted.residuals);
+        summary.relative_residual = (summary.rss / squares(response)).sqrt();
+        summary.durbin_watson = fit::diagnostics::durbin_watson(&fitted.residuals[rows]);
+        // The criteria and the test of the ordinary fit do not belong to this one.
+        summary.durbin_watson_p = None;
+        summary.is_serially_correlated = false;
+        summary.aicc = None;
+    }
     fitted.aicc = None;
     fitted.covariance = result.covariance;
     fitted.coefficients = result.coefficients;

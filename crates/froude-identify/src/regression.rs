@@ -163,7 +163,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         ));
     }
     let coefficients = step(&fitted);
-    let contributions = contributions(
+    let mut contributions = contributions(
         Linearised {
             law,
             data,
@@ -174,6 +174,12 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         settings.shared_errors,
         settings.kind != SourceKind::Cfd,
     )?;
+    if in_variables {
+        // Row errors of speed and angle are in the regression's covariance already, also where there is no scatter.
+        for (part, entry) in contributions.iter_mut().zip(settings.budget) {
+            part.in_scatter |= eiv::is_input_error(entry);
+        }
+    }
     let combined: Vec<Option<Combined>> = fitted
         .coefficients
         .iter()

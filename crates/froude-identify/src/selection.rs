@@ -256,6 +256,11 @@ pub fn range_block(model: &ModelFit, data: &Dataset, block: &RangeBlock) -> Opti
     })
 }
 
+/// A p-value in words; below 1e-9 its digits say nothing.
+fn p_value(p: f64) -> String {
+    if p < 1e-9 { "p < 1e-9".to_owned() } else { format!("p = {p:.1e}") }
+}
+
 /// The model that the data support.
 #[must_use]
 pub fn recommend(
@@ -323,7 +328,7 @@ pub fn recommend(
     let rejected: Vec<String> = tests
         .iter()
         .filter(|t| t.general == *name && t.p < REJECTED_BELOW)
-        .map(|t| format!("{} in {} (p = {:.1e})", t.simple, t.component, t.p))
+        .map(|t| format!("{} in {} ({})", t.simple, t.component, p_value(t.p)))
         .collect();
     if !rejected.is_empty() {
         reason += &format!("; F tests reject {}", rejected.join(", "));

@@ -66,7 +66,8 @@ fn raw(dir: &Path) -> Outcome<[Vec<f64>; 5]> {
 fn in_memory(dir: &Path, limit: usize) -> Outcome<Vec<Vec<f64>>> {
     let raw = raw(dir)?;
     let n = raw[0].len().min(limit);
-    let mut columns = vec![vec![0.0; n]; 11];
+    let mut columns: Vec<Vec<f64>> = (0..11).map(|_| make::on_huge_pages(n)).collect();
+    for column in &mut columns { column.resize(n, 0.0); }
     for i in 0..n {
         for (column, value) in columns.iter_mut().zip(design(std::array::from_fn(|k| raw[k][i]))) {
             column[i] = value;

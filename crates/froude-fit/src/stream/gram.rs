@@ -9,6 +9,7 @@
 // What a kernel calls must become part of it, or it is compiled plainly.
 #![allow(clippy::inline_always)]
 
+use super::kernel::Ahead;
 use super::lanes::{Kernel, Lane, Level, Vectors};
 
 /// Largest variance inflation factor at which products stand in for a QR factor.
@@ -38,8 +39,9 @@ pub(crate) fn add_products(
     regressors: usize,
     pilot: &[f64],
     width: usize,
+    ahead: Ahead<'_>,
 ) {
-    level.run(AddProducts { sums, block, regressors, pilot, width });
+    level.run(AddProducts { sums, block, regressors, pilot, width, ahead });
 }
 
 struct AddProducts<'a> {
@@ -48,6 +50,7 @@ struct AddProducts<'a> {
     regressors: usize,
     pilot: &'a [f64],
     width: usize,
+    ahead: Ahead<'a>,
 }
 
 impl Kernel for AddProducts<'_> {
@@ -55,6 +58,7 @@ impl Kernel for AddProducts<'_> {
 
     #[inline(always)]
     fn run<V: Vectors>(self, vectors: V) {
+        let mut ahead = self.ahead;
         for (r, pilot) in self.pilot.chunks_exact(self.regressors.max(1)).enumerate() {
             for (k, betas) in pilot.chunks(V::TILE).enumerate() {
                 let place = [k * V::TILE, self.regressors + r];
@@ -62,7 +66,7 @@ impl Kernel for AddProducts<'_> {
                     ($($m:literal)*) => {
                         match betas.len() {
                             $($m if $m <= V::TILE => subtract_fit::<V, $m>(
-                                vectors, self.block, self.width, place, betas,
+                                vectors, self.block, self.width, place, betas, &mut ahead,
                             ),)*
                             _ => {}
                         }
@@ -81,11 +85,11 @@ impl Kernel for AddProducts<'_> {
                     ($($m:literal)*) => {
                         match (rows.len(), a == b) {
                             $(($m, true) if $m <= V::PANEL => self_products::<V, $m>(
-                                vectors, self.block, self.width, rows.start, self.sums,
+                                vectors, self.block, self.width, rows.start, self.sums, &mut ahead,
                             ),
                             ($m, false) if $m <= V::PANEL => cross_products::<V, $m>(
                                 vectors, self.block, self.width, rows.start,
-                                [columns.start, columns.len()], self.sums,
+                                [columns.start, columns.len()], self.sums, &mut ahead,
                             ),)*
                             _ => {}
                         }
@@ -94,6 +98,7 @@ impl Kernel for AddProducts<'_> {
                 panel!(1 2 3 4 5);
             }
         }
+        ahead.ask_for_rest();
     }
 }
 
@@ -105,12 +110,15 @@ fn subtract_fit<V: Vectors, const M: usize>(
     width: usize,
     [start, response]: [usize; 2],
     betas: &[f64],
+    ahead: &mut Ahead<'_>,
 ) {
     let mut beta = [vectors.splat(0.0); M];
     for (beta, value) in beta.iter_mut().zip(betas) {
         *beta = vectors.splat(*value);
     }
     for group in block.chunks_exact_mut(width) {
+        ahead.ask();
+        ahead.ask();
         let (x, y) = group.split_at_mut(response);
         let Some(x) = x[start..].first_chunk::<M>() else {
             return;
@@ -135,9 +143,12 @@ fn self_products<V: Vectors, const M: usize>(
     width: usize,
     start: usize,
     sums: &mut [Lane],
+    ahead: &mut Ahead<'_>,
 ) {
     let mut products = [[vectors.splat(0.0); M]; M];
     for group in block.chunks_exact(width) {
+        ahead.ask();
+        ahead.ask();
         let Some(x) = group[start..].first_chunk::<M>() else {
             return;
         };
@@ -167,12 +178,13 @@ fn cross_products<V: Vectors, const M: usize>(
     start: usize,
     [other, count]: [usize; 2],
     sums: &mut [Lane],
+    ahead: &mut Ahead<'_>,
 ) {
     macro_rules! count {
         ($($n:literal)*) => {
             match count {
                 $($n if $n <= V::PANEL => cross_tile::<V, M, $n>(
-                    vectors, block, width, start, other, sums,
+                    vectors, block, width, start, other, sums, ahead,
                 ),)*
                 _ => {}
             }
@@ -189,9 +201,12 @@ fn cross_tile<V: Vectors, const M: usize, const N: usize>(
     start: usize,
     other: usize,
     sums: &mut [Lane],
+    ahead: &mut Ahead<'_>,
 ) {
     let mut products = [[vectors.splat(0.0); N]; M];
     for group in block.chunks_exact(width) {
+        ahead.ask();
+        ahead.ask();
         let (Some(x), Some(y)) = (group[start..].first_chunk::<M>(), group[other..].first_chunk::<N>()) else {
             return;
         };

@@ -11,6 +11,8 @@
 // What a kernel calls must become part of it, or it is compiled plainly.
 #![allow(clippy::inline_always)]
 
+use std::ops::Range;
+
 use super::lanes::{Kernel, LANES, Lane, Level, Vectors};
 
 /// Bytes that a block may take: it and the two fetched ahead stay in the first-level
@@ -26,14 +28,15 @@ pub(crate) fn groups_per_block(width: usize) -> usize {
 /// afterwards `rᵀr` has grown by `blockᵀblock`. The block is used up.
 ///
 /// `scratch` holds `2·width` numbers. Rows of zeros change nothing.
-pub(crate) fn absorb(level: Level, r: &mut [f64], block: &mut [Lane], scratch: &mut [f64]) {
-    level.run(Absorb { r, block, scratch });
+pub(crate) fn absorb(level: Level, r: &mut [f64], block: &mut [Lane], scratch: &mut [f64], ahead: Ahead<'_>) {
+    level.run(Absorb { r, block, scratch, ahead });
 }
 
 struct Absorb<'a> {
     r: &'a mut [f64],
     block: &'a mut [Lane],
     scratch: &'a mut [f64],
+    ahead: Ahead<'a>,
 }
 
 impl Kernel for Absorb<'_> {
@@ -43,10 +46,10 @@ impl Kernel for Absorb<'_> {
     fn run<V: Vectors>(self, vectors: V) {
         let width = self.r.len().isqrt();
         let (dots, turns) = self.scratch.split_at_mut(width);
-        let block = self.block;
+        let (block, mut ahead) = (self.block, self.ahead);
         // The first step's inner products: a sweep that turns nothing.
         turns.fill(0.0);
-        sweep_all::<V, false>(vectors, block, width, 0, turns, dots);
+        sweep_all::<V, false>(vectors, block, width, 0, turns, dots, &mut ahead);
         for k in 0..width {
             let row = &mut self.r[k * width..(k + 1) * width];
             let (alpha, squares) = (row[k], dots[k]);
@@ -63,8 +66,9 @@ impl Kernel for Absorb<'_> {
                     row[j] -= head * turns[j];
                 }
             }
-            sweep_all::<V, true>(vectors, block, width, k + 1, turns, dots);
+            sweep_all::<V, true>(vectors, block, width, k + 1, turns, dots, &mut ahead);
         }
+        ahead.ask_for_rest();
     }
 }
 
@@ -80,6 +84,7 @@ fn sweep_all<V: Vectors, const TURN: bool>(
     first: usize,
     turns: &[f64],
     dots: &mut [f64],
+    ahead: &mut Ahead<'_>,
 ) {
     let mut start = first;
     while start < width {
@@ -90,7 +95,7 @@ fn sweep_all<V: Vectors, const TURN: bool>(
             ($($m:literal)*) => {
                 match tile {
                     $($m if $m <= V::TILE => sweep::<V, $m, TURN>(
-                        vectors, block, width, [first, start], turns, dots,
+                        vectors, block, width, [first, start], turns, dots, ahead,
                     ),)*
                     _ => {}
                 }
@@ -111,6 +116,7 @@ fn sweep<V: Vectors, const M: usize, const TURN: bool>(
     [first, start]: [usize; 2],
     turns: &[f64],
     dots: &mut [f64],
+    ahead: &mut Ahead<'_>,
 ) {
     let mut turn = [vectors.splat(0.0); M];
     for (turn, value) in turn.iter_mut().zip(&turns[start..]) {
@@ -118,6 +124,7 @@ fn sweep<V: Vectors, const M: usize, const TURN: bool>(
     }
     let mut sums = [vectors.splat(0.0); M];
     for group in block.chunks_exact_mut(width) {
+        ahead.ask();
         let (before, rest) = group.split_at_mut(start);
         let Some(columns) = rest.first_chunk_mut::<M>() else {
             return;
@@ -214,19 +221,65 @@ fn make_group<const R: usize, const W: usize>(
     }
 }
 
-/// Asks for `values` to be brought near while other work is done.
-pub(crate) fn fetch_ahead(values: &[f64]) {
+/// Rows that come later, asked for line by line while the processor computes.
+///
+/// Memory answers only so many requests at a time: all lines of a block asked for at once
+/// would hold up the arithmetic, which takes as long as the answers do.
+#[derive(Debug, Clone)]
+pub(crate) struct Ahead<'a> {
+    columns: &'a [&'a [f64]],
+    rows: Range<usize>,
+    column: usize,
+    row: usize,
+}
+
+impl<'a> Ahead<'a> {
+    /// These rows of every column.
+    pub(crate) fn new(columns: &'a [&'a [f64]], rows: Range<usize>) -> Self {
+        let column = if rows.is_empty() { columns.len() } else { 0 };
+        Self { columns, row: rows.start, rows, column }
+    }
+
+    /// No rows.
+    pub(crate) fn nothing() -> Self {
+        Self { columns: &[], rows: 0..0, column: 0, row: 0 }
+    }
+
+    /// Asks for the next line, if one is left.
+    #[inline(always)]
+    pub(crate) fn ask(&mut self) {
+        let Some(column) = self.columns.get(self.column) else { return };
+        fetch(column.as_ptr().wrapping_add(self.row));
+        self.row += LANES;
+        if self.row >= self.rows.end {
+            self.row = self.rows.start;
+            self.column += 1;
+        }
+    }
+
+    /// Asks for all lines that are left.
+    #[inline(always)]
+    pub(crate) fn ask_for_rest(&mut self) {
+        while self.column < self.columns.len() {
+            self.ask();
+        }
+    }
+}
+
+/// Asks for a line to be brought into the first-level cache.
+#[inline(always)]
+fn fetch(line: *const f64) {
     #[cfg(target_arch = "x86_64")]
-    for line in values.chunks(LANES) {
+    {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
         #[allow(unsafe_code)]
-        // SAFETY: a hint; it reads nothing, and the address lies in the slice.
+        // SAFETY: a hint; it reads nothing, whatever the address.
         unsafe {
-            _mm_prefetch::<_MM_HINT_T0>(line.as_ptr().cast());
+            _mm_prefetch::<_MM_HINT_T0>(line.cast());
         }
     }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = values;
+    let _ = line;
 }
 
 /// Sets rows `row..` of the block to zero.

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
-use super::kernel::absorb;
+use super::kernel::{Ahead, absorb};
 use super::*;
 use crate::stream::reference::triangularise;
 
@@ -78,7 +78,7 @@ fn every_instruction_set_gives_the_textbook_triangle() {
                     put(&mut block, width, j, 0, &column);
                 }
                 let mut found = old.clone();
-                absorb(level, &mut found, &mut block, &mut vec![0.0; 2 * width]);
+                absorb(level, &mut found, &mut block, &mut vec![0.0; 2 * width], Ahead::nothing());
                 let found_products = products(&found, width, width);
                 for (found, expected) in found_products.iter().zip(&expected) {
                     assert!((found - expected).abs() < 1e-13 * (rows + width) as f64, "{level:?}");
@@ -111,7 +111,7 @@ fn products_of_every_instruction_set_are_sums_over_rows() {
                 put(&mut block, width, j, 0, &column);
             }
             let mut sums = vec![Lane::ZERO; pairs(width)];
-            add_products(level, &mut sums, &mut block, p, &pilot, width);
+            add_products(level, &mut sums, &mut block, p, &pilot, width, Ahead::nothing());
             for i in 0..width {
                 for j in 0..=i {
                     let found: f64 = sums[i * (i + 1) / 2 + j].0.iter().sum();

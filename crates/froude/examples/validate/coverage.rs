@@ -60,15 +60,9 @@ pub fn all(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), B
             )?);
         }
         let f4 = published(root, "circulation_tank_restricted", "f4", &data)?;
-        cases.push(bounded(
-            &format!("{name}, f4, bounded below by zero"),
-            &f4.0,
-            &data,
-            &f4.1,
-            repetitions.min(4_000),
-        )?);
+        cases.push(bounded(&format!("{name}, f4, bounded below by zero"), &f4.0, &data, &f4.1, repetitions)?);
     }
-    let mut within = crate::eiv::cases(root, if repetitions >= 20_000 { 4_000 } else { 200 })?;
+    let mut within = crate::eiv::cases(root, if repetitions >= 20_000 { repetitions } else { 200 })?;
     cases.append(&mut within);
     judge(claims, &cases)?;
     robust(claims, root, repetitions)
@@ -117,18 +111,18 @@ fn independent(
                 force.iter().enumerate().map(|(row, f)| f + SIGMA_N[row / n] * normal(&mut rng)).collect();
             let mut solved = factored.buffer();
             factored.solve(&response, &mut solved);
-            (0..p)
-                .map(|j| {
-                    let interval = fit::Factored::interval(&solved, j, factors[j], fit::Bound::FREE);
-                    u64::from(interval.is_some_and(|[low, high]| low <= values[j] && values[j] <= high))
-                })
-                .collect::<Vec<_>>()
+            let intervals: Vec<_> =
+                (0..p).map(|j| fit::Factored::interval(&solved, j, factors[j], fit::Bound::FREE)).collect();
+            count(&intervals, values)
         })
         .reduce(|| vec![0; p], add);
     Ok(Case { name: name.to_owned(), coefficients: problem.names, hits, repetitions: repetitions as u64 })
 }
 
-/// The same through the whole fit with non-negative bounds; several published coefficients are exactly zero.
+/// The same with non-negative bounds; several published coefficients are exactly zero.
+///
+/// The interval is the unconstrained one cut by the bounds, so that the design is factored once here too. What the whole
+/// constrained fit says must be the same: it is asked in the first repetitions.
 fn bounded(
     name: &str,
     law: &ForceLaw,
@@ -136,29 +130,54 @@ fn bounded(
     values: &[f64],
     repetitions: usize,
 ) -> Result<Case, Box<dyn Error>> {
+    /// Repetitions that go through the whole fit as well.
+    const WHOLE_FITS: usize = 200;
     let problem = problem_of(law, data)?;
     let force = law.predict(data, values)?;
     let n = data.rows;
     let p = values.len();
     let options = Options { bounds: vec![fit::Bound::NON_NEGATIVE; p], ..Options::default() };
+    let factored = fit::Factored::new(&problem, CovarianceKind::Classical)?;
+    let factors = factored.coverage_factors(0.95);
     let hits = (0..repetitions)
         .into_par_iter()
         .map(|k| {
             let mut rng = Pcg64::new(k as u128, 777);
-            let mut noisy = problem.clone();
-            noisy.response = force.iter().enumerate().map(|(row, f)| f + SIGMA_N[row / n] * normal(&mut rng)).collect();
-            match fit::fit(&noisy, &options) {
-                Ok(fitted) => (0..p)
-                    .map(|j| {
-                        let c = &fitted.coefficients[j];
-                        u64::from(c.interval.is_some_and(|[low, high]| low <= values[j] && values[j] <= high))
-                    })
-                    .collect(),
-                Err(_) => vec![0; p],
+            let response: Vec<f64> =
+                force.iter().enumerate().map(|(row, f)| f + SIGMA_N[row / n] * normal(&mut rng)).collect();
+            let mut solved = factored.buffer();
+            factored.solve(&response, &mut solved);
+            let intervals: Vec<Option<[f64; 2]>> =
+                (0..p).map(|j| fit::Factored::interval(&solved, j, factors[j], fit::Bound::NON_NEGATIVE)).collect();
+            if k < WHOLE_FITS {
+                let fitted = fit::fit(&Problem { response, ..problem.clone() }, &options).map_err(|e| e.to_string())?;
+                for (c, quick) in fitted.coefficients.iter().zip(&intervals) {
+                    let same = match (c.interval, quick) {
+                        (Some(a), Some(b)) => {
+                            let width = b[1] - b[0];
+                            a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 1e-9 * width)
+                        }
+                        (None, None) => true,
+                        _ => false,
+                    };
+                    if !same {
+                        return Err(format!("{name}, repetition {k}, {}: {:?} is not {quick:?}", c.name, c.interval));
+                    }
+                }
             }
+            Ok(count(&intervals, values))
         })
-        .reduce(|| vec![0; p], add);
+        .try_reduce(|| vec![0; p], |a, b| Ok(add(a, b)))?;
     Ok(Case { name: name.to_owned(), coefficients: problem.names, hits, repetitions: repetitions as u64 })
+}
+
+/// Which intervals hold the truth.
+fn count(intervals: &[Option<[f64; 2]>], values: &[f64]) -> Vec<u64> {
+    intervals
+        .iter()
+        .zip(values)
+        .map(|(interval, value)| u64::from(interval.is_some_and(|[low, high]| low <= *value && *value <= high)))
+        .collect()
 }
 
 pub fn add(mut a: Vec<u64>, b: Vec<u64>) -> Vec<u64> {
@@ -209,51 +228,39 @@ fn judge(claims: &mut Claims, cases: &[Case]) -> Result<(), Box<dyn Error>> {
 
 /// Clustered noise (half of the variance shared by a configuration) and noise that grows with the load.
 fn robust(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), Box<dyn Error>> {
-    let repetitions: usize = if repetitions >= 20_000 { 300 } else { 100 };
     let (_, data) = planned(TABLE_2, &configurations(1..=9), "")?;
     let (law, values) = published(root, "circulation_tank_restricted", "f2", &data)?;
     let force = law.predict(&data, &values)?;
     let mut problem = problem_of(&law, &data)?;
-    let n = data.rows;
+    let (n, p) = (data.rows, values.len());
     let clusters = labels(&data.configuration);
     problem.cluster = Some((0..problem.response.len()).map(|row| clusters[row % n]).collect());
     let n_clusters = clusters.iter().max().map_or(0, |m| m + 1);
-    for (noise, kinds) in [
-        ("clustered by configuration", [CovarianceKind::Classical, CovarianceKind::Hc3, CovarianceKind::Cr3]),
-        ("growing with the load", [CovarianceKind::Classical, CovarianceKind::Hc3, CovarianceKind::Cr3]),
-    ] {
-        for kind in kinds {
-            let options = Options { covariance: kind, ..Options::default() };
-            let p = values.len();
+    for noise in ["clustered by configuration", "growing with the load"] {
+        for kind in [CovarianceKind::Classical, CovarianceKind::Hc3, CovarianceKind::Cr3] {
+            let factored = fit::Factored::new(&problem, kind)?;
+            let factors = factored.coverage_factors(0.95);
             let hits = (0..repetitions)
                 .into_par_iter()
                 .map(|k| {
                     let mut rng = Pcg64::new(k as u128, 4_242);
                     let shared: Vec<f64> = (0..2 * n_clusters).map(|_| normal(&mut rng)).collect();
-                    let mut noisy = problem.clone();
-                    noisy.response = force
-                        .iter()
-                        .enumerate()
-                        .map(|(row, f)| {
-                            let own = normal(&mut rng);
-                            if noise.starts_with("clustered") {
-                                // A calibration error of the configuration: it scales with the load, as a regressor does.
-                                let common = shared[clusters[row % n] + n_clusters * (row / n)];
-                                f + SIGMA_N[row / n] * own + 0.05 * f * common
-                            } else {
-                                f + (0.2 * SIGMA_N[row / n] + 0.1 * f.abs()) * own
-                            }
-                        })
-                        .collect();
-                    match fit::fit(&noisy, &options) {
-                        Ok(fitted) => (0..p)
-                            .map(|j| {
-                                let c = &fitted.coefficients[j];
-                                u64::from(c.interval.is_some_and(|[low, high]| low <= values[j] && values[j] <= high))
-                            })
-                            .collect(),
-                        Err(_) => vec![0; p],
-                    }
+                    let noisy = |(row, f): (usize, &f64)| {
+                        let own = normal(&mut rng);
+                        if noise.starts_with("clustered") {
+                            // A calibration error of the configuration: it scales with the load, as a regressor does.
+                            let common = shared[clusters[row % n] + n_clusters * (row / n)];
+                            f + SIGMA_N[row / n] * own + 0.05 * f * common
+                        } else {
+                            f + (0.2 * SIGMA_N[row / n] + 0.1 * f.abs()) * own
+                        }
+                    };
+                    let response: Vec<f64> = force.iter().enumerate().map(noisy).collect();
+                    let mut solved = factored.buffer();
+                    factored.solve(&response, &mut solved);
+                    let intervals: Vec<_> =
+                        (0..p).map(|j| fit::Factored::interval(&solved, j, factors[j], fit::Bound::FREE)).collect();
+                    count(&intervals, &values)
                 })
                 .reduce(|| vec![0; p], add);
             let text: Vec<String> = problem
@@ -262,13 +269,13 @@ fn robust(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), Bo
                 .zip(&hits)
                 .map(|(name, h)| format!("{name} {:.1} %", 100.0 * *h as f64 / repetitions as f64))
                 .collect();
-            claims.add(
-                ROBUST,
-                &format!("noise {noise}, {kind:?}, f2 over Table 2 ({repetitions} repetitions)"),
-                if kind == CovarianceKind::Classical { "classical fails here" } else { "near 95 %" },
-                text.join(", "),
-                Verdict::Measured,
-            );
+            let claim = format!("noise {noise}, {kind:?}, f2 over Table 2 ({repetitions} repetitions)");
+            if kind == CovarianceKind::Classical {
+                let worst = hits.iter().copied().min().unwrap_or(0) as f64 / repetitions as f64;
+                claims.holds(ROBUST, &claim, "fails: some coefficient below 90 %", text.join(", "), worst < 0.90);
+            } else {
+                claims.add(ROBUST, &claim, "95 %", text.join(", "), Verdict::Measured);
+            }
         }
     }
     Ok(())

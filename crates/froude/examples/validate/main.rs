@@ -33,7 +33,7 @@ fn main() -> ExitCode {
         snake::undetermined(claims)?;
         snake::dissipativity(claims, &root)?;
         snake::residuals(claims, &root)?;
-        snake::recommendation(claims, &root)?;
+        snake::recommendation(claims, &root, if full { 2_000 } else { 40 })?;
         rm2::all(claims, &root)?;
         kvlcc2::hmri(claims, &shared)?;
         kvlcc2::fhr(claims, &shared)?;
