@@ -11,6 +11,7 @@
 //! Not here: file formats (`froude-records`), formulas of drag (`froude-hydro`), algebra (`froude-fit`).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod bootstrap;
 pub mod compare;
 pub mod dataset;
 pub mod diagnosis;

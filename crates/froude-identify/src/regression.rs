@@ -24,6 +24,9 @@ const VIOLATED: f64 = 1e-9;
 /// Cosine above which two cuts say the same.
 const NEARLY_PARALLEL: f64 = 0.999;
 
+/// Distance of a prior from what the data say, in standard uncertainties, that is no chance.
+const PRIOR_CONTRADICTED_ABOVE: f64 = 3.0;
+
 /// What a regression needs besides its data and law.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a> {
@@ -148,6 +151,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             ));
         }
     }
+    findings.extend(contradicted_priors(&law.name, &problem, &options, &specs));
     let mut in_variables = false;
     if settings.identify.errors_in_variables {
         in_variables = errors_in_variables(law, data, settings, &problem, &options, &mut fitted, &mut findings)?;
@@ -550,6 +554,42 @@ fn options(
         covariance,
         ..fit::Options::default()
     }
+}
+
+/// Priors that the data alone contradict: the two then have no common answer, and σ grows to cover the gap.
+fn contradicted_priors(
+    law: &str,
+    problem: &fit::Problem,
+    options: &fit::Options,
+    specs: &[CoefficientSpec],
+) -> Vec<Finding> {
+    let alone = fit::Options { priors: Vec::new(), ..options.clone() };
+    let Some(free) = (!options.priors.is_empty()).then(|| fit::fit(problem, &alone).ok()).flatten() else {
+        return Vec::new();
+    };
+    options
+        .priors
+        .iter()
+        .filter_map(|prior| {
+            let c = &free.coefficients[prior.index];
+            let (value, standard) = (c.unconstrained?, c.standard?);
+            let apart = (value - prior.value).abs() / standard.hypot(prior.standard);
+            (apart > PRIOR_CONTRADICTED_ABOVE).then(|| {
+                Finding::new(
+                    Severity::Warning,
+                    "prior-contradicted",
+                    format!(
+                        "{law}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior says {:.4} ± {:.4} {unit}: \
+                         {apart:.1} standard uncertainties apart; the fit between them is an answer to neither",
+                        specs[prior.index].name,
+                        prior.value,
+                        prior.standard,
+                        unit = specs[prior.index].unit
+                    ),
+                )
+            })
+        })
+        .collect()
 }
 
 /// Holds a fit to many inequalities by cutting planes: the most violated ones are added until none is violated.

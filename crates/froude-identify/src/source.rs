@@ -18,7 +18,7 @@ use crate::regression::{ModelFit, Settings, regress};
 use crate::selection::{
     BlockScore, NestedTest, Recommendation, Score, leave_one_out, nested_tests, range_block, recommend,
 };
-use crate::{diagnosis, lint, uncertainty, validity};
+use crate::{bootstrap, diagnosis, lint, uncertainty, validity};
 
 /// Everything that identification found out about one source.
 #[derive(Debug, Clone)]
@@ -96,6 +96,13 @@ pub fn identify_source(
         if let Some(draws) = campaign.identify.monte_carlo.filter(|_| chosen) {
             progress(&format!("{} by {draws} Monte Carlo draws", model.law.name));
             diagnostics.notes.extend(monte_carlo_note(model, &data, settings, draws));
+        }
+        if let Some(resamples) = campaign.identify.wild_bootstrap.filter(|_| chosen) {
+            progress(&format!("{} by {resamples} wild cluster resamples", model.law.name));
+            match bootstrap::note(model, resamples) {
+                Ok(note) => diagnostics.notes.push(note),
+                Err(finding) => findings.push(finding),
+            }
         }
         let found = diagnosis::findings(model, &data, campaign, &diagnostics);
         // What is wrong with one of many models belongs to that model; the report shows the recommended one's.

@@ -21,6 +21,7 @@ use crate::dataset::{Dataset, labels};
 use crate::error::IdentifyError;
 use crate::law::{ForceLaw, aliased};
 use crate::reduce::SharedError;
+use crate::regression::stacked;
 
 /// What one budget entry adds to the covariance of the coefficients.
 #[derive(Debug, Clone)]
@@ -116,7 +117,7 @@ fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, Ident
         for i in 0..n {
             out[r * n + i] = standard(i);
         }
-        as_logarithms(fit, &mut out)?;
+        as_logarithms(fit, &mut out, &stacked(fit.law, fit.data)?);
         return Ok(out);
     }
     if quantity == "temperature" {
@@ -143,19 +144,18 @@ fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, Ident
         };
         out[row] = -slope * standard(i);
     }
-    as_logarithms(fit, &mut out)?;
+    as_logarithms(fit, &mut out, &here);
     Ok(out)
 }
 
-/// Errors of loads as errors of their logarithms, where the fit compares these: d ln|F| = dF/F.
-fn as_logarithms(fit: Linearised<'_>, errors: &mut [f64]) -> Result<(), IdentifyError> {
+/// Errors of loads as errors of their logarithms, where the fit compares these: d ln|F| = dF/F, at the measured load
+/// where the load errs, at the predicted one where the motion does.
+fn as_logarithms(fit: Linearised<'_>, errors: &mut [f64], loads: &[f64]) {
     if fit.law.in_logarithms() {
-        let loads = fit.law.predict(fit.data, fit.coefficients)?;
         for (error, load) in errors.iter_mut().zip(loads) {
             *error /= load;
         }
     }
-    Ok(())
 }
 
 /// Group of every row that shares the error.
@@ -185,7 +185,7 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Contribution
     let (p, n, q) = (fit.sensitivity.nrows(), fit.data.rows, error.covariance.len());
     let mut moved = Mat::<f64>::zeros(p, q);
     let mut per_newton = vec![1.0; n * fit.law.responses.len()];
-    as_logarithms(fit, &mut per_newton)?;
+    as_logarithms(fit, &mut per_newton, &stacked(fit.law, fit.data)?);
     for (response, rows) in &error.directions {
         if let Some(r) = fit.law.responses.iter().position(|name| name == response) {
             for (i, row) in rows.iter().enumerate().take(n) {

@@ -375,6 +375,7 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         huber,
         dissipative: s.flag("dissipative")?.unwrap_or(false),
         monte_carlo: count(s, "monte_carlo", 1_000_000)?,
+        wild_bootstrap: count(s, "wild_bootstrap", 1_000_000)?,
         user_models: s.sections("model")?.iter().map(user_model).collect::<Result<_, _>>()?,
         errors_in_variables: s.flag("errors_in_variables")?.unwrap_or(false),
     };

@@ -1,0 +1,254 @@
+//! What the keys of `[identify]` do to coefficients whose answer is known.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use froude_identify::IdentifyError;
+use froude_identify::source::{SourceResult, identify_source};
+use froude_records::campaign::read_campaign;
+use froude_records::estimate::{Coefficient, Status};
+
+const HEAD: &str = "schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n";
+const SOURCE: &str = "[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n";
+
+/// A source's result for a campaign over the table `t.csv` in the folder.
+fn run(folder: &Path, campaign: &str) -> Result<SourceResult, IdentifyError> {
+    std::fs::write(folder.join("c.toml"), campaign).unwrap();
+    let campaign = read_campaign(&folder.join("c.toml")).unwrap();
+    identify_source(&campaign, &campaign.sources[0], &|_| {})
+}
+
+fn identify(table: &str, campaign: &str) -> SourceResult {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), table).unwrap();
+    run(folder.path(), &format!("{HEAD}{campaign}")).unwrap()
+}
+
+fn value(c: &Coefficient) -> f64 {
+    c.value.unwrap()
+}
+
+/// f_x = −2 v − 10 v|v| and a ripple of 0.01 N, at ten speeds; the third load is off by `outlier`.
+fn table(outlier_n: f64) -> String {
+    let mut table = "speed [m/s],day,f_x [N]\n".to_owned();
+    for (k, sign) in [1, -1, 0, 1, -1, -1, 1, 0, -1, 1].into_iter().enumerate() {
+        let v = 0.1 * (k + 1) as f64;
+        let off = if k == 2 { outlier_n } else { 0.0 };
+        let f = -2.0 * v - 10.0 * v * v + 0.01 * f64::from(sign) + off;
+        writeln!(table, "{v},day {},{f}", k / 2).unwrap();
+    }
+    table
+}
+
+#[test]
+fn hubers_loss_takes_little_notice_of_one_wild_load() {
+    let models = "models = [\"linear_quadratic\"]\n[identify]\n";
+    let squares = identify(&table(-3.0), &format!("{SOURCE}{models}"));
+    let huber = identify(&table(-3.0), &format!("{SOURCE}{models}huber = 1.345\n"));
+    let clean = identify(&table(0.0), &format!("{SOURCE}{models}"));
+    let d = |r: &SourceResult, name: &str| value(&r.estimates[0].coefficients[name]);
+    for name in ["D_x_I", "D_x_II"] {
+        let (off, held) = ((d(&squares, name) - d(&clean, name)).abs(), (d(&huber, name) - d(&clean, name)).abs());
+        assert!(off > 1.0 && held < 0.05 * off, "{name}: squares off by {off}, Huber by {held}");
+    }
+}
+
+#[test]
+fn a_prior_counts_by_its_uncertainty() {
+    let with = |standard: &str, model: &str| {
+        let prior = format!(
+            "[[identify.prior]]\ncoefficient = \"D_x_II\"\nvalue = \"12 kg/m\"\nstandard_uncertainty = \"{standard}\"\n{model}"
+        );
+        let r = identify(&table(0.0), &format!("{SOURCE}models = [\"linear_quadratic\"]\n{prior}"));
+        let is_told = r.findings.iter().any(|f| f.code == "prior-contradicted");
+        assert_eq!(is_told, standard.starts_with("1e-6") && model.is_empty(), "{:?}", r.findings);
+        value(&r.estimates[0].coefficients["D_x_II"])
+    };
+    let free = with("1e6 kg/m", "");
+    assert!((with("1e-6 kg/m", "") - 12.0).abs() < 1e-6);
+    assert!((free - 10.0).abs() < 0.1, "{free}");
+    // A prior of another model is not this one's.
+    assert!((with("1e-6 kg/m", "model = \"quadratic\"\n") - free).abs() < 1e-6);
+}
+
+#[test]
+fn a_fixed_coefficient_is_exact_and_the_others_are_fitted_around_it() {
+    let r = identify(
+        &table(0.0),
+        &format!("{SOURCE}models = [\"linear_quadratic\"]\n[identify]\nfixed = {{ D_x_II = \"10 kg/m\" }}\n"),
+    );
+    let c = &r.estimates[0].coefficients;
+    assert_eq!(c["D_x_II"].status, Status::Fixed);
+    assert_eq!(c["D_x_II"].value, Some(10.0));
+    // One unknown left: Σ v·(−f − 10 v²) / Σ v².
+    let (mut top, mut bottom) = (0.0, 0.0);
+    for line in table(0.0).lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let (v, f): (f64, f64) = (cells[0].parse().unwrap(), cells[2].parse().unwrap());
+        top += v * (-f - 10.0 * v * v);
+        bottom += v * v;
+    }
+    assert!((value(&c["D_x_I"]) - top / bottom).abs() < 1e-12);
+}
+
+#[test]
+fn a_wild_bootstrap_stands_beside_the_fit_or_says_what_it_lacks() {
+    let with = |group: &str| {
+        identify(
+            &table(0.0),
+            &format!(
+                "{SOURCE}models = [\"quadratic\"]\n{group}[identify]\ncovariance = \"classical\"\nwild_bootstrap = 999\n"
+            ),
+        )
+    };
+    let grouped = with("group = \"day\"\n");
+    let notes = &grouped.estimates[0].diagnostics.notes;
+    let note = notes.iter().find(|n| n.contains("wild cluster")).expect("a note");
+    assert!(note.contains("999 wild cluster resamples over 5 clusters"), "{note}");
+    // Far from zero: no resample reaches the t of the sample, p = 1/(999 + 1) or as many as are mirror images of it.
+    let interval: Vec<f64> =
+        note[note.find('[').unwrap() + 1..note.find(']').unwrap()].split(", ").map(|x| x.parse().unwrap()).collect();
+    let d = value(&grouped.estimates[0].coefficients["D_x_II"]);
+    assert!(interval[0] < d && d < interval[1] && interval[1] - interval[0] < d, "{note}");
+    let bare = with("");
+    assert!(bare.findings.iter().any(|f| f.code == "no-wild-bootstrap" && f.message.contains("`group`")));
+}
+
+#[test]
+fn a_bare_table_with_both_axes_gets_a_power_law_each() {
+    let mut table = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+    for speed in [0.2, 0.4, 0.6, 0.8_f64] {
+        for angle in [10.0, 30.0, 50.0_f64] {
+            let (vx, vy) = (speed * angle.to_radians().cos(), -speed * angle.to_radians().sin());
+            writeln!(table, "{speed},{angle},{},{}", -3.0 * vx.powf(1.8), 40.0 * (-vy).powf(2.1)).unwrap();
+        }
+    }
+    let r = identify(&table, SOURCE);
+    let law = |name: &str| r.estimates.iter().find(|e| e.model == name).unwrap_or_else(|| panic!("no {name}"));
+    for (name, axis, k, n) in [("power_law_x", "x", 3.0, 1.8), ("power_law_y", "y", 40.0, 2.1)] {
+        let c = &law(name).coefficients;
+        assert!((value(&c[&format!("k_{axis}")]) - k).abs() < 1e-9 * k, "{name}: {c:?}");
+        assert!((value(&c[&format!("n_{axis}")]) - n).abs() < 1e-9, "{name}: {c:?}");
+    }
+}
+
+#[test]
+fn a_calibration_error_moves_the_factor_of_a_log_law_and_not_its_exponent() {
+    let budget = "[[source.uncertainty]]\nquantity = \"f_x\"\nstandard = \"1 %\"\nshared = \"campaign\"\n";
+    let r = identify(&table(0.0), &format!("{SOURCE}models = [\"power_law_log\"]\n{budget}"));
+    let c = &r.estimates[0].coefficients;
+    let k = &c["k_x"];
+    assert!((k.type_b.unwrap() - 0.01 * value(k)).abs() < 1e-9 * value(k), "{k:?}");
+    assert!(c["n_x"].type_b.unwrap() < 1e-12, "{:?}", c["n_x"]);
+}
+
+/// Truth of the simulated f4 tables.
+const F4: &str = "C_f_I = 0.01\nC_d_I = 0.06\nC_f_II = 0.0133\nC_d_II = 1.4272\nC_fHT_I = 0.0148\nC_dHT_I = 0.1769\n\
+                  C_fHT_II = 0.2451\nC_dHT_II = 1.177\nC_XY_I = 0.0351\nC_XY_II = 0.4612\n";
+
+/// A campaign whose table is simulated from f4 at angles from 6° to 90°: at 0° the head's drag has a kink, and the folder it lies in.
+fn f4_campaign(kind: &str, source: &str, identify: &str, simulate: &str) -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let plan = "[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\", \"H4LT\"]\n\
+                speed = [\"0.2 m/s\", \"0.4 m/s\", \"0.6 m/s\", \"0.8 m/s\"]\n\
+                angle = { start = \"6 deg\", stop = \"90 deg\", step = \"6 deg\" }\n";
+    let text = format!(
+        "{HEAD}[body]\nlink = {{ major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }}\n\
+         head_side_area = \"0.011 m^2\"\ntail_side_area = \"0.008 m^2\"\n\
+         [[source]]\nname = \"s\"\nkind = \"{kind}\"\ntable = \"t.csv\"\n{source}{plan}[identify]\nmodels = [\"f4\"]\n{identify}\
+         [simulate]\nseed = 3\nmodel = \"f4\"\n{simulate}[simulate.coefficients]\n{F4}"
+    );
+    std::fs::write(folder.path().join("c.toml"), &text).unwrap();
+    let campaign = read_campaign(&folder.path().join("c.toml")).unwrap();
+    let mut data = froude_identify::simulate::observations(&campaign, &campaign.sources[0], 0).unwrap();
+    data.setup = vec!["mount".to_owned(); data.rows];
+    let table = froude_identify::simulate::table(&data, &campaign.sources[0]).unwrap();
+    froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
+    (folder, text)
+}
+
+/// The table with every angle turned by so many degrees; speeds and loads stay.
+fn turned(table: &str, by_deg: f64) -> String {
+    let mut lines = table.lines();
+    let head = lines.next().unwrap();
+    let place = head.split(',').position(|c| c.starts_with("angle")).unwrap_or_else(|| panic!("{head}"));
+    let scale = if head.split(',').nth(place).unwrap().contains("deg") { 1.0 } else { 1_f64.to_radians() };
+    let mut out = format!("{head}\n");
+    for line in lines {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        let angle: f64 = cells[place].parse().unwrap();
+        cells[place] = (angle + by_deg * scale).to_string();
+        out += &(cells.join(",") + "\n");
+    }
+    out
+}
+
+#[test]
+fn an_angle_error_moves_the_coefficients_as_its_budget_says_broadside_included() {
+    let budget = "[[source.uncertainty]]\nquantity = \"angle\"\nstandard = \"0.1 deg\"\nshared = \"campaign\"\n";
+    let (folder, campaign) = f4_campaign("tank", budget, "", "");
+    let stated = run(folder.path(), &campaign).unwrap();
+    let path = folder.path().join("t.csv");
+    let table = std::fs::read_to_string(&path).unwrap();
+    // Turned backwards, so that broadside stays on its own side: 89.9°.
+    std::fs::write(&path, turned(&table, -0.1)).unwrap();
+    let moved = run(folder.path(), &campaign).unwrap();
+    for (name, c) in &stated.estimates[0].coefficients {
+        let change = (value(&moved.estimates[0].coefficients[name]) - value(c)).abs();
+        let type_b = c.type_b.unwrap();
+        assert!((change - type_b).abs() < 0.05 * type_b + 1e-5, "{name}: moved by {change}, the budget says {type_b}");
+    }
+}
+
+#[test]
+fn a_known_angle_offset_may_be_fixed() {
+    let identify = "angle_offset = \"estimate\"\nfixed = { angle_offset_mount = \"1 deg\" }\n";
+    let (folder, campaign) = f4_campaign("tank", "", identify, "misalignment = \"1 deg\"\n");
+    let r = run(folder.path(), &campaign).unwrap();
+    let c = &r.estimates[0].coefficients;
+    assert_eq!(c["angle_offset_mount"].status, Status::Fixed);
+    for (name, truth) in [("C_XY_II", 0.4612), ("C_d_II", 1.4272), ("C_fHT_II", 0.2451)] {
+        assert!((value(&c[name]) - truth).abs() < 1e-4, "{name}: {:?}, truth {truth}", c[name]);
+    }
+}
+
+#[test]
+fn a_prior_on_the_angle_offset_decides_where_one_sign_of_the_angle_cannot() {
+    let identify = "angle_offset = \"estimate\"\n[[identify.prior]]\ncoefficient = \"angle_offset_mount\"\nvalue = \"1 deg\"\n\
+                    standard_uncertainty = \"0.001 deg\"\n";
+    let (folder, campaign) = f4_campaign("tank", "", identify, "misalignment = \"1 deg\"\n");
+    let r = run(folder.path(), &campaign).unwrap();
+    let c = &r.estimates[0].coefficients;
+    assert!((value(&c["angle_offset_mount"]) - 1_f64.to_radians()).abs() < 1e-5, "{:?}", c["angle_offset_mount"]);
+    assert!((value(&c["C_XY_II"]) - 0.4612).abs() < 1e-3, "{:?}", c["C_XY_II"]);
+}
+
+#[test]
+fn errors_in_speed_and_angle_are_fitted_at_broadside_too_and_counted_once() {
+    let budget = "[[source.uncertainty]]\nquantity = \"speed\"\nstandard = \"0.002 m/s\"\nshared = \"sample\"\n\
+                  [[source.uncertainty]]\nquantity = \"angle\"\nstandard = \"0.3 deg\"\nshared = \"sample\"\n";
+    let noise = "[[simulate.sensor]]\nquantity = \"f_x\"\nnoise = \"0.01 N\"\n[[simulate.sensor]]\nquantity = \"f_y\"\nnoise = \"0.01 N\"\n";
+    for kind in ["tank", "cfd"] {
+        let choices = "errors_in_variables = true\ncovariance = \"classical\"\n";
+        let (folder, campaign) = f4_campaign(kind, budget, choices, "");
+        // The sensors come last, after the truth.
+        let campaign = format!("{campaign}{noise}");
+        std::fs::write(folder.path().join("c.toml"), &campaign).unwrap();
+        let with_noise = read_campaign(&folder.path().join("c.toml")).unwrap();
+        let data = froude_identify::simulate::observations(&with_noise, &with_noise.sources[0], 0).unwrap();
+        let table = froude_identify::simulate::table(&data, &with_noise.sources[0]).unwrap();
+        froude_records::csv_table::write_csv(&table, &folder.path().join("t.csv")).unwrap();
+        let r = run(folder.path(), &campaign).unwrap();
+        let e = &r.estimates[0];
+        for line in F4.lines() {
+            let (name, truth) = line.split_once(" = ").unwrap();
+            let c = &e.coefficients[name];
+            let u = c.standard_uncertainty.unwrap();
+            assert!((value(c) - truth.parse::<f64>().unwrap()).abs() < 4.5 * u, "{kind}, {name}: {c:?}, truth {truth}");
+            assert!(u < 0.2, "{kind}, {name}: {c:?}");
+            // Row errors of the inputs are in the regression's covariance; they are not added again.
+            assert_eq!(c.type_b, Some(0.0), "{kind}, {name}");
+        }
+    }
+}
