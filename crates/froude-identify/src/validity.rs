@@ -38,60 +38,74 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
             put(name, &channel.values, &channel.dimension.to_string());
         }
     }
-    let body = campaign.body.as_ref();
-    let length = body.and_then(|b| b.reference_length_m);
-    let tank = campaign.tank.as_ref();
-    if let Some(speed) = data.values("speed") {
-        if let (Some(l), Some(nu)) = (length, data.values("kinematic_viscosity")) {
-            let re: Vec<f64> = speed.iter().zip(nu).map(|(u, nu)| similarity::reynolds(*u, l, *nu)).collect();
-            put("Re", &re, "1");
+    for (name, values) in per_observation(data, campaign) {
+        put(name, &values, "1");
+        let worst = values.iter().copied().fold(0.0, f64::max);
+        if name == "Fr_submergence" && worst > WAVE_LIMIT {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "wave-making",
+                format!(
+                    "U/√(g h) reaches {worst:.2}, h being the submergence: the drag contains wave making, which a deeply submerged \
+                     body does not have"
+                ),
+            ));
         }
-        if let Some(l) = length {
-            let fr: Vec<f64> = speed.iter().map(|u| similarity::froude(*u, l)).collect();
-            put("Fr_length", &fr, "1");
-        }
-        if let Some(depth) = tank.and_then(|t| t.depth_m) {
-            let fr: Vec<f64> = speed.iter().map(|u| similarity::froude(*u, depth)).collect();
-            put("Fr_depth", &fr, "1");
-        }
-        if let Some(h) = tank.and_then(|t| t.submergence_m) {
-            let fr: Vec<f64> = speed.iter().map(|u| similarity::froude(*u, h)).collect();
-            let worst = fr.iter().copied().fold(0.0, f64::max);
-            put("Fr_submergence", &fr, "1");
-            if worst > WAVE_LIMIT {
-                findings.push(Finding::new(
-                    Severity::Warning,
-                    "wave-making",
-                    format!("U/√(g h) reaches {worst:.2} at a submergence of {h} m: the drag contains wave making, which a deeply submerged body does not have"),
-                ));
-            }
-        }
-        if let (Some(l), Some(amplitude), Some(period)) = (length, data.values("amplitude"), data.values("period")) {
-            let kc: Vec<f64> = amplitude
-                .iter()
-                .zip(period)
-                .map(|(a, t)| similarity::keulegan_carpenter(std::f64::consts::TAU * a / t, *t, l))
-                .collect();
-            put("KC", &kc, "1");
-        }
-    }
-    if let (Some(area), Some((w, d))) =
-        (body.and_then(|b| b.reference_area_m2), tank.and_then(|t| Some((t.width_m?, t.depth_m?))))
-    {
-        let blockage = similarity::blockage(area, w * d);
-        put("blockage", &[blockage], "1");
-        if blockage > BLOCKAGE_LIMIT {
+        if name == "blockage" && worst > BLOCKAGE_LIMIT {
             findings.push(Finding::new(
                 Severity::Warning,
                 "blockage",
                 format!(
                     "the body takes {:.1} % of the tank's section: the water speeds up around it, and the drag is not that of open water",
-                    100.0 * blockage
+                    100.0 * worst
                 ),
             ));
         }
     }
     (out, findings)
+}
+
+/// Numbers of similarity of every row, as far as body, tank and water are stated.
+///
+/// | name | what | needs |
+/// |------|------|-------|
+/// | `Re` | U L/ν | `body.reference_length`, viscosity |
+/// | `Fr_length` | U/√(g L) | `body.reference_length` |
+/// | `Fr_depth` | U/√(g d) | `tank.depth` |
+/// | `Fr_submergence` | U/√(g h) | `tank.submergence` |
+/// | `KC` | 2π a/L | `body.reference_length`, columns `amplitude` and `period` |
+/// | `blockage` | A/(w d) | `body.reference_area`, `tank.width`, `tank.depth` |
+#[must_use]
+pub fn per_observation(data: &Dataset, campaign: &Campaign) -> Vec<(&'static str, Vec<f64>)> {
+    let mut out = Vec::new();
+    let body = campaign.body.as_ref();
+    let length = body.and_then(|b| b.reference_length_m);
+    let tank = campaign.tank.as_ref();
+    if let Some(speed) = data.values("speed") {
+        if let (Some(l), Some(nu)) = (length, data.values("kinematic_viscosity")) {
+            out.push(("Re", speed.iter().zip(nu).map(|(u, nu)| similarity::reynolds(*u, l, *nu)).collect()));
+        }
+        let lengths = [
+            ("Fr_length", length),
+            ("Fr_depth", tank.and_then(|t| t.depth_m)),
+            ("Fr_submergence", tank.and_then(|t| t.submergence_m)),
+        ];
+        for (name, l) in lengths {
+            if let Some(l) = l {
+                out.push((name, speed.iter().map(|u| similarity::froude(*u, l)).collect()));
+            }
+        }
+        if let (Some(l), Some(amplitude), Some(period)) = (length, data.values("amplitude"), data.values("period")) {
+            let kc = |(a, t): (&f64, &f64)| similarity::keulegan_carpenter(std::f64::consts::TAU * a / t, *t, l);
+            out.push(("KC", amplitude.iter().zip(period).map(kc).collect()));
+        }
+    }
+    if let (Some(area), Some((w, d))) =
+        (body.and_then(|b| b.reference_area_m2), tank.and_then(|t| Some((t.width_m?, t.depth_m?))))
+    {
+        out.push(("blockage", vec![similarity::blockage(area, w * d); data.rows]));
+    }
+    out
 }
 
 /// The words for a prediction outside the ranges of an estimate, if it is outside.

@@ -20,6 +20,7 @@ pub use froude_report as report;
 pub mod demo;
 mod error;
 pub mod inspect;
+mod observations;
 pub mod pipeline;
 mod results;
 mod sections;

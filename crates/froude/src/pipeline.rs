@@ -12,7 +12,7 @@ use froude_records::json::read_estimates;
 use indexmap::IndexMap;
 
 use crate::Error;
-use crate::{results, sections};
+use crate::{observations, results, sections};
 
 /// What to identify and where the results go.
 #[derive(Debug, Clone)]
@@ -48,6 +48,8 @@ pub struct Outcome {
     pub report: PathBuf,
     /// The figures beside it.
     pub figures: Vec<PathBuf>,
+    /// The observations of every fitted source, row by row.
+    pub observations: Vec<PathBuf>,
     /// Everything that is known about each fitted source.
     pub sources: Vec<SourceResult>,
     /// Sources side by side.
@@ -132,12 +134,14 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let html = froude_report::html(&report)?;
     let figures = froude_report::figures(&report)?;
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
-    let written = results::write(&out, &file, &figures, &html)?;
+    let tables = observations::tables(&sources, &campaign)?;
+    let written = results::write(&out, &file, &tables, &figures, &html)?;
     Ok(Outcome {
         file,
         estimate: written.estimate,
         report: written.report,
         figures: written.figures,
+        observations: written.observations,
         sources,
         comparison,
     })

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_records::csv_table::write_csv;
 use froude_records::estimate::EstimateFile;
 use froude_records::json::write_estimates;
+use froude_records::table::Table;
 use froude_records::write::write_atomically;
 use froude_report::Figure;
 
@@ -18,14 +20,22 @@ pub struct Written {
     pub report: PathBuf,
     /// The figures.
     pub figures: Vec<PathBuf>,
+    /// A table of observations per fitted source.
+    pub observations: Vec<PathBuf>,
 }
 
-/// Writes record, figures and report into `out`.
+/// Writes record, observations, figures and report into `out`.
 ///
 /// # Errors
 ///
 /// A folder that cannot be made, or a full disk: then nothing of this job is left, and older results are untouched.
-pub fn write(out: &Path, file: &EstimateFile, figures: &[Figure], html: &str) -> Result<Written, Error> {
+pub fn write(
+    out: &Path,
+    file: &EstimateFile,
+    observations: &[Table],
+    figures: &[Figure],
+    html: &str,
+) -> Result<Written, Error> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |source| Error::Output { path, source }
@@ -39,6 +49,10 @@ pub fn write(out: &Path, file: &EstimateFile, figures: &[Figure], html: &str) ->
     let staged = tempfile::Builder::new().prefix(".froude-").tempdir_in(parent).map_err(failed(out))?;
     let mut names = vec![PathBuf::from("estimate.json")];
     write_estimates(&staged.path().join(&names[0]), file)?;
+    for table in observations {
+        write_csv(table, &staged.path().join(&table.path))?;
+        names.push(table.path.clone());
+    }
     if !figures.is_empty() {
         std::fs::create_dir(staged.path().join("figures")).map_err(failed(out))?;
     }
@@ -57,5 +71,6 @@ pub fn write(out: &Path, file: &EstimateFile, figures: &[Figure], html: &str) ->
         estimate: out.join("estimate.json"),
         report: out.join("report.html"),
         figures: names.iter().filter(|n| n.starts_with("figures")).map(|n| out.join(n)).collect(),
+        observations: observations.iter().map(|t| out.join(&t.path)).collect(),
     })
 }

@@ -1,0 +1,99 @@
+//! The observations as they were fitted, row by row, for a spreadsheet or another program.
+//!
+//! After zeros, tare and `keep`: motion, loads and water; Reynolds, Froude and the other numbers of similarity of that row;
+//! what the recommended model gives, the residual, and the leverage of the row in each load.
+
+use froude_identify::source::SourceResult;
+use froude_identify::validity;
+use froude_records::campaign::Campaign;
+use froude_records::table::{Column, ColumnData, Table};
+use froude_records::units::{Dimension, Unit, parse_unit};
+
+use crate::Error;
+
+/// One table per source, each with a file name of its own.
+///
+/// # Errors
+///
+/// A channel that the model needs and the data lack: not after a fit.
+pub fn tables(sources: &[SourceResult], campaign: &Campaign) -> Result<Vec<Table>, Error> {
+    let mut out: Vec<Table> = Vec::new();
+    for source in sources {
+        let mut table = table(source, campaign)?;
+        // "day 1" and "day-1" are two sources and one file name.
+        let stem = table.path.with_extension("");
+        for k in 2.. {
+            if out.iter().all(|t| t.path != table.path) {
+                break;
+            }
+            table.path = format!("{}-{k}.csv", stem.display()).into();
+        }
+        out.push(table);
+    }
+    Ok(out)
+}
+
+/// The table of one source.
+fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
+    let data = &source.data;
+    let mut columns = vec![number("line", &data.line.iter().map(|&l| l as f64).collect::<Vec<_>>(), Unit::one())];
+    for (name, texts) in [("configuration", &data.configuration), ("setup", &data.setup), ("run", &data.run)] {
+        if texts.iter().any(|t| !t.is_empty()) {
+            columns.push(Column { name: name.to_owned(), data: ColumnData::Text(texts.clone()) });
+        }
+    }
+    for (name, channel) in &data.channels {
+        let unit = match name.as_str() {
+            "angle" => parse_unit("deg").unwrap_or_else(|_| Unit::si(channel.dimension)),
+            _ => Unit::si(channel.dimension),
+        };
+        if !columns.iter().any(|c| &c.name == name) {
+            columns.push(number(name, &channel.values, unit));
+        }
+    }
+    for (name, values) in validity::per_observation(data, campaign) {
+        columns.retain(|c| c.name != name);
+        columns.push(number(name, &values, Unit::one()));
+    }
+    if let Some(model) = source.recommendation.as_ref().map(|r| &source.models[r.index]) {
+        let fitted = model.law.predict(data, model.law_coefficients())?;
+        for (r, load) in model.law.responses.iter().enumerate() {
+            let rows = r * data.rows..(r + 1) * data.rows;
+            let unit = || Unit::si(data.dimension(load).unwrap_or(Dimension::FORCE));
+            let measured = data.values(load).unwrap_or_default();
+            // With an angle offset the fit compares loads that are turned into the body's axes.
+            let is_turned = model.specs.len() > model.law.coefficients.len();
+            let residual: Vec<f64> = if is_turned {
+                model.fit.residuals[rows.clone()].to_vec()
+            } else {
+                measured.iter().zip(&fitted[rows.clone()]).map(|(m, f)| m - f).collect()
+            };
+            columns.push(number(&format!("{load}_{}", model.law.name), &fitted[rows.clone()], unit()));
+            columns.push(number(&format!("{load}_residual"), &residual, unit()));
+            columns.push(number(&format!("{load}_leverage"), &model.fit.leverage[rows], Unit::one()));
+        }
+    }
+    // What does not exist in a row (the power law at rest has no logarithm) leaves its column out.
+    columns.retain(|c| match &c.data {
+        ColumnData::Number { si, .. } => si.iter().all(|x| x.is_finite()),
+        ColumnData::Text(_) => true,
+    });
+    Ok(Table {
+        path: file_name(&source.name).into(),
+        columns,
+        n_rows: data.rows,
+        line_of_row: data.line.clone(),
+        sidecar: None,
+    })
+}
+
+/// `observations-` and the source's name, as far as every file system takes it.
+fn file_name(source: &str) -> String {
+    let safe: String =
+        source.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
+    format!("observations-{safe}.csv")
+}
+
+fn number(name: &str, si: &[f64], unit: Unit) -> Column {
+    Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si: si.to_vec() } }
+}
