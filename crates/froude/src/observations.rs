@@ -89,8 +89,10 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
 
 /// `observations-` and the source's name, as far as every file system takes it.
 fn file_name(source: &str) -> String {
+    // The source of a bare table is named after its file.
+    let stem = source.trim_end_matches(".csv").trim_end_matches(".parquet");
     let safe: String =
-        source.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
+        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
     format!("observations-{safe}.csv")
 }
 
