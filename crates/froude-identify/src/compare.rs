@@ -12,6 +12,8 @@
 //! E_n and χ² hold for independent estimates. Two fits to the same table are
 //! not: they get [`SAME_DATA`] and no number.
 
+use std::collections::BTreeSet;
+
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Range};
@@ -217,7 +219,7 @@ fn label(n: &Named<'_>, other: &Named<'_>) -> String {
 }
 
 /// Fingerprints of the tables that a record was made from; campaigns, sidecars and records are no observations.
-fn tables(record: &EstimateFile) -> Vec<&str> {
+fn tables(record: &EstimateFile) -> BTreeSet<&str> {
     record
         .data
         .iter()
@@ -234,14 +236,14 @@ fn is_one_source(a: &Named<'_>, b: &Named<'_>) -> bool {
 /// True where both records name their tables and none of them is the same.
 fn have_other_tables(a: &Named<'_>, b: &Named<'_>) -> bool {
     let (x, y) = (tables(a.record), tables(b.record));
-    !x.is_empty() && !y.is_empty() && !x.iter().any(|hash| y.contains(hash))
+    !x.is_empty() && !y.is_empty() && x.is_disjoint(&y)
 }
 
 /// True where two estimates come from the same observations, as far as their records tell.
 ///
-/// A record names its tables, but not which source read which. Where one of the two records has
-/// several sources, a shared table counts if the sources have the same name or the same observations
-/// (number and ranges). Without fingerprints only an equal fit is known to be the same.
+/// A record names its tables, but not which source read which. A shared table counts where that is plain (one table, or
+/// one source), and else if the sources have the same name or the same observations (number and ranges). Without
+/// fingerprints only an equal fit is known to be the same.
 fn same_data(a: &Named<'_>, b: &Named<'_>) -> bool {
     let (x, y) = (a.estimate, b.estimate);
     if is_one_source(a, b) || x == y {
@@ -252,13 +254,16 @@ fn same_data(a: &Named<'_>, b: &Named<'_>) -> bool {
     if same_observations && x.model == y.model && x.sigma == y.sigma && values(x) == values(y) {
         return true;
     }
-    if std::ptr::eq(a.record, b.record) {
-        return false;
-    }
     let (first, second) = (tables(a.record), tables(b.record));
-    let has_one_source = |n: &Named<'_>| n.record.estimates.iter().all(|e| e.source == n.estimate.source);
-    first.iter().any(|hash| second.contains(hash))
-        && ((has_one_source(a) && has_one_source(b)) || x.source == y.source || same_observations)
+    if std::ptr::eq(a.record, b.record) {
+        // Fitted sources read tables; a published one beside them does not.
+        return first.len() == 1 && x.n_observations > 0 && y.n_observations > 0;
+    }
+    let is_plain = |n: &Named<'_>, own: &BTreeSet<&str>| {
+        own.len() == 1 || n.record.estimates.iter().all(|e| e.source == n.estimate.source)
+    };
+    !first.is_disjoint(&second)
+        && ((is_plain(a, &first) && is_plain(b, &second)) || x.source == y.source || same_observations)
 }
 
 fn same_data_finding(a: &Named<'_>, b: &Named<'_>) -> Finding {
@@ -700,6 +705,16 @@ mod tests {
         both.data.push(DataFile { path: "rotor.csv".to_owned(), sha256: "t2".to_owned() });
         let files = [("a.json".to_owned(), both)];
         assert!(compare(&named(&files)).coefficients[0].e_n.is_ok());
+    }
+
+    /// A record of one table: all its sources read it, whatever they kept of it.
+    #[test]
+    fn sources_of_one_table_in_one_record_are_not_independent() {
+        let mut both = record("all", "t1", 47.8, 0.4, Some(9.0));
+        both.estimates.extend(record("slow runs", "t1", 46.9, 0.7, Some(4.0)).estimates);
+        both.estimates[1].n_observations = 6;
+        let files = [("a.json".to_owned(), both)];
+        assert_eq!(compare(&named(&files)).coefficients[0].e_n, Err(SAME_DATA.to_owned()));
     }
 
     /// Four degrees of freedom: Student's t is 2.776, not 1.96 (any printed table).

@@ -11,7 +11,7 @@ use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs, 
 use crate::input::{InputFile, Report, ReportError, SourceSection};
 use crate::number;
 use crate::symbol::unit_text;
-use crate::tables::{self, Tables, html_symbol};
+use crate::tables::{self, Tables, counted, html_symbol};
 
 const STYLE: &str = include_str!("report.css");
 
@@ -69,10 +69,6 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
         }
     };
     Ok(page.into_string())
-}
-
-fn counted(n: usize, one: &str, many: &str) -> String {
-    format!("{} {}", number::count(n), if n == 1 { one } else { many })
 }
 
 /// An entry of the navigation.

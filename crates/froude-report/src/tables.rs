@@ -24,6 +24,11 @@ const MOST_PREDICTIONS: usize = 36;
 /// Most sources beside the first one in a table of predicted loads.
 const MOST_SIDES: usize = 3;
 
+/// A count with its noun.
+pub(crate) fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{} {}", number::count(n), if n == 1 { one } else { many })
+}
+
 /// Counter of the tables.
 #[derive(Default)]
 pub(crate) struct Tables {
@@ -631,9 +636,10 @@ impl Tables {
                 self.caption("Coefficients of the same model from two sources that have no normalised difference.");
             html! {
                 details {
-                    summary { (number::count(without.len())) " pairs of estimates without Eₙ" }
+                    summary { (counted(without.len(), "pair", "pairs")) " of estimates without Eₙ" }
                     (pair_table(&without, &caption))
                 }
+                (why_not(&without))
             }
         });
         html! { @if let Some(table) = shown { (table) } @if let Some(table) = folded { (table) } }
@@ -654,7 +660,7 @@ impl Tables {
             let caption = self.caption("Pairs of estimates that have no χ².");
             html! {
                 details {
-                    summary { (number::count(without.len())) " pairs of estimates without χ²" }
+                    summary { (counted(without.len(), "pair", "pairs")) " of estimates without χ²" }
                     (joint_table(&without, &caption))
                 }
             }
@@ -675,7 +681,7 @@ impl Tables {
                 let (shown, is_all) = corners(&places);
                 let caption = self.caption(&format!(
                     "Loads that the sources predict over their common range{}. ± U: expanded uncertainty, 95 %, U = k·u; \
-                     Eₙ = (a − b)/√(U_a² + U_b²), a from {first}.",
+                     Eₙ = (a − b)/√(U²(a) + U²(b)), a from {first}.",
                     if is_all { "" } else { ", at its ends and middle" }
                 ));
                 parts.push(prediction_table(&shown, first, block, &caption));
@@ -723,6 +729,20 @@ fn corners<'a>(places: &[PredictedPlace<'a>]) -> (Vec<PredictedPlace<'a>>, bool)
         speeds.contains(&p[0].speed_m_s.to_bits()) && angles.contains(&p[0].angle_rad.to_bits())
     };
     (places.iter().filter(is_corner).cloned().collect(), false)
+}
+
+/// Why estimates that state their uncertainties have no Eₙ: said outside the fold, each reason once with its pairs.
+fn why_not(pairs: &[Vec<&CoefficientComparison>]) -> Markup {
+    let states = |side: &Side| number::finite(side.expanded).is_some();
+    let mut reasons: IndexMap<&str, Vec<String>> = IndexMap::new();
+    for pair in pairs.iter().filter(|pair| pair.iter().any(|c| states(&c.first) && states(&c.second))) {
+        if let Some(note) = common_note(pair.iter().map(|c| c.note.as_str())) {
+            reasons.entry(note).or_default().push(format!("{} and {}", pair[0].first.source, pair[0].second.source));
+        }
+    }
+    html! {
+        @for (note, pairs) in &reasons { p class="remarks" { (pairs.join("; ")) " – " (note) "." } }
+    }
 }
 
 /// Pairs of estimates with the coefficients that they share; each pair names its columns.
@@ -827,14 +847,21 @@ fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str],
     let unit = html! { @if is_one_unit { (head_unit(units.first().copied().unwrap_or(""))) } };
     let of = |other: &str| places.iter().flatten().copied().filter(|r| r.second.source == other).collect::<Vec<_>>();
     let has_e_n = |other: &str| of(other).iter().any(|r| number::finite(r.e_n).is_some());
+    let states = |side: &Side| number::finite(side.expanded).is_some();
+    let first_states = places.iter().flatten().any(|r| states(&r.first));
+    let other_states = |other: &str| of(other).iter().any(|r| states(&r.second));
+    let head = |id: &str, is_stated: bool| html! { (id) @if is_stated { ", ± U" } (unit) };
+    // Where a side states no uncertainty, the † says why there is no Eₙ.
     let notes: Vec<(&str, &str)> = others
         .iter()
+        .filter(|other| first_states && other_states(other))
         .flat_map(|other| {
             union(of(other).into_iter().map(|r| &r.note).filter(|n| !n.is_empty()))
                 .into_iter()
                 .map(move |n| (*other, n))
         })
         .collect();
+    let has_dagger = !first_states || others.iter().any(|other| !other_states(other));
     html! {
         div class="table" {
             table {
@@ -845,9 +872,9 @@ fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str],
                         th scope="col" class="num" { "Speed " span class="unit" { "[m/s]" } }
                         th scope="col" class="num" { "Angle" }
                         th scope="col" { "Load" }
-                        th scope="col" class="num source" { (first) ", ± U" (unit) }
+                        th scope="col" class="num source" { (head(first, first_states)) }
                         @for other in others {
-                            th scope="col" class="num source" { (other) ", ± U" (unit) }
+                            th scope="col" class="num source" { (head(other, other_states(other))) }
                             @if has_e_n(other) { th scope="col" class="num" { "E" sub { "n" } } }
                         }
                     }
@@ -871,11 +898,10 @@ fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str],
                 }
             }
         }
-        @if !notes.is_empty() {
+        @if has_dagger || !notes.is_empty() {
             p class="notes" {
-                "Without E" sub { "n" } ": "
-                @for (i, (other, note)) in notes.iter().enumerate() { @if i > 0 { "; " } (other) ", " (note) }
-                "."
+                @if has_dagger { "† no uncertainty stated, no E" sub { "n" } ". " }
+                @for (other, note) in &notes { (other) ": " (note) ". " }
             }
         }
     }
@@ -891,6 +917,8 @@ fn common_note<'a>(mut notes: impl Iterator<Item = &'a str>) -> Option<&'a str> 
 fn load(side: &Side) -> Markup {
     match (number::finite(side.value), number::usable(side.expanded)) {
         (Some(value), Some(u)) => html! { (number::plus_minus(value, u)) },
+        // A load that is zero whatever the coefficients are.
+        (Some(value), None) if side.expanded == Some(0.0) => html! { (number::plain(value, 4)) },
         (Some(value), None) => html! { (number::plain(value, 4)) (dagger()) },
         (None, _) => html! { (MISSING) },
     }

@@ -405,7 +405,9 @@ fn sources_of_the_same_data_get_words_and_no_normalised_difference() {
         ..ComparisonSection::default()
     };
     let text = words(&html(&Report { comparison: Some(comparison), ..Report::default() }).unwrap());
-    assert_eq!(text.matches(SAME).count(), 2, "once in each table: {text}");
+    assert_eq!(text.matches(SAME).count(), 3, "in the fold, outside it, and below the loads: {text}");
+    let outside = text.find(&format!("a and b – {SAME}.")).unwrap();
+    assert!(outside > text.find("1 pair of estimates without").unwrap(), "{text}");
     assert!(text.contains("−4.2 ± 1.0"), "{text}");
 }
 

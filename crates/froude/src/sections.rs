@@ -12,7 +12,7 @@ use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::units::Dimension;
 use froude_report::{
     Abscissa, Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile,
-    JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection,
+    JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection, number,
 };
 
 /// The scatter itself as an input of the budget: no error that rows share.
@@ -31,20 +31,24 @@ pub fn report(
     file: &EstimateFile,
     date: Option<String>,
 ) -> Result<Report, IdentifyError> {
-    let data = file
-        .data
-        .iter()
-        .map(|d| {
-            let source = sources.iter().find(|s| s.files.first().is_some_and(|f| f.ends_with(&d.path)));
-            InputFile {
-                path: d.path.clone(),
-                sha256: d.sha256.clone(),
-                n_rows: source.map(|s| s.n_read),
-                n_used: source.map(|s| s.data.rows),
-                source: source.map(|s| s.name.clone()),
-            }
-        })
-        .collect();
+    // A line per file and source that reads it; a file that several name is one file.
+    let mut data: Vec<InputFile> = Vec::new();
+    for d in &file.data {
+        if data.iter().any(|seen| seen.path == d.path) {
+            continue;
+        }
+        let line = InputFile { path: d.path.clone(), sha256: d.sha256.clone(), ..InputFile::default() };
+        let readers = sources.iter().filter(|s| s.files.first().is_some_and(|f| f.ends_with(&d.path)));
+        let lines: Vec<InputFile> = readers
+            .map(|s| InputFile {
+                n_rows: Some(s.n_read),
+                n_used: Some(s.data.rows),
+                source: Some(s.name.clone()),
+                ..line.clone()
+            })
+            .collect();
+        data.extend(if lines.is_empty() { vec![line] } else { lines });
+    }
     Ok(Report {
         title: campaign.name.clone(),
         subtitle: subtitle(sources, published),
@@ -168,10 +172,10 @@ fn supported(
         .map(|(n, l)| n - l)
         .filter(|_| newton.law.responses == logarithmic.law.responses);
     let numbers = format!(
-        "rank correlation of |residual| with speed {:+.2} ({:.1} standard errors) relative, {:+.2} ({:.1}) absolute{}",
-        of_log.rho,
+        "rank correlation of |residual| with speed {} ({:.1} standard errors) relative, {} ({:.1}) absolute{}",
+        number::fixed(of_log.rho, 2),
         of_log.z.abs(),
-        of_newton.rho,
+        number::fixed(of_newton.rho, 2),
         of_newton.z.abs(),
         gain.map_or_else(String::new, |g| format!(
             "; AICc is {:.1} {} for the relative error",
