@@ -13,6 +13,7 @@
 //! not: they get [`SAME_DATA`] and no number.
 
 use std::collections::BTreeSet;
+use std::path::Path;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
@@ -220,12 +221,10 @@ fn label(n: &Named<'_>, other: &Named<'_>) -> String {
 
 /// Fingerprints of the tables that a record was made from; campaigns, sidecars and records are no observations.
 fn tables(record: &EstimateFile) -> BTreeSet<&str> {
-    record
-        .data
-        .iter()
-        .filter(|d| !d.path.ends_with(".toml") && !d.path.ends_with(".json") && !d.sha256.is_empty())
-        .map(|d| d.sha256.as_str())
-        .collect()
+    let is_table = |path: &str| {
+        Path::new(path).extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml") && !e.eq_ignore_ascii_case("json"))
+    };
+    record.data.iter().filter(|d| is_table(&d.path) && !d.sha256.is_empty()).map(|d| d.sha256.as_str()).collect()
 }
 
 /// True for two models of one source in one record, which nobody takes for independent.
@@ -541,7 +540,7 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
                     if let Some((_, id)) = without.into_iter().find(|(is_missing, _)| *is_missing) {
                         return Err(format!("{id} gives no {component}"));
                     }
-                    let is_same_data = same_data(&predictions[0].3, &predictions[j].3);
+                    let is_same_data = same_data(predictions[0].3, predictions[j].3);
                     e_n(&forces[0], &forces[j], [&ids[0], &ids[j]], is_same_data)
                 })
                 .collect();
