@@ -1,8 +1,8 @@
 //! Results as a person reads them, and as JSON.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Table};
+use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::Error;
-use froude::identify::compare::Comparison;
+use froude::identify::compare::{CoefficientRow, Comparison, ForceRow, JointRow, Stated, coverage_note};
 use froude::inspect::Inspection;
 use froude::pipeline::Outcome;
 use froude::records::estimate::{Estimate, Status};
@@ -35,7 +35,12 @@ pub fn outcome(outcome: &Outcome) {
     for source in &outcome.sources {
         println!("\n{} ({} observations)", source.name, source.data.rows);
         if let Some(r) = &source.recommendation {
-            println!("  recommended: {}", r.reason);
+            // What cannot be cross-validated is said once, on a line of its own.
+            let mut parts = r.reason.split("; cross-validation: ");
+            println!("  recommended: {}", parts.next().unwrap_or_default());
+            for why in parts {
+                println!("  cross-validation: {why}");
+            }
         }
         for estimate in source.estimates.iter().filter(|e| e.recommended) {
             println!("{}", coefficients(estimate));
@@ -123,88 +128,207 @@ pub fn inspection(i: &Inspection) {
     findings(&i.findings);
 }
 
+/// Widest table; a wider one is wrapped or told in blocks.
+const MOST_CHARACTERS: u16 = 118;
+/// Widest head of a force column; a longer name is wrapped.
+const MOST_OF_A_HEAD: usize = 28;
+
+/// A table of a comparison, never wider than [`MOST_CHARACTERS`] or the terminal.
+fn narrow(header: &[String]) -> Table {
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut out = table(&header);
+    out.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
+    out.set_width(out.width().map_or(MOST_CHARACTERS, |w| w.min(MOST_CHARACTERS)));
+    out
+}
+
+/// Value and expanded uncertainty, digits after the uncertainty; the value alone where none is stated.
+fn value_and_uncertainty(s: &Stated) -> String {
+    match (s.value, s.expanded()) {
+        (Some(value), Some(u)) => number::plus_minus(value, u),
+        (Some(value), None) => number::plain(value, 5),
+        (None, _) => number::MISSING.to_owned(),
+    }
+}
+
+fn normalised(e_n: &Result<f64, String>) -> String {
+    e_n.as_ref().map_or_else(|_| number::MISSING.to_owned(), |e| number::fixed(*e, 2))
+}
+
+/// Reasons in the order of appearance, each once.
+fn reasons<'a>(results: impl Iterator<Item = &'a Result<f64, String>>) -> Vec<&'a str> {
+    let mut out: Vec<&str> = Vec::new();
+    for reason in results.filter_map(|r| r.as_ref().err()) {
+        if !out.contains(&reason.as_str()) {
+            out.push(reason);
+        }
+    }
+    out
+}
+
 /// Sources side by side.
 pub fn comparison(c: &Comparison, all: bool) {
     let recommended = |id: &str| c.force_ids.iter().any(|f| f == id);
-    let mut out = table(&["model", "coefficient", "unit", "first", "second", "value", "value", "E_n"]);
-    let mut hidden = 0;
-    for r in &c.coefficients {
-        if !all && !(recommended(&r.first) && recommended(&r.second)) && c.coefficients.len() > 40 {
-            hidden += 1;
-            continue;
-        }
-        let show = |v: Option<f64>| right(v.map_or("—".to_owned(), |x| format!("{x:.4}")));
-        out.add_row(vec![
-            Cell::new(&r.model),
-            Cell::new(&r.coefficient),
-            Cell::new(&r.unit),
-            Cell::new(&r.first),
-            Cell::new(&r.second),
-            show(r.value_first),
-            show(r.value_second),
-            match &r.e_n {
-                Ok(e) => right(format!("{e:+.2}")),
-                Err(why) => Cell::new(why),
-            },
-        ]);
-    }
-    if !out.is_empty() {
-        println!("{out}");
-    }
-    if hidden > 0 {
-        println!("{hidden} further pairs; --all prints them");
-    }
-    for j in &c.joint {
-        match &j.result {
-            Ok((chi2, dof, p)) => {
-                println!(
-                    "jointly, {} and {}: χ² = {chi2:.2} with {dof} degrees of freedom, p = {p:.3}",
-                    j.first, j.second
-                );
-            }
-            Err(why) => {
-                if all {
-                    println!("jointly, {} and {}: {why}", j.first, j.second);
-                }
+    let is_shown =
+        |r: &CoefficientRow| all || c.coefficients.len() <= 40 || (recommended(&r.first) && recommended(&r.second));
+    let (shown, hidden): (Vec<_>, Vec<_>) = c.coefficients.iter().partition(|r| is_shown(r));
+    for pair in shown.chunk_by(|a, b| a.first == b.first && a.second == b.second) {
+        coefficient_pair(pair);
+        let own = |j: &&JointRow| pair.iter().any(|r| r.first == j.first && r.second == j.second);
+        for j in c.joint.iter().filter(own) {
+            match &j.result {
+                Ok((chi2, dof, p)) => println!(
+                    "  jointly: χ² = {} with {dof} degree{} of freedom, p {}{}",
+                    number::significant(*chi2, 3),
+                    if *dof == 1 { "" } else { "s" },
+                    if *p < 0.001 { "" } else { "= " },
+                    number::p_value(*p)
+                ),
+                // A missing uncertainty has been named with the missing E_n.
+                Err(why) if reasons(pair.iter().map(|r| &r.e_n)).contains(&why.as_str()) => {}
+                Err(why) => println!("  no joint χ²: {why}"),
             }
         }
+    }
+    if !hidden.is_empty() {
+        println!("\n{} further pairs of coefficients; --all prints them", hidden.len());
     }
     if !c.forces.is_empty() {
-        println!("\nPredicted force over the common range");
-        let mut header = vec!["load".to_owned(), "k".to_owned(), "speed m/s".to_owned(), "angle deg".to_owned()];
-        header.extend(c.force_ids.iter().map(|id| format!("{id} N")));
-        let header: Vec<&str> = header.iter().map(String::as_str).collect();
-        let mut out = table(&header);
-        for r in &c.forces {
-            let mut row = vec![
-                Cell::new(&r.component),
-                right(format!("{}", r.n_links)),
-                right(format!("{:.3}", r.speed_m_s)),
-                right(format!("{:.1}", r.angle_rad.to_degrees())),
-            ];
-            row.extend(
-                r.forces
-                    .iter()
-                    .map(|(f, u)| right(u.map_or_else(|| format!("{f:.4}"), |u| format!("{f:.4} ± {:.4}", 1.96 * u)))),
-            );
-            out.add_row(row);
-        }
-        println!("{out}");
+        forces(c);
     }
     findings(&c.findings);
 }
 
-/// The comparison as JSON.
-pub fn comparison_json(c: &Comparison) -> serde_json::Value {
-    let text = |r: &Result<f64, String>| match r {
-        Ok(x) => serde_json::json!(x),
-        Err(_) => serde_json::Value::Null,
+/// The coefficients that two estimates share, a column each.
+fn coefficient_pair(rows: &[&CoefficientRow]) {
+    let Some(one) = rows.first() else { return };
+    let has_e_n = rows.iter().any(|r| r.e_n.is_ok());
+    println!("\nModel {}", one.model);
+    let (first, second) = if one.first == one.second {
+        (format!("1: {}", one.first), format!("2: {}", one.second))
+    } else {
+        (one.first.clone(), one.second.clone())
     };
+    let is_stated = rows.iter().any(|r| r.by_first.standard.is_some() || r.by_second.standard.is_some());
+    let head = |id: String| if is_stated { format!("{id}, ± U") } else { id };
+    let mut header = vec!["coefficient".to_owned(), "unit".to_owned(), head(first), head(second)];
+    if has_e_n {
+        header.push("E_n".to_owned());
+    }
+    let mut out = narrow(&header);
+    for r in rows {
+        let mut row = vec![
+            Cell::new(&r.coefficient),
+            Cell::new(&r.unit),
+            right(value_and_uncertainty(&r.by_first)),
+            right(value_and_uncertainty(&r.by_second)),
+        ];
+        if has_e_n {
+            row.push(right(normalised(&r.e_n)));
+        }
+        out.add_row(row);
+    }
+    println!("{out}");
+    if is_stated {
+        println!("  ± U: expanded uncertainty, 95 %, U = k·u");
+        println!("    {}", coverage_note(&one.first, rows.iter().map(|r| &r.by_first)));
+        if one.first != one.second {
+            println!("    {}", coverage_note(&one.second, rows.iter().map(|r| &r.by_second)));
+        }
+    }
+    for why in reasons(rows.iter().map(|r| &r.e_n)) {
+        println!("  no E_n: {why}");
+    }
+}
+
+/// Predicted forces: a column per estimate, in blocks that fit beside each other.
+fn forces(c: &Comparison) {
+    println!("\nPredicted force over the common range");
+    let has_links = c.forces.iter().any(|r| r.n_links.is_some());
+    let mut place = vec!["load".to_owned()];
+    if has_links {
+        place.push("links".to_owned());
+    }
+    place.extend(["speed [m/s]".to_owned(), "angle [deg]".to_owned()]);
+    let at = |r: &ForceRow| {
+        let mut row = vec![Cell::new(&r.component)];
+        if has_links {
+            row.push(right(r.n_links.map_or_else(String::new, |k| format!("{k}"))));
+        }
+        row.push(right(format!("{:.3}", r.speed_m_s)));
+        row.push(right(format!("{:.1}", r.angle_rad.to_degrees())));
+        row
+    };
+    let columns: Vec<Vec<(String, Vec<String>)>> =
+        c.force_ids.iter().enumerate().map(|(i, id)| force_columns(c, i, id)).collect();
+    let width = |(head, cells): &(String, Vec<String>)| {
+        let cell = cells.iter().map(|t| t.chars().count()).max().unwrap_or(0);
+        cell.max(head.chars().count().min(MOST_OF_A_HEAD)) + 2
+    };
+    let room = usize::from(MOST_CHARACTERS) - place.iter().map(|p| p.len() + 2).sum::<usize>();
+    let mut blocks: Vec<Vec<&(String, Vec<String>)>> = Vec::new();
+    let mut left = 0;
+    for own in &columns {
+        let wanted: usize = own.iter().map(width).sum();
+        if blocks.is_empty() || wanted > left {
+            blocks.push(Vec::new());
+            left = room;
+        }
+        left = left.saturating_sub(wanted);
+        if let Some(block) = blocks.last_mut() {
+            block.extend(own);
+        }
+    }
+    for block in blocks {
+        let mut header = place.clone();
+        header.extend(block.iter().map(|(head, _)| head.clone()));
+        let mut out = narrow(&header);
+        for (i, r) in c.forces.iter().enumerate() {
+            let mut row = at(r);
+            row.extend(block.iter().map(|(_, cells)| right(cells[i].clone())));
+            out.add_row(row);
+        }
+        println!("{out}");
+    }
+    if c.forces.iter().flat_map(|r| &r.forces).any(|f| f.standard.is_some()) {
+        println!("  ± U: expanded uncertainty, 95 %, U = k·u");
+    }
+    for note in c.coverage_notes() {
+        println!("    {note}");
+    }
+    for (j, id) in c.force_ids.iter().enumerate().skip(1) {
+        // A missing uncertainty has just been named.
+        let others = reasons(c.forces.iter().map(|r| &r.e_n[j - 1]));
+        for why in others.into_iter().filter(|why| !why.starts_with("no uncertainty stated")) {
+            println!("  no E_n of {id} against {}: {why}", c.force_ids[0]);
+        }
+    }
+}
+
+/// Head and cells of an estimate's forces, and of its E_n against the first estimate where there is one.
+fn force_columns(c: &Comparison, i: usize, id: &str) -> Vec<(String, Vec<String>)> {
+    let is_stated = c.forces.iter().any(|r| r.forces[i].standard.is_some());
+    let head = if is_stated { format!("{id} ± U [N]") } else { format!("{id} [N]") };
+    let cells = c.forces.iter().map(|r| match r.forces[i].value {
+        Some(force) if r.forces[i].standard.is_none() => number::fixed(force, 4),
+        _ => value_and_uncertainty(&r.forces[i]),
+    });
+    let mut out = vec![(head, cells.collect())];
+    if i > 0 && c.forces.iter().any(|r| r.e_n[i - 1].is_ok()) {
+        out.push(("E_n".to_owned(), c.forces.iter().map(|r| normalised(&r.e_n[i - 1])).collect()));
+    }
+    out
+}
+
+/// The comparison as JSON; where there is no E_n or χ², `note` says why.
+pub fn comparison_json(c: &Comparison) -> serde_json::Value {
     serde_json::json!({
         "coefficients": c.coefficients.iter().map(|r| serde_json::json!({
             "model": r.model, "coefficient": r.coefficient, "unit": r.unit, "first": r.first, "second": r.second,
-            "value_first": r.value_first, "value_second": r.value_second, "e_n": text(&r.e_n),
-            "note": r.e_n.as_ref().err(),
+            "value_first": r.by_first.value, "value_second": r.by_second.value,
+            "expanded_uncertainty_first": r.by_first.expanded(), "expanded_uncertainty_second": r.by_second.expanded(),
+            "coverage_factor_first": r.by_first.coverage(), "coverage_factor_second": r.by_second.coverage(),
+            "e_n": r.e_n.as_ref().ok(), "note": r.e_n.as_ref().err(),
         })).collect::<Vec<_>>(),
         "joint": c.joint.iter().map(|r| serde_json::json!({
             "model": r.model, "first": r.first, "second": r.second,
@@ -213,8 +337,13 @@ pub fn comparison_json(c: &Comparison) -> serde_json::Value {
         })).collect::<Vec<_>>(),
         "forces": c.forces.iter().map(|r| serde_json::json!({
             "component": r.component, "n_links": r.n_links, "speed_m_s": r.speed_m_s, "angle_rad": r.angle_rad,
-            "by": c.force_ids.iter().zip(&r.forces).map(|(id, (f, u))| serde_json::json!({
-                "id": id, "force_n": f, "standard_uncertainty_n": u })).collect::<Vec<_>>(),
+            "by": c.force_ids.iter().zip(&r.forces).map(|(id, f)| serde_json::json!({
+                "id": id, "force_n": f.value, "standard_uncertainty_n": f.standard,
+                "expanded_uncertainty_n": f.expanded(), "coverage_factor": f.coverage(), "effective_dof": f.dof,
+            })).collect::<Vec<_>>(),
+            "e_n": c.force_ids.iter().skip(1).zip(&r.e_n).map(|(id, e)| serde_json::json!({
+                "first": c.force_ids[0], "second": id, "e_n": e.as_ref().ok(), "note": e.as_ref().err(),
+            })).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
         "findings": c.findings,
     })

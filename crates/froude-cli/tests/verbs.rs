@@ -131,3 +131,92 @@ fn published_sets_are_compared_without_inventing_uncertainty() {
     assert_eq!(contradictions.len(), 1, "{contradictions:?}");
     assert!(contradictions[0].contains("C_d: 0.3268 and 0.3628 differ by two exchanged digits"), "{contradictions:?}");
 }
+
+/// Identifies the tare drag in `folder`, its forces times `factor`, and gives the record.
+fn tare_record(folder: &Path, name: &str, factor: f64) -> String {
+    let table = std::fs::read_to_string(example("unh-rm2/Tare-drag.csv")).unwrap();
+    let mut lines = table.lines();
+    let header = lines.next().unwrap();
+    let place = header.split(',').position(|h| h.trim() == "tare_drag").unwrap();
+    let mut out = header.to_owned() + "\n";
+    for line in lines {
+        let cells: Vec<String> =
+            line.split(',')
+                .enumerate()
+                .map(|(i, cell)| {
+                    if i == place {
+                        (factor * cell.trim().parse::<f64>().unwrap()).to_string()
+                    } else {
+                        cell.to_owned()
+                    }
+                })
+                .collect();
+        out += &(cells.join(",") + "\n");
+    }
+    std::fs::write(folder.join(format!("{name}.csv")), out).unwrap();
+    std::fs::copy(example("unh-rm2/Tare-drag.toml"), folder.join(format!("{name}.toml"))).unwrap();
+    assert_eq!(froude(folder, &["identify", &format!("{name}.csv")]).status.code(), Some(0));
+    format!("{name}-results/estimate.json")
+}
+
+#[test]
+fn compared_columns_carry_the_name_of_their_source_and_fit_on_a_page() {
+    let folder = tempfile::tempdir().unwrap();
+    let (monday, friday) =
+        (tare_record(folder.path(), "monday", 1.0), tare_record(folder.path(), "friday_with_a_much_longer_name", 1.02));
+    let output = froude(folder.path(), &["compare", &monday, &friday]);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let head = said.lines().find(|l| l.contains("coefficient") && l.contains("unit")).unwrap();
+    assert!(head.contains("monday.csv/quadratic") && head.contains("friday_with_") && head.contains("E_n"), "{head}");
+    assert!(!head.contains("value"), "{head}");
+    for line in said.lines().filter(|l| !l.contains("  [")) {
+        assert!(line.chars().count() <= 120, "{} columns: {line}", line.chars().count());
+    }
+    let forces = said.split("Predicted force").nth(1).unwrap();
+    let head = forces.lines().find(|l| l.contains("load")).unwrap();
+    assert!(!head.contains("links") && head.contains("speed [m/s]") && head.contains("[N]"), "{head}");
+    assert!(forces.contains("± U: expanded uncertainty, 95 %, U = k·u"), "{forces}");
+    assert!(forces.contains("Student's t, effective degrees of freedom"), "{forces}");
+    // The demo's published sets belong to a body with links, and there are many of them.
+    let published = example("mamba/published");
+    let path = |n: &str| published.join(n).to_str().unwrap().to_owned();
+    let sets = [
+        path("cfd.json"),
+        path("circulation_tank_restricted.json"),
+        path("towing_rig.json"),
+        path("table10_as_printed.json"),
+    ];
+    let args: Vec<&str> = ["compare", "--all"].into_iter().chain(sets.iter().map(String::as_str)).collect();
+    let said = String::from_utf8_lossy(&froude(&published, &args).stdout).into_owned();
+    let heads: Vec<&str> = said.lines().filter(|l| l.contains("load") && l.contains("links")).collect();
+    assert!(heads.len() > 1, "wrapped by block:\n{said}");
+    let widest = said.lines().filter(|l| l.contains("f_x  ") || l.contains("──")).map(|l| l.chars().count()).max();
+    assert!(widest.unwrap() <= 120, "{widest:?}");
+}
+
+#[test]
+fn a_record_compared_with_itself_is_no_evidence() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = tare_record(folder.path(), "monday", 1.0);
+    std::fs::copy(folder.path().join(&record), folder.path().join("copy.json")).unwrap();
+    let said = String::from_utf8_lossy(&froude(folder.path(), &["compare", &record, "copy.json"]).stdout).into_owned();
+    assert!(said.contains("same data: not independent, E_n not meaningful"), "{said}");
+    assert!(said.contains("[same-data]"), "{said}");
+    let out = json(&froude(folder.path(), &["--json", "compare", &record, "copy.json"]));
+    for row in out["coefficients"].as_array().unwrap() {
+        assert!(row["e_n"].is_null(), "{row}");
+        assert_eq!(row["note"], "same data: not independent, E_n not meaningful");
+    }
+    for row in out["joint"].as_array().unwrap() {
+        assert!(row["chi_squared"].is_null() && row["note"].as_str().unwrap().starts_with("same data"), "{row}");
+    }
+    for row in out["forces"].as_array().unwrap() {
+        assert!(row["n_links"].is_null() && row["e_n"][0]["e_n"].is_null(), "{row}");
+        assert!(row["by"][0]["coverage_factor"].as_f64().unwrap() > 1.96, "{row}");
+    }
+    // A repeat of the test on another day is independent.
+    let other = tare_record(folder.path(), "tuesday", 1.02);
+    let out = json(&froude(folder.path(), &["--json", "compare", &record, &other]));
+    assert!(out["coefficients"][0]["e_n"].is_number() && out["joint"][0]["chi_squared"].is_number(), "{out}");
+}

@@ -6,6 +6,14 @@
 //!
 //! E_n = (a − b)/√(U_a² + U_b²) with U the expanded (95 %) uncertainties
 //! (ISO 13528:2022, 9.7): |E_n| ≤ 1 says that the two agree within them.
+//! U = k·u with k from Student's t of the effective degrees of freedom; 1.96
+//! where the record states none, and [`Comparison::coverage_notes`] says so.
+//!
+//! E_n and χ² hold for independent estimates. Two fits to the same table are
+//! not: they get [`SAME_DATA`] and no number.
+
+use std::collections::BTreeSet;
+use std::path::Path;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
@@ -21,6 +29,39 @@ use crate::uncertainty::coverage_factor;
 /// Speeds and angles at which forces are predicted, per axis of the common range.
 const FORCE_POINTS: usize = 5;
 
+/// Coverage factor where no degrees of freedom are stated: two-sided 95 % of the normal distribution.
+const NORMAL_COVERAGE: f64 = 1.959_963_984_540_054;
+
+/// What is said in place of E_n where two estimates come from the same observations.
+pub const SAME_DATA: &str = "same data: not independent, E_n not meaningful";
+/// What is said in place of χ² there.
+const SAME_DATA_JOINTLY: &str = "same data: not independent, χ² not meaningful";
+
+/// A number as one estimate states it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stated {
+    /// Its value; null when undetermined, or when the law gives no such load.
+    pub value: Option<f64>,
+    /// Standard uncertainty, in the unit of the value; null when none is stated.
+    pub standard: Option<f64>,
+    /// Effective degrees of freedom of it; null when the record states no finite ones.
+    pub dof: Option<f64>,
+}
+
+impl Stated {
+    /// Coverage factor k of the 95 % uncertainty U = k·u; null without an uncertainty.
+    #[must_use]
+    pub fn coverage(&self) -> Option<f64> {
+        self.standard.map(|_| self.dof.map_or(NORMAL_COVERAGE, coverage_factor))
+    }
+
+    /// Expanded (95 %) uncertainty U = k·u.
+    #[must_use]
+    pub fn expanded(&self) -> Option<f64> {
+        Some(self.coverage()? * self.standard?)
+    }
+}
+
 /// One coefficient of two estimates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoefficientRow {
@@ -34,10 +75,10 @@ pub struct CoefficientRow {
     pub first: String,
     /// Id of the second.
     pub second: String,
-    /// Value of the first, null when undetermined.
-    pub value_first: Option<f64>,
-    /// Value of the second.
-    pub value_second: Option<f64>,
+    /// What the first states.
+    pub by_first: Stated,
+    /// What the second states.
+    pub by_second: Stated,
     /// E_n, or why there is none.
     pub e_n: Result<f64, String>,
 }
@@ -60,14 +101,16 @@ pub struct JointRow {
 pub struct ForceRow {
     /// Load component.
     pub component: String,
-    /// Links of the configuration.
-    pub n_links: f64,
+    /// Links of the configuration; null for a body without links.
+    pub n_links: Option<f64>,
     /// Speed, m/s.
     pub speed_m_s: f64,
     /// Angle, rad.
     pub angle_rad: f64,
-    /// Force by each estimate in the order of [`Comparison::force_ids`], N, with its standard uncertainty where stated.
-    pub forces: Vec<(f64, Option<f64>)>,
+    /// Force by each estimate in the order of [`Comparison::force_ids`], N.
+    pub forces: Vec<Stated>,
+    /// E_n of the first force against each of the others, or why there is none.
+    pub e_n: Vec<Result<f64, String>>,
 }
 
 /// Estimates side by side.
@@ -85,11 +128,52 @@ pub struct Comparison {
     pub findings: Vec<Finding>,
 }
 
-/// An estimate with the file it comes from.
+impl Comparison {
+    /// The coverage factor k behind the 95 % uncertainty of each estimate's forces, a sentence each.
+    #[must_use]
+    pub fn coverage_notes(&self) -> Vec<String> {
+        self.force_ids
+            .iter()
+            .enumerate()
+            .map(|(i, id)| coverage_note(id, self.forces.iter().filter_map(|row| row.forces.get(i))))
+            .collect()
+    }
+}
+
+/// Which coverage factor the expanded uncertainties of one estimate have, in words.
+#[must_use]
+pub fn coverage_note<'a>(id: &str, stated: impl IntoIterator<Item = &'a Stated>) -> String {
+    let own: Vec<&Stated> = stated.into_iter().filter(|s| s.value.is_some() && s.standard.is_some()).collect();
+    // A force that is zero for any coefficients has no uncertainty to cover.
+    let own = if own.iter().any(|s| s.standard > Some(0.0)) {
+        own.into_iter().filter(|s| s.standard > Some(0.0)).collect()
+    } else {
+        own
+    };
+    if own.is_empty() {
+        return format!("{id}: no uncertainty stated");
+    }
+    let range = |of: &dyn Fn(&Stated) -> Option<f64>, places: usize| {
+        let span = |x: f64| format!("{x:.places$}");
+        let low = own.iter().filter_map(|s| of(s)).fold(f64::INFINITY, f64::min);
+        let high = own.iter().filter_map(|s| of(s)).fold(f64::NEG_INFINITY, f64::max);
+        if span(low) == span(high) { span(low) } else { format!("{} to {}", span(low), span(high)) }
+    };
+    let factor = range(&|s| s.coverage(), 2);
+    if own.iter().all(|s| s.dof.is_none()) {
+        return format!("{id}: k = {factor} (normal), its record states no degrees of freedom");
+    }
+    let some = if own.iter().any(|s| s.dof.is_none()) { ", where its record states them" } else { "" };
+    format!("{id}: k = {factor} (Student's t, effective degrees of freedom {}{some})", range(&|s| s.dof, 1))
+}
+
+/// An estimate with the record that it comes from.
 #[derive(Debug, Clone, Copy)]
 pub struct Named<'a> {
     /// The file, as the user named it.
     pub file: &'a str,
+    /// The record in it, with the fingerprints of its data.
+    pub record: &'a EstimateFile,
     /// The estimate.
     pub estimate: &'a Estimate,
 }
@@ -99,7 +183,7 @@ pub struct Named<'a> {
 pub fn named<'a>(files: &'a [(String, EstimateFile)]) -> Vec<Named<'a>> {
     files
         .iter()
-        .flat_map(|(file, record)| record.estimates.iter().map(move |estimate| Named { file, estimate }))
+        .flat_map(|(file, record)| record.estimates.iter().map(move |estimate| Named { file, record, estimate }))
         .collect()
 }
 
@@ -107,16 +191,23 @@ pub fn named<'a>(files: &'a [(String, EstimateFile)]) -> Vec<Named<'a>> {
 #[must_use]
 pub fn compare(all: &[Named<'_>]) -> Comparison {
     let mut out = Comparison::default();
+    let mut told: Vec<[(&str, &str); 2]> = Vec::new();
     for (i, a) in all.iter().enumerate() {
         for b in &all[i + 1..] {
+            let is_same_data = same_data(a, b);
+            let pair = [(a.file, a.estimate.source.as_str()), (b.file, b.estimate.source.as_str())];
+            if is_same_data && !is_one_source(a, b) && !told.contains(&pair) {
+                told.push(pair);
+                out.findings.push(same_data_finding(a, b));
+            }
             if a.estimate.model != b.estimate.model {
                 continue;
             }
-            if a.estimate.source == b.estimate.source {
+            if a.estimate.source == b.estimate.source && !have_other_tables(a, b) {
                 out.findings.extend(contradiction(a, b));
             }
-            out.coefficients.extend(coefficient_rows(a, b));
-            out.joint.push(joint(a, b));
+            out.coefficients.extend(coefficient_rows(a, b, is_same_data));
+            out.joint.push(joint(a, b, is_same_data));
         }
     }
     out.findings.extend(differing_constants(all));
@@ -128,47 +219,112 @@ fn label(n: &Named<'_>, other: &Named<'_>) -> String {
     if n.estimate.id == other.estimate.id { format!("{} ({})", n.estimate.id, n.file) } else { n.estimate.id.clone() }
 }
 
-fn coefficient_rows(a: &Named<'_>, b: &Named<'_>) -> Vec<CoefficientRow> {
+/// Fingerprints of the tables that a record was made from; campaigns, sidecars and records are no observations.
+fn tables(record: &EstimateFile) -> BTreeSet<&str> {
+    let is_table = |path: &str| {
+        Path::new(path).extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml") && !e.eq_ignore_ascii_case("json"))
+    };
+    record.data.iter().filter(|d| is_table(&d.path) && !d.sha256.is_empty()).map(|d| d.sha256.as_str()).collect()
+}
+
+/// True for two models of one source in one record, which nobody takes for independent.
+fn is_one_source(a: &Named<'_>, b: &Named<'_>) -> bool {
+    std::ptr::eq(a.record, b.record) && a.estimate.source == b.estimate.source
+}
+
+/// True where both records name their tables and none of them is the same.
+fn have_other_tables(a: &Named<'_>, b: &Named<'_>) -> bool {
+    let (x, y) = (tables(a.record), tables(b.record));
+    !x.is_empty() && !y.is_empty() && x.is_disjoint(&y)
+}
+
+/// True where two estimates come from the same observations, as far as their records tell.
+///
+/// A record names its tables, but not which source read which. A shared table counts where that is plain (one table, or
+/// one source), and else if the sources have the same name or the same observations (number and ranges). Without
+/// fingerprints only an equal fit is known to be the same.
+fn same_data(a: &Named<'_>, b: &Named<'_>) -> bool {
+    let (x, y) = (a.estimate, b.estimate);
+    if is_one_source(a, b) || x == y {
+        return true;
+    }
+    let values = |e: &Estimate| e.coefficients.iter().map(|(n, c)| (n.clone(), c.value)).collect::<Vec<_>>();
+    let same_observations = x.n_observations > 0 && x.n_observations == y.n_observations && x.validity == y.validity;
+    if same_observations && x.model == y.model && x.sigma == y.sigma && values(x) == values(y) {
+        return true;
+    }
+    let (first, second) = (tables(a.record), tables(b.record));
+    if std::ptr::eq(a.record, b.record) {
+        // Fitted sources read tables; a published one beside them does not.
+        return first.len() == 1 && x.n_observations > 0 && y.n_observations > 0;
+    }
+    let is_plain = |n: &Named<'_>, own: &BTreeSet<&str>| {
+        own.len() == 1 || n.record.estimates.iter().all(|e| e.source == n.estimate.source)
+    };
+    !first.is_disjoint(&second)
+        && ((is_plain(a, &first) && is_plain(b, &second)) || x.source == y.source || same_observations)
+}
+
+fn same_data_finding(a: &Named<'_>, b: &Named<'_>) -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "same-data",
+        format!(
+            "{} ({}) and {} ({}) come from the same data: that they agree is no evidence, and E_n and χ², which assume \
+             independent measurements, are not given",
+            a.estimate.source, a.file, b.estimate.source, b.file
+        ),
+    )
+}
+
+fn coefficient_rows(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> Vec<CoefficientRow> {
     let (first, second) = (label(a, b), label(b, a));
     a.estimate
         .coefficients
         .iter()
         .filter_map(|(name, x)| b.estimate.coefficients.get(name).map(|y| (name, x, y)))
-        .map(|(name, x, y)| CoefficientRow {
-            model: a.estimate.model.clone(),
-            coefficient: name.clone(),
-            unit: x.unit.clone(),
-            first: first.clone(),
-            second: second.clone(),
-            value_first: x.value,
-            value_second: y.value,
-            e_n: e_n(x, y, &first, &second),
+        .map(|(name, x, y)| {
+            let (by_first, by_second) = (stated(x), stated(y));
+            let e_n = if x.unit == y.unit {
+                e_n(&by_first, &by_second, [&first, &second], is_same_data)
+            } else {
+                Err(format!("units differ: {} and {}", x.unit, y.unit))
+            };
+            CoefficientRow {
+                model: a.estimate.model.clone(),
+                coefficient: name.clone(),
+                unit: x.unit.clone(),
+                first: first.clone(),
+                second: second.clone(),
+                by_first,
+                by_second,
+                e_n,
+            }
         })
         .collect()
 }
 
-/// Expanded (95 %) uncertainty of a coefficient, if it states one.
-fn expanded(c: &Coefficient) -> Option<f64> {
-    let standard = c.standard_uncertainty?;
-    Some(standard * c.effective_dof.map_or(1.959_963_984_540_054, coverage_factor))
+fn stated(c: &Coefficient) -> Stated {
+    Stated { value: c.value, standard: c.standard_uncertainty, dof: c.effective_dof }
 }
 
-fn e_n(x: &Coefficient, y: &Coefficient, first: &str, second: &str) -> Result<f64, String> {
-    if x.unit != y.unit {
-        return Err(format!("units differ: {} and {}", x.unit, y.unit));
-    }
+/// E_n of two numbers, or why there is none.
+fn e_n(x: &Stated, y: &Stated, ids: [&str; 2], is_same_data: bool) -> Result<f64, String> {
     let (Some(a), Some(b)) = (x.value, y.value) else { return Err("undetermined".to_owned()) };
-    let without: Vec<&str> =
-        [(x, first), (y, second)].into_iter().filter(|(c, _)| expanded(c).is_none()).map(|(_, id)| id).collect();
-    if !without.is_empty() {
+    let (Some(u_a), Some(u_b)) = (x.expanded(), y.expanded()) else {
+        let without: Vec<&str> =
+            [x, y].into_iter().zip(ids).filter(|(s, _)| s.standard.is_none()).map(|(_, id)| id).collect();
         return Err(format!("no uncertainty stated by {}", without.join(" and ")));
+    };
+    if is_same_data {
+        return Err(SAME_DATA.to_owned());
     }
-    let u = expanded(x).unwrap_or(f64::NAN).hypot(expanded(y).unwrap_or(f64::NAN));
+    let u = u_a.hypot(u_b);
     if u > 0.0 { Ok((a - b) / u) } else { Err("both uncertainties are zero".to_owned()) }
 }
 
 /// χ² = dᵀ(C_a + C_b)⁻¹d over the coefficients that both estimate, for independent sources.
-fn joint(a: &Named<'_>, b: &Named<'_>) -> JointRow {
+fn joint(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> JointRow {
     let (first, second) = (label(a, b), label(b, a));
     let result = (|| {
         let (Some(ca), Some(cb)) = (&a.estimate.covariance, &b.estimate.covariance) else {
@@ -180,6 +336,9 @@ fn joint(a: &Named<'_>, b: &Named<'_>) -> JointRow {
                     .collect();
             return Err(format!("no uncertainty stated by {}", without.join(" and ")));
         };
+        if is_same_data {
+            return Err(SAME_DATA_JOINTLY.to_owned());
+        }
         let names: Vec<&String> = ca.names.iter().filter(|n| cb.names.contains(n)).collect();
         if names.is_empty() {
             return Err("no coefficient is estimated by both".to_owned());
@@ -314,22 +473,9 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
         ));
         return;
     }
-    for n in &chosen {
-        if !n.estimate.validity.contains_key("speed") {
-            out.findings.push(
-                Finding::new(
-                    Severity::Note,
-                    "range-not-stated",
-                    format!(
-                        "{} states no range of speed and angle: whether its forces are extrapolated is not known",
-                        n.estimate.id
-                    ),
-                )
-                .of_source(&n.estimate.source),
-            );
-        }
-    }
     let links = range("n_links").filter(|r| r.low <= r.high);
+    let has_links =
+        links.is_some() || chosen.iter().any(|n| froude_hydro::DragModel::from_name(&n.estimate.model).is_some());
     let links: Vec<f64> =
         links.map_or_else(|| vec![1.0], |r| if r.low == r.high { vec![r.low] } else { vec![r.low, r.high] });
     let data = operating_points(
@@ -351,47 +497,103 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
             n.estimate.id.clone()
         };
         out.force_ids.push(id);
-        predictions.push((law, force, slopes, n.estimate));
+        predictions.push((law, force, slopes, *n));
     }
     if predictions.len() < 2 {
         out.force_ids.clear();
         return;
     }
+    for (.., n) in &predictions {
+        if !n.estimate.validity.contains_key("speed") {
+            out.findings.push(
+                Finding::new(
+                    Severity::Note,
+                    "range-not-stated",
+                    format!(
+                        "{} states no range of speed and angle: whether its forces are extrapolated is not known",
+                        n.estimate.id
+                    ),
+                )
+                .of_source(&n.estimate.source),
+            );
+        }
+    }
+    let ids = out.force_ids.clone();
     for component in ["f_x", "f_y"] {
         for i in 0..data.rows {
-            let forces: Vec<(f64, Option<f64>)> = predictions
+            let forces: Vec<Stated> = predictions
                 .iter()
-                .map(|(law, force, slopes, estimate)| {
-                    let Some(r) = law.responses.iter().position(|n| n == component) else { return (f64::NAN, None) };
+                .map(|(law, force, slopes, n)| {
+                    let Some(r) = law.responses.iter().position(|name| name == component) else {
+                        return Stated::default();
+                    };
                     let row = r * data.rows + i;
-                    (force[row], prediction_std(law, slopes, row, estimate))
+                    predicted(law, force[row], slopes, row, n.estimate)
                 })
                 .collect();
-            if forces.iter().any(|(f, _)| f.is_finite()) {
-                out.forces.push(ForceRow {
-                    component: component.to_owned(),
-                    n_links: data.values("n_links").map_or(1.0, |v| v[i]),
-                    speed_m_s: data.values("speed").map_or(0.0, |v| v[i]),
-                    angle_rad: data.values("angle").map_or(0.0, |v| v[i]),
-                    forces,
-                });
+            if forces.iter().all(|f| f.value.is_none()) {
+                continue;
             }
+            let e_n = (1..forces.len())
+                .map(|j| {
+                    let without = [0, j].map(|k| (forces[k].value.is_none(), ids[k].as_str()));
+                    if let Some((_, id)) = without.into_iter().find(|(is_missing, _)| *is_missing) {
+                        return Err(format!("{id} gives no {component}"));
+                    }
+                    let is_same_data = same_data(predictions[0].3, predictions[j].3);
+                    e_n(&forces[0], &forces[j], [&ids[0], &ids[j]], is_same_data)
+                })
+                .collect();
+            out.forces.push(ForceRow {
+                component: component.to_owned(),
+                n_links: data.values("n_links").map(|v| v[i]).filter(|_| has_links),
+                speed_m_s: data.values("speed").map_or(0.0, |v| v[i]),
+                angle_rad: data.values("angle").map_or(0.0, |v| v[i]),
+                forces,
+                e_n,
+            });
         }
     }
 }
 
-fn prediction_std(law: &ForceLaw, slopes: &Mat<f64>, row: usize, estimate: &Estimate) -> Option<f64> {
-    let covariance = estimate.covariance.as_ref()?;
-    let places: Vec<Option<usize>> = covariance.names.iter().map(|n| law.position(n)).collect();
-    let mut variance = 0.0;
-    for (a, i) in places.iter().enumerate() {
-        for (b, j) in places.iter().enumerate() {
-            if let (Some(i), Some(j)) = (i, j) {
-                variance += slopes[(row, *i)] * slopes[(row, *j)] * covariance.matrix.get(a)?.get(b)?;
-            }
-        }
+/// A predicted force with u² = xᵀCx and its effective degrees of freedom, x the slopes by the coefficients.
+///
+/// Coefficient i makes the part w_i = x_i(Cx)_i of the variance, known with ν_i degrees of freedom. All parts
+/// rest on the same residuals, so their errors go together: √(2/ν)·u² = Σ w_i·√(2/ν_i), which is
+/// Welch–Satterthwaite (GUM G.4.1) for fully dependent parts. Equal ν_i give ν = ν_i, as they must.
+/// Parts of opposite sign can carry the sum outside the ν_i: it is cut there.
+fn predicted(law: &ForceLaw, force: f64, slopes: &Mat<f64>, row: usize, estimate: &Estimate) -> Stated {
+    let value = Some(force).filter(|f| f.is_finite());
+    let Some(covariance) = &estimate.covariance else { return Stated { value, ..Stated::default() } };
+    let x: Vec<f64> = covariance.names.iter().map(|n| law.position(n).map_or(0.0, |j| slopes[(row, j)])).collect();
+    let parts: Vec<f64> = covariance
+        .matrix
+        .iter()
+        .zip(&x)
+        .map(|(line, x_i)| x_i * line.iter().zip(&x).map(|(c, x_j)| c * x_j).sum::<f64>())
+        .collect();
+    let variance = parts.iter().sum::<f64>().max(0.0);
+    let dof: Vec<Option<f64>> = covariance
+        .names
+        .iter()
+        .map(|n| estimate.coefficients.get(n).and_then(|c| c.effective_dof).filter(|d| *d > 0.0))
+        .collect();
+    Stated { value, standard: Some(variance.sqrt()), dof: effective_dof(&parts, &dof) }
+}
+
+/// Degrees of freedom of a sum of fully dependent parts of a variance; null where no touched part states any.
+fn effective_dof(parts: &[f64], dof: &[Option<f64>]) -> Option<f64> {
+    let total: f64 = parts.iter().sum();
+    let touched: Vec<(f64, Option<f64>)> =
+        parts.iter().copied().zip(dof.iter().copied()).filter(|(w, _)| *w != 0.0).collect();
+    let all = || touched.iter().map(|(_, d)| d.unwrap_or(f64::INFINITY));
+    let (least, most) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
+    if !least.is_finite() || total <= 0.0 {
+        return None;
     }
-    Some(variance.max(0.0).sqrt())
+    let root: f64 = touched.iter().map(|(w, d)| w / total * d.map_or(0.0, |d| d.sqrt().recip())).sum();
+    let nu = if root > 0.0 { root.powi(-2) } else { f64::INFINITY };
+    Some(nu.clamp(least, most)).filter(|d| d.is_finite())
 }
 
 fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -> Dataset {
@@ -422,4 +624,141 @@ fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -
     data.put("f_y", vec![0.0; rows], Dimension::FORCE);
     data.velocity_from_speed_and_angle();
     data
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use froude_records::estimate::DataFile;
+
+    /// A quadratic drag fit: `D` with its standard uncertainty and degrees of freedom.
+    fn record(source: &str, table: &str, d: f64, standard: f64, dof: Option<f64>) -> EstimateFile {
+        let estimate = serde_json::json!({
+            "id": format!("{source}/quadratic"), "source": source, "kind": "towing", "model": "quadratic",
+            "law": { "version": 1, "formulas": { "f_x": "-D*v_x*abs(v_x)" } },
+            "sigma": { "f_x": { "value": 0.1 * d, "unit": "N" } },
+            "n_observations": 12,
+            "coefficients": { "D": {
+                "value": d, "unit": "kg/m", "status": "free", "standard_uncertainty": standard, "effective_dof": dof
+            } },
+            "covariance": { "names": ["D"], "matrix": [[standard * standard]] },
+            "validity": { "speed": { "low": 0.2, "high": 1.0, "unit": "m/s" } },
+            "recommended": true,
+        });
+        EstimateFile {
+            schema: froude_records::estimate::ESTIMATE_SCHEMA.to_owned(),
+            data: vec![
+                DataFile { path: "campaign.toml".to_owned(), sha256: "campaign".to_owned() },
+                DataFile { path: "drag.csv".to_owned(), sha256: table.to_owned() },
+            ],
+            versions: indexmap::IndexMap::new(),
+            estimates: vec![serde_json::from_value(estimate).unwrap()],
+            findings: Vec::new(),
+        }
+    }
+
+    fn compared(first: EstimateFile, second: EstimateFile) -> Comparison {
+        let files = [("a.json".to_owned(), first), ("b.json".to_owned(), second)];
+        compare(&named(&files))
+    }
+
+    fn codes(c: &Comparison) -> Vec<&str> {
+        c.findings.iter().map(|f| f.code.as_str()).collect()
+    }
+
+    #[test]
+    fn a_record_beside_itself_gets_no_normalised_difference() {
+        let one = record("frame", "t1", 47.8, 0.4, Some(9.0));
+        let c = compared(one.clone(), one);
+        assert_eq!(c.coefficients[0].e_n, Err(SAME_DATA.to_owned()));
+        assert_eq!(c.joint[0].result, Err("same data: not independent, χ² not meaningful".to_owned()));
+        assert!(!c.forces.is_empty());
+        assert!(c.forces.iter().all(|f| f.e_n == [Err(SAME_DATA.to_owned())]));
+        assert_eq!(codes(&c), ["same-data"]);
+    }
+
+    /// Another selection of the rows, another source name: the fingerprint of the table tells.
+    #[test]
+    fn two_fits_to_one_table_are_not_independent() {
+        let mut other = record("slow runs", "t1", 46.9, 0.7, Some(4.0));
+        other.estimates[0].n_observations = 6;
+        let c = compared(record("frame", "t1", 47.8, 0.4, Some(9.0)), other);
+        assert_eq!(c.coefficients[0].e_n, Err(SAME_DATA.to_owned()));
+        assert_eq!(codes(&c), ["same-data"]);
+    }
+
+    /// The same run matrix on another day, a bare table of the same name: ranges and names agree, the tables do not.
+    #[test]
+    fn a_repeated_campaign_is_independent_and_no_contradiction() {
+        let c = compared(record("drag", "t1", 47.8, 0.4, Some(9.0)), record("drag", "t2", 47.1, 0.4, Some(9.0)));
+        assert!(c.coefficients[0].e_n.is_ok());
+        assert!(c.joint[0].result.is_ok());
+        assert_eq!(codes(&c), Vec::<&str>::new());
+    }
+
+    /// Two sources of one record share its list of tables, not their observations.
+    #[test]
+    fn sources_of_one_record_are_independent() {
+        let mut both = record("frame", "t1", 47.8, 0.4, Some(9.0));
+        both.estimates.extend(record("rotor", "t2", 51.0, 0.4, Some(9.0)).estimates);
+        both.data.push(DataFile { path: "rotor.csv".to_owned(), sha256: "t2".to_owned() });
+        let files = [("a.json".to_owned(), both)];
+        assert!(compare(&named(&files)).coefficients[0].e_n.is_ok());
+    }
+
+    /// A record of one table: all its sources read it, whatever they kept of it.
+    #[test]
+    fn sources_of_one_table_in_one_record_are_not_independent() {
+        let mut both = record("all", "t1", 47.8, 0.4, Some(9.0));
+        both.estimates.extend(record("slow runs", "t1", 46.9, 0.7, Some(4.0)).estimates);
+        both.estimates[1].n_observations = 6;
+        let files = [("a.json".to_owned(), both)];
+        assert_eq!(compare(&named(&files)).coefficients[0].e_n, Err(SAME_DATA.to_owned()));
+    }
+
+    /// Four degrees of freedom: Student's t is 2.776, not 1.96 (any printed table).
+    #[test]
+    fn few_degrees_of_freedom_widen_the_expanded_uncertainty() {
+        let c = compared(record("a", "t1", 10.0, 1.0, Some(4.0)), record("b", "t2", 13.0, 1.0, None));
+        let expected = -3.0 / 2.776_445f64.hypot(1.959_964);
+        assert!((c.coefficients[0].e_n.clone().unwrap() - expected).abs() < 1e-6);
+        assert_eq!(
+            c.coverage_notes(),
+            [
+                "a/quadratic: k = 2.78 (Student's t, effective degrees of freedom 4.0)",
+                "b/quadratic: k = 1.96 (normal), its record states no degrees of freedom"
+            ]
+        );
+    }
+
+    /// F = D v²: whatever the speed, the forces differ by as many U as the coefficients do.
+    #[test]
+    fn a_law_of_one_coefficient_has_one_normalised_difference() {
+        let c = compared(record("a", "t1", 10.0, 1.0, Some(4.0)), record("b", "t2", 13.0, 0.8, Some(30.0)));
+        let of_d = c.coefficients[0].e_n.clone().unwrap();
+        for row in &c.forces {
+            // Force on the body: the sign turns.
+            let of_force = row.e_n[0].clone().unwrap();
+            assert!((of_force + of_d).abs() < 1e-12 * of_d.abs(), "{of_force} against {of_d} at {} m/s", row.speed_m_s);
+        }
+    }
+
+    #[test]
+    fn a_body_without_links_has_none() {
+        let c = compared(record("a", "t1", 10.0, 1.0, None), record("b", "t2", 13.0, 1.0, None));
+        assert!(c.forces.iter().all(|f| f.n_links.is_none()));
+    }
+
+    #[test]
+    fn degrees_of_freedom_of_a_sum_lie_between_those_of_its_parts() {
+        let of = |parts: &[f64], dof: &[Option<f64>]| effective_dof(parts, dof);
+        assert_eq!(of(&[2.0, 1.0], &[Some(9.0), Some(9.0)]).map(|d| (d * 1e9).round() / 1e9), Some(9.0));
+        // 1/√ν = ½/√4 + ½/√16 = 3/8.
+        assert!((of(&[1.0, 1.0], &[Some(4.0), Some(16.0)]).unwrap() - 64.0 / 9.0).abs() < 1e-12);
+        // Opposite parts would leave the range.
+        assert_eq!(of(&[3.0, -2.0], &[Some(4.0), Some(16.0)]), Some(4.0));
+        // What has no part in the load has no say.
+        assert_eq!(of(&[1.0, 0.0], &[Some(4.0), Some(1.0)]), Some(4.0));
+        assert_eq!(of(&[1.0, 1.0], &[None, None]), None);
+    }
 }

@@ -263,8 +263,8 @@ fn markup(text: &Rich, size: f64) -> String {
             Style::Upright => (0.0, String::new()),
             Style::Bold => (0.0, " font-weight=\"600\"".to_owned()),
             Style::Italic => (0.0, " font-style=\"italic\"".to_owned()),
-            Style::Subscript => (-0.24 * size, format!(" font-size=\"{:.0}\"", size * SMALL)),
-            Style::Superscript => (0.40 * size, format!(" font-size=\"{:.0}\"", size * SMALL)),
+            Style::Subscript => (-0.26 * size, format!(" font-size=\"{:.0}\"", size * SMALL)),
+            Style::Superscript => (0.52 * size, format!(" font-size=\"{:.0}\"", size * SMALL)),
         };
         let mut dx = owed;
         owed = 0.0;

@@ -203,8 +203,8 @@ pub struct SelectionRow {
     pub unit: String,
     /// ‖residual‖ / ‖measured‖, 1 = 100 %.
     pub relative_residual: f64,
-    /// AICc above the best model's.
-    pub delta_aicc: Option<f64>,
+    /// AICc above that of the best model of the same loads; or why it has none.
+    pub delta_aicc: Result<f64, String>,
     /// Root mean square error of leave-one-configuration-out prediction, in
     /// `unit`; or why it cannot be scored.
     pub cross_validation: Result<f64, String>,
@@ -224,7 +224,7 @@ impl Default for SelectionRow {
             sigma: f64::NAN,
             unit: String::new(),
             relative_residual: f64::NAN,
-            delta_aicc: None,
+            delta_aicc: Err("not asked for".to_owned()),
             cross_validation: Err("not asked for".to_owned()),
             range_blocks: Vec::new(),
             lack_of_fit_p: None,
@@ -260,6 +260,8 @@ pub struct ComparisonSection {
     pub joint: Vec<JointComparison>,
     /// Predicted loads over the common range.
     pub forces: Vec<ForceComparison>,
+    /// Which coverage factor the expanded uncertainties of the loads have, a sentence per source.
+    pub coverage: Vec<String>,
     /// Sentences below the tables: what could not be compared, and why.
     pub notes: Vec<String>,
 }
@@ -277,7 +279,8 @@ pub struct CoefficientComparison {
     pub first: Side,
     /// The other side.
     pub second: Side,
-    /// Normalised difference (first − second)/√(U₁² + U₂²); null when one side states no uncertainty.
+    /// Normalised difference (first − second)/√(U₁² + U₂²); null when one side states no uncertainty, or when both rest
+    /// on the same data.
     pub e_n: Option<f64>,
     /// A remark, e.g. "no uncertainty stated".
     pub note: String,
@@ -292,6 +295,8 @@ pub struct Side {
     pub value: Option<f64>,
     /// Its standard uncertainty; null when none is stated.
     pub standard: Option<f64>,
+    /// Its expanded (95 %) uncertainty, with the coverage factor of its own degrees of freedom.
+    pub expanded: Option<f64>,
 }
 
 /// χ² of the difference of two coefficient vectors.
@@ -330,8 +335,10 @@ pub struct ForceComparison {
     pub first: Side,
     /// The other side.
     pub second: Side,
-    /// Normalised difference; null when one side states no uncertainty.
+    /// Normalised difference; null when one side states no uncertainty, or when both rest on the same data.
     pub e_n: Option<f64>,
+    /// A remark, e.g. why there is no normalised difference.
+    pub note: String,
 }
 
 /// Why a report could not be written.

@@ -11,7 +11,7 @@ use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs, 
 use crate::input::{InputFile, Report, ReportError, SourceSection};
 use crate::number;
 use crate::symbol::unit_text;
-use crate::tables::{self, Tables, html_symbol};
+use crate::tables::{self, Tables, counted, html_symbol};
 
 const STYLE: &str = include_str!("report.css");
 
@@ -69,10 +69,6 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
         }
     };
     Ok(page.into_string())
-}
-
-fn counted(n: usize, one: &str, many: &str) -> String {
-    format!("{} {}", number::count(n), if n == 1 { one } else { many })
 }
 
 /// An entry of the navigation.
@@ -269,7 +265,8 @@ impl Page<'_> {
                 parts.push(self.tables.detail(best));
             }
             parts.push(determined(&source.estimates));
-            parts.push(notes(&source.estimates));
+            // Where there is a selection table, it says what could not be cross-validated.
+            parts.push(notes(&source.estimates, source.selection.is_empty()));
         }
         if self.has_figures_at(Place::Loads(i)) {
             parts.push(self.part("loads", "Loads and model"));
@@ -326,7 +323,7 @@ impl Page<'_> {
             .into_iter()
             .map(|source| {
                 let own: Vec<Estimate> = report.published.iter().filter(|e| e.source == source).cloned().collect();
-                html! { (self.tables.coefficients(source, &own)) (determined(&own)) (notes(&own)) }
+                html! { (self.tables.coefficients(source, &own)) (determined(&own)) (notes(&own, true)) }
             })
             .collect();
         html! {
@@ -366,6 +363,11 @@ impl Page<'_> {
             if !comparison.forces.is_empty() {
                 parts.push(self.part("predictions", "Predicted loads"));
                 parts.push(self.tables.predictions(comparison));
+                if !comparison.coverage.is_empty() {
+                    parts.push(
+                        html! { p class="notes" { "Coverage factor of U. " (comparison.coverage.join("; ")) "." } },
+                    );
+                }
             }
             if !comparison.notes.is_empty() {
                 parts.push(html! { ul class="plain" { @for note in &comparison.notes { li { (note) } } } });
@@ -432,7 +434,8 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
                         @if best.n_observations > 0 { " · " (counted(best.n_observations, "observation", "observations")) }
                         @for (component, sigma) in &best.sigma {
                             @if sigma.value.is_finite() {
-                                " · σ(" (html_symbol(component)) ") " (number::significant(sigma.value, 2)) " " (unit_text(&sigma.unit))
+                                " · " (tables::sigma(component, &sigma.unit)) " " (number::significant(sigma.value, 2))
+                                (tables::html_unit(&sigma.unit))
                             }
                         }
                     }
@@ -559,11 +562,11 @@ fn determined(estimates: &[Estimate]) -> Markup {
 }
 
 /// Sentences of the diagnostics, by model.
-fn notes(estimates: &[Estimate]) -> Markup {
+fn notes(estimates: &[Estimate], with_cross_validation: bool) -> Markup {
     let rows: Vec<(&str, &str)> = estimates
         .iter()
         .flat_map(|e| {
-            let note = e.diagnostics.cross_validation_note.as_deref();
+            let note = e.diagnostics.cross_validation_note.as_deref().filter(|_| with_cross_validation);
             e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (e.model.as_str(), n))
         })
         .collect();

@@ -3,23 +3,51 @@
 use std::collections::BTreeSet;
 
 use froude_records::estimate::{Coefficient, Estimate, Status};
+use indexmap::IndexMap;
 use maud::{Markup, html};
 
 use crate::figures::{budget_rows, ranked_inputs, share};
-use crate::input::{BudgetRow, ComparisonSection, SelectionRow, Side, SourceSection};
+use crate::input::{
+    BudgetRow, CoefficientComparison, ComparisonSection, ForceComparison, JointComparison, SelectionRow, Side,
+    SourceSection,
+};
 use crate::number::{self, MISSING};
 use crate::symbol::{Rich, Style, symbol, unit_text};
 
 /// Most models side by side in one table.
 const MOST_COLUMNS: usize = 6;
 
-/// Most rows of predicted loads on the page itself; the rest is folded.
+/// Most places with predicted loads on the page itself; where there are more, all are folded and three speeds by three
+/// angles are shown.
 const MOST_PREDICTIONS: usize = 36;
+
+/// Most sources beside the first one in a table of predicted loads.
+const MOST_SIDES: usize = 3;
+
+/// A count with its noun.
+pub(crate) fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{} {}", number::count(n), if n == 1 { one } else { many })
+}
 
 /// Counter of the tables.
 #[derive(Default)]
 pub(crate) struct Tables {
     n: usize,
+}
+
+/// A quantity of the range of validity in words; channels of the table as symbols.
+fn quantity(name: &str) -> Markup {
+    let words = match name {
+        "n_links" => "links of the body",
+        "Re" => "Reynolds number",
+        "Fr_length" => "Froude number by length",
+        "Fr_depth" => "Froude number by depth of water",
+        "Fr_submergence" => "Froude number by submergence",
+        "KC" => "Keulegan–Carpenter number",
+        _ if name.len() > 2 && name.as_bytes()[1] == b'_' => return html_symbol(name),
+        _ => return html! { (name.replace('_', " ")) },
+    };
+    html! { (words) }
 }
 
 /// A name as a symbol, with the name itself in its tooltip.
@@ -233,7 +261,7 @@ impl Tables {
         let has_interval = group.iter().any(|e| e.coefficients.values().any(|c| c.interval_95.is_some()));
         let mut text = format!("Coefficients of {source} by force model");
         if has_interval {
-            text.push_str("; standard uncertainty in brackets, 95 % interval below");
+            text.push_str("; standard uncertainty in brackets, 95 % interval below");
         }
         text.push('.');
         if recommended && group.len() > 1 {
@@ -268,7 +296,7 @@ impl Tables {
             .collect();
         html! {
             div class="table" {
-                table class="coefficients" {
+                table class=(if group.len() > 2 { "coefficients" } else { "coefficients compact" }) {
                     (caption)
                     thead {
                         tr {
@@ -409,18 +437,25 @@ impl Tables {
     }
 
     /// The contest of the models.
-    pub(crate) fn selection(&mut self, source: &SourceSection) -> Markup {
+    pub(crate) fn selection<'a>(&mut self, source: &'a SourceSection) -> Markup {
         let rows = &source.selection;
         let blocks = union(rows.iter().flat_map(|r| r.range_blocks.iter().map(|(name, _)| name)));
         let has_lack = rows.iter().any(|r| r.lack_of_fit_p.is_some());
         let components = union(rows.iter().map(|r| &r.component));
         let best = crate::figures::recommended(source).map(|e| e.model.as_str());
-        let reasons = union(rows.iter().filter_map(|r| r.cross_validation.as_ref().err()));
-        let caption = self.caption(
+        let has_scores = rows.iter().any(|r| r.cross_validation.is_ok());
+        let scored = |r: &'a SelectionRow| r.cross_validation.as_ref().err().filter(|_| has_scores);
+        let reasons = union(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));
+        let footnote = |reason: &String| {
+            html! {
+                @if let Some(i) = reasons.iter().position(|x| x == reason) { sup { (i + 1) } }
+            }
+        };
+        let caption = self.caption(&format!(
             "Models against each other, by load component. p: estimated coefficients; σ: residual standard deviation; r: norm of the \
-             residual over norm of the measurement; ΔAICc: above the best model; cross-validation: root mean square error when one \
-             configuration is left out.",
-        );
+             residual over norm of the measurement; ΔAICc: above the best model of the same loads, summed over them{}.",
+            if has_scores { "; cross-validation: root mean square error when one configuration is left out" } else { "" }
+        ));
         let row = |r: &SelectionRow| {
             html! {
                 tr class=(if Some(r.model.as_str()) == best { "best" } else { "" }) {
@@ -428,14 +463,18 @@ impl Tables {
                     td class="num" { (r.n_coefficients) }
                     td class="num" { (number::significant(r.sigma, 3)) }
                     td class="num" { (number::percent(r.relative_residual)) }
-                    td class="num" { (r.delta_aicc.map_or_else(|| MISSING.to_owned(), |d| number::fixed(d, 1))) }
                     td class="num" {
-                        @match &r.cross_validation {
-                            Ok(error) => (number::significant(*error, 3)),
-                            Err(reason) => {
-                                "not scorable"
-                                @if let Some(i) = reasons.iter().position(|x| x == reason) { sup { (i + 1) } }
-                            },
+                        @match &r.delta_aicc {
+                            Ok(delta) => (number::fixed(*delta, 1)),
+                            Err(reason) => { (MISSING) (footnote(reason)) },
+                        }
+                    }
+                    @if has_scores {
+                        td class="num" {
+                            @match &r.cross_validation {
+                                Ok(error) => (number::significant(*error, 3)),
+                                Err(reason) => { (MISSING) (footnote(reason)) },
+                            }
                         }
                     }
                     @for block in &blocks {
@@ -447,7 +486,7 @@ impl Tables {
                 }
             }
         };
-        let n_columns = 6 + blocks.len() + usize::from(has_lack);
+        let n_columns = 5 + usize::from(has_scores) + blocks.len() + usize::from(has_lack);
         html! {
             div class="table" {
                 table {
@@ -459,31 +498,40 @@ impl Tables {
                             th scope="col" class="num" { "σ" }
                             th scope="col" class="num" { "r" }
                             th scope="col" class="num" { "ΔAICc" }
-                            th scope="col" class="num" { "Cross-validation" }
+                            @if has_scores { th scope="col" class="num" { "Cross-validation" } }
                             @for block in &blocks { th scope="col" class="num" { "Error for " (block) } }
                             @if has_lack { th scope="col" class="num" { "Lack of fit, p" } }
                         }
                     }
                     @for component in &components {
+                        @let own = || rows.iter().filter(|r| r.component == *component);
+                        @let units = union(own().map(|r| &r.unit));
                         tbody {
                             tr class="group" {
                                 th scope="rowgroup" colspan=(n_columns) {
                                     (html_symbol(component))
-                                    @if let Some(first) = rows.iter().find(|r| r.component == *component) {
-                                        span class="mark" { ", σ and errors in " (unit_text(&first.unit)) }
+                                    span class="mark" {
+                                        @for (i, unit) in units.iter().enumerate() {
+                                            @if i == 0 { ", σ and errors in " (unit_text(unit)) }
+                                            @else {
+                                                ", in " (unit_text(unit)) " for "
+                                                (own().filter(|r| r.unit == *unit).map(|r| r.model.as_str()).collect::<Vec<_>>().join(", "))
+                                            }
+                                        }
                                     }
                                 }
                             }
-                            @for r in rows.iter().filter(|r| r.component == *component) { (row(r)) }
+                            @for r in own() { (row(r)) }
                         }
                     }
                 }
             }
             @if !reasons.is_empty() {
                 p class="notes" {
-                    @for (i, reason) in reasons.iter().enumerate() { sup { (i + 1) } " " (reason) ". " }
+                    @for (i, reason) in reasons.iter().enumerate() { sup { (i + 1) } " " (bare_reason(reason)) ". " }
                 }
             }
+            @if !has_scores { (unscored(rows)) }
         }
     }
 
@@ -549,7 +597,7 @@ impl Tables {
                         @for (name, range) in &e.validity {
                             @let (scale, unit) = if range.unit == "rad" { (1f64.to_degrees(), "°") } else { (1.0, range.unit.as_str()) };
                             tr {
-                                th scope="row" { (name.replace('_', " ")) }
+                                th scope="row" { (quantity(name)) }
                                 td class="num" { (number::plain(range.low * scale, 4)) }
                                 td class="num" { (number::plain(range.high * scale, 4)) }
                                 td { (unit_text(unit)) }
@@ -561,156 +609,318 @@ impl Tables {
         }
     }
 
-    /// E_n of every coefficient that two sources share.
+    /// E_n of every coefficient that two sources share; pairs that have none are folded.
     pub(crate) fn differences(&mut self, comparison: &ComparisonSection) -> Markup {
-        let caption = self.caption(
-            "Coefficients of the same model from two sources, with the normalised difference Eₙ = (first − second)/√(U₁² + U₂²). \
-             |Eₙ| ≤ 1: they agree within their stated uncertainties.",
-        );
-        let mut pairs: Vec<(&str, &str, &str)> = Vec::new();
+        let mut pairs: Vec<Vec<&CoefficientComparison>> = Vec::new();
         for c in &comparison.coefficients {
-            let pair = (c.model.as_str(), c.first.source.as_str(), c.second.source.as_str());
-            if !pairs.contains(&pair) {
-                pairs.push(pair);
+            let is_same = |o: &CoefficientComparison| {
+                (&o.model, &o.first.source, &o.second.source) == (&c.model, &c.first.source, &c.second.source)
+            };
+            match pairs.iter_mut().find(|pair| is_same(pair[0])) {
+                Some(pair) => pair.push(c),
+                None => pairs.push(vec![c]),
             }
         }
-        html! {
-            div class="table" {
-                table {
-                    (caption)
-                    thead {
-                        tr {
-                            th scope="col" { "Coefficient" }
-                            th scope="col" class="num" { "First" }
-                            th scope="col" class="num" { "Second" }
-                            th scope="col" class="num" { "E" sub { "n" } }
-                            th scope="col" { "" }
-                        }
-                    }
-                    @for (model, first, second) in &pairs {
-                        tbody {
-                            tr class="group" { th scope="rowgroup" colspan="5" { "Model " (model) ": " (first) " and " (second) } }
-                            @for c in comparison.coefficients.iter().filter(|c| c.model == *model && c.first.source == *first && c.second.source == *second) {
-                                tr {
-                                    th scope="row" { (html_symbol(&c.coefficient)) (head_unit(&c.unit)) }
-                                    td class="num" { (side(&c.first)) }
-                                    td class="num" { (side(&c.second)) }
-                                    td class="num" { (normalised(c.e_n)) }
-                                    td { (c.note) }
-                                }
-                            }
-                        }
-                    }
+        let (with, without): (Vec<_>, Vec<_>) =
+            pairs.into_iter().partition(|pair| pair.iter().any(|c| number::finite(c.e_n).is_some()));
+        let shown = (!with.is_empty()).then(|| {
+            let caption = self.caption(
+                "Coefficients of the same model from two sources, with standard uncertainties in brackets and the normalised difference \
+                 Eₙ = (first − second)/√(U₁² + U₂²), U the expanded (95 %) uncertainty. |Eₙ| ≤ 1: they agree within their stated \
+                 uncertainties.",
+            );
+            pair_table(&with, &caption)
+        });
+        let folded = (!without.is_empty()).then(|| {
+            let caption =
+                self.caption("Coefficients of the same model from two sources that have no normalised difference.");
+            html! {
+                details {
+                    summary { (counted(without.len(), "pair", "pairs")) " of estimates without Eₙ" }
+                    (pair_table(&without, &caption))
                 }
+                (why_not(&without))
             }
-        }
+        });
+        html! { @if let Some(table) = shown { (table) } @if let Some(table) = folded { (table) } }
     }
 
-    /// χ² of whole coefficient vectors.
+    /// χ² of whole coefficient vectors; pairs that have none are folded.
     pub(crate) fn joint(&mut self, comparison: &ComparisonSection) -> Markup {
-        let caption = self.caption(
-            "All coefficients of a model together, with their covariances. Collinear coefficients can each agree while the vectors do not, \
-             and the other way round.",
-        );
-        html! {
-            div class="table" {
-                table {
-                    (caption)
-                    thead {
-                        tr {
-                            th scope="col" { "Model" }
-                            th scope="col" { "First" }
-                            th scope="col" { "Second" }
-                            th scope="col" class="num" { "χ²" }
-                            th scope="col" class="num" { "Degrees of freedom" }
-                            th scope="col" class="num" { "p" }
-                            th scope="col" { "" }
+        let (with, without): (Vec<&JointComparison>, Vec<&JointComparison>) =
+            comparison.joint.iter().partition(|j| number::finite(j.chi_squared).is_some());
+        let shown = (!with.is_empty()).then(|| {
+            let caption = self.caption(
+                "All coefficients of a model together, with their covariances. Collinear coefficients can each agree while the vectors do \
+                 not, and the other way round.",
+            );
+            joint_table(&with, &caption)
+        });
+        let folded = (!without.is_empty()).then(|| {
+            let caption = self.caption("Pairs of estimates that have no χ².");
+            html! {
+                details {
+                    summary { (counted(without.len(), "pair", "pairs")) " of estimates without χ²" }
+                    (joint_table(&without, &caption))
+                }
+            }
+        });
+        html! { @if let Some(table) = shown { (table) } @if let Some(table) = folded { (table) } }
+    }
+
+    /// Predicted loads over the common range: a row per place, a column per source.
+    pub(crate) fn predictions(&mut self, comparison: &ComparisonSection) -> Markup {
+        let mut parts = Vec::new();
+        for first in union(comparison.forces.iter().map(|f| &f.first.source)) {
+            let own: Vec<&ForceComparison> = comparison.forces.iter().filter(|f| f.first.source == first).collect();
+            let others = union(own.iter().map(|f| &f.second.source));
+            for block in others.chunks(MOST_SIDES) {
+                let rows: Vec<&ForceComparison> =
+                    own.iter().copied().filter(|f| block.contains(&f.second.source.as_str())).collect();
+                let places = by_place(&rows);
+                let (shown, is_all) = corners(&places);
+                let caption = self.caption(&format!(
+                    "Loads that the sources predict over their common range{}. ± U: expanded uncertainty, 95 %, U = k·u; \
+                     Eₙ = (a − b)/√(U²(a) + U²(b)), a from {first}.",
+                    if is_all { "" } else { ", at its ends and middle" }
+                ));
+                parts.push(prediction_table(&shown, first, block, &caption));
+                if !is_all {
+                    let caption = self.caption("Predicted loads at all places of the common range.");
+                    parts.push(html! {
+                        details {
+                            summary { "all " (number::count(places.len())) " places" }
+                            (prediction_table(&places, first, block, &caption))
                         }
-                    }
+                    });
+                }
+            }
+        }
+        html! { @for part in &parts { (part) } }
+    }
+}
+
+/// One place of the common range with its predictions, one for each other source.
+type PredictedPlace<'a> = Vec<&'a ForceComparison>;
+
+/// Predictions gathered by configuration, load, speed and angle, in the order of appearance.
+fn by_place<'a>(rows: &[&'a ForceComparison]) -> Vec<PredictedPlace<'a>> {
+    let mut out: IndexMap<(&str, &str, u64, u64), PredictedPlace<'a>> = IndexMap::new();
+    for &r in rows {
+        let key = (r.configuration.as_str(), r.component.as_str(), r.speed_m_s.to_bits(), r.angle_rad.to_bits());
+        out.entry(key).or_default().push(r);
+    }
+    out.into_values().collect()
+}
+
+/// The places at the least, middle and largest speed and angle, and whether these are all.
+fn corners<'a>(places: &[PredictedPlace<'a>]) -> (Vec<PredictedPlace<'a>>, bool) {
+    if places.len() <= MOST_PREDICTIONS {
+        return (places.to_vec(), true);
+    }
+    let three = |of: fn(&ForceComparison) -> f64| {
+        let mut all: Vec<f64> = places.iter().map(|p| of(p[0])).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        [0, all.len() / 2, all.len() - 1].map(|i| all[i].to_bits())
+    };
+    let (speeds, angles) = (three(|f| f.speed_m_s), three(|f| f.angle_rad));
+    let is_corner = |p: &&PredictedPlace<'a>| {
+        speeds.contains(&p[0].speed_m_s.to_bits()) && angles.contains(&p[0].angle_rad.to_bits())
+    };
+    (places.iter().filter(is_corner).cloned().collect(), false)
+}
+
+/// Why estimates that state their uncertainties have no Eₙ: said outside the fold, each reason once with its pairs.
+fn why_not(pairs: &[Vec<&CoefficientComparison>]) -> Markup {
+    let states = |side: &Side| number::finite(side.expanded).is_some();
+    let mut reasons: IndexMap<&str, Vec<String>> = IndexMap::new();
+    for pair in pairs.iter().filter(|pair| pair.iter().any(|c| states(&c.first) && states(&c.second))) {
+        if let Some(note) = common_note(pair.iter().map(|c| c.note.as_str())) {
+            reasons.entry(note).or_default().push(format!("{} and {}", pair[0].first.source, pair[0].second.source));
+        }
+    }
+    html! {
+        @for (note, pairs) in &reasons { p class="remarks" { (pairs.join("; ")) " – " (note) "." } }
+    }
+}
+
+/// Pairs of estimates with the coefficients that they share; each pair names its columns.
+fn pair_table(pairs: &[Vec<&CoefficientComparison>], caption: &Markup) -> Markup {
+    html! {
+        div class="table" {
+            table class="pairs" {
+                (caption)
+                @for own in pairs {
+                    @let common = common_note(own.iter().map(|c| c.note.as_str()));
                     tbody {
-                        @for j in &comparison.joint {
+                        tr class="group" {
+                            th scope="col" { "Model " (own[0].model) }
+                            th scope="col" class="num source" { (own[0].first.source) }
+                            th scope="col" class="num source" { (own[0].second.source) }
+                            th scope="col" class="num" { "E" sub { "n" } }
+                            th scope="col" class="remark" { @if let Some(note) = common { (note) } }
+                        }
+                        @for c in own {
                             tr {
-                                th scope="row" { (j.model) }
-                                td { (j.first) }
-                                td { (j.second) }
-                                td class="num" { (number::finite(j.chi_squared).map_or_else(|| MISSING.to_owned(), |x| number::significant(x, 3))) }
-                                td class="num" { (if j.chi_squared.is_some() { number::dof(j.dof) } else { MISSING.to_owned() }) }
-                                td class="num" {
-                                    @match j.p {
-                                        Some(p) if p < 0.05 => span class="bad" { (number::p_value(p)) },
-                                        Some(p) => (number::p_value(p)),
-                                        None => (MISSING),
-                                    }
-                                }
-                                td { (j.note) }
+                                th scope="row" { (html_symbol(&c.coefficient)) (head_unit(&c.unit)) }
+                                td class="num" { (side(&c.first)) }
+                                td class="num" { (side(&c.second)) }
+                                td class="num" { (normalised(c.e_n)) }
+                                td class="remark" { @if common.is_none() { (c.note) } }
                             }
                         }
                     }
                 }
             }
-        }
-    }
-
-    /// Predicted loads over the common range.
-    pub(crate) fn predictions(&mut self, comparison: &ComparisonSection) -> Markup {
-        let caption =
-            self.caption("Loads that two sources predict over their common range, with their normalised difference.");
-        let (shown, rest) = comparison.forces.split_at(comparison.forces.len().min(MOST_PREDICTIONS));
-        let shown = prediction_table(shown, &caption);
-        if rest.is_empty() {
-            return shown;
-        }
-        let caption = self.caption("Predicted loads, continued.");
-        html! {
-            (shown)
-            details { summary { (number::count(rest.len())) " further predictions" } (prediction_table(rest, &caption)) }
         }
     }
 }
 
-fn prediction_table(rows: &[crate::input::ForceComparison], caption: &Markup) -> Markup {
-    let mut pairs: Vec<(&str, &str)> = Vec::new();
-    for r in rows {
-        let pair = (r.first.source.as_str(), r.second.source.as_str());
-        if !pairs.contains(&pair) {
-            pairs.push(pair);
-        }
-    }
-    let has_configuration = rows.iter().any(|r| !r.configuration.is_empty());
-    let n_columns = if has_configuration { 7 } else { 6 };
+fn joint_table(rows: &[&JointComparison], caption: &Markup) -> Markup {
     html! {
         div class="table" {
             table {
                 (caption)
                 thead {
                     tr {
-                        @if has_configuration { th scope="col" { "Configuration" } }
+                        th scope="col" { "Model" }
+                        th scope="col" { "First" }
+                        th scope="col" { "Second" }
+                        th scope="col" class="num" { "χ²" }
+                        th scope="col" class="num" { "Degrees of freedom" }
+                        th scope="col" class="num" { "p" }
+                        th scope="col" { "" }
+                    }
+                }
+                tbody {
+                    @for j in rows {
+                        tr {
+                            th scope="row" { (j.model) }
+                            td { (j.first) }
+                            td { (j.second) }
+                            td class="num" { (number::finite(j.chi_squared).map_or_else(|| MISSING.to_owned(), |x| number::significant(x, 3))) }
+                            td class="num" { (if j.chi_squared.is_some() { number::dof(j.dof) } else { MISSING.to_owned() }) }
+                            td class="num" {
+                                @match j.p {
+                                    Some(p) if p < 0.05 => span class="bad" { (number::p_value(p)) },
+                                    Some(p) => (number::p_value(p)),
+                                    None => (MISSING),
+                                }
+                            }
+                            td { (j.note) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Why there is no cross-validation, without the words that say that there is none.
+fn bare_reason(reason: &str) -> &str {
+    reason.strip_prefix("not scorable: ").unwrap_or(reason)
+}
+
+/// The sentence that stands for a column in which no model has a cross-validation.
+fn unscored(rows: &[SelectionRow]) -> Markup {
+    let reasons = union(rows.iter().filter_map(|r| r.cross_validation.as_ref().err()));
+    let models = |reason: &str| {
+        union(rows.iter().filter(|r| r.cross_validation.as_ref().err().is_some_and(|x| x == reason)).map(|r| &r.model))
+    };
+    let sentence = match reasons.as_slice() {
+        [] => return Markup::default(),
+        [one] => bare_reason(one).to_owned(),
+        several => several
+            .iter()
+            .map(|reason| format!("{} ({})", bare_reason(reason), models(reason).join(", ")))
+            .collect::<Vec<_>>()
+            .join("; "),
+    };
+    html! { p class="notes" { "Cross-validation is not scorable: " (sentence) "." } }
+}
+
+fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str], caption: &Markup) -> Markup {
+    let has_configuration = places.iter().any(|p| !p[0].configuration.is_empty());
+    let units = union(places.iter().map(|p| &p[0].unit));
+    let is_one_unit = units.len() < 2;
+    let unit = html! { @if is_one_unit { (head_unit(units.first().copied().unwrap_or(""))) } };
+    let of = |other: &str| places.iter().flatten().copied().filter(|r| r.second.source == other).collect::<Vec<_>>();
+    let has_e_n = |other: &str| of(other).iter().any(|r| number::finite(r.e_n).is_some());
+    let states = |side: &Side| number::finite(side.expanded).is_some();
+    let first_states = places.iter().flatten().any(|r| states(&r.first));
+    let other_states = |other: &str| of(other).iter().any(|r| states(&r.second));
+    let head = |id: &str, is_stated: bool| html! { (id) @if is_stated { ", ± U" } (unit) };
+    // Where a side states no uncertainty, the † says why there is no Eₙ.
+    let notes: Vec<(&str, &str)> = others
+        .iter()
+        .filter(|other| first_states && other_states(other))
+        .flat_map(|other| {
+            union(of(other).into_iter().map(|r| &r.note).filter(|n| !n.is_empty()))
+                .into_iter()
+                .map(move |n| (*other, n))
+        })
+        .collect();
+    let has_dagger = !first_states || others.iter().any(|other| !other_states(other));
+    html! {
+        div class="table" {
+            table {
+                (caption)
+                thead {
+                    tr {
+                        @if has_configuration { th scope="col" { "Body" } }
                         th scope="col" class="num" { "Speed " span class="unit" { "[m/s]" } }
                         th scope="col" class="num" { "Angle" }
                         th scope="col" { "Load" }
-                        th scope="col" class="num" { "First" }
-                        th scope="col" class="num" { "Second" }
-                        th scope="col" class="num" { "E" sub { "n" } }
+                        th scope="col" class="num source" { (head(first, first_states)) }
+                        @for other in others {
+                            th scope="col" class="num source" { (head(other, other_states(other))) }
+                            @if has_e_n(other) { th scope="col" class="num" { "E" sub { "n" } } }
+                        }
                     }
                 }
-                @for (first, second) in &pairs {
-                    tbody {
-                        tr class="group" { th scope="rowgroup" colspan=(n_columns) { (first) " and " (second) } }
-                        @for r in rows.iter().filter(|r| r.first.source == *first && r.second.source == *second) {
-                            tr {
-                                @if has_configuration { td { (r.configuration) } }
-                                td class="num" { (number::plain(r.speed_m_s, 4)) }
-                                td class="num" { (number::degrees(r.angle_rad)) }
-                                td { (html_symbol(&r.component)) (head_unit(&r.unit)) }
-                                td class="num" { (side(&r.first)) }
-                                td class="num" { (side(&r.second)) }
-                                td class="num" { (normalised(r.e_n)) }
+                tbody {
+                    @for place in places {
+                        @let r = place[0];
+                        tr {
+                            @if has_configuration { td { (r.configuration) } }
+                            td class="num" { (number::plain(r.speed_m_s, 4)) }
+                            td class="num" { (number::degrees(r.angle_rad)) }
+                            td { (html_symbol(&r.component)) @if !is_one_unit { (head_unit(&r.unit)) } }
+                            td class="num" { (load(&r.first)) }
+                            @for other in others {
+                                @let own = place.iter().find(|r| r.second.source == *other);
+                                td class="num" { @if let Some(r) = own { (load(&r.second)) } }
+                                @if has_e_n(other) { td class="num" { @if let Some(r) = own { (normalised(r.e_n)) } } }
                             }
                         }
                     }
                 }
             }
         }
+        @if has_dagger || !notes.is_empty() {
+            p class="notes" {
+                @if has_dagger { "† no uncertainty stated, no E" sub { "n" } ". " }
+                @for (other, note) in &notes { (other) ": " (note) ". " }
+            }
+        }
+    }
+}
+
+/// The remark that all rows share, if they share one.
+fn common_note<'a>(mut notes: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let first = notes.next().filter(|n| !n.is_empty())?;
+    notes.all(|n| n == first).then_some(first)
+}
+
+/// A predicted load: value ± U, † without an uncertainty.
+fn load(side: &Side) -> Markup {
+    match (number::finite(side.value), number::usable(side.expanded)) {
+        (Some(value), Some(u)) => html! { (number::plus_minus(value, u)) },
+        // A load that is zero whatever the coefficients are.
+        (Some(value), None) if side.expanded == Some(0.0) => html! { (number::plain(value, 4)) },
+        (Some(value), None) => html! { (number::plain(value, 4)) (dagger()) },
+        (None, _) => html! { (MISSING) },
     }
 }
 
@@ -730,6 +940,9 @@ fn normalised(e_n: Option<f64>) -> Markup {
         None => html! { (MISSING) },
     }
 }
+
+/// Shares of a variance below this are rounding: double precision, squared, with room.
+const ROUNDING: f64 = 1e-20;
 
 /// Most inputs that get a column each.
 const MOST_INPUTS: usize = 6;
@@ -775,8 +988,9 @@ fn budget_table(rows: &[&BudgetRow], caption: &Markup) -> Markup {
                                 td {
                                     @if let Some(r) = of(coefficient, input) {
                                         @if share(r) >= largest && largest > 0.0 { b { (number::significant(r.contribution, 2)) } }
+                                        @else if share(r) < ROUNDING { "0" }
                                         @else { (number::significant(r.contribution, 2)) }
-                                        span class="interval" { (number::percent(r.share)) }
+                                        span class="interval" { (number::percent(if share(r) < ROUNDING { 0.0 } else { r.share })) }
                                     }
                                 }
                             }
@@ -833,6 +1047,12 @@ fn sorted<'a>(rows: &[&'a BudgetRow], coefficient: &str, order: &[&str]) -> Vec<
     own
 }
 
+/// σ of a load; of its logarithm where a force or a moment has a σ without unit.
+pub(crate) fn sigma(component: &str, unit: &str) -> Markup {
+    let is_load = component.starts_with("f_") || component.starts_with("m_");
+    html! { "σ(" @if is_load && unit == "1" { "ln " } (html_symbol(component)) ")" }
+}
+
 /// Foot of a coefficient table: how well each model does.
 fn diagnostics(group: &[&Estimate]) -> Markup {
     let class = |e: &Estimate| if e.recommended { "best" } else { "" };
@@ -852,9 +1072,12 @@ fn diagnostics(group: &[&Estimate]) -> Markup {
     let rows = html! {
         (row(html! { "observations" }, each(&|e| (e.n_observations > 0).then(|| number::count(e.n_observations)))))
         @for component in &components {
-            @let unit = group.iter().find_map(|e| e.sigma.get(*component)).map_or("", |m| m.unit.as_str());
-            (row(html! { "σ(" (html_symbol(component)) ")" (head_unit(unit)) },
-                each(&|e| finite(e.sigma.get(*component).map(|m| m.value), &|x| number::significant(x, 3)))))
+            // A fit of logarithms has a σ without unit: a row for each unit.
+            @for unit in union(group.iter().filter_map(|e| e.sigma.get(*component)).map(|m| &m.unit)) {
+                @let own = |e: &Estimate| e.sigma.get(*component).filter(|m| m.unit == unit).map(|m| m.value);
+                (row(html! { (sigma(component, unit)) (head_unit(unit)) },
+                    each(&|e| finite(own(e), &|x| number::significant(x, 3)))))
+            }
             (row(html! { "relative residual " (html_symbol(component)) },
                 each(&|e| finite(e.diagnostics.relative_residual.get(*component).copied(), &number::percent))))
             (row(html! { "degrees of freedom " (html_symbol(component)) },

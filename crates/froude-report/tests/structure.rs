@@ -252,7 +252,7 @@ fn hostile_names_are_escaped_everywhere() {
     e.geometry.insert(h(), Measured { value: 1.0, unit: h() });
     e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
     e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
-    let side = || Side { source: h(), value: Some(1.0), standard: None };
+    let side = || Side { source: h(), value: Some(1.0), standard: None, expanded: None };
     let report = Report {
         title: h(),
         subtitle: h(),
@@ -322,8 +322,10 @@ fn hostile_names_are_escaped_everywhere() {
                 unit: h(),
                 first: side(),
                 second: side(),
+                note: h(),
                 ..ForceComparison::default()
             }],
+            coverage: vec![h()],
             notes: vec![h()],
         }),
     };
@@ -333,6 +335,80 @@ fn hostile_names_are_escaped_everywhere() {
         assert!(is_well_formed(&figure.svg), "{}", figure.file_name);
         assert!(!figure.svg.contains('\u{0}') && !figure.svg.contains("<script"));
     }
+}
+
+fn words(page: &str) -> String {
+    visible_text(page).split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn what_no_model_can_be_scored_on_is_said_once() {
+    let row = |model: &str, component: &str| SelectionRow {
+        model: model.to_owned(),
+        component: component.to_owned(),
+        delta_aicc: Ok(0.0),
+        cross_validation: Err(
+            "not scorable: leave-one-configuration-out needs three configurations, there are 2".to_owned()
+        ),
+        ..SelectionRow::default()
+    };
+    let mut e = estimate("tank", "f1", &[("C_d", coefficient(Some(1.0), Status::Free))]);
+    e.diagnostics.cross_validation_note = row("f1", "f_x").cross_validation.err();
+    let mut report = report_of(vec![e]);
+    report.sources[0].selection = vec![row("f1", "f_x"), row("f1", "f_y"), row("f2", "f_x"), row("f2", "f_y")];
+    let text = words(&html(&report).unwrap());
+    assert_eq!(text.matches("scorable").count(), 1, "{text}");
+    assert!(text.contains(
+        "Cross-validation is not scorable: leave-one-configuration-out needs three configurations, there are 2."
+    ));
+}
+
+#[test]
+fn a_model_of_other_loads_has_no_aicc_difference_and_a_footnote() {
+    let row = |model: &str, delta_aicc: Result<f64, String>| SelectionRow {
+        model: model.to_owned(),
+        component: "f_x".to_owned(),
+        delta_aicc,
+        cross_validation: Ok(0.1),
+        ..SelectionRow::default()
+    };
+    let mut report = report_of(Vec::new());
+    report.sources[0].selection =
+        vec![row("quadratic", Ok(0.0)), row("power_law_x", Err("explains other loads than f_x, f_y".to_owned()))];
+    let text = words(&html(&report).unwrap());
+    assert!(text.contains("power_law_x 0 — — — 1 0.100"), "{text}");
+    assert!(text.contains("1 explains other loads than f_x, f_y."), "{text}");
+}
+
+#[test]
+fn predicted_loads_say_what_their_uncertainty_is() {
+    let text = words(&html(&sample::report()).unwrap());
+    assert!(text.contains("± U: expanded uncertainty, 95 %, U = k·u"));
+    assert!(
+        text.contains("circulation tank: k = 2.00 (Student&#39;s t, effective degrees of freedom 57.3)")
+            || text.contains("circulation tank: k = 2.00 (Student's t, effective degrees of freedom 57.3)"),
+        "{text}"
+    );
+}
+
+#[test]
+fn sources_of_the_same_data_get_words_and_no_normalised_difference() {
+    const SAME: &str = "same data: not independent, E_n not meaningful";
+    let side =
+        |source: &str| Side { source: source.to_owned(), value: Some(-4.25), standard: Some(0.5), expanded: Some(1.0) };
+    let coefficient =
+        CoefficientComparison { first: side("a"), second: side("b"), note: SAME.to_owned(), ..Default::default() };
+    let force = ForceComparison { first: side("a"), second: side("b"), note: SAME.to_owned(), ..Default::default() };
+    let comparison = ComparisonSection {
+        coefficients: vec![coefficient.clone(), coefficient],
+        forces: vec![force.clone(), force],
+        ..ComparisonSection::default()
+    };
+    let text = words(&html(&Report { comparison: Some(comparison), ..Report::default() }).unwrap());
+    assert_eq!(text.matches(SAME).count(), 3, "in the fold, outside it, and below the loads: {text}");
+    let outside = text.find(&format!("a and b – {SAME}.")).unwrap();
+    assert!(outside > text.find("1 pair of estimates without").unwrap(), "{text}");
+    assert!(text.contains("−4.2 ± 1.0"), "{text}");
 }
 
 #[test]
@@ -481,7 +557,7 @@ proptest! {
         e.density = Some(Measured { value: values[7], unit: "kg/m^3".to_owned() });
         e.diagnostics.relative_residual.insert("f_x".to_owned(), values[3]);
         e.diagnostics.condition_number = Some(values[4]);
-        let side = Side { source: "s".to_owned(), value: Some(values[0]), standard: Some(values[1]) };
+        let side = Side { source: "s".to_owned(), value: Some(values[0]), standard: Some(values[1]), expanded: Some(values[2]) };
         let section = SourceSection {
             name: "tank".to_owned(),
             estimates: vec![e.clone()],
@@ -513,7 +589,7 @@ proptest! {
             budget: vec![BudgetRow { model: "f4".to_owned(), coefficient: "C_d_II".to_owned(), input: "speed".to_owned(),
                 shared: "run".to_owned(), contribution: values[6], unit: "1".to_owned(), share: values[7] }],
             selection: vec![SelectionRow { model: "f4".to_owned(), component: "f_x".to_owned(), sigma: values[0],
-                delta_aicc: Some(values[1]), cross_validation: Ok(values[2]), range_blocks: vec![("r".to_owned(), values[3])],
+                delta_aicc: Ok(values[1]), cross_validation: Ok(values[2]), range_blocks: vec![("r".to_owned(), values[3])],
                 lack_of_fit_p: Some(values[4]), ..SelectionRow::default() }],
             tests: vec![NestedTest { f: values[5], dof: [values[6], values[7]], p: values[0], ..NestedTest::default() }],
             ..SourceSection::default()

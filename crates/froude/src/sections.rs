@@ -1,8 +1,9 @@
 //! Identification results as the report wants them: points, curves with bands, budget, selection.
 
 use froude_identify::IdentifyError;
-use froude_identify::compare::Comparison;
+use froude_identify::compare::{Comparison, SAME_DATA, Stated};
 use froude_identify::dataset::Dataset;
+use froude_identify::diagnosis::rank_correlation;
 use froude_identify::regression::ModelFit;
 use froude_identify::source::{SourceResult, response_unit};
 use froude_identify::uncertainty::{coverage_factor, shares};
@@ -11,9 +12,11 @@ use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::units::Dimension;
 use froude_report::{
     Abscissa, Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile,
-    JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection,
+    JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection, number,
 };
 
+/// The scatter itself as an input of the budget: no error that rows share.
+const SCATTER: &str = "scatter of the observations";
 /// Places along a curve.
 const CURVE_POINTS: usize = 60;
 /// Curves against angle and against speed drawn per configuration at most; more would hide the points.
@@ -28,20 +31,24 @@ pub fn report(
     file: &EstimateFile,
     date: Option<String>,
 ) -> Result<Report, IdentifyError> {
-    let data = file
-        .data
-        .iter()
-        .map(|d| {
-            let source = sources.iter().find(|s| s.files.first().is_some_and(|f| f.ends_with(&d.path)));
-            InputFile {
-                path: d.path.clone(),
-                sha256: d.sha256.clone(),
-                n_rows: source.map(|s| s.n_read),
-                n_used: source.map(|s| s.data.rows),
-                source: source.map(|s| s.name.clone()),
-            }
-        })
-        .collect();
+    // A line per file and source that reads it; a file that several name is one file.
+    let mut data: Vec<InputFile> = Vec::new();
+    for d in &file.data {
+        if data.iter().any(|seen| seen.path == d.path) {
+            continue;
+        }
+        let line = InputFile { path: d.path.clone(), sha256: d.sha256.clone(), ..InputFile::default() };
+        let readers = sources.iter().filter(|s| s.files.first().is_some_and(|f| f.ends_with(&d.path)));
+        let lines: Vec<InputFile> = readers
+            .map(|s| InputFile {
+                n_rows: Some(s.n_read),
+                n_used: Some(s.data.rows),
+                source: Some(s.name.clone()),
+                ..line.clone()
+            })
+            .collect();
+        data.extend(if lines.is_empty() { vec![line] } else { lines });
+    }
     Ok(Report {
         title: campaign.name.clone(),
         subtitle: subtitle(sources, published),
@@ -53,7 +60,7 @@ pub fn report(
         data,
         versions: file.versions.clone(),
         citations: campaign.cite.clone(),
-        comparison: comparison_section(comparison),
+        comparison: comparison_section(comparison, sources, file),
     })
 }
 
@@ -97,10 +104,113 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
                 .to_owned(),
         );
     }
+    out.extend(sources.iter().flat_map(error_models));
     if let Some(rho) = campaign.fluid.density_kg_m3 {
         out.push(format!("Water density {rho} kg/m³ is stated by the campaign."));
     }
     out
+}
+
+/// Fewest observations from which the error model is judged.
+const FEWEST_FOR_SCATTER: usize = 8;
+/// Rank correlation of |residual| with speed that contradicts an error model, in standard errors.
+const UNEVEN_ABOVE_Z: f64 = 2.0;
+/// AICc differences below this are no evidence (Burnham and Anderson 2002, § 2.6).
+const NO_EVIDENCE_BELOW: f64 = 2.0;
+
+/// What the fit of logarithms assumes, what the fit in the load's unit assumes, and which the residuals support:
+/// a sentence for every load that was fitted both ways.
+fn error_models(source: &SourceResult) -> Vec<String> {
+    let position = |wanted: &dyn Fn(&ModelFit) -> bool| source.models.iter().position(wanted);
+    let mut out = Vec::new();
+    for (i, logarithmic) in source.models.iter().enumerate().filter(|(_, m)| m.law.in_logarithms()) {
+        let Some(load) = logarithmic.law.responses.first() else { continue };
+        let is_plain = |m: &ModelFit| !m.law.in_logarithms() && m.law.responses.contains(load);
+        // The same law in the load's unit tells the two error models apart best; any other law will do.
+        let plain = position(&|m| is_plain(m) && m.law.is_nonlinear()).or_else(|| position(&is_plain));
+        let assumes = format!(
+            "{}, {load}: {} is fitted to logarithms and takes every point to have the same relative error",
+            source.name, logarithmic.law.name
+        );
+        let Some(j) = plain else {
+            out.push(format!(
+                "{assumes}; no law was fitted in {} to compare it with.",
+                response_unit(&source.data, load)
+            ));
+            continue;
+        };
+        let newton = &source.models[j];
+        let unit = response_unit(&source.data, load);
+        let support = supported(source, (i, logarithmic), (j, newton), load);
+        out.push(format!(
+            "{assumes}, {} is fitted in {unit} and takes every point to have the same absolute error; {support}.",
+            newton.law.name
+        ));
+    }
+    out
+}
+
+/// Which of the two error models the residuals support, with the numbers.
+fn supported(
+    source: &SourceResult,
+    (i, logarithmic): (usize, &ModelFit),
+    (j, newton): (usize, &ModelFit),
+    load: &str,
+) -> String {
+    let (Some(of_log), Some(of_newton)) =
+        (unevenness(logarithmic, &source.data, load), unevenness(newton, &source.data, load))
+    else {
+        return format!(
+            "whether the residuals support one of them is not judged from fewer than {FEWEST_FOR_SCATTER} observations"
+        );
+    };
+    // AICc compares the two only where they explain the same loads; that of the logarithms is carried over.
+    let gain = source.estimates[j]
+        .diagnostics
+        .aicc
+        .zip(source.estimates[i].diagnostics.aicc)
+        .map(|(n, l)| n - l)
+        .filter(|_| newton.law.responses == logarithmic.law.responses);
+    let numbers = format!(
+        "rank correlation of |residual| with speed {} ({:.1} standard errors) relative, {} ({:.1}) absolute{}",
+        number::fixed(of_log.rho, 2),
+        of_log.z.abs(),
+        number::fixed(of_newton.rho, 2),
+        of_newton.z.abs(),
+        gain.map_or_else(String::new, |g| format!(
+            "; AICc is {:.1} {} for the relative error",
+            g.abs(),
+            if g > 0.0 { "smaller" } else { "larger" }
+        ))
+    );
+    let contradicts = |u: &Unevenness| u.z.abs() > UNEVEN_ABOVE_Z;
+    let favoured = gain.filter(|g| g.abs() > NO_EVIDENCE_BELOW).map(|g| g > 0.0);
+    // AICc weighs the whole likelihood; where it does not decide, the scatter alone may.
+    let verdict = match (favoured, contradicts(&of_log), contradicts(&of_newton)) {
+        (Some(true), false, _) | (None, false, true) => "the residuals support the same relative error",
+        (Some(false), _, false) | (None, true, false) => "the residuals support the same absolute error",
+        (Some(_), ..) => "AICc favours one whose own residuals are uneven: they support neither",
+        (None, true, true) => "the residuals support neither",
+        (None, false, false) => "the residuals do not tell the two apart",
+    };
+    format!("{verdict} ({numbers})")
+}
+
+/// How |residual| goes with speed.
+struct Unevenness {
+    /// Spearman's rank correlation.
+    rho: f64,
+    /// The same in standard errors, 1/√(n − 1).
+    z: f64,
+}
+
+fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Unevenness> {
+    let n = data.rows;
+    let speed = data.values("speed").filter(|_| n >= FEWEST_FOR_SCATTER)?;
+    let r = model.law.responses.iter().position(|name| name == load)?;
+    let size: Vec<f64> = (0..n).map(|i| model.fit.residuals.get(r * n + i).map(|x| x.abs())).collect::<Option<_>>()?;
+    let rho = rank_correlation(&size, speed);
+    Some(Unevenness { rho, z: rho * ((n - 1) as f64).sqrt() })
 }
 
 fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
@@ -123,7 +233,11 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
                 p: t.p,
             })
             .collect(),
-        recommendation: source.recommendation.as_ref().map_or_else(String::new, |r| r.reason.clone()),
+        // What cannot be cross-validated is said once, below the table of the models.
+        recommendation: source
+            .recommendation
+            .as_ref()
+            .map_or_else(String::new, |r| r.reason.split("; cross-validation: ").next().unwrap_or_default().to_owned()),
         ..SourceSection::default()
     };
     if let Some(model) = chosen.and_then(|i| source.models.get(i)) {
@@ -232,8 +346,8 @@ fn budget(model: &ModelFit) -> Vec<BudgetRow> {
             out.push(BudgetRow {
                 model: model.law.name.clone(),
                 coefficient: spec.name.clone(),
+                shared: if input == SCATTER { String::new() } else { shared.to_owned() },
                 input,
-                shared: shared.to_owned(),
                 contribution,
                 unit: spec.unit.clone(),
                 share: if combined.standard > 0.0 { (contribution / combined.standard).powi(2) } else { 0.0 },
@@ -244,7 +358,23 @@ fn budget(model: &ModelFit) -> Vec<BudgetRow> {
 }
 
 fn selection(source: &SourceResult) -> Vec<SelectionRow> {
-    let best = source.estimates.iter().filter_map(|e| e.diagnostics.aicc).fold(f64::INFINITY, f64::min);
+    let compared = compared_loads(source);
+    let best = source
+        .models
+        .iter()
+        .zip(&source.estimates)
+        .filter(|(m, _)| loads(m) == compared)
+        .filter_map(|(_, e)| e.diagnostics.aicc)
+        .fold(f64::INFINITY, f64::min);
+    let behind = |model: &ModelFit, aicc: Option<f64>| {
+        if loads(model) != compared {
+            return Err(format!(
+                "explains other loads than {}: its AICc compares with none of theirs",
+                compared.join(", ")
+            ));
+        }
+        aicc.map(|a| a - best).ok_or_else(|| "no AICc: an exact fit, a robust loss, or too few observations".to_owned())
+    };
     let mut out = Vec::new();
     for (i, model) in source.models.iter().enumerate() {
         let diagnostics = &source.estimates[i].diagnostics;
@@ -261,7 +391,7 @@ fn selection(source: &SourceResult) -> Vec<SelectionRow> {
                     response_unit(&source.data, &component.name)
                 },
                 relative_residual: component.relative_residual,
-                delta_aicc: diagnostics.aicc.map(|a| a - best),
+                delta_aicc: behind(model, diagnostics.aicc),
                 cross_validation: rmse
                     .ok_or_else(|| source.scores[i].note.clone().unwrap_or_else(|| "not scorable".to_owned())),
                 range_blocks: source
@@ -280,6 +410,19 @@ fn selection(source: &SourceResult) -> Vec<SelectionRow> {
         }
     }
     out
+}
+
+/// The loads that a model explains, in a fixed order.
+fn loads(model: &ModelFit) -> Vec<String> {
+    let mut out = model.law.responses.clone();
+    out.sort();
+    out
+}
+
+/// The loads whose models are compared by AICc: those of the recommended model, else of the first.
+fn compared_loads(source: &SourceResult) -> Vec<String> {
+    let index = source.recommendation.as_ref().map_or(0, |r| r.index);
+    source.models.get(index).map(loads).unwrap_or_default()
 }
 
 /// Lines of the recommended model: against speed at the most frequent angles, against angle at the most frequent speeds.
@@ -414,30 +557,45 @@ fn frequent(data: &Dataset, held: &str, moving: &str, rows: &[usize]) -> Vec<f64
     values
 }
 
-fn comparison_section(c: &Comparison) -> Option<ComparisonSection> {
+/// The comparison with what this campaign knows beside the records: which source reads which table.
+fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateFile) -> Option<ComparisonSection> {
     if c.coefficients.is_empty() && c.forces.is_empty() {
         return None;
     }
-    let side =
-        |source: &str, value: Option<f64>, standard: Option<f64>| Side { source: source.to_owned(), value, standard };
+    let side = |source: &str, s: &Stated| Side {
+        source: source.to_owned(),
+        value: s.value,
+        standard: s.standard,
+        expanded: s.expanded(),
+    };
+    let reads_same = |a: &str, b: &str| {
+        let (a, b) = (table_behind(a, sources, file), table_behind(b, sources, file));
+        a.is_some() && a == b
+    };
+    let difference = |e_n: &Result<f64, String>, a: &str, b: &str| {
+        if e_n.is_ok() && reads_same(a, b) { Err(SAME_DATA.to_owned()) } else { e_n.clone() }
+    };
     let coefficients = c
         .coefficients
         .iter()
-        .map(|r| CoefficientComparison {
-            model: r.model.clone(),
-            coefficient: r.coefficient.clone(),
-            unit: r.unit.clone(),
-            first: side(&r.first, r.value_first, None),
-            second: side(&r.second, r.value_second, None),
-            e_n: r.e_n.as_ref().ok().copied(),
-            note: r.e_n.as_ref().err().cloned().unwrap_or_default(),
+        .map(|r| {
+            let e_n = difference(&r.e_n, &r.first, &r.second);
+            CoefficientComparison {
+                model: r.model.clone(),
+                coefficient: r.coefficient.clone(),
+                unit: r.unit.clone(),
+                first: side(&r.first, &r.by_first),
+                second: side(&r.second, &r.by_second),
+                e_n: e_n.as_ref().ok().copied(),
+                note: e_n.err().unwrap_or_default(),
+            }
         })
         .collect();
     let joint = c
         .joint
         .iter()
         .map(|r| {
-            let result = r.result.as_ref().ok();
+            let result = r.result.as_ref().ok().filter(|_| !reads_same(&r.first, &r.second));
             JointComparison {
                 model: r.model.clone(),
                 first: r.first.clone(),
@@ -445,37 +603,180 @@ fn comparison_section(c: &Comparison) -> Option<ComparisonSection> {
                 chi_squared: result.map(|x| x.0),
                 dof: result.map_or(0.0, |x| x.1 as f64),
                 p: result.map(|x| x.2),
-                note: r.result.as_ref().err().cloned().unwrap_or_default(),
+                note: match (&r.result, result) {
+                    (_, Some(_)) => String::new(),
+                    (Err(why), None) => why.clone(),
+                    (Ok(_), None) => SAME_DATA.replace("E_n", "χ²"),
+                },
             }
         })
         .collect();
     let mut forces = Vec::new();
     for row in &c.forces {
-        for other in 1..row.forces.len() {
-            let (a, b) = (row.forces[0], row.forces[other]);
-            let e_n = a.1.zip(b.1).map(|(x, y)| (a.0 - b.0) / (1.96 * x.hypot(y))).filter(|x| x.is_finite());
+        let Some((first, others)) = row.forces.split_first() else { continue };
+        for ((other, id), e_n) in others.iter().zip(&c.force_ids[1..]).zip(&row.e_n) {
+            let e_n = difference(e_n, &c.force_ids[0], id);
             forces.push(ForceComparison {
-                configuration: format!("k = {}", row.n_links),
+                configuration: row.n_links.map_or_else(String::new, |k| format!("k = {k}")),
                 component: row.component.clone(),
                 unit: "N".to_owned(),
                 speed_m_s: row.speed_m_s,
                 angle_rad: row.angle_rad,
-                first: side(&c.force_ids[0], Some(a.0), a.1),
-                second: side(&c.force_ids[other], Some(b.0), b.1),
-                e_n,
+                first: side(&c.force_ids[0], first),
+                second: side(id, other),
+                e_n: e_n.as_ref().ok().copied(),
+                note: e_n.err().unwrap_or_default(),
             });
         }
     }
     Some(ComparisonSection {
         intro: vec![
-            "Coefficients of the same model are set side by side; their normalised difference E_n is stated only where both \
-             sides state an uncertainty. Coefficients of one fit are collinear: the predicted forces over the common range \
-             are what a user of the coefficients needs."
+            "Coefficients of the same model are set side by side; their normalised difference Eₙ is stated only where both \
+             sides state an uncertainty and rest on different data. Coefficients of one fit are collinear: the predicted \
+             forces over the common range are what a user of the coefficients needs."
                 .to_owned(),
         ],
         coefficients,
         joint,
         forces,
+        coverage: c.coverage_notes(),
         notes: c.findings.iter().map(|f| f.message.clone()).collect(),
     })
+}
+
+/// Fingerprint of the table that an estimate of this campaign was fitted to, by its label in the comparison.
+fn table_behind<'a>(label: &str, sources: &[SourceResult], file: &'a EstimateFile) -> Option<&'a str> {
+    // A published record may have an estimate of the same id: the comparison then names the record behind it.
+    let is_labelled = |id: &str| label == id || label.strip_prefix(id) == Some(" (this campaign)");
+    let source = sources.iter().find(|s| s.estimates.iter().any(|e| is_labelled(&e.id)))?;
+    let table = source.files.first()?;
+    file.data.iter().find(|d| table.ends_with(&d.path)).map(|d| d.sha256.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use froude_identify::compare::{compare, named};
+    use froude_identify::source::identify_source;
+    use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA};
+    use froude_records::hash::sha256_of_file;
+    use indexmap::IndexMap;
+    use rand_distr::{Distribution, StandardNormal};
+    use rand_pcg::Pcg64;
+
+    /// Every model of a bare table.
+    fn identified(name: &str, table: &str, models: &[&str]) -> (Campaign, SourceResult) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(format!("{name}.csv"));
+        std::fs::write(&path, table).unwrap();
+        let mut campaign = Campaign::of_table(&path, None);
+        campaign.identify.models = models.iter().map(|m| (*m).to_owned()).collect();
+        let source = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
+        (campaign, source)
+    }
+
+    /// Unit noise from a seed of its own.
+    fn noise(seed: u128) -> impl FnMut() -> f64 {
+        let mut rng = Pcg64::new(seed, 0);
+        move || StandardNormal.sample(&mut rng)
+    }
+
+    /// F = 20 U^1.8 at 40 speeds, with errors of the size that `size` gives for a force.
+    fn power_law_table(seed: u128, size: impl Fn(f64) -> f64) -> String {
+        let mut noise = noise(seed);
+        let mut out = "speed [m/s],f_x [N]\n".to_owned();
+        for i in 1..=40 {
+            let speed = 0.05 * f64::from(i);
+            let force = 20.0 * speed.powf(1.8);
+            out += &format!("{speed},{}\n", -force + size(force) * noise());
+        }
+        out
+    }
+
+    const SEED: u128 = 7;
+
+    #[test]
+    fn the_error_model_that_made_the_data_is_the_one_that_the_method_names() {
+        let models = ["power_law", "power_law_log"];
+        let relative = identified("relative", &power_law_table(SEED, |f| 0.05 * f), &models).1;
+        let absolute = identified("absolute", &power_law_table(SEED, |_| 0.02), &models).1;
+        let said = |source: &SourceResult| error_models(source).concat();
+        assert!(
+            said(&relative).starts_with(
+                "relative.csv, f_x: power_law_log is fitted to logarithms and takes every point to have the same relative error, \
+                 power_law is fitted in N and takes every point to have the same absolute error; \
+                 the residuals support the same relative error ("
+            ),
+            "{}",
+            said(&relative)
+        );
+        assert!(said(&absolute).contains("the residuals support the same absolute error ("), "{}", said(&absolute));
+        let alone = identified("alone", &power_law_table(SEED, |f| 0.05 * f), &["power_law_log"]).1;
+        assert!(said(&alone).ends_with("no law was fitted in N to compare it with."), "{}", said(&alone));
+        let none = identified("none", &power_law_table(SEED, |f| 0.05 * f), &["power_law"]).1;
+        assert_eq!(said(&none), "");
+    }
+
+    /// A power law of f_x alone has an AICc far below that of a law of two loads: it sums over fewer observations.
+    #[test]
+    fn aicc_is_compared_among_models_of_the_same_loads_only() {
+        let mut noise = noise(SEED);
+        let mut table = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+        for i in 1..=30 {
+            let (speed, angle) = (0.1 * f64::from(i), 5.0 * f64::from(i % 6 + 1));
+            let (u, w) = (speed * angle.to_radians().cos(), speed * angle.to_radians().sin());
+            table += &format!("{speed},{angle},{},{}\n", -5.0 * u * u + 0.01 * noise(), 90.0 * w * w + 5.0 * noise());
+        }
+        let (_, source) = identified("two loads", &table, &["quadratic", "linear_quadratic", "power_law"]);
+        let names: Vec<&str> = source.models.iter().map(|m| m.law.name.as_str()).collect();
+        assert_eq!(names, ["quadratic", "linear_quadratic", "power_law_x", "power_law_y"]);
+        let aicc = |i: usize| source.estimates[i].diagnostics.aicc.unwrap();
+        assert!(aicc(2) < aicc(0).min(aicc(1)), "the trap is not there: {} {} {}", aicc(0), aicc(1), aicc(2));
+        let rows = selection(&source);
+        let best = rows.iter().filter_map(|r| r.delta_aicc.as_ref().ok()).copied().fold(f64::INFINITY, f64::min);
+        assert_eq!(best, 0.0, "the best of the two-load models is the best");
+        for row in &rows {
+            assert_eq!(row.delta_aicc.is_err(), row.model.starts_with("power_law"), "{row:?}");
+            if let Err(why) = &row.delta_aicc {
+                assert_eq!(why, "explains other loads than f_x, f_y: its AICc compares with none of theirs");
+            }
+        }
+    }
+
+    /// Two sources of a campaign read one table: the records do not tell, the campaign does.
+    #[test]
+    fn sources_that_read_one_table_are_not_independent() {
+        let table = power_law_table(SEED, |_| 0.02);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("drag.csv");
+        std::fs::write(&path, &table).unwrap();
+        let mut campaign = Campaign::of_table(&path, None);
+        campaign.identify.models = vec!["quadratic".to_owned()];
+        let mut sources = Vec::new();
+        for (name, slowest) in [("all", 0.0), ("fast", 0.5)] {
+            let mut source = campaign.sources[0].clone();
+            source.name = name.to_owned();
+            let mut result = identify_source(&campaign, &source, &|_| {}).unwrap();
+            // Another selection: other values behind the same table.
+            result.estimates[0].coefficients[0].value = result.estimates[0].coefficients[0].value.map(|v| v + slowest);
+            sources.push(result);
+        }
+        let record = |data| EstimateFile {
+            schema: ESTIMATE_SCHEMA.to_owned(),
+            data,
+            versions: IndexMap::new(),
+            estimates: sources.iter().flat_map(|s| s.estimates.clone()).collect(),
+            findings: Vec::new(),
+        };
+        let all = [("this campaign".to_owned(), record(Vec::new()))];
+        let comparison = compare(&named(&all));
+        assert!(comparison.coefficients[0].e_n.is_ok(), "the records alone do not tell");
+        let file = record(vec![DataFile { path: "drag.csv".to_owned(), sha256: sha256_of_file(&path).unwrap() }]);
+        let section = comparison_section(&comparison, &sources, &file).unwrap();
+        assert_eq!((section.coefficients[0].e_n, section.coefficients[0].note.as_str()), (None, SAME_DATA));
+        assert_eq!(section.joint[0].chi_squared, None);
+        assert_eq!(section.joint[0].note, "same data: not independent, χ² not meaningful");
+        assert!(section.forces.iter().all(|f| f.e_n.is_none() && f.note == SAME_DATA));
+        assert!(section.forces.iter().all(|f| f.configuration.is_empty()), "a body without links");
+    }
 }

@@ -12,8 +12,8 @@ use crate::canvas::{Align, Canvas, Ink, shortened, text_width};
 use crate::input::Report;
 use crate::number;
 use crate::plot::{
-    ACCENT, ALERT, AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, WIDTH, chunk_size,
-    draw_legend, drawable, grid_shape, legend_height,
+    ACCENT, ALERT, AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, Ticks, WIDTH,
+    chunk_size, draw_legend, drawable, grid_shape, legend_height,
 };
 use crate::symbol::{Rich, Style, symbol_and_unit};
 
@@ -33,7 +33,8 @@ pub(super) fn forest_drawings(report: &Report) -> Vec<Drawing> {
     let mut drawings = Vec::new();
     for model in distinct(all.iter().map(|(_, _, e)| e.model.as_str())) {
         let rows: Vec<&(String, bool, &Estimate)> = all.iter().filter(|(_, _, e)| e.model == model).collect();
-        if rows.len() < 2 && !rows.iter().any(|(_, _, e)| e.recommended) {
+        // One source alone is beside nothing: its coefficients stand in its own section.
+        if distinct(rows.iter().map(|(source, _, _)| source.as_str())).len() < 2 {
             continue;
         }
         let coefficients: Vec<&str> =
@@ -149,7 +150,7 @@ fn draw_forest(model: &str, coefficients: &[&str], rows: &[&(String, bool, &Esti
             x,
             y: Span { low: 0.0, high: 1.0 },
         };
-        let ticks = x.ticks(if columns == 1 { 8 } else { 3 });
+        let ticks = spaced_ticks(x, if columns == 1 { 8 } else { 3 }, width);
         canvas.line((panel.left, panel.bottom()), (panel.right(), panel.bottom()), AXIS, 1.0);
         for &place in &ticks.places {
             let at = panel.at_x(place);
@@ -194,6 +195,19 @@ fn draw_forest(model: &str, coefficients: &[&str], rows: &[&(String, bool, &Esti
         caption,
         canvas,
     }
+}
+
+/// Air between the labels of two ticks, and between those of neighbouring panels.
+const TICK_AIR: f64 = 16.0;
+
+/// At most about `wanted` ticks, fewer where their labels would run into each other.
+fn spaced_ticks(x: Span, wanted: usize, width: f64) -> Ticks {
+    let fits = |ticks: &Ticks| {
+        let labels: f64 =
+            ticks.places.iter().map(|p| text_width(&Rich::plain(&ticks.label(*p)), TICK_SIZE) + TICK_AIR).sum();
+        labels <= width
+    };
+    (1..=wanted).rev().map(|n| x.ticks(n)).find(fits).unwrap_or_else(|| x.ticks(1))
 }
 
 /// Range of a forest panel: all values, and intervals as far as they do not

@@ -300,7 +300,7 @@ fn selection(is_scorable: bool) -> Vec<SelectionRow> {
                 sigma: sigma * factor,
                 unit: "N".to_owned(),
                 relative_residual: 0.02 * factor,
-                delta_aicc: Some(delta),
+                delta_aicc: Ok(delta),
                 cross_validation: if is_scorable {
                     Ok(sigma * factor * 1.1)
                 } else {
@@ -427,6 +427,7 @@ pub fn report() -> Report {
         source: source.to_owned(),
         value: Some(value),
         standard,
+        expanded: standard.map(|u| 2.0 * u),
     };
     Report {
         title: "Mamba in the circulation tank".to_owned(),
@@ -541,10 +542,15 @@ pub fn report() -> Report {
                             first: side("circulation tank", a, Some(ua)),
                             second: side("CFD", b, Some(ub)),
                             e_n: Some((a - b) / (2.0 * ua.hypot(ub))),
+                            note: String::new(),
                         }
                     })
                 })
                 .collect(),
+            coverage: vec![
+                "circulation tank: k = 2.00 (Student's t, effective degrees of freedom 57.3)".to_owned(),
+                "CFD: k = 2.00 (Student's t, effective degrees of freedom 57.3)".to_owned(),
+            ],
             notes: vec!["f3 of the towing rig is not determined and was not compared.".to_owned()],
         }),
     }
