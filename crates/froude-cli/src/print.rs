@@ -35,10 +35,8 @@ pub fn outcome(outcome: &Outcome) {
     for source in &outcome.sources {
         println!("\n{} ({} observations)", source.name, source.data.rows);
         if let Some(r) = &source.recommendation {
-            // What cannot be cross-validated is said once, on a line of its own.
-            let mut parts = r.reason.split("; cross-validation: ");
-            println!("  recommended: {}", parts.next().unwrap_or_default());
-            for why in parts {
+            println!("  recommended: {}", r.reason);
+            if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
                 println!("  cross-validation: {why}");
             }
         }

@@ -263,12 +263,7 @@ fn p_value(p: f64) -> String {
 
 /// The model that the data support.
 #[must_use]
-pub fn recommend(
-    models: &[ModelFit],
-    data: &Dataset,
-    tests: &[NestedTest],
-    scores: &[Score],
-) -> Option<Recommendation> {
+pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> Option<Recommendation> {
     let determined = |m: &ModelFit| m.fit.coefficients.iter().all(|c| c.status != fit::Status::Undetermined);
     // A criterion compares fits of the same loads only: the set of loads that most models explain is compared.
     let loads = |m: &ModelFit| {
@@ -344,11 +339,6 @@ pub fn recommend(
             other.join(", "),
             if other.len() == 1 { "it explains" } else { "they explain" }
         );
-    }
-    if let Some(score) = scores.get(chosen).filter(|_| data.configurations().len() > 1)
-        && let Some(note) = &score.note
-    {
-        reason += &format!("; cross-validation: {note}");
     }
     Some(Recommendation { index: chosen, reason })
 }

@@ -88,7 +88,7 @@ pub fn identify_source(
         .iter()
         .flat_map(|block| models.iter().filter_map(|m| range_block(m, &data, block)))
         .collect();
-    let recommendation = recommend(&models, &data, &tests, &scores);
+    let recommendation = recommend(&models, &data, &tests);
     let mut estimates = Vec::new();
     for (i, model) in models.iter().enumerate() {
         let mut diagnostics = diagnosis::diagnostics(model, &data, &scores[i])?;

@@ -233,11 +233,7 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
                 p: t.p,
             })
             .collect(),
-        // What cannot be cross-validated is said once, below the table of the models.
-        recommendation: source
-            .recommendation
-            .as_ref()
-            .map_or_else(String::new, |r| r.reason.split("; cross-validation: ").next().unwrap_or_default().to_owned()),
+        recommendation: source.recommendation.as_ref().map_or_else(String::new, |r| r.reason.clone()),
         ..SourceSection::default()
     };
     if let Some(model) = chosen.and_then(|i| source.models.get(i)) {

@@ -486,6 +486,6 @@ fn draw(
             Ok(predicted.iter().zip(force).map(|(p, f)| (p - f).powi(2)).sum::<f64>() / force.len() as f64)
         })
         .collect::<Result<_, Box<dyn Error>>>()?;
-    let chosen = recommend(&fits, &data, &nested_tests(&fits, &data), &[]).ok_or("no recommendation")?;
+    let chosen = recommend(&fits, &data, &nested_tests(&fits, &data)).ok_or("no recommendation")?;
     Ok(Draw { recommended: chosen.index, reason: chosen.reason, squared_error })
 }
