@@ -173,6 +173,15 @@ fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -
         .map(|t| t.iter().map(|&t| Water::at(t, salinity)).collect::<Result<_, _>>())
         .transpose()
         .map_err(|e| IdentifyError::Campaign { place: "[fluid]".to_owned(), what: e.to_string() })?;
+    if let (Some(stated), Some(measured)) = (stated.temperature_degc, data.values("temperature"))
+        && measured.iter().any(|t| (t - 273.15 - stated).abs() > 1e-9)
+    {
+        findings.push(Finding::new(
+            Severity::Note,
+            "measured-over-stated",
+            format!("the table's temperatures are used; temperature = {stated:.2} degC of [fluid] is not"),
+        ));
+    }
     // What is stated goes before what was measured, and that before what follows from a temperature.
     findings.extend(measured_water(data, "density", stated.density_kg_m3));
     findings.extend(measured_water(data, "kinematic_viscosity", stated.kinematic_viscosity_m2_s));

@@ -264,11 +264,16 @@ fn a_measured_density_is_used_unless_one_is_stated_and_then_it_is_told() {
         "density = 1000 kg/m^3 of [fluid] is used for every run, and the table's column density (1021 to 1026 kg/m^3) is \
          not; take density out of [fluid] to use what was measured"
     );
-    std::fs::write(folder.path().join("bare.toml"), format!("schema = 1\nname = \"x\"\n{QUADRATIC}")).unwrap();
+    let bare = format!("schema = 1\nname = \"x\"\n[fluid]\ntemperature = \"20 degC\"\n{QUADRATIC}");
+    std::fs::write(folder.path().join("bare.toml"), bare).unwrap();
     let campaign = read_campaign(&folder.path().join("bare.toml")).unwrap();
     let bare = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
     assert_eq!(bare.data.values("density").unwrap(), [1021.0, 1022.0, 1023.0, 1024.0, 1025.0, 1026.0]);
     assert_eq!(finding(&bare, "stated-over-measured"), None);
+    assert_eq!(
+        finding(&bare, "measured-over-stated").unwrap(),
+        "the table's temperatures are used; temperature = 20.00 degC of [fluid] is not"
+    );
 }
 
 #[test]

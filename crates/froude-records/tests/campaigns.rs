@@ -214,8 +214,8 @@ fn a_missing_key_is_not_taken_for_another_that_is_spelt_like_it() {
     );
     refused(
         "[identify]",
-        &range.replace("step =", "spot ="),
-        "lab/campaign.toml:25:28: unknown key `spot` in [source.plan.speed]; did you mean `stop`?",
+        &range.replace("step =", "stoop ="),
+        "lab/campaign.toml:25:28: unknown key `stoop` in [source.plan.speed]; did you mean `stop`?",
     );
     refused(
         "name = \"sway\"",
