@@ -182,10 +182,17 @@ fn inspect_shows_the_sources_of_a_campaign() {
     assert_eq!(json["sources"][1]["planned_runs"], 12);
     assert_eq!(json["sources"][1]["models"], serde_json::json!(["power_law"]));
     // What a fit would refuse is refused here too.
-    std::fs::write(folder.path().join("c.toml"), campaign.replace("power_law", "powr_law")).unwrap();
-    let refused = froude(folder.path(), &["inspect", "c.toml"]);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("did you mean `power_law`?"));
+    for (from, to, message) in [
+        ("power_law", "powr_law", "did you mean `power_law`?"),
+        ("table = \"t.csv\"", "table = \"t.csv\"\nmodels = [\"f4\"]", "model f4: needs the body's geometry"),
+        ("quantity = \"f_x\"", "quantity = \"f_z\"", "`quantity` is \"f_z\", which t.csv does not have"),
+    ] {
+        std::fs::write(folder.path().join("c.toml"), campaign.replace(from, to)).unwrap();
+        let refused = froude(folder.path(), &["inspect", "c.toml"]);
+        assert_eq!(refused.status.code(), Some(2));
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert!(said.contains(message), "{said}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use froude_identify::reduce::{Reduced, reduce};
-use froude_identify::source::{asked_models, check_budget};
+use froude_identify::source::{asked_models, check_budget, laws};
 use froude_identify::{lint, validity};
 use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
 use froude_records::estimate::Estimate;
@@ -204,6 +204,8 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
             out.models = asked_models(campaign, source)?;
             if out.exists {
                 let reduced = reduce(campaign, source)?;
+                // What a fit would refuse is refused here, before tank time is spent on it.
+                laws(campaign, source, &reduced.data)?;
                 check_budget(source, &reduced.data)?;
                 out.columns = columns(&read_table(table, source.sidecar.as_deref())?);
                 (out.rows, out.kept) = (Some(reduced.n_read), Some(reduced.data.rows));
