@@ -3,9 +3,9 @@
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::Error;
 use froude::identify::compare::{CoefficientRow, Comparison, ForceRow, JointRow, Stated, coverage_note};
-use froude::inspect::Inspection;
+use froude::inspect::{ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::Outcome;
-use froude::records::estimate::{Estimate, Status};
+use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
 use froude::report::number;
 
@@ -17,11 +17,15 @@ pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Error> {
     Ok(())
 }
 
+/// Widest line of a table: what a printed page and most terminals hold.
+const WIDEST: u16 = 120;
+
 fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table
         .load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY)
         .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_width(WIDEST)
         .set_header(header.iter().map(Cell::new));
     table
 }
@@ -102,28 +106,154 @@ pub fn findings(findings: &[Finding]) {
     }
 }
 
+/// Prints a sentence in lines of at most [`WIDEST`] characters, two spaces in.
+fn sentence(text: &str) {
+    let mut line = " ".to_owned();
+    for word in text.split_whitespace() {
+        if line.chars().count() + 1 + word.chars().count() > usize::from(WIDEST) && !line.trim().is_empty() {
+            println!("{line}");
+            line.clear();
+            line.push_str("   ");
+        }
+        line = line + " " + word;
+    }
+    println!("{line}");
+}
+
 /// What is in a file.
 pub fn inspection(i: &Inspection) {
     println!("{}", i.kind);
     for (name, value) in &i.facts {
-        println!("  {name}: {value}");
+        sentence(&format!("{name}: {value}"));
     }
     if !i.columns.is_empty() {
-        let mut out = table(&["column", "unit", "from", "to", "distinct"]);
-        for c in &i.columns {
-            let show = |x: Option<f64>| right(x.map_or(String::new(), |x| format!("{x:.6}")));
-            let unit = if c.unit.is_empty() { "text" } else { &c.unit };
+        println!("{}", columns(&i.columns));
+    }
+    for source in &i.sources {
+        source_facts(source);
+    }
+    for estimate in &i.estimates {
+        estimate_facts(estimate);
+    }
+    findings(&i.findings);
+}
+
+fn columns(columns: &[ColumnFacts]) -> Table {
+    let mut out = table(&["column", "unit", "from", "to", "distinct"]);
+    for c in columns {
+        let show = |x: Option<f64>| right(x.map_or(String::new(), |x| number::plain(x, 7)));
+        let unit = if c.unit.is_empty() { "text" } else { &c.unit };
+        out.add_row(vec![
+            Cell::new(&c.name),
+            Cell::new(unit),
+            show(c.low),
+            show(c.high),
+            right(c.distinct.to_string()),
+        ]);
+    }
+    out
+}
+
+fn source_facts(s: &SourceFacts) {
+    println!("\nsource {} ({})", s.name, s.kind);
+    let there = match (s.rows, s.kept, s.exists) {
+        (Some(rows), Some(kept), _) if kept == rows => format!(", {rows} observations"),
+        (Some(rows), Some(kept), _) => format!(", {kept} of {rows} observations are fitted"),
+        (_, _, true) => String::new(),
+        (_, _, false) => ", not there yet: froude simulate makes it".to_owned(),
+    };
+    sentence(&format!("{}: {}{there}", s.input, s.path));
+    if let Some(runs) = s.planned_runs {
+        println!("  plan: {runs} runs");
+    }
+    let what = if s.input == "record" { "estimates" } else { "models" };
+    if !s.models.is_empty() {
+        sentence(&format!("{what}: {}", s.models.join(", ")));
+    }
+    if !s.columns.is_empty() {
+        println!("{}", columns(&s.columns));
+    }
+    if s.input == "table" && s.budget.is_empty() {
+        println!("  budget: none; without [[source.uncertainty]] the uncertainties hold the scatter alone");
+    }
+    if !s.budget.is_empty() {
+        let mut out = table(&["budget", "standard", "shared by", "dof", "name"]);
+        for b in &s.budget {
             out.add_row(vec![
-                Cell::new(&c.name),
-                Cell::new(unit),
-                show(c.low),
-                show(c.high),
-                right(c.distinct.to_string()),
+                Cell::new(&b.quantity),
+                right(b.standard.clone()),
+                Cell::new(&b.shared),
+                right(number::dof(b.dof.unwrap_or(f64::INFINITY))),
+                Cell::new(b.name.as_deref().unwrap_or("")),
             ]);
         }
         println!("{out}");
     }
-    findings(&i.findings);
+}
+
+fn estimate_facts(e: &Estimate) {
+    println!("\n{}{}", e.id, if e.recommended { " (recommended)" } else { "" });
+    if let Some(reason) = &e.reason {
+        sentence(reason);
+    }
+    let mut about = vec![format!("{} observations", e.n_observations)];
+    about.extend([&e.kind, &e.method, &e.covariance_kind].into_iter().filter(|t| !t.is_empty()).cloned());
+    sentence(&about.join("; "));
+    let mut out = table(&["coefficient", "value", "unit", "standard uncertainty", "95 % interval", "status"]);
+    for (name, c) in &e.coefficients {
+        let or_none = |x: Option<f64>, digits: usize| right(x.map_or("—".to_owned(), |x| number::plain(x, digits)));
+        out.add_row(vec![
+            Cell::new(name),
+            or_none(c.value, 5),
+            Cell::new(&c.unit),
+            or_none(c.standard_uncertainty, 2),
+            right(c.interval_95.map_or("—".to_owned(), number::interval)),
+            Cell::new(if c.status == Status::Free { "free" } else { status(c.status) }),
+        ]);
+    }
+    println!("{out}");
+    for combination in &e.undetermined {
+        sentence(&format!("determined only together: {combination}"));
+    }
+    if !e.validity.is_empty() {
+        let mut out = table(&["valid for", "from", "to", "unit"]);
+        for (name, r) in &e.validity {
+            let (low, high) = (right(number::plain(r.low, 5)), right(number::plain(r.high, 5)));
+            out.add_row(vec![Cell::new(name), low, high, Cell::new(&r.unit)]);
+        }
+        println!("{out}");
+    }
+    for (name, value) in diagnostics(&e.diagnostics) {
+        sentence(&format!("{name}: {value}"));
+    }
+}
+
+/// The diagnostics that a record has, in words.
+fn diagnostics(d: &Diagnostics) -> Vec<(&'static str, String)> {
+    let by_load = |values: &mut dyn Iterator<Item = (&String, &f64)>| {
+        values.map(|(load, x)| format!("{load} {}", number::plain(*x, 3))).collect::<Vec<_>>().join(", ")
+    };
+    let one = |x: Option<f64>| x.map_or(String::new(), |x| number::plain(x, 4));
+    let correlation = d.largest_correlation.as_ref();
+    let mut out = vec![
+        ("relative residual", by_load(&mut d.relative_residual.iter())),
+        ("Durbin–Watson", by_load(&mut d.durbin_watson.iter())),
+        ("lack of fit, p", by_load(&mut d.lack_of_fit_p.iter())),
+        ("cross-validation, rms error", by_load(&mut d.cross_validation_rmse.iter())),
+        ("cross-validation", d.cross_validation_note.clone().unwrap_or_default()),
+        ("AICc", one(d.aicc)),
+        ("condition number", one(d.condition_number)),
+        (
+            "largest correlation",
+            correlation
+                .map_or(String::new(), |c| format!("{} of {} and {}", number::plain(c.value, 3), c.first, c.second)),
+        ),
+        ("largest leverage", one(d.largest_leverage)),
+        ("largest power to the body, W", one(d.largest_power_w)),
+    ];
+    out.extend(d.notes.iter().map(|note| ("note", note.clone())));
+    out.retain(|(_, value)| !value.is_empty());
+    out
 }
 
 /// Widest table; a wider one is wrapped or told in blocks.

@@ -105,19 +105,173 @@ fn drag_models_without_a_body_name_the_missing_keys() {
 }
 
 #[test]
-fn an_unknown_model_lists_what_there_is() {
+fn an_unknown_model_on_the_command_line_is_told_the_nearest_or_what_there_is() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("t.csv"), TABLE).unwrap();
-    let output = froude(folder.path(), &["identify", "t.csv", "--models", "f7"]);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(said.starts_with("froude: model \"f7\" is not known; built in are f1 to f6, quadratic,"), "{said}");
+    let said = |models: &str| {
+        let output = froude(folder.path(), &["identify", "t.csv", "--models", models]);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8_lossy(&output.stderr).trim_end().to_owned()
+    };
+    assert_eq!(
+        said("f7"),
+        "froude: model \"f7\" is not known; built in are f1 to f6, quadratic, linear_quadratic, power_law, power_law_log; \
+         [[identify.model]] adds its own: none here"
+    );
+    assert_eq!(said("f44"), "froude: model \"f44\" is not known; did you mean `f4`?");
+    assert_eq!(said("quadratic,powerlaw"), "froude: model \"powerlaw\" is not known; did you mean `power_law`?");
+}
+
+#[test]
+fn an_unknown_model_of_a_campaign_is_told_with_its_place() {
+    let table = ("t.csv", TABLE);
+    refuses(
+        &[("c.toml", &format!("{CAMPAIGN}models = [\"quadratic\", \"F4\"]\n")), table],
+        "c.toml",
+        "c.toml:7:24: model \"F4\" is not known; did you mean `f4`?",
+    );
+    refuses(
+        &[("c.toml", &format!("{CAMPAIGN}[identify]\nmodels = [\n  \"linear-quadratic\",\n]\n")), table],
+        "c.toml",
+        "c.toml:9:3: model \"linear-quadratic\" is not known; did you mean `linear_quadratic`?",
+    );
+}
+
+#[test]
+fn a_misspelt_key_that_is_needed_is_told_as_misspelt_and_not_as_missing() {
+    refuses(
+        &[("c.toml", &CAMPAIGN.replace("table =", "tabel ="))],
+        "c.toml",
+        "c.toml:6:1: unknown key `tabel` in [[source]]; did you mean `table`?",
+    );
+    refuses(
+        &[("c.toml", &CAMPAIGN.replace("kind =", "kinds ="))],
+        "c.toml",
+        "c.toml:5:1: unknown key `kinds` in [[source]]; did you mean `kind`?",
+    );
+    refuses(
+        &[("c.toml", &CAMPAIGN.replace("schema =", "shema ="))],
+        "c.toml",
+        "c.toml:1:1: unknown key `shema` in the file; did you mean `schema`?",
+    );
+    let sidecar = "schema = 1\n[column]\nU = { name = \"speed\", unit = \"m/s\" }\n";
+    refuses(
+        &[("t.csv", "U,f_x [N]\n0.1,-0.5\n"), ("t.toml", sidecar)],
+        "t.csv",
+        "t.toml:2:2: unknown key `column` in the file; did you mean `columns`?",
+    );
+    refuses(
+        &[("t.csv", "U\n0.1\n"), ("t.toml", "schema = 1\n[columns]\nU = { nane = \"speed\", unit = \"m/s\" }\n")],
+        "t.csv",
+        "t.toml:3:7: unknown key `nane` in [columns.U]; did you mean `name`?",
+    );
+}
+
+#[test]
+fn a_table_without_load_or_without_motion_says_which_and_what_it_has() {
+    refuses(
+        &[("t.csv", "speed [m/s],drag [N]\n0.1,-0.5\n0.2,-2.0\n")],
+        "t.csv",
+        "t.csv: no load to fit: a load is missing: a force f_x, f_y, f_z [N] or a moment m_x, m_y, m_z [N m]; name its \
+         column so, or map it with a sidecar; the table has speed [m/s], drag [N]",
+    );
+    refuses(
+        &[("t.csv", "U [m/s],f_x [mN]\n0.1,-500\n0.2,-2000\n")],
+        "t.csv",
+        "t.csv: no load to fit: the motion is missing for f_x: speed [m/s] (with angle [deg]), or v_x, v_y, v_z [m/s], \
+         w_x, w_y, w_z [rad/s]; name its column so, or map it with a sidecar; the table has U [m/s], f_x [mN]",
+    );
+    refuses(
+        &[("t.csv", "speed [m/s],f_y [N]\n0.1,-0.5\n0.2,-2.0\n")],
+        "t.csv",
+        "t.csv: no load to fit: the motion is along v_x, the load is f_y: a load is fitted to the motion along or about \
+         its own axis; the table has speed [m/s], f_y [N]",
+    );
+}
+
+#[test]
+fn a_budget_over_a_column_that_is_not_there_names_those_that_are() {
+    let budget = |quantity: &str, standard: &str| {
+        format!(
+            "{CAMPAIGN}[[source.uncertainty]]\nquantity = \"{quantity}\"\nstandard = \"{standard}\"\nshared = \"campaign\"\n"
+        )
+    };
+    let has = "which t.csv does not have; it has speed, f_x, v_x, v_y, angle";
+    refuses(
+        &[("c.toml", &budget("force", "0.1 N")), ("t.csv", TABLE)],
+        "c.toml",
+        &format!("c.toml:8:12: `quantity` is \"force\", {has}; of a force (N) it has f_x"),
+    );
+    refuses(
+        &[("c.toml", &budget("fx", "2 %")), ("t.csv", TABLE)],
+        "c.toml",
+        &format!("c.toml:8:12: `quantity` is \"fx\", {has}; did you mean `f_x`?"),
+    );
+    refuses(
+        &[("c.toml", &budget("drag", "2 %")), ("t.csv", TABLE)],
+        "c.toml",
+        &format!("c.toml:8:12: `quantity` is \"drag\", {has}"),
+    );
+}
+
+#[test]
+fn a_unit_is_suggested_of_the_kind_that_belongs_there() {
+    let fluid = |line: &str| format!("schema = 1\nname = \"x\"\n[fluid]\n{line}\n");
+    let cases = [
+        (
+            "temperature = 18.9",
+            "`temperature` is 18.9; expected a quantity with its unit in quotes, such as \"18.9 degC\"",
+        ),
+        ("temperature = \"18.9\"", "`temperature` cannot be read: `18.9` has no unit; write for example `18.9 degC`"),
+        ("temperature = \"18.9 C\"", "`temperature` cannot be read: unknown unit `C`; did you mean `degC`?"),
+        ("temperature = \"18.9 degc\"", "`temperature` cannot be read: unknown unit `degc`; did you mean `degC`?"),
+        ("temperature = \"18.9 grad\"", "`temperature` cannot be read: unknown unit `grad`; write for example `degC`"),
+        (
+            "temperature = \"warm\"",
+            "`temperature` cannot be read: `warm` does not begin with a number; write a quantity as `0.4 degC`",
+        ),
+        (
+            "temperature = \"18.9 m/s\"",
+            "`temperature` is \"18.9 m/s\": expected a temperature (degC or K), found a speed (m/s)",
+        ),
+        ("density = \"998\"", "`density` cannot be read: `998` has no unit; write for example `998 kg/m^3`"),
+        ("salinity = \"35\"", "`salinity` cannot be read: `35` has no unit; write for example `35 g/kg`"),
+    ];
+    for (line, problem) in cases {
+        let column = 1 + line.find(" = ").unwrap() + 3;
+        refuses(&[("c.toml", &fluid(line))], "c.toml", &format!("c.toml:4:{column}: {problem}"));
+    }
+    refuses(
+        &[("t.csv", "speed [m/s],temperature [celcius]\n0.1,18.9\n")],
+        "t.csv",
+        "t.csv:1: column `temperature [celcius]`: unknown unit `celcius`; write for example `degC`",
+    );
+}
+
+#[test]
+fn an_empty_cell_of_a_column_that_a_table_can_do_without_says_how() {
+    let table = "speed [m/s],f_x [N],temperature [degC]\n0.1,-0.5,18\n0.2,-2.0,\n";
+    refuses(
+        &[("t.csv", table)],
+        "t.csv",
+        "t.csv:3: column `temperature [degC]`: the cell is empty; fill it in, delete the row, or do without the column: \
+         name only the other columns in a sidecar t.toml; the campaign can give one temperature for all rows in [fluid]",
+    );
+    let sidecar = "schema = 1\n[columns]\nU = { name = \"speed\", unit = \"m/s\" }\nF = { name = \"f_x\", unit = \"N\" }\n\
+                   s = { name = \"std_f_x\", unit = \"N\" }\n";
+    refuses(
+        &[("t.csv", "U,F,s\n0.1,-0.5,0.1\n0.2,-2.0,\n"), ("t.toml", sidecar)],
+        "t.csv",
+        "t.csv:3: column `s`: the cell is empty; fill it in, delete the row, or do without the column: take its line out \
+         of t.toml; all rows then have the same weight",
+    );
 }
 
 const CAMPAIGN: &str = "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n";
 
 #[test]
 fn a_campaign_that_names_a_missing_file_is_refused_with_its_line() {
-    refuses(&[("c.toml", CAMPAIGN)], "c.toml", "c.toml:6: `table` names t.csv, which does not exist");
+    refuses(&[("c.toml", CAMPAIGN)], "c.toml", "c.toml:6:9: `table` names t.csv, which does not exist");
 }
 
 #[test]

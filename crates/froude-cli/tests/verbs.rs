@@ -220,3 +220,102 @@ fn a_record_compared_with_itself_is_no_evidence() {
     let out = json(&froude(folder.path(), &["--json", "compare", &record, &other]));
     assert!(out["coefficients"][0]["e_n"].is_number() && out["joint"][0]["chi_squared"].is_number(), "{out}");
 }
+
+/// What `inspect` prints, and the same as JSON.
+fn inspect(folder: &Path, file: &str) -> (String, serde_json::Value) {
+    let said = String::from_utf8(froude(folder, &["inspect", file]).stdout).unwrap();
+    for line in said.lines().take_while(|line| *line != "Findings") {
+        assert!(line.chars().count() <= 120, "wider than 120 columns: {line}");
+    }
+    (said, json(&froude(folder, &["--json", "inspect", file])))
+}
+
+#[test]
+fn inspect_shows_the_sources_of_a_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = "speed [m/s],f_x [mN],setup\n0.1,-100,a\n0.2,-410,a\n0.3,-890,b\n0.3,900,b\n";
+    std::fs::write(folder.path().join("t.csv"), table).unwrap();
+    let campaign = "schema = 1\nname = \"hull\"\n\
+        [[source]]\nname = \"tow\"\nkind = \"towing\"\ntable = \"t.csv\"\nkeep = \"speed < 0.35 m/s and setup != c\"\n\
+        [[source.uncertainty]]\nname = \"weights\"\nquantity = \"f_x\"\nstandard = \"2 mN\"\nshared = \"setup\"\ndof = 9\n\
+        [[source.uncertainty]]\nquantity = \"speed\"\nstandard = \"0.5 %\"\nshared = \"campaign\"\n\
+        [[source]]\nname = \"twin\"\nkind = \"tank\"\ntable = \"later.csv\"\nmodels = [\"power_law\"]\n\
+        [[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nspeed = [\"0.1 m/s\", \"0.2 m/s\"]\nrepeats = 3\n";
+    std::fs::write(folder.path().join("c.toml"), campaign).unwrap();
+    let (said, json) = inspect(folder.path(), "c.toml");
+    for part in [
+        "source tow (towing)",
+        "models: quadratic, linear_quadratic, power_law\n",
+        "t.csv, 4 observations",
+        "0.002 N",
+        "weights",
+        "plan: 12 runs",
+        "later.csv, not there yet: froude simulate makes it",
+        "[force-along-motion] tow: f_x points along v_x in 1 of 4 rows, first on line 5",
+    ] {
+        assert!(said.contains(part), "{part:?} is not in\n{said}");
+    }
+    let tow = &json["sources"][0];
+    assert_eq!(
+        tow["columns"][1],
+        serde_json::json!({"name": "f_x", "unit": "mN", "low": -890.0, "high": 900.0, "distinct": 4})
+    );
+    assert_eq!(
+        tow["budget"],
+        serde_json::json!([
+            {"quantity": "f_x", "standard": "0.002 N", "shared": "setup", "dof": 9.0, "name": "weights"},
+            {"quantity": "speed", "standard": "0.5 %", "shared": "campaign", "dof": null, "name": null},
+        ])
+    );
+    assert_eq!((&tow["rows"], &tow["kept"], &tow["planned_runs"]), (&4.into(), &4.into(), &serde_json::Value::Null));
+    assert_eq!(json["sources"][1]["planned_runs"], 12);
+    assert_eq!(json["sources"][1]["models"], serde_json::json!(["power_law"]));
+    // What a fit would refuse is refused here too.
+    for (from, to, message) in [
+        ("power_law", "powr_law", "did you mean `power_law`?"),
+        ("table = \"t.csv\"", "table = \"t.csv\"\nmodels = [\"f4\"]", "model f4: needs the body's geometry"),
+        ("quantity = \"f_x\"", "quantity = \"f_z\"", "`quantity` is \"f_z\", which t.csv does not have"),
+    ] {
+        std::fs::write(folder.path().join("c.toml"), campaign.replace(from, to)).unwrap();
+        let refused = froude(folder.path(), &["inspect", "c.toml"]);
+        assert_eq!(refused.status.code(), Some(2));
+        let said = String::from_utf8_lossy(&refused.stderr);
+        assert!(said.contains(message), "{said}");
+    }
+}
+
+#[test]
+fn inspect_shows_published_sets_and_a_planned_table() {
+    let (said, json) = inspect(&example("mamba"), "campaign.toml");
+    assert!(said.contains("plan: 536 runs"), "Table 3 of the paper: {said}");
+    assert!(said.contains("estimates: cfd/f1, cfd/f2"), "{said}");
+    assert_eq!(json["sources"][0]["planned_runs"], 536);
+    assert_eq!(json["sources"][1]["kind"], "published");
+}
+
+#[test]
+fn inspect_shows_the_estimates_of_a_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let tare = example("unh-rm2/tare.toml");
+    json(&froude(folder.path(), &["--json", "identify", tare.to_str().unwrap(), "--out", "results"]));
+    let (said, json) = inspect(folder.path(), "results/estimate.json");
+    for part in [
+        "mounting frame/quadratic",
+        "(recommended)",
+        "D_x_II",
+        "kg/m",
+        "standard uncertainty",
+        "free",
+        "valid for",
+        "speed",
+        "relative residual: f_x",
+        "Durbin–Watson: f_x",
+        "condition number",
+    ] {
+        assert!(said.contains(part), "{part:?} is not in\n{said}");
+    }
+    let file: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("results/estimate.json")).unwrap()).unwrap();
+    assert_eq!(json["estimates"], file["estimates"], "every number of the record");
+    assert_eq!(json["findings"], file["findings"]);
+}

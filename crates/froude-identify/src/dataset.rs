@@ -33,6 +33,8 @@ pub struct Dataset {
     pub group: Option<Vec<String>>,
     /// Line of each row in its file.
     pub line: Vec<usize>,
+    /// Headers of the table's columns, with the units that its numbers were written in; empty where no table was read.
+    pub headers: Vec<String>,
 }
 
 /// Names of the loads, in the order of the axes.
@@ -55,6 +57,13 @@ impl Dataset {
     #[must_use]
     pub fn loads(&self) -> Vec<&'static str> {
         LOADS.into_iter().filter(|l| self.channels.contains_key(*l)).collect()
+    }
+
+    /// Header of a column, `f_x [mN]` say; the bare name where no table was read.
+    #[must_use]
+    pub fn header<'a>(&'a self, name: &'a str) -> &'a str {
+        let is_of = |header: &&String| header.split(" [").next() == Some(name);
+        self.headers.iter().find(is_of).map_or(name, String::as_str)
     }
 
     /// Velocity of row `i` through the water, m/s, body axes; zero where the table has no motion.
@@ -127,6 +136,7 @@ impl Dataset {
             run: text(&self.run),
             group: self.group.as_ref().map(|g| text(g)),
             line: keep.iter().filter_map(|&i| self.line.get(i).copied()).collect(),
+            headers: self.headers.clone(),
         }
     }
 

@@ -154,21 +154,30 @@ fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
     }
     let mut out = Vec::new();
     for (r, component) in model.law.responses.iter().enumerate() {
-        let size: Vec<f64> = (0..n).map(|i| model.fit.residuals[r * n + i].abs()).collect();
+        // With std columns a row may scatter as much as they say: what must be even is r·√w.
+        let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
+        let size: Vec<f64> =
+            (r * n..(r + 1) * n).map(|row| model.fit.residuals[row].abs() * weight(row).sqrt()).collect();
         let rho = rank_correlation(&size, speed);
         let z = rho * ((n - 1) as f64).sqrt();
         if z.abs() > UNEVEN_ABOVE_Z {
+            let is_weighted = model.problem.weight.is_some();
+            let (assumed, advice) = match (model.law.in_logarithms(), is_weighted) {
+                (true, false) => ("equal relative errors", "compare with the fit in newtons"),
+                (true, true) => ("relative errors as in the std columns", "compare with the fit in newtons"),
+                (false, false) => ("equal absolute errors", "use HC3, std columns, or a fit in logarithms"),
+                (false, true) => ("errors as in the std columns", "check these columns, or use HC3"),
+            };
             out.push(Finding::new(
                 Severity::Warning,
                 "uneven-scatter",
                 format!(
-                    "{}, {component}: |residual| {} with speed (rank correlation {rho:.2}, {:.1} standard errors): equal {} errors \
-                     are not what the data show; {}",
+                    "{}, {component}: |residual|{} {} with speed (rank correlation {rho:.2}, {:.1} standard errors): {assumed} \
+                     are not what the data show; {advice}",
                     model.law.name,
+                    if is_weighted { " over its std" } else { "" },
                     if rho > 0.0 { "grows" } else { "falls" },
                     z.abs(),
-                    if model.law.in_logarithms() { "relative" } else { "absolute" },
-                    if model.law.in_logarithms() { "compare with the fit in newtons" } else { "use HC3, std columns, or a fit in logarithms" }
                 ),
             ));
         }

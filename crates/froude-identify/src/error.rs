@@ -1,6 +1,9 @@
 //! Why a campaign gives no coefficients.
 
+use std::path::PathBuf;
+
 use froude_fit::FitError;
+use froude_records::Place;
 use froude_records::RecordError;
 
 use crate::formula::FormulaError;
@@ -75,16 +78,14 @@ pub enum IdentifyError {
     },
 
     /// A model name that nothing answers to.
-    #[error(
-        "model {model:?} is not known; built in are f1 to f6, quadratic, linear_quadratic, power_law, \
-         power_law_log, and those of [[identify.model]]: {}",
-        .user.join(", ")
-    )]
+    #[error("{}model {model:?} is not known; {advice}", .place.as_ref().map_or_else(String::new, |p| format!("{p}: ")))]
     UnknownModel {
+        /// Where it is named, if a file names it.
+        place: Option<Place>,
         /// The name asked for.
         model: String,
-        /// The user-written models.
-        user: Vec<String>,
+        /// The name that was probably meant, or what there is.
+        advice: String,
     },
 
     /// A record without the geometry that its law needs.
@@ -114,14 +115,15 @@ pub enum IdentifyError {
         n_read: usize,
     },
 
-    /// The table has no load to fit.
-    #[error(
-        "source {source_name:?}: the table has no load to fit; name a column f_x, f_y, … [N] or m_x, … [N m], \
-         or map one with a sidecar"
-    )]
+    /// The table has no load with a motion along or about the same axis.
+    #[error("{}: no load to fit: {lacks}; the table has {}", path.display(), .columns.join(", "))]
     NoLoad {
-        /// Name of the source.
-        source_name: String,
+        /// The table.
+        path: PathBuf,
+        /// What it lacks, and what to do.
+        lacks: String,
+        /// The columns that it has.
+        columns: Vec<String>,
     },
 
     /// A source whose kind of input another verb makes.

@@ -24,11 +24,24 @@ const RADIAN_SUSPICION_RAD: f64 = 1.6 * std::f64::consts::PI / 180.0;
 /// Drag coefficients on frontal area that bodies have (Hoerner 1965: 0.04 streamlined to 2.3 hollow section; margin 2 both ways).
 const BODY_DRAG_COEFFICIENT: std::ops::RangeInclusive<f64> = 0.02..=4.6;
 
+/// Areas that a drag may stand for, |F|/(½ρU²) in m².
+///
+/// Upper: a fully loaded tanker of 300 000 t drags like some 50 m² (30 000 m² of wetted surface at a C_T of 0.0017); no
+/// towed or propelled body is twenty times that. Lower: a sphere of 0.1 mm, which no tank tests, has some 1e-8 m²; a wire
+/// 1 mm thick and 10 cm long across the stream has 1e-4 m². MN written for mN is a factor of 1e9: every body between
+/// a streamlined model of 1 cm (1e-5 m²) and a ship then lies outside. A factor of a thousand is mostly not seen.
+const DRAG_AREA_M2: std::ops::RangeInclusive<f64> = 1e-7..=1e3;
+/// Rows at this share of the largest speed or more are near it: there the zero and the bearings matter least.
+const NEAR_LARGEST_SPEED: f64 = 0.9;
+/// Density where neither campaign nor table says one: fresh water. Sea water differs by 3 %, which no bound notices.
+const DENSITY_UNSTATED_KG_M3: f64 = 1000.0;
+
 /// Every lint that looks at observations alone.
 #[must_use]
 pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
     let mut findings = Vec::new();
     findings.extend(force_along_motion(data));
+    findings.extend(drag_area(data));
     findings.extend(saturation(data));
     findings.extend(angle_in_radians(data));
     findings.extend(distinct_speeds(data));
@@ -122,27 +135,64 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
             continue;
         }
         let all = along.len() * 2 > rows.len();
+        let of = if rows.len() == data.rows {
+            format!("in {} of {} rows", along.len(), rows.len())
+        } else {
+            format!("in {} of the {} rows large enough to tell ({} in all)", along.len(), rows.len(), data.rows)
+        };
         findings.push(Finding::new(
             if all { Severity::Error } else { Severity::Warning },
             "force-along-motion",
             if all {
                 format!(
-                    "{load} points along {motion} in {} of {} rows: a drag must oppose the motion; if the sensor is \
-                     mounted the other way round, say sign = -1 for its column",
-                    along.len(),
-                    rows.len()
+                    "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
+                     way round, say sign = -1 for its column"
                 )
             } else {
                 format!(
-                    "{load} points along {motion} in {} of {} rows (first on line {}); check zero and mounting of these runs",
-                    along.len(),
-                    rows.len(),
+                    "{load} points along {motion} {of}, first on line {}; check zero and mounting of these runs",
                     data.line.get(along[0]).copied().unwrap_or(0)
                 )
             },
         ));
     }
     findings
+}
+
+/// A force that no body at that speed has: a prefix of a unit is probably wrong.
+///
+/// Only the largest of the loads is asked: a side force at no angle, a drag at broadside may be as small as they like.
+fn drag_area(data: &Dataset) -> Option<Finding> {
+    let speed = data.values("speed")?;
+    let largest = speed.iter().fold(0.0_f64, |m, u| m.max(*u));
+    let near: Vec<usize> =
+        (0..data.rows).filter(|&i| speed[i] > 0.0 && speed[i] >= NEAR_LARGEST_SPEED * largest).collect();
+    let (load, i, f) = ["f_x", "f_y", "f_z"]
+        .into_iter()
+        .filter_map(|load| Some((load, data.values(load)?)))
+        .flat_map(|(load, f)| near.iter().map(move |&i| (load, i, f[i])))
+        .max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
+    let density_kg_m3 = data.values("density").map_or(DENSITY_UNSTATED_KG_M3, |d| d[i]);
+    let area_m2 = f.abs() / (0.5 * density_kg_m3 * speed[i] * speed[i]);
+    if f == 0.0 || DRAG_AREA_M2.contains(&area_m2) {
+        return None;
+    }
+    let (side, yardstick) = if area_m2 > *DRAG_AREA_M2.end() {
+        ("more than", "1e3 m^2; a loaded tanker has some 50 m^2")
+    } else {
+        ("less than", "1e-7 m^2; a wire 1 mm thick and 10 cm long has 1e-4 m^2")
+    };
+    Some(Finding::new(
+        Severity::Warning,
+        "implausible-drag-area",
+        format!(
+            "line {}: {load} = {f:.3e} N at {} m/s is the drag of {area_m2:.1e} m^2 (|F|/(½ρU²)), {side} {yardstick}: \
+             a prefix may be wrong in the unit of `{}`, or in that of the speed",
+            data.line.get(i).copied().unwrap_or(i + 1),
+            if speed[i] < 0.01 { format!("{:.2e}", speed[i]) } else { format!("{:.3}", speed[i]) },
+            data.header(load),
+        ),
+    ))
 }
 
 /// Many rows at exactly the largest or smallest value of a load.

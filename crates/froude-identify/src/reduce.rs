@@ -5,7 +5,7 @@
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
-use froude_records::table::{ColumnData, Table, read_table};
+use froude_records::table::{Column, ColumnData, Table, read_table};
 use froude_records::units::Dimension;
 use std::path::PathBuf;
 
@@ -115,6 +115,7 @@ fn dataset(table: &Table, source: &Source) -> Result<Dataset, IdentifyError> {
     data.setup = text("setup");
     data.run = text("run");
     data.line.clone_from(&table.line_of_row);
+    data.headers = table.columns.iter().map(Column::header).collect();
     for column in &table.columns {
         if let ColumnData::Number { si, dimension, .. } = &column.data {
             let channel = Channel { values: si.clone(), dimension: *dimension };
@@ -172,6 +173,18 @@ fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -
         .map(|t| t.iter().map(|&t| Water::at(t, salinity)).collect::<Result<_, _>>())
         .transpose()
         .map_err(|e| IdentifyError::Campaign { place: "[fluid]".to_owned(), what: e.to_string() })?;
+    if let (Some(stated), Some(measured)) = (stated.temperature_degc, data.values("temperature"))
+        && measured.iter().any(|t| (t - 273.15 - stated).abs() > 1e-9)
+    {
+        findings.push(Finding::new(
+            Severity::Note,
+            "measured-over-stated",
+            format!("the table's temperatures are used; temperature = {stated:.2} degC of [fluid] is not"),
+        ));
+    }
+    // What is stated goes before what was measured, and that before what follows from a temperature.
+    findings.extend(measured_water(data, "density", stated.density_kg_m3));
+    findings.extend(measured_water(data, "kinematic_viscosity", stated.kinematic_viscosity_m2_s));
     if let Some(density) = stated.density_kg_m3 {
         data.put("density", vec![density; data.rows], Dimension::DENSITY);
         if data.channels.contains_key("temperature") {
@@ -181,16 +194,38 @@ fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -
                 format!("density {density} kg/m^3 is stated in [fluid] and used for every run, although the table has temperatures"),
             ));
         }
-    } else if let Some(water) = &water {
+    } else if let Some(water) = &water
+        && !data.channels.contains_key("density")
+    {
         data.put("density", water.iter().map(|w| w.density_kg_m3).collect(), Dimension::DENSITY);
     }
     if let Some(nu) = stated.kinematic_viscosity_m2_s {
         data.put("kinematic_viscosity", vec![nu; data.rows], Dimension::KINEMATIC_VISCOSITY);
-    } else if let Some(water) = &water {
+    } else if let Some(water) = &water
+        && !data.channels.contains_key("kinematic_viscosity")
+    {
         let nu = water.iter().map(Water::kinematic_viscosity_m2_s).collect();
         data.put("kinematic_viscosity", nu, Dimension::KINEMATIC_VISCOSITY);
     }
     Ok(())
+}
+
+/// A column of the table that a value in `[fluid]` replaces.
+fn measured_water(data: &Dataset, name: &str, stated: Option<f64>) -> Option<Finding> {
+    let (stated, measured, dimension) = (stated?, data.values(name)?, data.dimension(name)?);
+    let low = measured.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = measured.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if low == stated && high == stated {
+        return None;
+    }
+    Some(Finding::new(
+        Severity::Warning,
+        "stated-over-measured",
+        format!(
+            "{name} = {stated} {dimension} of [fluid] is used for every run, and the table's column {name} ({low} to {high} {dimension}) \
+             is not; take {name} out of [fluid] to use what was measured"
+        ),
+    ))
 }
 
 /// Subtracts the mean of the zeros before and after each run, and tells how far they moved.
@@ -207,6 +242,18 @@ fn zeros(data: &mut Dataset, findings: &mut Vec<Finding>) {
         let largest = channel.values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         for (value, zero) in channel.values.iter_mut().zip(&zero) {
             *value -= zero;
+        }
+        if before.is_none() || after.is_none() {
+            let (there, not) = if before.is_some() { ("before", "after") } else { ("after", "before") };
+            findings.push(Finding::new(
+                Severity::Note,
+                "zero-drift",
+                format!(
+                    "{load}: the zero {there} each run is subtracted; its drift is unknown, since there is no reading {not} \
+                     the run (a column zero_{not}_{load})"
+                ),
+            ));
+            continue;
         }
         let drift = before.iter().zip(&after).flat_map(|(b, a)| b.iter().zip(a)).map(|(b, a)| (a - b).abs());
         let drift = drift.fold(0.0, f64::max);

@@ -109,6 +109,7 @@ pub fn truth(campaign: &Campaign, data: &Dataset) -> Result<(ForceLaw, Vec<f64>)
                 what: "the campaign has no source".to_owned(),
             })?;
             source.models = vec![model.clone()];
+            source.model_places.clear();
             let law = crate::source::laws(&alone, &source, data)?.remove(0);
             let chosen = law
                 .coefficients

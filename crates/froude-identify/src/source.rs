@@ -3,15 +3,17 @@
 use std::path::PathBuf;
 
 use froude_hydro::{Body, CrossTerm, DragModel, Link};
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source, SourceKind};
 use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::{Finding, Severity};
+use froude_records::nearest::meant;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
-use crate::law::ForceLaw;
+use crate::law::{ForceLaw, aliased};
 use crate::record;
 use crate::reduce::{Reduced, reduce};
 use crate::regression::{ModelFit, Settings, regress};
@@ -73,6 +75,7 @@ pub fn identify_source(
         shared_errors: &shared_errors,
     };
     let laws = laws(campaign, source, &data)?;
+    check_budget(source, &data)?;
     let mut models = Vec::new();
     for law in &laws {
         progress(&law.name);
@@ -163,6 +166,76 @@ fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, dr
     Some(format!("type B by {draws} Monte Carlo draws (linear in parentheses): {}", parts.join(", ")))
 }
 
+/// Built-in models that need no body.
+const PLAIN_MODELS: [&str; 4] = ["quadratic", "linear_quadratic", "power_law", "power_law_log"];
+/// Those that are fitted where nobody asks for any.
+const DEFAULT_MODELS: [&str; 3] = ["quadratic", "linear_quadratic", "power_law"];
+
+/// The models that are fitted to a source: its own, else those of `[identify]`, else the defaults.
+///
+/// # Errors
+///
+/// A name that nothing answers to, with its place and the nearest known one.
+pub fn asked_models(campaign: &Campaign, source: &Source) -> Result<Vec<String>, IdentifyError> {
+    let identify = &campaign.identify;
+    let user: Vec<&str> = identify.user_models.iter().map(|m| m.name.as_str()).collect();
+    let (named, places) = if source.models.is_empty() {
+        (&identify.models, &identify.model_places)
+    } else {
+        (&source.models, &source.model_places)
+    };
+    let is_known =
+        |name: &str| DragModel::from_name(name).is_some() || PLAIN_MODELS.contains(&name) || user.contains(&name);
+    if let Some((i, unknown)) = named.iter().enumerate().find(|(_, name)| !is_known(name)) {
+        let known = DragModel::ALL.iter().map(|m| m.name()).chain(PLAIN_MODELS).chain(user.iter().copied());
+        let advice = meant(unknown, known).unwrap_or_else(|| {
+            let own = if user.is_empty() { "none here".to_owned() } else { user.join(", ") };
+            format!("built in are f1 to f6, {}; [[identify.model]] adds its own: {own}", PLAIN_MODELS.join(", "))
+        });
+        return Err(IdentifyError::UnknownModel { place: places.get(i).cloned(), model: unknown.clone(), advice });
+    }
+    Ok(if !source.models.is_empty() {
+        source.models.clone()
+    } else if !identify.models.is_empty() || !user.is_empty() {
+        identify.models.iter().cloned().chain(user.iter().map(|name| (*name).to_owned())).collect()
+    } else {
+        DEFAULT_MODELS.map(str::to_owned).to_vec()
+    })
+}
+
+/// Every quantity of the budget must be a channel of the data.
+///
+/// # Errors
+///
+/// The first that is not, with its place, the channels that there are and the likely one.
+pub fn check_budget(source: &Source, data: &Dataset) -> Result<(), IdentifyError> {
+    let Some(entry) = source.uncertainty.iter().find(|e| data.values(aliased(&e.quantity)).is_none()) else {
+        return Ok(());
+    };
+    let known: Vec<&str> = data.channels.keys().map(String::as_str).collect();
+    // Where no name is near, the channels of the same kind are what may have been meant.
+    let alike = || {
+        let is_alike = |name: &&str| !entry.relative && data.dimension(name) == Some(entry.dimension);
+        let alike: Vec<&str> = known.iter().copied().filter(is_alike).collect();
+        if alike.is_empty() {
+            String::new()
+        } else {
+            format!("; of {} it has {}", entry.dimension.describe(), alike.join(", "))
+        }
+    };
+    let advice = meant(&entry.quantity, known.iter().copied()).map_or_else(alike, |meant| format!("; {meant}"));
+    Err(IdentifyError::Record(RecordError::Value {
+        place: entry.place.clone(),
+        key: "quantity".to_owned(),
+        problem: format!(
+            "is {:?}, which {} does not have; it has {}{advice}",
+            entry.quantity,
+            source.input.path().display(),
+            known.join(", ")
+        ),
+    }))
+}
+
 /// The laws that the campaign asks for, over the channels of the table.
 ///
 /// # Errors
@@ -170,16 +243,10 @@ fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, dr
 /// An unknown name, a drag model without a body, a formula that cannot be used.
 pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<ForceLaw>, IdentifyError> {
     let identify = &campaign.identify;
-    let asked: Vec<String> = if !source.models.is_empty() {
-        source.models.clone()
-    } else if !identify.models.is_empty() || !identify.user_models.is_empty() {
-        identify.models.iter().cloned().chain(identify.user_models.iter().map(|m| m.name.clone())).collect()
-    } else {
-        vec!["quadratic".to_owned(), "linear_quadratic".to_owned(), "power_law".to_owned()]
-    };
     let mut out = Vec::new();
-    for name in &asked {
+    for name in &asked_models(campaign, source)? {
         if let Some(model) = DragModel::from_name(name) {
+            moving_axes(data, source)?;
             out.push(ForceLaw::drag(model, body(campaign, data, name)?, CrossTerm::AsPrinted));
         } else if let Some(user) = identify.user_models.iter().find(|m| &m.name == name) {
             out.push(ForceLaw::formulas(name, &user.formulas, data)?);
@@ -197,12 +264,7 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
                         out.push(law);
                     }
                 }
-                _ => {
-                    return Err(IdentifyError::UnknownModel {
-                        model: name.clone(),
-                        user: identify.user_models.iter().map(|m| m.name.clone()).collect(),
-                    });
-                }
+                _ => {}
             }
         }
     }
@@ -222,9 +284,38 @@ fn moving_axes(data: &Dataset, source: &Source) -> Result<Vec<(&'static str, &'s
     let out: Vec<_> =
         PAIRS.into_iter().filter(|(load, motion)| data.channels.contains_key(*load) && moves(motion)).collect();
     if out.is_empty() {
-        return Err(IdentifyError::NoLoad { source_name: source.name.clone() });
+        let moving: Vec<&str> = PAIRS.into_iter().map(|(_, motion)| motion).filter(|motion| moves(motion)).collect();
+        return Err(no_load(data, source, &moving));
     }
     Ok(out)
+}
+
+/// What keeps a table from being fitted: no load, no motion, or loads across every motion.
+fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> IdentifyError {
+    let loads = data.loads();
+    let has_motion =
+        ["speed", "v_x", "v_y", "v_z", "w_x", "w_y", "w_z"].iter().any(|name| data.channels.contains_key(*name));
+    let lacks = if loads.is_empty() {
+        "a load is missing: a force f_x, f_y, f_z [N] or a moment m_x, m_y, m_z [N m]; name its column so, or map it with a \
+         sidecar"
+            .to_owned()
+    } else if !has_motion {
+        format!(
+            "the motion is missing for {}: speed [m/s] (with angle [deg]), or v_x, v_y, v_z [m/s], w_x, w_y, w_z [rad/s]; \
+             name its column so, or map it with a sidecar",
+            loads.join(", ")
+        )
+    } else if moving.is_empty() {
+        "nothing moves: every speed is zero".to_owned()
+    } else {
+        format!(
+            "the motion is along {}, the load is {}: a load is fitted to the motion along or about its own axis",
+            moving.join(", "),
+            loads.join(", ")
+        )
+    };
+    let columns = data.headers.clone();
+    IdentifyError::NoLoad { path: source.input.path().to_owned(), lacks, columns }
 }
 
 /// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone.

@@ -183,3 +183,122 @@ fn zeros_before_and_after_a_run_are_subtracted_and_their_drift_is_told() {
     let finding = result.findings.iter().find(|f| f.code == "zero-drift").unwrap();
     assert!(finding.message.contains("moved by up to 2.000e-1"), "{}", finding.message);
 }
+
+/// The finding of one code, if there is one.
+fn finding<'a>(result: &'a SourceResult, code: &str) -> Option<&'a str> {
+    result.findings.iter().find(|f| f.code == code).map(|f| f.message.as_str())
+}
+
+#[test]
+fn a_force_along_the_motion_counts_the_rows_that_are_large_enough_to_tell() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut table = "speed [m/s],f_x [N]\n0.01,-0.001\n0.02,0.004\n".to_owned();
+    for k in 1..=10 {
+        let v = 0.3 + 0.1 * f64::from(k);
+        writeln!(table, "{v},{}", 10.0 * v * v).unwrap();
+    }
+    let result = identify(folder.path(), &table, QUADRATIC);
+    assert_eq!(
+        finding(&result, "force-along-motion").unwrap(),
+        "f_x points along v_x in 10 of the 10 rows large enough to tell (12 in all): a drag must oppose the motion; if the \
+         sensor is mounted the other way round, say sign = -1 for its column"
+    );
+}
+
+#[test]
+fn a_wrong_prefix_is_suspected_from_the_area_that_the_force_stands_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let newtons = identify(folder.path(), &quadratic_table(), QUADRATIC);
+    assert_eq!(finding(&newtons, "implausible-drag-area"), None);
+    // Numbers in mN under a header that says MN: 9990 mN is 10 N, read as 1e10 N.
+    let mut table = "speed [m/s],f_x [MN]\n".to_owned();
+    for k in 1..=10 {
+        let v = 0.1 * f64::from(k);
+        writeln!(table, "{v},{}", -9990.0 * v * v).unwrap();
+    }
+    let mega = identify(folder.path(), &table, QUADRATIC);
+    // 9.99e9 N / (500 kg/m^3 · 1 m²/s²)
+    assert_eq!(
+        finding(&mega, "implausible-drag-area").unwrap(),
+        "line 11: f_x = -9.990e9 N at 1.000 m/s is the drag of 2.0e7 m^2 (|F|/(½ρU²)), more than 1e3 m^2; a loaded \
+         tanker has some 50 m^2: a prefix may be wrong in the unit of `f_x [MN]`, or in that of the speed"
+    );
+    let nano = identify(folder.path(), &quadratic_table().replace("[N]", "[nN]"), QUADRATIC);
+    let message = finding(&nano, "implausible-drag-area").unwrap();
+    assert!(message.contains("is the drag of 2.0e-11 m^2 (|F|/(½ρU²)), less than 1e-7 m^2"), "{message}");
+    // A tanker of 50 m² at 8 m/s is in order.
+    let ship = "speed [m/s],f_x [kN]\n4,-400\n6,-900\n8,-1600\n".to_owned();
+    assert_eq!(finding(&identify(folder.path(), &ship, QUADRATIC), "implausible-drag-area"), None);
+}
+
+#[test]
+fn a_zero_that_was_read_once_leaves_its_drift_unknown() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut table = "speed [m/s],f_x [N],zero_before_f_x [N]\n".to_owned();
+    for k in 1..=6 {
+        let v = 0.2 * f64::from(k);
+        writeln!(table, "{v},{},0.4", -10.0 * v * v + 0.4).unwrap();
+    }
+    let result = identify(folder.path(), &table, QUADRATIC);
+    let d = result.estimates[0].coefficients["D_x_II"].value.unwrap();
+    assert!((d - 10.0).abs() < 1e-9, "{d}");
+    assert_eq!(
+        finding(&result, "zero-drift").unwrap(),
+        "f_x: the zero before each run is subtracted; its drift is unknown, since there is no reading after the run (a \
+         column zero_after_f_x)"
+    );
+}
+
+#[test]
+fn a_measured_density_is_used_unless_one_is_stated_and_then_it_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut table = "speed [m/s],f_x [N],density [kg/m^3],temperature [degC]\n".to_owned();
+    for k in 1..=6 {
+        let v = 0.2 * f64::from(k);
+        writeln!(table, "{v},{},{},15", -10.0 * v * v, 1020 + k).unwrap();
+    }
+    let result = identify(folder.path(), &table, QUADRATIC);
+    assert_eq!(result.data.values("density").unwrap(), [1000.0; 6]);
+    assert_eq!(
+        finding(&result, "stated-over-measured").unwrap(),
+        "density = 1000 kg/m^3 of [fluid] is used for every run, and the table's column density (1021 to 1026 kg/m^3) is \
+         not; take density out of [fluid] to use what was measured"
+    );
+    let bare = format!("schema = 1\nname = \"x\"\n[fluid]\ntemperature = \"20 degC\"\n{QUADRATIC}");
+    std::fs::write(folder.path().join("bare.toml"), bare).unwrap();
+    let campaign = read_campaign(&folder.path().join("bare.toml")).unwrap();
+    let bare = identify_source(&campaign, &campaign.sources[0], &|_| {}).unwrap();
+    assert_eq!(bare.data.values("density").unwrap(), [1021.0, 1022.0, 1023.0, 1024.0, 1025.0, 1026.0]);
+    assert_eq!(finding(&bare, "stated-over-measured"), None);
+    assert_eq!(
+        finding(&bare, "measured-over-stated").unwrap(),
+        "the table's temperatures are used; temperature = 20.00 degC of [fluid] is not"
+    );
+}
+
+#[test]
+fn scatter_that_the_std_columns_explain_is_not_uneven() {
+    let folder = tempfile::tempdir().unwrap();
+    // Sizes without order, so that the rank correlation of size and speed is small: once forwards, once backwards.
+    let half = [1.0, -2.0, 0.5, -1.5, 2.5, -0.7, 1.2, -2.2, 0.9, -1.1, 1.9, -0.6];
+    let size: Vec<f64> = half.into_iter().chain(half.into_iter().rev().map(|e| -e)).collect();
+    let table = |scatter: &dyn Fn(f64) -> f64, std: Option<&dyn Fn(f64) -> f64>| {
+        let mut table = "speed [m/s],f_x [N]".to_owned() + if std.is_some() { ",std_f_x [N]\n" } else { "\n" };
+        for (k, e) in size.iter().enumerate() {
+            let v = 0.2 * (k + 1) as f64;
+            write!(table, "{v},{}", -10.0 * v * v + e * scatter(v)).unwrap();
+            table += &std.map_or_else(|| "\n".to_owned(), |std| format!(",{}\n", std(v)));
+        }
+        table
+    };
+    let (even, growing) = (|_: f64| 0.05, |v: f64| 0.05 * v * v);
+    let told = |table: String| {
+        let result = identify(folder.path(), &table, QUADRATIC);
+        finding(&result, "uneven-scatter").map(str::to_owned)
+    };
+    assert!(told(table(&growing, None)).unwrap().contains("|residual| grows with speed"));
+    assert_eq!(told(table(&growing, Some(&growing))), None, "over its std the scatter is even");
+    assert_eq!(told(table(&even, None)), None);
+    let wrong = told(table(&even, Some(&growing))).unwrap();
+    assert!(wrong.contains("|residual| over its std falls with speed"), "{wrong}");
+}

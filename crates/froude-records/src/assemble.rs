@@ -6,7 +6,7 @@ use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table, expected, is_text_column, known_dimension, usual_unit};
-use crate::units::{Unit, parse_unit};
+use crate::units::{Unit, UnitError, parse_unit};
 
 /// What a column of a file becomes, decided by its header alone.
 pub(crate) enum Want<'s> {
@@ -62,7 +62,7 @@ pub(crate) fn plan<'s>(
             for (written, mapping) in &sidecar.columns {
                 if !header.contains(written) {
                     return Err(RecordError::UnknownColumn {
-                        place: Place::line(&sidecar.path, mapping.line),
+                        place: mapping.place.clone(),
                         column: written.clone(),
                         advice: format!(
                             "in {}: {}",
@@ -109,7 +109,7 @@ fn want(path: &Path, header: &str, place: &Place) -> Result<Want<'static>, Recor
     if is_text_column(name) {
         return Err(bad(format!("{name} is text and has no unit; write `{name}`")));
     }
-    let unit = parse_unit(unit).map_err(|e| bad(e.to_string()))?;
+    let unit = parse_unit(unit).map_err(|e| bad(in_light_of(name, unit, e).to_string()))?;
     check_dimension(place, header, name, &unit)?;
     Ok(Want::Number { name: name.to_owned(), unit: unit_of_column(name, unit) })
 }
@@ -121,12 +121,24 @@ fn may_be_text(name: &str) -> bool {
 
 fn missing_unit(path: &Path, name: &str, place: &Place) -> RecordError {
     let unit = usual_unit(name).unwrap_or_else(|| "unit".to_owned());
-    let sidecar = path.with_extension("toml");
-    let sidecar = sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     RecordError::MissingUnit {
         place: place.clone(),
         column: name.to_owned(),
-        advice: format!("write `{name} [{unit}]`, or map it with a sidecar {sidecar}"),
+        advice: format!("write `{name} [{unit}]`, or map it with a sidecar {}", sidecar_name(path)),
+    }
+}
+
+/// The name that a sidecar of this table has.
+fn sidecar_name(path: &Path) -> String {
+    let sidecar = path.with_extension("toml");
+    sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+}
+
+/// What is wrong with the unit of a column, with suggestions of the kind that a known name has.
+pub(crate) fn in_light_of(name: &str, text: &str, error: UnitError) -> UnitError {
+    match (known_dimension(name), usual_unit(name)) {
+        (Some(dimension), Some(usual)) => error.expecting(text, dimension, &usual),
+        _ => error,
     }
 }
 
@@ -169,11 +181,46 @@ pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Un
     }
 }
 
-/// A finite number in a cell.
-pub(crate) fn number(cell: &str, header: &str, place: &dyn Fn() -> Place) -> Result<f64, RecordError> {
+/// What to do about an empty cell of a column that is needed.
+pub(crate) fn fill_or_delete() -> String {
+    "fill it in or delete the row".to_owned()
+}
+
+impl Want<'_> {
+    /// What to do about an empty cell: a column that a table can do without may also be left out.
+    pub fn advice(&self, path: &Path, sidecar: Option<&Sidecar>) -> String {
+        let Some(name) = name_of(self) else { return fill_or_delete() };
+        let base = name.strip_suffix("_dot").unwrap_or(name);
+        let is_motion = matches!(base, "v_x" | "v_y" | "v_z" | "w_x" | "w_y" | "w_z" | "speed" | "angle");
+        let is_load = matches!(base, "f_x" | "f_y" | "f_z" | "m_x" | "m_y" | "m_z");
+        if is_motion || is_load || is_text_column(name) || name == "n_links" {
+            return fill_or_delete();
+        }
+        let leave_out = match sidecar {
+            Some(sidecar) => format!("take its line out of {}", sidecar.path.display()),
+            None => format!("name only the other columns in a sidecar {}", sidecar_name(path)),
+        };
+        let instead = match name {
+            "temperature" => "; the campaign can give one temperature for all rows in [fluid]",
+            "density" | "kinematic_viscosity" => "; the campaign can give one value for all rows in [fluid]",
+            _ if name.starts_with("std_") => "; all rows then have the same weight",
+            _ if name.starts_with("zero_") => "; then that reading is not subtracted from any row",
+            _ => "",
+        };
+        format!("fill it in, delete the row, or do without the column: {leave_out}{instead}")
+    }
+}
+
+/// A finite number in a cell; `advice` is what to do where it is empty.
+pub(crate) fn number(
+    cell: &str,
+    header: &str,
+    place: &dyn Fn() -> Place,
+    advice: &dyn Fn() -> String,
+) -> Result<f64, RecordError> {
     let clip = || cell.chars().take(40).collect::<String>();
     if cell.is_empty() {
-        return Err(RecordError::EmptyCell { place: place(), column: header.to_owned() });
+        return Err(RecordError::EmptyCell { place: place(), column: header.to_owned(), advice: advice() });
     }
     match fast_float2::parse::<f64, _>(cell) {
         Ok(x) if x.is_finite() => Ok(x),
@@ -253,7 +300,11 @@ fn column(table: &Table, want: &Want<'_>, raw: Raw, header_place: &Place) -> Res
             };
             if may_be_text(name) {
                 if let Some(row) = cells.iter().position(String::is_empty) {
-                    return Err(RecordError::EmptyCell { place: table.place_of_row(row), column: name.clone() });
+                    return Err(RecordError::EmptyCell {
+                        place: table.place_of_row(row),
+                        column: name.clone(),
+                        advice: fill_or_delete(),
+                    });
                 }
             } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
                 return Err(missing_unit(&table.path, name, header_place));

@@ -107,6 +107,8 @@ pub struct Source {
     pub sidecar: Option<PathBuf>,
     /// Force models for this source; empty for those of `[identify]`.
     pub models: Vec<String>,
+    /// Where each of `models` is named; empty where no file names them.
+    pub model_places: Vec<Place>,
     /// Which observations are used.
     pub keep: Option<Keep>,
     /// Text column whose values belong together (clusters, cross-validation).
@@ -195,7 +197,7 @@ pub struct BudgetEntry {
     pub name: Option<String>,
     /// What `standard` measures; a pure number when `relative`.
     pub dimension: Dimension,
-    /// Where it stands in the campaign.
+    /// Where its quantity is named in the campaign.
     pub place: Place,
 }
 
@@ -249,6 +251,8 @@ pub struct PlanBlock {
 pub struct Identify {
     /// Force models; empty for all that apply.
     pub models: Vec<String>,
+    /// Where each of `models` is named; empty where no file names them.
+    pub model_places: Vec<Place>,
     /// Bounds of coefficients.
     pub bounds: BoundsSpec,
     /// Coefficients held at a value (SI).
@@ -428,6 +432,7 @@ impl Campaign {
                 input: Input::Table(table.to_owned()),
                 sidecar,
                 models: Vec::new(),
+                model_places: Vec::new(),
                 keep: None,
                 group: None,
                 uncertainty: Vec::new(),

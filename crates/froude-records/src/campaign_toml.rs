@@ -32,6 +32,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     let document = parse_toml(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("campaign")?;
+    root.only(&["schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate"])?;
     let campaign = Campaign {
         path: path.to_owned(),
         name: root
@@ -46,7 +47,6 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
         identify: root.section("identify")?.map(|s| identify(&s)).transpose()?.unwrap_or_default(),
         simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
     };
-    root.finish()?;
     for (i, a) in campaign.sources.iter().enumerate() {
         if campaign.sources[..i].iter().any(|b| b.name == a.name) {
             return Err(RecordError::Value {
@@ -74,6 +74,7 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
     let link = s
         .section("link")?
         .map(|l| -> Result<LinkSpec, RecordError> {
+            l.only(&["major_semi_axis", "minor_semi_axis", "half_length"])?;
             let need = |key| {
                 l.positive(key, Dimension::LENGTH)?
                     .ok_or_else(|| l.missing(key, "a link needs major_semi_axis, minor_semi_axis and half_length"))
@@ -83,7 +84,6 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
                 minor_semi_axis_m: need("minor_semi_axis")?,
                 half_length_m: need("half_length")?,
             };
-            l.finish()?;
             Ok(out)
         })
         .transpose()?;
@@ -125,7 +125,27 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
     Ok(out)
 }
 
+/// The keys of a source.
+const SOURCE_KEYS: [&str; 15] = [
+    "name",
+    "kind",
+    "table",
+    "record",
+    "runs",
+    "cases",
+    "mesh",
+    "select",
+    "sidecar",
+    "models",
+    "keep",
+    "group",
+    "uncertainty",
+    "tare",
+    "plan",
+];
+
 fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
+    s.only(&SOURCE_KEYS)?;
     let name = s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"circulation tank\", say"))?.to_owned();
     let kinds = [SourceKind::Tank, SourceKind::Towing, SourceKind::Cfd, SourceKind::Potential, SourceKind::Published];
     let kind = one_of(s, "kind", &SourceKind::NAMES, &kinds)?.ok_or_else(|| {
@@ -161,17 +181,18 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     let tare = s
         .section("tare")?
         .map(|t| -> Result<Tare, RecordError> {
+            t.only(&["record", "select"])?;
             let record = t.text("record")?.ok_or_else(|| t.missing("record", "name the estimate.json of the tare"))?;
-            let out = Tare { record: s.source.relative(record), select: t.text("select")?.map(str::to_owned) };
-            t.finish()?;
-            Ok(out)
+            Ok(Tare { record: s.source.relative(record), select: t.text("select")?.map(str::to_owned) })
         })
         .transpose()?;
-    let out = Source {
+    let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
+    Ok(Source {
         name,
         kind,
         sidecar: path("sidecar")?,
-        models: s.texts("models")?,
+        models,
+        model_places,
         keep,
         group: s.text("group")?.map(str::to_owned),
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
@@ -182,9 +203,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
             .find_map(|key| s.get(key))
             .map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
         input,
-    };
-    s.finish()?;
-    Ok(out)
+    })
 }
 
 /// One of a few words, with the nearest known one in the message.
@@ -205,13 +224,14 @@ fn one_of<T: Copy>(
 }
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
+    s.only(&["quantity", "standard", "shared", "dof", "name"])?;
     let quantity = s
         .text("quantity")?
         .ok_or_else(|| s.missing("quantity", "name the uncertain column: f_x, speed, angle, density, …"))?;
     let value = s.get("standard").ok_or_else(|| {
         s.missing("standard", "write the standard uncertainty with its unit: \"0.01 N\" or \"0.5 %\"")
     })?;
-    let standard = s.as_quantity("standard", value)?;
+    let standard = s.quantity_like("standard", value, known_dimension(quantity).map(|d| (quantity, d)))?;
     let relative = standard.unit.text.trim() == "%";
     let dimension = standard.unit.dimension;
     if let Some(expected) = known_dimension(quantity)
@@ -232,7 +252,7 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
     let shared = one_of(s, "shared", &Shared::NAMES, &levels)?.ok_or_else(|| {
         s.missing("shared", "say who shares the error: \"sample\", \"run\", \"setup\" or \"campaign\"")
     })?;
-    let out = BudgetEntry {
+    Ok(BudgetEntry {
         quantity: quantity.to_owned(),
         standard: si,
         relative,
@@ -240,10 +260,8 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
         dof: positive_number(s, "dof")?,
         name: s.text("name")?.map(str::to_owned),
         dimension,
-        place: s.place(),
-    };
-    s.finish()?;
-    Ok(out)
+        place: s.get("quantity").map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
+    })
 }
 
 /// A plain number larger than zero.
@@ -265,6 +283,7 @@ fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>,
 }
 
 fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
+    s.only(&["configurations", "speed", "angle", "repeats"])?;
     let speed =
         s.get("speed").ok_or_else(|| s.missing("speed", "write \"0.1 m/s\", a list, or { start, stop, step }"))?;
     let out = PlanBlock {
@@ -276,7 +295,6 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
     if out.configurations.is_empty() {
         return Err(s.missing("configurations", "write configurations = [\"H1LT\"], say"));
     }
-    s.finish()?;
     Ok(out)
 }
 
@@ -297,12 +315,12 @@ fn series<'a>(
         return Ok(vec![s.as_quantity_of(key, value, dimension)?]);
     }
     let range = s.as_section(key, value)?;
+    range.only(&["start", "stop", "step"])?;
     let need = |end: &'static str| {
         let value = range.get(end).ok_or_else(|| range.missing(end, "a range needs start, stop and step"))?;
-        range.as_quantity(end, value).and_then(|q| range.as_quantity_of(end, value, dimension).map(|_| q))
+        range.as_written(end, value, key, dimension)
     };
     let (start, stop, step) = (need("start")?, need("stop")?, need("step")?);
-    range.finish()?;
     let count = (stop.value_si - start.value_si) / step.value_si;
     if !(count.is_finite() && (0.0..=MOST_STEPS).contains(&count)) {
         return Err(s.wrong(
@@ -363,8 +381,10 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         one_of(s, "angle_offset", &["ignore", "estimate"], &[AngleOffset::Ignore, AngleOffset::Estimate])?
             .unwrap_or_default();
     let huber = positive_number(s, "huber")?;
+    let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
     let out = Identify {
-        models: s.texts("models")?,
+        models,
+        model_places,
         bounds: bounds(s)?,
         fixed,
         exclude: s.texts("exclude")?,
@@ -384,6 +404,7 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
 }
 
 fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
+    s.only(&["coefficient", "value", "standard_uncertainty", "model"])?;
     let need = |key: &'static str| -> Result<f64, RecordError> {
         let value =
             s.get(key).ok_or_else(|| s.missing(key, "a prior needs coefficient, value and standard_uncertainty"))?;
@@ -402,15 +423,15 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
             problem: "must be larger than zero; a value without uncertainty is no prior, hold it with fixed".to_owned(),
         });
     }
-    s.finish()?;
     Ok(out)
 }
 
 fn range_block(s: &Section<'_>) -> Result<RangeBlock, RecordError> {
+    s.only(&["column", "low", "high"])?;
     let column = s.text("column")?.ok_or_else(|| s.missing("column", "name the column of the range"))?.to_owned();
     let end = |key: &'static str, open: f64| -> Result<f64, RecordError> {
         s.get(key).map_or(Ok(open), |v| match known_dimension(&column) {
-            Some(dimension) => s.as_quantity_of(key, v, dimension),
+            Some(dimension) => s.as_written(key, v, &column, dimension).map(|q| q.value_si),
             None => s.as_quantity(key, v).map(|q| q.value_si),
         })
     };
@@ -422,7 +443,6 @@ fn range_block(s: &Section<'_>) -> Result<RangeBlock, RecordError> {
             problem: "is not below high".to_owned(),
         });
     }
-    s.finish()?;
     Ok(out)
 }
 
@@ -439,6 +459,7 @@ fn user_model(s: &Section<'_>) -> Result<UserModel, RecordError> {
 }
 
 fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
+    s.only(&["seed", "record", "select", "model", "coefficients", "misalignment", "sensor"])?;
     let select = s.text("select")?.map(str::to_owned);
     let model = s.text("model")?;
     let record = s.text("record")?.map(|r| Truth::Record { path: s.source.relative(r), select });
@@ -460,19 +481,18 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
             "a twin needs its truth once: record (with select), or model and [simulate.coefficients]",
         ));
     };
-    let out = Simulate {
+    Ok(Simulate {
         seed: s
             .integer("seed")?
             .ok_or_else(|| s.missing("seed", "write seed = 1, say; the same seed gives the same table"))?,
         truth,
         sensors: s.sections("sensor")?.iter().map(sensor).collect::<Result<_, _>>()?,
         misalignment_rad: s.quantity("misalignment", Dimension::ONE)?,
-    };
-    s.finish()?;
-    Ok(out)
+    })
 }
 
 fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
+    s.only(&["quantity", "noise", "resolution", "drift", "bias"])?;
     let quantity = s
         .text("quantity")?
         .ok_or_else(|| s.missing("quantity", "name the measured column: f_x, f_y, speed, angle"))?
@@ -481,18 +501,16 @@ fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
     let part = |key: &'static str| -> Result<Option<f64>, RecordError> {
         s.get(key)
             .map(|v| match dimension {
-                Some(d) => s.as_quantity_of(key, v, d),
+                Some(d) => s.as_written(key, v, &quantity, d).map(|q| q.value_si),
                 None => s.as_quantity(key, v).map(|q| q.value_si),
             })
             .transpose()
     };
-    let out = SensorSpec {
+    Ok(SensorSpec {
         noise: part("noise")?,
         resolution: part("resolution")?,
         drift: part("drift")?,
         bias: part("bias")?,
         quantity,
-    };
-    s.finish()?;
-    Ok(out)
+    })
 }

@@ -79,7 +79,10 @@ pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<T
         }
         for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
             match raw {
-                Raw::Numbers(values) => values.push(number(cell.trim(), &header[j], &|| Place::line(path, line))?),
+                Raw::Numbers(values) => {
+                    let advice = || wants[j].advice(path, sidecar);
+                    values.push(number(cell.trim(), &header[j], &|| Place::line(path, line), &advice)?);
+                }
                 Raw::Texts(_) if is_left_out[j] => {}
                 Raw::Texts(texts) => texts.push(cell.clone().into_owned()),
             }

@@ -19,6 +19,13 @@ pub enum Position {
     Whole,
     /// A line of a text file.
     Line(usize),
+    /// A character of a text file.
+    Character {
+        /// Its line.
+        line: usize,
+        /// Its place in the line, in characters.
+        column: usize,
+    },
     /// A row of a table without lines (Parquet).
     Row(usize),
 }
@@ -36,6 +43,12 @@ impl Place {
         Self { path: path.to_owned(), position: Position::Line(line) }
     }
 
+    /// A character, line and column counted from 1.
+    #[must_use]
+    pub fn character(path: &Path, line: usize, column: usize) -> Self {
+        Self { path: path.to_owned(), position: Position::Character { line, column } }
+    }
+
     /// A row, counted from 1.
     #[must_use]
     pub fn row(path: &Path, row: usize) -> Self {
@@ -49,6 +62,7 @@ impl fmt::Display for Place {
         match self.position {
             Position::Whole => write!(f, "{path}"),
             Position::Line(line) => write!(f, "{path}:{line}"),
+            Position::Character { line, column } => write!(f, "{path}:{line}:{column}"),
             Position::Row(row) => write!(f, "{path}, row {row}"),
         }
     }
@@ -241,12 +255,14 @@ pub enum RecordError {
         column: String,
     },
     /// A cell without content.
-    #[error("{place}: column `{column}`: the cell is empty; fill it in or delete the row")]
+    #[error("{place}: column `{column}`: the cell is empty; {advice}")]
     EmptyCell {
         /// Where.
         place: Place,
         /// The header.
         column: String,
+        /// What to do: a column that a table can do without may also be left out.
+        advice: String,
     },
     /// A cell that is not a number.
     #[error("{place}: column `{column}`: `{found}` is not a number")]

@@ -1,6 +1,6 @@
 //! `keep = "angle <= 39 deg and configuration != H1LT"`: which observations are used.
 
-use crate::table::{expected, is_text_column};
+use crate::table::{expected, is_text_column, usual_unit_for};
 use crate::units::{Quantity, parse_quantity};
 
 /// Clauses that must all hold.
@@ -102,7 +102,17 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
         Ok(_) => parse_quantity(&format!("{value} 1")),
         Err(_) => parse_quantity(value),
     };
-    let quantity = quantity.map_err(|e| refuse(e.to_string()))?;
+    let quantity = quantity.map_err(|e| {
+        let e = match expected(column) {
+            Some((dimension, _)) => e.expecting(value, dimension, &usual_unit_for(column, dimension)),
+            None => e,
+        };
+        refuse(e.to_string())
+    })?;
+    // Degrees and radians are both pure numbers: 39 would be 39 rad, which keeps every row.
+    if matches!(column, "angle" | "std_angle") && value.parse::<f64>().is_ok_and(|v| v != 0.0) {
+        return Err(refuse(format!("{value} has no unit; write {value} deg or {value} rad")));
+    }
     if let Some((dimension, words)) = expected(column)
         && dimension != quantity.unit.dimension
     {

@@ -23,7 +23,7 @@ pub mod finding;
 pub mod hash;
 pub mod json;
 pub mod keep;
-mod nearest;
+pub mod nearest;
 pub mod parquet_table;
 pub mod scale;
 pub mod schema;

@@ -6,12 +6,17 @@
 /// deletion, replacement, swap of neighbours) for every three letters, one at least.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    all_nearest(name, known).first().copied()
+}
+
+/// Every one of `known` that is as near as the nearest, in their order.
+fn all_nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     const LONGEST: usize = 64;
     let letters: Vec<char> = name.chars().take(LONGEST + 1).collect();
     if letters.is_empty() || letters.len() > LONGEST {
-        return None;
+        return Vec::new();
     }
-    known
+    let near: Vec<(usize, &str)> = known
         .into_iter()
         .filter(|candidate| candidate.len() <= LONGEST)
         .map(|candidate| {
@@ -22,12 +27,13 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
             };
             (distance, candidate)
         })
-        .min_by_key(|(distance, _)| *distance)
         .filter(|(distance, candidate)| {
             let longest = letters.len().max(candidate.len());
             *distance <= (longest / 3).max(1) && *distance < letters.len().max(2)
         })
-        .map(|(_, candidate)| candidate)
+        .collect();
+    let least = near.iter().map(|(distance, _)| *distance).min();
+    near.into_iter().filter(|(distance, _)| Some(*distance) == least).map(|(_, candidate)| candidate).collect()
 }
 
 /// Edits from `a` to `b` (optimal string alignment).
@@ -49,14 +55,24 @@ fn edits(a: &[char], b: &[char]) -> usize {
     last[b.len()]
 }
 
-/// `; did you mean …?` or the list of known names, for the end of a message.
+/// `did you mean …?` or the list of known names, for the end of a message.
 #[must_use]
 pub fn suggestion<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
-    if let Some(near) = nearest(name, known.clone()) {
-        return format!("did you mean `{near}`?");
+    if let Some(meant) = meant(name, known.clone()) {
+        return meant;
     }
     let names: Vec<&str> = known.into_iter().collect();
     format!("known: {}", names.join(", "))
+}
+
+/// `did you mean …?` for one name that is near enough, or two that are equally near; nothing where more are.
+#[must_use]
+pub fn meant<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    match all_nearest(name, known).as_slice() {
+        [only] => Some(format!("did you mean `{only}`?")),
+        [one, other] => Some(format!("did you mean `{one}` or `{other}`?")),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -74,5 +90,8 @@ mod tests {
         assert_eq!(nearest("temperature", known), None);
         assert_eq!(nearest("", known), None);
         assert_eq!(nearest(&"x".repeat(1000), known), None);
+        assert_eq!(suggestion("sped", known), "did you mean `speed`?");
+        assert_eq!(suggestion("f_z", known), "did you mean `f_x` or `f_y`?", "both are one letter away");
+        assert_eq!(suggestion("f7", ["f1", "f2", "f3"]), "known: f1, f2, f3", "none is nearer than the others");
     }
 }

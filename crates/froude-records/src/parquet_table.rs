@@ -98,7 +98,8 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
                 fields[j].get_basic_info().logical_type_ref(),
                 Some(LogicalType::Integer(integer)) if !integer.is_signed
             );
-            let cells = Cells { path, column: &header[j], first_row, n_rows };
+            let advice = || want.advice(path, sidecar);
+            let cells = Cells { path, column: &header[j], advice: &advice, first_row, n_rows };
             cells.read(column, is_unsigned, &mut raws[j])?;
         }
         first_row += n_rows;
@@ -152,6 +153,8 @@ impl Iterator for Checked {
 struct Cells<'a> {
     path: &'a Path,
     column: &'a str,
+    /// What to do about an empty cell.
+    advice: &'a dyn Fn() -> String,
     first_row: usize,
     n_rows: usize,
 }
@@ -197,7 +200,11 @@ impl Cells<'_> {
     ) -> Result<(), RecordError> {
         self.each(column, |row, cell| {
             let Some(cell) = cell else {
-                return Err(RecordError::EmptyCell { place: self.place(row), column: self.column.to_owned() });
+                return Err(RecordError::EmptyCell {
+                    place: self.place(row),
+                    column: self.column.to_owned(),
+                    advice: (self.advice)(),
+                });
             };
             let value = number(cell);
             if !value.is_finite() {

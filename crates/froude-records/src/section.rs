@@ -8,7 +8,8 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Place, RecordError};
-use crate::nearest::suggestion;
+use crate::nearest::{nearest, suggestion};
+use crate::table::usual_unit_for;
 use crate::units::{Dimension, Quantity, parse_quantity};
 
 /// A file's text and path, for lines in messages.
@@ -19,14 +20,12 @@ pub(crate) struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// The line of a byte offset, from 1.
-    pub fn line(&self, offset: usize) -> usize {
-        let end = offset.min(self.text.len());
-        1 + memchr::memchr_iter(b'\n', &self.text.as_bytes()[..end]).count()
-    }
-
+    /// The line and column of a byte offset.
     pub fn place(&self, offset: usize) -> Place {
-        Place::line(self.path, self.line(offset))
+        let before = self.text.get(..offset).unwrap_or(self.text);
+        let start = before.rfind('\n').map_or(0, |at| at + 1);
+        let line = 1 + memchr::memchr_iter(b'\n', before.as_bytes()).count();
+        Place::character(self.path, line, 1 + before[start..].chars().count())
     }
 
     /// A path written in the file, seen from the file's folder.
@@ -43,7 +42,7 @@ pub(crate) fn parse(source: Source<'_>) -> Result<Spanned<DeTable<'_>>, RecordEr
     })
 }
 
-/// One table of the document. Keys that are asked for are known; [`Section::finish`] refuses all others.
+/// One table of the document. Keys that are declared ([`Section::only`]) or asked for are known; all others are refused.
 pub(crate) struct Section<'a> {
     pub source: Source<'a>,
     pub name: String,
@@ -102,13 +101,32 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// A key that is needed and not there; where an unknown key looks like it, that one is told.
     pub fn missing(&self, key: &str, advice: &str) -> RecordError {
-        RecordError::MissingKey {
+        self.misspelt(key).unwrap_or_else(|| RecordError::MissingKey {
             place: self.place(),
             section: self.label(),
             key: key.to_owned(),
             advice: advice.to_owned(),
-        }
+        })
+    }
+
+    /// The unknown key that was probably meant to be `key`.
+    fn misspelt(&self, key: &str) -> Option<RecordError> {
+        let (written, offset, _) = self.others().into_iter().find(|(k, ..)| nearest(k, [key]).is_some())?;
+        Some(RecordError::UnknownKey {
+            place: self.source.place(offset),
+            key: written.to_owned(),
+            section: self.label(),
+            advice: suggestion(written, [key]),
+        })
+    }
+
+    /// Declares every key of the section, and refuses others before anything is read: a misspelt key that the section
+    /// needs is then told as misspelt and not as missing.
+    pub fn only(&self, known: &[&'static str]) -> Result<(), RecordError> {
+        self.asked.borrow_mut().extend(known);
+        self.finish()
     }
 
     pub fn text(&self, key: &'static str) -> Result<Option<&'a str>, RecordError> {
@@ -179,14 +197,48 @@ impl<'a> Section<'a> {
     }
 
     pub fn as_quantity(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<Quantity, RecordError> {
+        self.quantity_like(key, value, None)
+    }
+
+    /// A quantity of any kind; where one is expected, messages suggest units of that kind.
+    ///
+    /// `like` is that kind, and the name (of the key or of the column that it belongs to) that its usual unit hangs on.
+    pub fn quantity_like(
+        &self,
+        key: &str,
+        value: &'a Spanned<DeValue<'a>>,
+        like: Option<(&str, Dimension)>,
+    ) -> Result<Quantity, RecordError> {
+        let usual = like.map(|(name, dimension)| (dimension, usual_unit_for(name, dimension)));
         let Some(text) = value.get_ref().as_str() else {
-            return Err(self.wrong(
-                key,
-                value,
-                format!("is {}; expected a quantity with its unit in quotes, such as \"0.4 m/s\"", found(value)),
-            ));
+            let number = self.as_number(key, value).map_or_else(|_| "0.4".to_owned(), |_| found(value));
+            let example = usual.map_or_else(|| "0.4 m/s".to_owned(), |(_, unit)| format!("{number} {unit}"));
+            let problem =
+                format!("is {}; expected a quantity with its unit in quotes, such as {example:?}", found(value));
+            return Err(self.wrong(key, value, problem));
         };
-        parse_quantity(text).map_err(|e| self.wrong(key, value, format!("cannot be read: {e}")))
+        parse_quantity(text).map_err(|e| {
+            let e = match usual {
+                Some((dimension, unit)) => e.expecting(text, dimension, &unit),
+                None => e,
+            };
+            self.wrong(key, value, format!("cannot be read: {e}"))
+        })
+    }
+
+    /// A quantity of a given dimension as it is written; `name` as in [`Section::quantity_like`].
+    pub fn as_written(
+        &self,
+        key: &str,
+        value: &'a Spanned<DeValue<'a>>,
+        name: &str,
+        dimension: Dimension,
+    ) -> Result<Quantity, RecordError> {
+        let quantity = self.quantity_like(key, value, Some((name, dimension)))?;
+        match quantity.expect(dimension) {
+            Ok(_) => Ok(quantity),
+            Err(e) => Err(self.wrong(key, value, format!("is {}: {e}", found(value)))),
+        }
     }
 
     pub fn as_quantity_of(
@@ -195,21 +247,26 @@ impl<'a> Section<'a> {
         value: &'a Spanned<DeValue<'a>>,
         dimension: Dimension,
     ) -> Result<f64, RecordError> {
-        self.as_quantity(key, value)?
-            .expect(dimension)
-            .map_err(|e| self.wrong(key, value, format!("is {}: {e}", found(value))))
+        self.as_written(key, value, key, dimension).map(|quantity| quantity.value_si)
     }
 
     /// A list of texts; a single text counts as a list of one.
     pub fn texts(&self, key: &'static str) -> Result<Vec<String>, RecordError> {
+        Ok(self.placed_texts(key)?.into_iter().map(|(text, _)| text).collect())
+    }
+
+    /// The same, each with its place.
+    pub fn placed_texts(&self, key: &'static str) -> Result<Vec<(String, Place)>, RecordError> {
         let Some(value) = self.get(key) else { return Ok(Vec::new()) };
-        if let Some(one) = value.get_ref().as_str() {
-            return Ok(vec![one.to_owned()]);
+        let placed =
+            |v: &'a Spanned<DeValue<'a>>| Ok((self.as_text(key, v)?.to_owned(), self.source.place(v.span().start)));
+        if value.get_ref().is_str() {
+            return Ok(vec![placed(value)?]);
         }
         let Some(list) = value.get_ref().as_array() else {
             return Err(self.wrong(key, value, format!("is {}; expected a list of texts", found(value))));
         };
-        list.iter().map(|v| self.as_text(key, v).map(str::to_owned)).collect()
+        list.iter().map(placed).collect()
     }
 
     /// A table inside this one.
@@ -255,21 +312,20 @@ impl<'a> Section<'a> {
     /// Checks `schema = 1`.
     pub fn schema(&self, what: &str) -> Result<(), RecordError> {
         let known = format!("{what} schema 1");
+        let place = || self.raw("schema").map_or_else(|| self.place(), |v| self.source.place(v.span().start));
         match self.integer("schema") {
             Ok(Some(1)) => Ok(()),
-            Ok(Some(newer)) if newer > 1 => Err(RecordError::NewerSchema {
-                place: self.get("schema").map_or_else(|| self.place(), |v| self.source.place(v.span().start)),
-                found: format!("{what} schema {newer}"),
-                known,
-            }),
-            Ok(Some(other)) => {
-                Err(RecordError::Schema { place: self.place(), found: other.to_string(), known: "1".to_owned() })
+            Ok(Some(newer)) if newer > 1 => {
+                Err(RecordError::NewerSchema { place: place(), found: format!("{what} schema {newer}"), known })
             }
-            Ok(None) => Err(RecordError::Schema {
+            Ok(Some(other)) => {
+                Err(RecordError::Schema { place: place(), found: other.to_string(), known: "1".to_owned() })
+            }
+            Ok(None) => Err(self.misspelt("schema").unwrap_or_else(|| RecordError::Schema {
                 place: Place::line(self.source.path, 1),
                 found: "missing".to_owned(),
                 known: "schema = 1".to_owned(),
-            }),
+            })),
             Err(e) => Err(e),
         }
     }

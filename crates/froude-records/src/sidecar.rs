@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use crate::assemble::{Raw, check_dimension, unit_of_column};
+use crate::assemble::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
@@ -35,15 +35,16 @@ pub struct Mapping {
     pub sign: f64,
     /// Factor that gives a dimensionless column its dimension.
     pub scale: Option<Scale>,
-    /// Line in the sidecar.
-    pub line: usize,
+    /// Where it stands in the sidecar.
+    pub place: Place,
 }
 
 /// Whether a `.toml` beside a table is a sidecar (it has `[columns]` or `[constants]`) and not a campaign.
 pub(crate) fn is_sidecar(path: &Path) -> bool {
     let is_head = |line: &str| {
         let line = line.trim_start();
-        line.starts_with("[columns") || line.starts_with("[constants")
+        // Without its last letter, so that [column] is told as misspelt and not passed over.
+        line.starts_with("[column") || line.starts_with("[constant")
     };
     read_bytes(path, LARGEST_BYTES, "a sidecar").is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(is_head))
 }
@@ -68,6 +69,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     let document = parse(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("sidecar")?;
+    root.only(&["schema", "constants", "columns"])?;
     let mut constants = IndexMap::new();
     if let Some(section) = root.section("constants")? {
         for (name, _, value) in section.entries() {
@@ -81,11 +83,11 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     for (header, _, value) in section.entries() {
         columns.insert(header.to_owned(), mapping(&section.as_section(header, value)?)?);
     }
-    root.finish()?;
     Ok(Sidecar { path: path.to_owned(), constants, columns })
 }
 
 fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
+    section.only(&["name", "unit", "sign", "scale"])?;
     let name = section.text("name")?.ok_or_else(|| section.missing("name", "write name = \"f_x\", say"))?.to_owned();
     let place = section.place();
     let unit = match section.text("unit")? {
@@ -93,7 +95,7 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
             let unit = parse_unit(text).map_err(|e| RecordError::Value {
                 place: place.clone(),
                 key: "unit".to_owned(),
-                problem: format!("cannot be read: {e}"),
+                problem: format!("cannot be read: {}", in_light_of(&name, text, e)),
             })?;
             check_dimension(&place, &format!("{name} [{text}]"), &name, &unit)?;
             Some(unit_of_column(&name, unit))
@@ -118,7 +120,6 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
             })
         })
         .transpose()?;
-    section.finish()?;
     if scale.is_some() && unit.as_ref().is_some_and(|u| u.dimension != Dimension::ONE) {
         return Err(RecordError::Value {
             place,
@@ -133,14 +134,7 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
             advice: "write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column".to_owned(),
         });
     }
-    Ok(Mapping { name, unit, sign, scale, line: line_of(section) })
-}
-
-fn line_of(section: &Section<'_>) -> usize {
-    match section.place().position {
-        crate::error::Position::Line(line) => line,
-        _ => 0,
-    }
+    Ok(Mapping { name, unit, sign, scale, place })
 }
 
 impl Sidecar {
@@ -183,13 +177,17 @@ impl Sidecar {
                 if is_text_column(&mapping.name)
                     && let Some(row) = cells.iter().position(String::is_empty)
                 {
-                    return Err(RecordError::EmptyCell { place: place(row), column: written.to_owned() });
+                    return Err(RecordError::EmptyCell {
+                        place: place(row),
+                        column: written.to_owned(),
+                        advice: fill_or_delete(),
+                    });
                 }
                 return Ok(ColumnData::Text(cells));
             }
             (Raw::Texts(_), true) => {
                 return Err(RecordError::ColumnKind {
-                    place: Place::line(&self.path, mapping.line),
+                    place: mapping.place.clone(),
                     column: written.to_owned(),
                     found: "text",
                     expected: "numbers",
@@ -230,7 +228,7 @@ impl Sidecar {
         done: &[(usize, Column)],
     ) -> Result<ColumnData, RecordError> {
         let refuse = |problem: String| RecordError::Value {
-            place: Place::line(&self.path, mapping.line),
+            place: mapping.place.clone(),
             key: "scale".to_owned(),
             problem: format!("{:?}: {problem}", scale.text()),
         };
@@ -257,7 +255,7 @@ impl Sidecar {
         }
         let unit = Unit::si(dimension.unwrap_or(Dimension::ONE));
         let header = format!("{} [{unit}]", mapping.name);
-        check_dimension(&Place::line(&self.path, mapping.line), &header, &mapping.name, &unit)?;
+        check_dimension(&mapping.place, &header, &mapping.name, &unit)?;
         Ok(ColumnData::Number { dimension: unit.dimension, unit, si })
     }
 }

@@ -204,14 +204,19 @@ pub fn is_text_column(name: &str) -> bool {
 
 /// The usual unit of a known column, for advice.
 pub(crate) fn usual_unit(name: &str) -> Option<String> {
-    let dimension = known_dimension(name)?;
-    Some(match (name, dimension) {
-        ("angle", _) => "deg".to_owned(),
+    known_dimension(name).map(|dimension| usual_unit_for(name, dimension))
+}
+
+/// The unit that people write for a key or column of this kind, for advice.
+pub(crate) fn usual_unit_for(name: &str, dimension: Dimension) -> String {
+    match (name, dimension) {
+        ("angle" | "std_angle" | "misalignment", Dimension::ONE) => "deg".to_owned(),
+        ("salinity", Dimension::ONE) => "g/kg".to_owned(),
         (_, Dimension::TEMPERATURE) => "degC".to_owned(),
         (_, Dimension::ANGULAR_SPEED) => "rad/s".to_owned(),
         (_, Dimension::ANGULAR_ACCELERATION) => "rad/s^2".to_owned(),
         _ => dimension.to_string(),
-    })
+    }
 }
 
 /// What a known column measures, and the same in words for messages.

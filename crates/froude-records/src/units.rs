@@ -161,7 +161,7 @@ impl Dimension {
             Self::DENSITY => "a density",
             Self::KINEMATIC_VISCOSITY => "a kinematic viscosity",
             Self::DYNAMIC_VISCOSITY => "a dynamic viscosity",
-            Self::TEMPERATURE => "a temperature",
+            Self::TEMPERATURE => return "a temperature (degC or K)".to_owned(),
             Self::CURRENT => "a current",
             Self::VOLTAGE => "a voltage",
             _ => return format!("a quantity in {self}"),
@@ -327,8 +327,11 @@ impl fmt::Display for Quantity {
 #[non_exhaustive]
 pub enum UnitError {
     /// Nothing was written.
-    #[error("no unit is given; write for example `m/s`, or `1` for a pure number")]
-    Empty,
+    #[error("no unit is given; write for example {example}")]
+    Empty {
+        /// A unit, in backquotes.
+        example: String,
+    },
     /// A symbol that is no unit.
     #[error("unknown unit `{symbol}`{advice}")]
     Unknown {
@@ -364,16 +367,20 @@ pub enum UnitError {
         unit: String,
     },
     /// A quantity without a number.
-    #[error("`{text}` does not begin with a number; write a quantity as `0.4 m/s`")]
+    #[error("`{text}` does not begin with a number; write a quantity as `0.4 {unit}`")]
     NoNumber {
         /// As written.
         text: String,
+        /// A unit for the example.
+        unit: String,
     },
     /// A quantity without a unit.
-    #[error("`{text}` has no unit; write for example `{text} m/s`, or `{text} 1` for a pure number")]
+    #[error("`{text}` has no unit; write for example {example}")]
     NoUnit {
         /// As written.
         text: String,
+        /// The same with a unit, in backquotes.
+        example: String,
     },
     /// A number beyond the range of a double.
     #[error("`{text}` is not a finite number")]
@@ -413,7 +420,7 @@ const LONGEST: usize = 200;
 pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
     let text = text.trim();
     if text.is_empty() {
-        return Err(UnitError::Empty);
+        return Err(UnitError::Empty { example: "`m/s`, or `1` for a pure number".to_owned() });
     }
     if text.len() > LONGEST {
         return Err(UnitError::Syntax { unit: shorten(text), problem: format!("it is longer than {LONGEST} bytes") });
@@ -440,17 +447,20 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
 /// [`UnitError`] when the number or the unit is missing or cannot be read.
 pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
     let text = text.trim();
+    let no_number = || UnitError::NoNumber { text: shorten(text), unit: "m/s".to_owned() };
     let end = number_length(text);
     if end == 0 {
-        return Err(UnitError::NoNumber { text: shorten(text) });
+        return Err(no_number());
     }
     let (number, unit) = text.split_at(end);
-    let value: f64 = number.parse().map_err(|_| UnitError::NoNumber { text: shorten(text) })?;
+    let value: f64 = number.parse().map_err(|_| no_number())?;
     if !value.is_finite() {
         return Err(UnitError::NotFinite { text: shorten(text) });
     }
     if unit.trim().is_empty() {
-        return Err(UnitError::NoUnit { text: shorten(text) });
+        let text = shorten(text);
+        let example = format!("`{text} m/s`, or `{text} 1` for a pure number");
+        return Err(UnitError::NoUnit { text, example });
     }
     let unit = parse_unit(unit)?;
     let value_si = unit.to_si(value);
@@ -611,8 +621,8 @@ impl Parser<'_> {
         if matches!(symbol, "degC" | "°C") {
             return Err(UnitError::Offset { unit: self.text.to_owned() });
         }
-        let (above, below, dimension) =
-            look_up(symbol).ok_or_else(|| UnitError::Unknown { symbol: symbol.to_owned(), advice: advice(symbol) })?;
+        let (above, below, dimension) = look_up(symbol)
+            .ok_or_else(|| UnitError::Unknown { symbol: symbol.to_owned(), advice: advice(symbol, None) })?;
         Ok(Scale { above, below, dimension })
     }
 
@@ -739,8 +749,32 @@ fn look_up(symbol: &str) -> Option<(f64, f64, Dimension)> {
     })
 }
 
-/// What was probably meant.
-fn advice(symbol: &str) -> String {
+impl UnitError {
+    /// The same error where the kind of quantity is known: what it suggests is of that kind.
+    ///
+    /// `text` is the quantity or unit as written, `usual` the unit that people write for it.
+    #[must_use]
+    pub(crate) fn expecting(self, text: &str, dimension: Dimension, usual: &str) -> Self {
+        match self {
+            Self::Empty { .. } => Self::Empty { example: format!("`{usual}`") },
+            Self::NoNumber { text, .. } => Self::NoNumber { text, unit: usual.to_owned() },
+            Self::NoUnit { text, .. } => Self::NoUnit { example: format!("`{text} {usual}`"), text },
+            Self::Unknown { symbol, advice: found } => {
+                let text = text.trim();
+                let stands_alone = text[number_length(text)..].trim() == symbol;
+                // A part of `kg/m^3` need not be a density.
+                let advice = if stands_alone { advice(&symbol, Some(dimension)) } else { found };
+                let advice = if advice.is_empty() { format!("; write for example `{usual}`") } else { advice };
+                Self::Unknown { symbol, advice }
+            }
+            other => other,
+        }
+    }
+}
+
+/// What was probably meant, among the units of one kind where that is known.
+fn advice(symbol: &str, dimension: Option<Dimension>) -> String {
+    let is_wanted = |found: Dimension| dimension.is_none_or(|wanted| wanted == found);
     let meant = match symbol {
         "mps" => "m/s",
         "mps2" => "m/s^2",
@@ -754,13 +788,16 @@ fn advice(symbol: &str) -> String {
         "newton" | "newtons" | "Newton" => "N",
         "meter" | "meters" | "metre" | "metres" => "m",
         "litre" | "liter" => "L",
-        _ => {
-            let known = PLAIN.iter().map(|u| u.0).chain(PREFIXED.iter().map(|u| u.0));
-            match crate::nearest::nearest(symbol, known) {
-                Some(near) => near,
-                None => return String::new(),
-            }
-        }
+        "kelvin" | "Kelvin" => "K",
+        _ => "",
     };
-    format!("; did you mean `{meant}`?")
+    if parse_unit(meant).is_ok_and(|unit| is_wanted(unit.dimension)) {
+        return format!("; did you mean `{meant}`?");
+    }
+    let plain = PLAIN.iter().map(|u| (u.0, u.3)).chain(PREFIXED.iter().map(|u| (u.0, u.2)));
+    let known = plain.chain([("degC", Dimension::TEMPERATURE)]).filter(|(_, found)| is_wanted(*found));
+    match crate::nearest::nearest(symbol, known.map(|(name, _)| name)) {
+        Some(near) => format!("; did you mean `{near}`?"),
+        None => String::new(),
+    }
 }

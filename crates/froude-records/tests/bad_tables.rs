@@ -110,10 +110,7 @@ fn headers_are_held_to_one_form() {
     refused("f_x [N],f_x [N]\n1,2\n", "tank.csv:1: column `f_x [N]` appears twice; rename or delete one");
     refused("speed [m/s\n1\n", "tank.csv:1: header `speed [m/s`: the unit must end with `]`; write `name [unit]`");
     refused("[m/s]\n1\n", "tank.csv:1: header `[m/s]`: the name is empty; write `name [unit]`");
-    refused(
-        "speed []\n1\n",
-        "tank.csv:1: column `speed []`: no unit is given; write for example `m/s`, or `1` for a pure number",
-    );
+    refused("speed []\n1\n", "tank.csv:1: column `speed []`: no unit is given; write for example `m/s`");
     refused("speed [m/s];f_x [N]\n1;2\n", "tank.csv:1: the cells are separated by `;`; separate them by commas");
 }
 
@@ -221,55 +218,51 @@ fn sidecars_say_what_is_wrong_with_them() {
         (
             "schema = 1",
             "schema = 2",
-            "tank.toml:1: this is sidecar schema 2; this program reads up to sidecar schema 1: use a newer Froude",
+            "tank.toml:1:10: this is sidecar schema 2; this program reads up to sidecar schema 1: use a newer Froude",
         ),
         ("schema = 1\n", "", "tank.toml:1: `schema` is missing; expected schema = 1"),
         (
             "tow_speed =",
             "tow_sped =",
-            "tank.toml:7: there is no column `tow_sped`; in tank.csv: did you mean `tow_speed`?",
+            "tank.toml:7:12: there is no column `tow_sped`; in tank.csv: did you mean `tow_speed`?",
         ),
         (
             "unit = \"m/s\"",
             "unit = \"m\"",
-            "tank.toml:7: column `speed [m]`: wrong unit: expected a speed (m/s), found a length (m)",
+            "tank.toml:7:13: column `speed [m]`: wrong unit: expected a speed (m/s), found a length (m)",
         ),
         (
             "unit = \"m/s\"",
             "units = \"m/s\"",
-            "tank.toml:7: unknown key `units` in [columns.tow_speed]; did you mean `unit`?",
+            "tank.toml:7:31: unknown key `units` in [columns.tow_speed]; did you mean `unit`?",
         ),
         (
             ", unit = \"m/s\"",
             "",
-            "tank.toml:7: column `speed` has no unit; write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column",
+            "tank.toml:7:13: column `speed` has no unit; write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column",
         ),
-        ("sign = -1", "sign = -2", "tank.toml:8: `sign` is -2; it is 1 or -1, and a factor goes into scale"),
+        ("sign = -1", "sign = -2", "tank.toml:8:13: `sign` is -2; it is 1 or -1, and a factor goes into scale"),
         (
             "L^2*speed^2",
             "L^2*speed",
-            "tank.toml:6: column `f_y [kg/s]`: wrong unit: expected a force (N), found a quantity in kg/s",
+            "tank.toml:6:11: column `f_y [kg/s]`: wrong unit: expected a force (N), found a quantity in kg/s",
         ),
         (
             "speed^2",
             "spee^2",
-            "tank.toml:6: `scale` \"0.5*rho*L^2*spee^2\": spee is neither one of [constants] nor a column of numbers mapped above this one",
+            "tank.toml:6:11: `scale` \"0.5*rho*L^2*spee^2\": spee is neither one of [constants] nor a column of numbers mapped above this one",
         ),
         (
             "speed^2",
             "speed^",
-            "tank.toml:6: `scale` \"0.5*rho*L^2*speed^\" cannot be read: an exponent must be a whole number",
+            "tank.toml:6:11: `scale` \"0.5*rho*L^2*speed^\" cannot be read: an exponent must be a whole number",
         ),
         (
             "\"4.2667 m\"",
             "4.2667",
-            "tank.toml:3: `L` is 4.2667; expected a quantity with its unit in quotes, such as \"0.4 m/s\"",
+            "tank.toml:3:5: `L` is 4.2667; expected a quantity with its unit in quotes, such as \"0.4 m/s\"",
         ),
-        (
-            "[columns]",
-            "[column]",
-            "tank.toml:1: the file has no `columns`; write [columns] with lines like speed_col = { name = \"speed\", unit = \"m/s\" }",
-        ),
+        ("[columns]", "[column]", "tank.toml:5:2: unknown key `column` in the file; did you mean `columns`?"),
     ];
     for (from, to, message) in cases {
         assert!(SIDECAR.contains(from), "{from}");

@@ -61,7 +61,7 @@ fn the_campaign_of_the_design_is_read_in_si() {
     let source = &campaign.sources[0];
     assert_eq!(source.kind, SourceKind::Tank);
     assert_eq!(source.input, Input::Table(PathBuf::from("lab/tank.csv")));
-    assert_eq!(source.place.to_string(), "lab/campaign.toml:15");
+    assert_eq!(source.place.to_string(), "lab/campaign.toml:15:9");
     let clause = &source.keep.as_ref().unwrap().clauses[0];
     assert_eq!((clause.column.as_str(), clause.comparison), ("angle", Comparison::Le));
     assert!(matches!(&clause.value, KeepValue::Quantity(q) if q.value_si == 39.0 * std::f64::consts::PI / 180.0));
@@ -70,7 +70,7 @@ fn the_campaign_of_the_design_is_read_in_si() {
         (entry.quantity.as_str(), entry.standard, entry.relative, entry.shared),
         ("f_x", 0.01, false, Shared::Setup)
     );
-    assert_eq!(entry.place.to_string(), "lab/campaign.toml:18");
+    assert_eq!(entry.place.to_string(), "lab/campaign.toml:19:12");
     assert_eq!(campaign.identify.models.len(), 6);
     assert_eq!(campaign.identify.bounds.default, BoundKind::NonNegative);
     assert_eq!(campaign.identify.user_models[0].formulas["f_y"], "Y_v*v + Y_vav*v*abs(v) + Y_0");
@@ -188,18 +188,45 @@ bias = "-1 mN"
 
 #[test]
 fn unknown_keys_are_told_the_nearest_known_one() {
-    refused("density =", "densty =", "lab/campaign.toml:5: unknown key `densty` in [fluid]; did you mean `density`?");
-    refused("keep  =", "kep  =", "lab/campaign.toml:16: unknown key `kep` in [[source]]; did you mean `keep`?");
+    refused("density =", "densty =", "lab/campaign.toml:5:1: unknown key `densty` in [fluid]; did you mean `density`?");
+    refused(
+        "angle <= 39 deg",
+        "angle <= 39",
+        "lab/campaign.toml:16:9: `keep` cannot be read: \"angle <= 39\" is not a condition: 39 has no unit; write 39 deg or 39 rad; \
+         write for example \"angle <= 39 deg and configuration != H1LT\"",
+    );
+    refused("keep  =", "kep  =", "lab/campaign.toml:16:1: unknown key `kep` in [[source]]; did you mean `keep`?");
     refused(
         "shared   = \"setup\"",
         "shared   = \"setup\"\nshape = 1",
-        "lab/campaign.toml:22: unknown key `shape` in [[source.uncertainty]]; did you mean `shared`?",
+        "lab/campaign.toml:22:1: unknown key `shape` in [[source.uncertainty]]; did you mean `shared`?",
     );
-    refused("[fluid]", "[fluids]", "lab/campaign.toml:4: unknown key `fluids` in the file; did you mean `fluid`?");
+    refused("[fluid]", "[fluids]", "lab/campaign.toml:4:2: unknown key `fluids` in the file; did you mean `fluid`?");
     refused(
         "half_length = \"90 mm\"",
         "half_length = \"90 mm\", colour = \"red\"",
-        "lab/campaign.toml:8: unknown key `colour` in [body.link]; known: half_length, major_semi_axis, minor_semi_axis",
+        "lab/campaign.toml:8:91: unknown key `colour` in [body.link]; known: half_length, major_semi_axis, minor_semi_axis",
+    );
+}
+
+#[test]
+fn a_missing_key_is_not_taken_for_another_that_is_spelt_like_it() {
+    let range =
+        "[[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = { start = \"0 m/s\", step = \"1 m/s\" }\n[identify]";
+    refused(
+        "[identify]",
+        range,
+        "lab/campaign.toml:25:9: [source.plan.speed] has no `stop`; a range needs start, stop and step",
+    );
+    refused(
+        "[identify]",
+        &range.replace("step =", "stoop ="),
+        "lab/campaign.toml:25:28: unknown key `stoop` in [source.plan.speed]; did you mean `stop`?",
+    );
+    refused(
+        "name = \"sway\"",
+        "nmae = \"sway\"",
+        "lab/campaign.toml:27:1: unknown key `nmae` in [[identify.model]]; did you mean `name`?",
     );
 }
 
@@ -208,34 +235,38 @@ fn quantities_of_another_kind_name_both() {
     refused(
         "\"1025 kg/m^3\"",
         "\"1025 kg\"",
-        "lab/campaign.toml:5: `density` is \"1025 kg\": expected a density (kg/m^3), found a mass (kg)",
+        "lab/campaign.toml:5:11: `density` is \"1025 kg\": expected a density (kg/m^3), found a mass (kg)",
     );
     refused(
         "\"1025 kg/m^3\"",
         "1025",
-        "lab/campaign.toml:5: `density` is 1025; expected a quantity with its unit in quotes, such as \"0.4 m/s\"",
+        "lab/campaign.toml:5:11: `density` is 1025; expected a quantity with its unit in quotes, such as \"1025 kg/m^3\"",
     );
     refused(
         "\"1025 kg/m^3\"",
         "\"1025\"",
-        "lab/campaign.toml:5: `density` cannot be read: `1025` has no unit; write for example `1025 m/s`, or `1025 1` for a pure number",
+        "lab/campaign.toml:5:11: `density` cannot be read: `1025` has no unit; write for example `1025 kg/m^3`",
     );
     refused(
         "\"1025 kg/m^3\"",
         "\"-1 kg/m^3\"",
-        "lab/campaign.toml:5: `density` is \"-1 kg/m^3\"; it must be larger than zero",
+        "lab/campaign.toml:5:11: `density` is \"-1 kg/m^3\"; it must be larger than zero",
     );
-    refused("\"0.01 N\"", "\"0.01 N m\"", "lab/campaign.toml:20: `standard` is \"0.01 N m\", but f_x is a force (N)");
+    refused(
+        "\"0.01 N\"",
+        "\"0.01 N m\"",
+        "lab/campaign.toml:20:12: `standard` is \"0.01 N m\", but f_x is a force (N)",
+    );
     refused(
         "angle <= 39 deg",
         "angle <= 39 N",
-        "lab/campaign.toml:16: `keep` cannot be read: \"angle <= 39 N\" is not a condition: angle is an angle (deg), 39 N is a force (N); \
+        "lab/campaign.toml:16:9: `keep` cannot be read: \"angle <= 39 N\" is not a condition: angle is an angle (deg), 39 N is a force (N); \
          write for example \"angle <= 39 deg and configuration != H1LT\"",
     );
     refused(
         "angle <= 39 deg",
         "angle = 39 deg",
-        "lab/campaign.toml:16: `keep` cannot be read: \"angle = 39 deg\" is not a condition: a single = or ! is no comparison; write == or !=; \
+        "lab/campaign.toml:16:9: `keep` cannot be read: \"angle = 39 deg\" is not a condition: a single = or ! is no comparison; write == or !=; \
          write for example \"angle <= 39 deg and configuration != H1LT\"",
     );
 }
@@ -245,24 +276,28 @@ fn a_source_has_one_input() {
     refused(
         "table = \"tank.csv\"",
         "table = \"tank.csv\"\nrecord = \"e.json\"",
-        "lab/campaign.toml:12: `circulation tank` names table and record; a source needs exactly one of table, runs, cases, mesh, record",
+        "lab/campaign.toml:12:1: `circulation tank` names table and record; a source needs exactly one of table, runs, cases, mesh, record",
     );
     refused(
         "table = \"tank.csv\"\n",
         "",
-        "lab/campaign.toml:12: `circulation tank` names none; a source needs exactly one of table, runs, cases, mesh, record",
+        "lab/campaign.toml:12:1: `circulation tank` names none; a source needs exactly one of table, runs, cases, mesh, record",
     );
-    refused("\"tank\"", "\"tnak\"", "lab/campaign.toml:14: `kind` is \"tnak\"; did you mean `tank`?");
-    refused("\"setup\"", "\"day\"", "lab/campaign.toml:21: `shared` is \"day\"; known: sample, run, setup, campaign");
+    refused("\"tank\"", "\"tnak\"", "lab/campaign.toml:14:9: `kind` is \"tnak\"; did you mean `tank`?");
+    refused(
+        "\"setup\"",
+        "\"day\"",
+        "lab/campaign.toml:21:12: `shared` is \"day\"; known: sample, run, setup, campaign",
+    );
     refused(
         "bounds = \"non-negative\"",
         "bounds = \"positive\"",
-        "lab/campaign.toml:25: `bounds` is \"positive\"; expected \"none\", \"free\" or \"non-negative\"",
+        "lab/campaign.toml:25:10: `bounds` is \"positive\"; expected \"none\", \"free\" or \"non-negative\"",
     );
     refused(
         "name  = \"circulation tank\"\n",
         "",
-        "lab/campaign.toml:12: [[source]] has no `name`; write name = \"circulation tank\", say",
+        "lab/campaign.toml:12:1: [[source]] has no `name`; write name = \"circulation tank\", say",
     );
 }
 
@@ -271,11 +306,11 @@ fn versions_are_compared() {
     refused(
         "schema = 1",
         "schema = 2",
-        "lab/campaign.toml:1: this is campaign schema 2; this program reads up to campaign schema 1: use a newer Froude",
+        "lab/campaign.toml:1:10: this is campaign schema 2; this program reads up to campaign schema 1: use a newer Froude",
     );
     refused("schema = 1\n", "", "lab/campaign.toml:1: `schema` is missing; expected schema = 1");
-    refused("schema = 1", "schema = 0", "lab/campaign.toml:1: `schema` is 0; expected 1");
-    refused("density =", "density", "lab/campaign.toml:5: not TOML: key with no value, expected `=`");
+    refused("schema = 1", "schema = 0", "lab/campaign.toml:1:10: `schema` is 0; expected 1");
+    refused("density =", "density", "lab/campaign.toml:5:9: not TOML: key with no value, expected `=`");
 }
 
 #[test]
@@ -286,7 +321,7 @@ fn files_that_do_not_exist_are_named_with_the_line_that_names_them() {
     let missing = folder.path().join("tank.csv");
     assert_eq!(
         read_campaign(&path).unwrap_err().to_string(),
-        format!("{}:15: `table` names {}, which does not exist", path.display(), missing.display())
+        format!("{}:15:9: `table` names {}, which does not exist", path.display(), missing.display())
     );
     let planned =
         CAMPAIGN.replace("[identify]", "[[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = \"0.1 m/s\"\n[identify]");
@@ -312,25 +347,25 @@ fn numbers_that_make_no_sense_are_refused_and_not_bent() {
     };
     assert_eq!(
         parse(&plan("repeats = 0")).unwrap_err(),
-        "lab/campaign.toml:26: `repeats` is 0; it must lie between 1 and 10000"
+        "lab/campaign.toml:26:11: `repeats` is 0; it must lie between 1 and 10000"
     );
     assert_eq!(
         parse(&plan("angle = []")).unwrap_err(),
-        "lab/campaign.toml:26: `angle` is an empty list; write at least one quantity"
+        "lab/campaign.toml:26:9: `angle` is an empty list; write at least one quantity"
     );
     assert_eq!(
         parse(&plan("angle = { start = \"0 deg\", stop = \"90 deg\", step = \"0 deg\" }")).unwrap_err(),
-        "lab/campaign.toml:26: `angle` must go from start to stop in at most 100000 steps of the step's sign"
+        "lab/campaign.toml:26:9: `angle` must go from start to stop in at most 100000 steps of the step's sign"
     );
     refused(
         "bounds = \"non-negative\"",
         "huber = -1",
-        "lab/campaign.toml:25: `huber` is -1; it must be larger than zero",
+        "lab/campaign.toml:25:9: `huber` is -1; it must be larger than zero",
     );
     refused(
         "bounds = \"non-negative\"",
         "covariance = \"hc3\"",
-        "lab/campaign.toml:25: `covariance` is \"hc3\"; did you mean `HC3`?",
+        "lab/campaign.toml:25:14: `covariance` is \"hc3\"; did you mean `HC3`?",
     );
 }
 

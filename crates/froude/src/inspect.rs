@@ -1,9 +1,12 @@
-//! `froude inspect`: what is in a file, units, ranges, and every finding of the lint.
+//! `froude inspect`: what is in a table, a campaign or a record, and everything doubtful about it. Nothing is fitted.
 
 use std::path::Path;
 
-use froude_identify::{lint, reduce, validity};
-use froude_records::campaign::{Campaign, Input, read_campaign};
+use froude_identify::reduce::{Reduced, reduce};
+use froude_identify::source::{asked_models, check_budget, laws};
+use froude_identify::{lint, validity};
+use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
+use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::json::read_estimates;
 use froude_records::table::{ColumnData, Table, read_table};
@@ -25,6 +28,48 @@ pub struct ColumnFacts {
     pub distinct: usize,
 }
 
+/// One entry of a sensor budget.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct BudgetFacts {
+    /// The uncertain column.
+    pub quantity: String,
+    /// Standard uncertainty with its unit: `0.01 N`, `0.5 %`.
+    pub standard: String,
+    /// Who shares the error: `sample`, `run`, `setup` or `campaign`.
+    pub shared: String,
+    /// Degrees of freedom; none where infinite.
+    pub dof: Option<f64>,
+    /// Name in the budget table, where it has its own.
+    pub name: Option<String>,
+}
+
+/// One source of a campaign.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct SourceFacts {
+    /// Its name.
+    pub name: String,
+    /// `tank`, `towing`, `cfd`, `potential` or `published`.
+    pub kind: String,
+    /// `table`, `record`, `runs`, `cases` or `mesh`.
+    pub input: String,
+    /// The file or folder.
+    pub path: String,
+    /// Whether it is there.
+    pub exists: bool,
+    /// Observations in the table; none where no table was read.
+    pub rows: Option<usize>,
+    /// Those that are fitted: kept by `keep`, without copies.
+    pub kept: Option<usize>,
+    /// Columns of the table.
+    pub columns: Vec<ColumnFacts>,
+    /// Models that will be fitted, the defaults where none are asked for; of a record, the estimates in it.
+    pub models: Vec<String>,
+    /// The sensor budget.
+    pub budget: Vec<BudgetFacts>,
+    /// Runs of its plan; none where there is no plan.
+    pub planned_runs: Option<usize>,
+}
+
 /// What is in a file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Inspection {
@@ -33,9 +78,23 @@ pub struct Inspection {
     /// Facts in words, `(name, value)`.
     pub facts: Vec<(String, String)>,
     /// Columns of a table.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub columns: Vec<ColumnFacts>,
+    /// Sources of a campaign.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sources: Vec<SourceFacts>,
+    /// Estimates of a record, as they stand in it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub estimates: Vec<Estimate>,
     /// Every finding.
     pub findings: Vec<Finding>,
+}
+
+impl Inspection {
+    fn new(kind: &str, facts: Vec<(String, String)>, findings: Vec<Finding>) -> Self {
+        let (columns, sources, estimates) = (Vec::new(), Vec::new(), Vec::new());
+        Self { kind: kind.to_owned(), facts, columns, sources, estimates, findings }
+    }
 }
 
 /// Inspects a table, a campaign or an estimate record, by the ending of its name.
@@ -55,10 +114,8 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
 fn table(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error> {
     let table = read_table(path, sidecar)?;
     let campaign = Campaign::of_table(path, sidecar.map(Path::to_owned));
-    let reduced = reduce::reduce(&campaign, &campaign.sources[0])?;
-    let mut findings = reduced.findings;
-    findings.extend(validity::ranges(&reduced.data, &campaign).1);
-    findings.extend(lint::observations(&reduced.data, &campaign));
+    let reduced = reduce(&campaign, &campaign.sources[0])?;
+    let findings = doubts(&campaign, &campaign.sources[0], &reduced);
     let configurations = reduced.data.configurations();
     let mut facts = vec![("rows".to_owned(), table.n_rows.to_string())];
     if configurations.iter().any(|c| !c.is_empty()) {
@@ -67,7 +124,7 @@ fn table(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error> {
     if let Some(sidecar) = &table.sidecar {
         facts.push(("sidecar".to_owned(), sidecar.display().to_string()));
     }
-    Ok(Inspection { kind: "table".to_owned(), facts, columns: columns(&table), findings })
+    Ok(Inspection { columns: columns(&table), ..Inspection::new("table", facts, findings) })
 }
 
 fn columns(table: &Table) -> Vec<ColumnFacts> {
@@ -96,51 +153,97 @@ fn columns(table: &Table) -> Vec<ColumnFacts> {
         .collect()
 }
 
+/// Everything doubtful about the observations of a source.
+fn doubts(campaign: &Campaign, source: &Source, reduced: &Reduced) -> Vec<Finding> {
+    let mut findings = reduced.findings.clone();
+    findings.extend(validity::ranges(&reduced.data, campaign).1);
+    findings.extend(lint::observations(&reduced.data, campaign));
+    findings.into_iter().map(|f| f.of_source(&source.name)).collect()
+}
+
 fn campaign(path: &Path) -> Result<Inspection, Error> {
     let campaign = read_campaign(path)?;
-    let mut findings = Vec::new();
     let mut facts = vec![("name".to_owned(), campaign.name.clone())];
+    facts.extend(campaign.cite.iter().map(|work| ("cite".to_owned(), work.clone())));
+    let (mut sources, mut findings) = (Vec::new(), Vec::new());
     for source in &campaign.sources {
-        let what = match &source.input {
-            Input::Table(table) => {
-                if table.exists() {
-                    let reduced = reduce::reduce(&campaign, source)?;
-                    findings.extend(reduced.findings);
-                    let own = |f: Finding| f.of_source(&source.name);
-                    findings.extend(validity::ranges(&reduced.data, &campaign).1.into_iter().map(own));
-                    findings.extend(lint::observations(&reduced.data, &campaign).into_iter().map(own));
-                    format!("table {}, {} observations kept of {}", table.display(), reduced.data.rows, reduced.n_read)
-                } else {
-                    format!("table {} is not there yet: froude simulate makes it", table.display())
-                }
-            }
-            Input::Record { path, .. } => {
-                let record = read_estimates(path)?;
-                format!("record {}, {} estimates", path.display(), record.estimates.len())
-            }
-            Input::Runs(p) | Input::Cases(p) | Input::Mesh(p) => p.display().to_string(),
-        };
-        facts.push((format!("source {}", source.name), what));
+        let (facts, found) = source_facts(&campaign, source)?;
+        sources.push(facts);
+        findings.extend(found);
     }
-    facts.push(("models".to_owned(), campaign.identify.models.join(", ")));
-    Ok(Inspection { kind: "campaign".to_owned(), facts, columns: Vec::new(), findings })
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    Ok(Inspection { sources, ..Inspection::new("campaign", facts, findings) })
+}
+
+fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Vec<Finding>), Error> {
+    let planned: usize =
+        source.plan.iter().map(|p| p.configurations.len() * p.speed_m_s.len() * p.angle_rad.len() * p.repeats).sum();
+    let input = match source.input {
+        Input::Table(_) => "table",
+        Input::Record { .. } => "record",
+        Input::Runs(_) => "runs",
+        Input::Cases(_) => "cases",
+        Input::Mesh(_) => "mesh",
+    };
+    let mut out = SourceFacts {
+        name: source.name.clone(),
+        kind: source.kind.name().to_owned(),
+        input: input.to_owned(),
+        path: source.input.path().display().to_string(),
+        exists: source.input.path().exists(),
+        rows: None,
+        kept: None,
+        columns: Vec::new(),
+        models: Vec::new(),
+        budget: source.uncertainty.iter().map(budget_facts).collect(),
+        planned_runs: Some(planned).filter(|_| !source.plan.is_empty()),
+    };
+    let mut findings = Vec::new();
+    match &source.input {
+        Input::Table(table) => {
+            out.models = asked_models(campaign, source)?;
+            if out.exists {
+                let reduced = reduce(campaign, source)?;
+                // What a fit would refuse is refused here, before tank time is spent on it.
+                laws(campaign, source, &reduced.data)?;
+                check_budget(source, &reduced.data)?;
+                out.columns = columns(&read_table(table, source.sidecar.as_deref())?);
+                (out.rows, out.kept) = (Some(reduced.n_read), Some(reduced.data.rows));
+                findings = doubts(campaign, source, &reduced);
+            }
+        }
+        Input::Record { path, select } => {
+            let mut record = read_estimates(path)?;
+            if let Some(select) = select {
+                let one = froude_identify::select::one_estimate(&record, Some(select), path)?.clone();
+                record.estimates = vec![one];
+            }
+            out.models = record.estimates.iter().map(|e| e.id.clone()).collect();
+        }
+        Input::Runs(_) | Input::Cases(_) | Input::Mesh(_) => {}
+    }
+    Ok((out, findings))
+}
+
+fn budget_facts(entry: &BudgetEntry) -> BudgetFacts {
+    // Ten digits hide the rounding of the unit's factor.
+    let shown = |x: f64| format!("{x:.9e}").parse::<f64>().unwrap_or(x);
+    BudgetFacts {
+        quantity: entry.quantity.clone(),
+        standard: if entry.relative {
+            format!("{} %", shown(100.0 * entry.standard))
+        } else {
+            format!("{} {}", shown(entry.standard), entry.dimension)
+        },
+        shared: entry.shared.name().to_owned(),
+        dof: entry.dof,
+        name: entry.name.clone(),
+    }
 }
 
 fn estimates(path: &Path) -> Result<Inspection, Error> {
     let record = read_estimates(path)?;
     let mut facts = vec![("schema".to_owned(), record.schema.clone())];
-    for e in &record.estimates {
-        let determined = e.coefficients.values().filter(|c| c.value.is_some()).count();
-        let stated = e.coefficients.values().filter(|c| c.standard_uncertainty.is_some()).count();
-        facts.push((
-            e.id.clone(),
-            format!(
-                "{} coefficients, {determined} with a value, {stated} with an uncertainty; {} observations{}",
-                e.coefficients.len(),
-                e.n_observations,
-                if e.recommended { "; recommended" } else { "" }
-            ),
-        ));
-    }
-    Ok(Inspection { kind: "estimate".to_owned(), facts, columns: Vec::new(), findings: record.findings })
+    facts.extend(record.data.iter().map(|d| ("data".to_owned(), d.path.clone())));
+    Ok(Inspection { estimates: record.estimates, ..Inspection::new("estimate", facts, record.findings) })
 }

@@ -67,6 +67,8 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let mut campaign = campaign_of(job)?;
     if !job.models.is_empty() {
         campaign.identify.models.clone_from(&job.models);
+        // No file names these.
+        campaign.identify.model_places.clear();
         for source in &mut campaign.sources {
             source.models.clear();
         }
