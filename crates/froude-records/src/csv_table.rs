@@ -255,5 +255,7 @@ fn shortest(unit: &Unit, si: f64) -> String {
     let short: f64 = format!("{value:.11e}").parse().unwrap_or(value);
     let value = if unit.to_si(short) == si { short } else { value };
     // Display never uses an exponent: tiny and huge numbers would be hundreds of digits long.
+    // A negative zero is zero.
+    let value = if value == 0.0 { 0.0 } else { value };
     if value == 0.0 || (1e-5..1e15).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
 }

@@ -98,3 +98,17 @@ fn fingerprints_are_sha_256() {
     std::fs::write(&path, b"abc").unwrap();
     assert_eq!(sha256_of_file(&path).unwrap(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
+
+#[test]
+fn a_negative_zero_is_written_as_zero() {
+    use froude_records::csv_table::write_csv;
+    use froude_records::table::{Column, ColumnData, Table};
+    use froude_records::units::{Dimension, Unit};
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.csv");
+    let data = ColumnData::Number { unit: Unit::one(), dimension: Dimension::ONE, si: vec![-0.0, -1.5] };
+    let columns = vec![Column { name: "x".to_owned(), data }];
+    write_csv(&Table { path: path.clone(), columns, n_rows: 2, line_of_row: vec![2, 3], sidecar: None }, &path)
+        .unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "x [1]\n0\n-1.5\n");
+}
