@@ -32,7 +32,10 @@ pub fn note(model: &ModelFit, resamples: usize) -> Result<String, Finding> {
     let mut parts = Vec::new();
     let mut clusters = 0;
     for (j, spec) in model.specs.iter().enumerate() {
-        if model.fit.coefficients[j].status == fit::Status::Undetermined {
+        if matches!(
+            model.fit.coefficients[j].status,
+            fit::Status::Undetermined | fit::Status::Fixed | fit::Status::Excluded
+        ) {
             continue;
         }
         let result = wild_cluster(&model.problem, &model.options, j, &options).map_err(|e| refuse(e.to_string()))?;
@@ -41,7 +44,8 @@ pub fn note(model: &ModelFit, resamples: usize) -> Result<String, Finding> {
         parts.push(format!("{} [{low:.4}, {high:.4}] {} (zero: p = {:.4})", spec.name, spec.unit, result.p));
     }
     Ok(format!(
-        "95 % intervals by {resamples} wild cluster resamples over {clusters} clusters, bounds left out: {}",
+        "95 % intervals of the scatter alone (the budget is not in them) by {resamples} wild cluster resamples over {clusters} \
+         clusters, bounds left out: {}",
         parts.join(", ")
     ))
 }

@@ -17,10 +17,10 @@ use std::path::Path;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
-use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Range};
+use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Range, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
-use statrs::distribution::{ChiSquared, ContinuousCDF};
+use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
@@ -287,6 +287,7 @@ fn coefficient_rows(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> Vec<Coe
             let (by_first, by_second) = (stated(x), stated(y));
             let e_n = if x.unit == y.unit {
                 e_n(&by_first, &by_second, [&first, &second], is_same_data)
+                    .and_then(|e_n| not_free(x, &first).or_else(|| not_free(y, &second)).map_or(Ok(e_n), Err))
             } else {
                 Err(format!("units differ: {} and {}", x.unit, y.unit))
             };
@@ -302,6 +303,16 @@ fn coefficient_rows(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> Vec<Coe
             }
         })
         .collect()
+}
+
+/// Why a coefficient is no measurement that stands by itself: a bound, whose uncertainty is that of the fit without it, or
+/// a fit to a published value, which may be the other side.
+fn not_free(c: &Coefficient, id: &str) -> Option<String> {
+    match c.status {
+        Status::AtBound => Some(format!("at its bound in {id}")),
+        Status::Prior => Some(format!("rests on a published value in {id}")),
+        _ => None,
+    }
 }
 
 fn stated(c: &Coefficient) -> Stated {
@@ -340,6 +351,12 @@ fn joint(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> JointRow {
             return Err(SAME_DATA_JOINTLY.to_owned());
         }
         let names: Vec<&String> = ca.names.iter().filter(|n| cb.names.contains(n)).collect();
+        for (n, id) in [(a, &first), (b, &second)] {
+            let mut constrained = names.iter().filter_map(|name| n.estimate.coefficients.get(*name));
+            if let Some(why) = constrained.find_map(|c| not_free(c, id)) {
+                return Err(format!("a coefficient is {why}: χ² is for estimates that are free"));
+            }
+        }
         if names.is_empty() {
             return Err("no coefficient is estimated by both".to_owned());
         }
@@ -363,10 +380,28 @@ fn joint(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> JointRow {
         if !chi2.is_finite() {
             return Err("a covariance is not finite".to_owned());
         }
-        let p = ChiSquared::new(m as f64).map_or(f64::NAN, |x| x.sf(chi2));
-        Ok((chi2, m, p))
+        Ok((chi2, m, probability(chi2, m, least_dof([a, b], &names))))
     })();
     JointRow { model: a.estimate.model.clone(), first, second, result }
+}
+
+/// Fewest degrees of freedom that one of the coefficients has; infinite where none are stated.
+fn least_dof(sides: [&Named<'_>; 2], names: &[&String]) -> f64 {
+    sides
+        .iter()
+        .flat_map(|n| names.iter().filter_map(|name| n.estimate.coefficients.get(*name)?.effective_dof))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Probability of a χ² as large, for covariances known with ν degrees of freedom: χ²/m is taken as F(m, ν), as Hotelling's
+/// T² is but for its factor (ν − m + 1)/ν.
+fn probability(chi2: f64, m: usize, dof: f64) -> f64 {
+    let m_f = m as f64;
+    if dof.is_finite() && dof >= 1.0 {
+        FisherSnedecor::new(m_f, dof).map_or(f64::NAN, |x| x.sf(chi2 / m_f))
+    } else {
+        ChiSquared::new(m_f).map_or(f64::NAN, |x| x.sf(chi2))
+    }
 }
 
 /// Two records of the same source and model that say different things, with what looks like a slip.
@@ -422,6 +457,9 @@ fn digits_exchanged(a: f64, b: f64) -> bool {
     matches!(wrong.as_slice(), [i, j] if x[*i] == y[*j] && x[*j] == y[*i])
 }
 
+/// Relative difference of density that a dimensional coefficient shows: a tenth of fresh against sea water.
+const DENSITY_MATTERS: f64 = 0.002;
+
 /// Geometry or density that differ between estimates of one model: coefficients then mean different things.
 fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
     let mut out: Vec<Finding> = Vec::new();
@@ -429,6 +467,20 @@ fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
         for b in &all[i + 1..] {
             if a.estimate.model != b.estimate.model {
                 continue;
+            }
+            if let (Some(x), Some(y)) = (&a.estimate.density, &b.estimate.density)
+                && (x.value - y.value).abs() > DENSITY_MATTERS * x.value
+                && a.estimate.coefficients.values().any(|c| c.unit.contains("kg"))
+            {
+                out.push(Finding::new(
+                    Severity::Warning,
+                    "density-differs",
+                    format!(
+                        "{} was measured in water of {} {}, {} in {} {}: coefficients with kg in their unit, and the forces that they \
+                         give, go with the density; scale one of them before comparing",
+                        a.estimate.id, x.value, x.unit, b.estimate.id, y.value, y.unit
+                    ),
+                ));
             }
             for (key, x) in &a.estimate.geometry {
                 if let Some(y) = b.estimate.geometry.get(key)
@@ -473,7 +525,16 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
         ));
         return;
     }
-    let links = range("n_links").filter(|r| r.low <= r.high);
+    let links = range("n_links");
+    if links.as_ref().is_some_and(|r| r.low > r.high) {
+        out.findings.push(Finding::new(
+            Severity::Warning,
+            "no-common-range",
+            "the numbers of links that were tested do not overlap: no force can be compared without extrapolation"
+                .to_owned(),
+        ));
+        return;
+    }
     let has_links =
         links.is_some() || chosen.iter().any(|n| froude_hydro::DragModel::from_name(&n.estimate.model).is_some());
     let links: Vec<f64> =
@@ -558,9 +619,10 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
 
 /// A predicted force with u² = xᵀCx and its effective degrees of freedom, x the slopes by the coefficients.
 ///
-/// Coefficient i makes the part w_i = x_i(Cx)_i of the variance, known with ν_i degrees of freedom. All parts
-/// rest on the same residuals, so their errors go together: √(2/ν)·u² = Σ w_i·√(2/ν_i), which is
-/// Welch–Satterthwaite (GUM G.4.1) for fully dependent parts. Equal ν_i give ν = ν_i, as they must.
+/// An approximation: a record does not say which part of its covariance is scatter, of which alone ν is known
+/// (ν = ν_A·(xᵀCx/xᵀC_Ax)², GUM G.4.1). Coefficient i makes the part w_i = x_i(Cx)_i of the variance, known with ν_i degrees
+/// of freedom; taken as fully dependent, √(2/ν)·u² = Σ w_i·√(2/ν_i). It is exact without a budget. With one it is mostly too
+/// few, so that U is wide: by a sixth where a calibration of 2 % outweighs the scatter of a force.
 /// Parts of opposite sign can carry the sum outside the ν_i: it is cut there.
 fn predicted(law: &ForceLaw, force: f64, slopes: &Mat<f64>, row: usize, estimate: &Estimate) -> Stated {
     let value = Some(force).filter(|f| f.is_finite());

@@ -47,22 +47,34 @@ pub fn input_standard(data: &Dataset, budget: &[BudgetEntry]) -> Option<Mat<f64>
 struct LawOfInputs<'a> {
     law: &'a ForceLaw,
     data: &'a Dataset,
-    settings: Vec<Setting>,
+    /// Of a drag model: what does not depend on the motion.
+    drag: Option<Drag>,
 }
 
-impl LawOfInputs<'_> {
-    fn drag(&self, model: DragModel, i: usize, inputs: &[f64], out: &mut [f64]) {
-        let p = self.law.coefficients.len();
+/// A drag model at every observation, its geometric factors computed once.
+struct Drag {
+    model: DragModel,
+    settings: Vec<Setting>,
+    factors: Vec<Vec<f64>>,
+}
+
+impl Drag {
+    fn new(model: DragModel, settings: Vec<Setting>) -> Self {
+        let of = |s: &Setting| model.coefficients().iter().map(|c| c.factor.value(s)).collect();
+        Self { factors: settings.iter().map(of).collect(), model, settings }
+    }
+
+    fn regressors(&self, i: usize, inputs: &[f64], out: &mut [f64]) {
+        let coefficients = self.model.coefficients();
         let (sin, cos) = inputs[1].sin_cos();
-        let mut row = [0.0; froude_hydro::MAX_COEFFICIENTS];
-        model.regressor(&self.settings[i], [inputs[0] * cos, -inputs[0] * sin], &mut row);
+        let velocity = [inputs[0] * cos, -inputs[0] * sin];
         out.fill(0.0);
-        for (j, info) in model.coefficients().iter().enumerate() {
+        for (j, (info, factor)) in coefficients.iter().zip(&self.factors[i]).enumerate() {
             let c = match info.axis {
                 Axis::X => 0,
                 Axis::Y => 1,
             };
-            out[c * p + j] = row[j];
+            out[c * coefficients.len() + j] = factor * info.motion.value(info.axis, &self.settings[i], velocity);
         }
     }
 }
@@ -81,8 +93,8 @@ impl InputModel for LawOfInputs<'_> {
     }
 
     fn regressors(&self, observation: usize, inputs: &[f64], out: &mut [f64]) {
-        if let Kind::Drag { model, .. } = &self.law.kind {
-            self.drag(*model, observation, inputs, out);
+        if let Some(drag) = &self.drag {
+            drag.regressors(observation, inputs, out);
             return;
         }
         let mut one = self.data.subset(&[observation]);
@@ -110,7 +122,7 @@ impl InputModel for LawOfInputs<'_> {
     fn derivatives(&self, observation: usize, inputs: &[f64], out: &mut [f64]) {
         let size = self.n_components() * self.n_coefficients();
         let goes_back = |inputs: &[f64]| inputs[0] * inputs[1].cos() < 0.0;
-        let mut x = vec![vec![0.0; size]; 3];
+        let mut x = vec![0.0; size];
         for m in 0..self.n_inputs() {
             let step = DIFFERENCE_STEP * inputs[m].abs().max(1.0);
             let at = |k: f64| {
@@ -125,11 +137,13 @@ impl InputModel for LawOfInputs<'_> {
                 (false, true) => [(0.0, 1.5), (-1.0, -2.0), (-2.0, 0.5)],
                 _ => [(1.0, 0.5), (-1.0, -0.5), (0.0, 0.0)],
             };
-            for (x, (k, _)) in x.iter_mut().zip(stencil) {
-                self.regressors(observation, &at(k), x);
-            }
-            for i in 0..size {
-                out[m * size + i] = x.iter().zip(stencil).map(|(x, (_, weight))| weight * x[i]).sum::<f64>() / step;
+            let of_input = &mut out[m * size..(m + 1) * size];
+            of_input.fill(0.0);
+            for (k, weight) in stencil.into_iter().filter(|(_, weight)| *weight != 0.0) {
+                self.regressors(observation, &at(k), &mut x);
+                for (slope, x) in of_input.iter_mut().zip(&x) {
+                    *slope += weight * x / step;
+                }
             }
         }
     }
@@ -144,17 +158,18 @@ pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma)
     let n = data.rows;
     let value = |name: &str, i: usize| data.values(name).map_or(0.0, |v| v[i]);
     let responses = stacked(law, data).unwrap_or_default();
-    let settings = match &law.kind {
-        Kind::Drag { body, cross_term, .. } => (0..n)
-            .map(|i| Setting {
+    let drag = match &law.kind {
+        Kind::Drag { model, body, cross_term } => {
+            let settings = (0..n).map(|i| Setting {
                 body: *body,
                 n_links: value("n_links", i),
                 density_kg_m3: value("density", i),
                 v_ref_m_s: REFERENCE_SPEED_M_S,
                 cross_term: *cross_term,
-            })
-            .collect(),
-        _ => Vec::new(),
+            });
+            Some(Drag::new(*model, settings.collect()))
+        }
+        _ => None,
     };
     let c = law.responses.len();
     if responses.len() != n * c {
@@ -168,10 +183,12 @@ pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma)
         components: law.responses.clone(),
         names: law.coefficients.iter().map(|c| c.name.clone()).collect(),
     };
-    odr(&LawOfInputs { law, data, settings }, &problem, 0.95)
+    odr(&LawOfInputs { law, data, drag }, &problem, 0.95)
 }
 
-/// Puts the result in the place of the ordinary fit's coefficients; its design and leverages stay.
+/// Puts the result in the place of the ordinary fit's coefficients; its design, leverages and AICc stay.
+///
+/// A model is chosen by ordinary least squares (AICc and F tests); errors in variables are then fitted to all.
 pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], result: OdrFit) {
     let beta: Vec<f64> = result.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
     for i in 0..response.len() {
@@ -189,12 +206,10 @@ pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], resul
         summary.rss = squares(&fitted.residuals);
         summary.relative_residual = (summary.rss / squares(response)).sqrt();
         summary.durbin_watson = fit::diagnostics::durbin_watson(&fitted.residuals[rows]);
-        // The criteria and the test of the ordinary fit do not belong to this one.
+        // The test of the ordinary residuals does not belong to these.
         summary.durbin_watson_p = None;
         summary.is_serially_correlated = false;
-        summary.aicc = None;
     }
-    fitted.aicc = None;
     fitted.covariance = result.covariance;
     fitted.coefficients = result.coefficients;
     fitted.report = result.report;

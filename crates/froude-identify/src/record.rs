@@ -71,10 +71,15 @@ pub fn estimate(
 }
 
 fn method(model: &ModelFit) -> String {
+    let is_weighted = model.problem.weight.is_some();
     let base = if model.law.in_logarithms() {
-        "least squares of logarithms (equal relative errors)"
+        if is_weighted { "least squares of logarithms" } else { "least squares of logarithms (equal relative errors)" }
     } else if model.law.is_nonlinear() {
-        "non-linear least squares (Gauss–Newton, equal absolute errors)"
+        if is_weighted {
+            "non-linear least squares (Gauss–Newton)"
+        } else {
+            "non-linear least squares (Gauss–Newton, equal absolute errors)"
+        }
     } else {
         "linear least squares by orthogonal factorisation"
     };

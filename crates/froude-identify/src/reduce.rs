@@ -179,7 +179,10 @@ fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -
         findings.push(Finding::new(
             Severity::Note,
             "measured-over-stated",
-            format!("the table's temperatures are used; temperature = {stated:.2} degC of [fluid] is not"),
+            format!(
+                "the table's temperatures are the water's, where density or viscosity is taken from one; \
+                 temperature = {stated:.2} degC of [fluid] is not used"
+            ),
         ));
     }
     // What is stated goes before what was measured, and that before what follows from a temperature.

@@ -151,7 +151,6 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             ));
         }
     }
-    findings.extend(contradicted_priors(&law.name, &problem, &options, &specs));
     let mut in_variables = false;
     if settings.identify.errors_in_variables {
         in_variables = errors_in_variables(law, data, settings, &problem, &options, &mut fitted, &mut findings)?;
@@ -167,6 +166,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         ));
     }
     let coefficients = step(&fitted);
+    findings.extend(contradicted_priors(law, data, settings, &problem, &options, &specs)?);
     let mut contributions = contributions(
         Linearised {
             law,
@@ -556,40 +556,46 @@ fn options(
     }
 }
 
-/// Priors that the data alone contradict: the two then have no common answer, and σ grows to cover the gap.
+/// Priors that the data alone, with their budget, contradict: the two then have no common answer, and σ grows to cover
+/// the gap.
 fn contradicted_priors(
-    law: &str,
+    law: &ForceLaw,
+    data: &Dataset,
+    settings: Settings<'_>,
     problem: &fit::Problem,
     options: &fit::Options,
     specs: &[CoefficientSpec],
-) -> Vec<Finding> {
+) -> Result<Vec<Finding>, IdentifyError> {
     let alone = fit::Options { priors: Vec::new(), ..options.clone() };
     let Some(free) = (!options.priors.is_empty()).then(|| fit::fit(problem, &alone).ok()).flatten() else {
-        return Vec::new();
+        return Ok(Vec::new());
     };
-    options
-        .priors
-        .iter()
-        .filter_map(|prior| {
-            let c = &free.coefficients[prior.index];
-            let (value, standard) = (c.unconstrained?, c.standard?);
-            let apart = (value - prior.value).abs() / standard.hypot(prior.standard);
-            (apart > PRIOR_CONTRADICTED_ABOVE).then(|| {
-                Finding::new(
-                    Severity::Warning,
-                    "prior-contradicted",
-                    format!(
-                        "{law}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior says {:.4} ± {:.4} {unit}: \
-                         {apart:.1} standard uncertainties apart; the fit between them is an answer to neither",
-                        specs[prior.index].name,
-                        prior.value,
-                        prior.standard,
-                        unit = specs[prior.index].unit
-                    ),
-                )
-            })
-        })
-        .collect()
+    let values = step(&free);
+    let at = Linearised { law, data, coefficients: &values[..law.coefficients.len()], sensitivity: &free.sensitivity };
+    let parts = contributions(at, settings.budget, settings.shared_errors, settings.kind != SourceKind::Cfd)?;
+    let mut findings = Vec::new();
+    for prior in &options.priors {
+        let c = &free.coefficients[prior.index];
+        let (Some(value), Some(scatter)) = (c.unconstrained, c.standard) else { continue };
+        let standard = combine(scatter, c.dof.unwrap_or(f64::INFINITY), prior.index, &parts).standard;
+        let apart = (value - prior.value).abs() / standard.hypot(prior.standard);
+        if apart > PRIOR_CONTRADICTED_ABOVE {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "prior-contradicted",
+                format!(
+                    "{}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior says {:.4} ± {:.4} {unit}: \
+                     {apart:.1} standard uncertainties apart; the fit between them is an answer to neither",
+                    law.name,
+                    specs[prior.index].name,
+                    prior.value,
+                    prior.standard,
+                    unit = specs[prior.index].unit
+                ),
+            ));
+        }
+    }
+    Ok(findings)
 }
 
 /// Holds a fit to many inequalities by cutting planes: the most violated ones are added until none is violated.

@@ -71,9 +71,13 @@ pub struct Recommendation {
 }
 
 /// AICc of a fit in the units of its loads; a fit in logarithms is carried over by its Jacobian.
+///
+/// With weights w the likelihood has a factor ∏√w. Fits of loads and of their logarithms weigh the same `std_*` column
+/// differently, and would not be comparable without it.
 #[must_use]
 pub fn aicc(model: &ModelFit, data: &Dataset) -> Option<f64> {
-    let base = model.fit.aicc?;
+    let of_weights: f64 = model.problem.weight.iter().flatten().map(|w| w.ln()).sum();
+    let base = model.fit.aicc? - of_weights;
     if !model.law.in_logarithms() {
         return Some(base);
     }
@@ -327,6 +331,9 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
         .collect();
     if !rejected.is_empty() {
         reason += &format!("; F tests reject {}", rejected.join(", "));
+    }
+    if models.iter().any(|m| m.in_variables) {
+        reason += "; judged by ordinary least squares, before errors in speed and angle are fitted";
     }
     let out: Vec<String> = models.iter().filter(|m| !determined(m)).map(|m| m.law.name.clone()).collect();
     if !out.is_empty() {

@@ -138,13 +138,13 @@ fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, dr
     /// Seed of the draws; the same campaign gives the same note.
     const SEED: u64 = 1;
     // Entries that are part of the scatter are not drawn: the linear figure does not hold them either.
-    let shared: Vec<_> = settings
+    let (shared, drawn): (Vec<_>, Vec<_>) = settings
         .budget
         .iter()
         .zip(&model.contributions)
         .filter(|(_, part)| !part.in_scatter)
-        .map(|(entry, _)| entry.clone())
-        .collect();
+        .map(|(entry, part)| (entry.clone(), part))
+        .unzip();
     if shared.is_empty() {
         return None;
     }
@@ -159,8 +159,9 @@ fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, dr
         .iter()
         .enumerate()
         .filter_map(|(j, s)| {
-            let combined = model.combined[j]?;
-            Some(format!("{} {:.2e} ({:.2e})", s.name, covariance[(j, j)].max(0.0).sqrt(), combined.type_b))
+            model.combined[j]?;
+            let linear: f64 = drawn.iter().map(|part| part.covariance[(j, j)]).sum();
+            Some(format!("{} {:.2e} ({:.2e})", s.name, covariance[(j, j)].max(0.0).sqrt(), linear.max(0.0).sqrt()))
         })
         .collect();
     Some(format!("type B by {draws} Monte Carlo draws (linear in parentheses): {}", parts.join(", ")))

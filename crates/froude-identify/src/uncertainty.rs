@@ -297,8 +297,13 @@ pub fn generator(seed: u64) -> Pcg64 {
 pub fn shares(type_a: f64, j: usize, parts: &[Contribution]) -> IndexMap<String, (f64, &'static str)> {
     let mut out = IndexMap::new();
     out.insert("scatter of the observations".to_owned(), (type_a, "sample"));
-    for part in parts.iter().filter(|c| !c.in_scatter) {
-        out.insert(part.name.clone(), (part.covariance[(j, j)].max(0.0).sqrt(), part.shared));
+    for part in parts {
+        if part.in_scatter {
+            // Listed, so that nobody looks for it in vain; the scatter holds it already.
+            out.insert(format!("{}, in the scatter", part.name), (0.0, part.shared));
+        } else {
+            out.insert(part.name.clone(), (part.covariance[(j, j)].max(0.0).sqrt(), part.shared));
+        }
     }
     out
 }

@@ -47,7 +47,8 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
             "angle" => parse_unit("deg").unwrap_or_else(|_| Unit::si(channel.dimension)),
             _ => Unit::si(channel.dimension),
         };
-        if !columns.iter().any(|c| &c.name == name) {
+        // Zeros are subtracted: beside the corrected loads they would be subtracted again.
+        if !name.starts_with("zero_") && !columns.iter().any(|c| &c.name == name) {
             columns.push(number(name, &channel.values, unit));
         }
     }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::compare::{Comparison, compare, named};
 use froude_identify::source::{SourceResult, identify_source};
-use froude_records::campaign::{Campaign, Input, read_campaign};
+use froude_records::campaign::{Campaign, Input, Shared, read_campaign};
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
-use froude_records::finding::Finding;
+use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
@@ -101,9 +101,14 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         return Err(Error::Nothing(format!("{}: the campaign has no [[source]]", job.input.display())));
     }
     progress("comparing the sources");
+    files.dedup();
+    let data = files
+        .iter()
+        .map(|path| Ok(DataFile { path: relative(path, &campaign.path), sha256: sha256_of_file(path)? }))
+        .collect::<Result<Vec<_>, Error>>()?;
     let fitted = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
-        data: Vec::new(),
+        data: data.clone(),
         versions: IndexMap::new(),
         estimates: sources.iter().flat_map(|s| s.estimates.iter().cloned()).collect(),
         findings: Vec::new(),
@@ -117,12 +122,10 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
             Comparison::default()
         };
     findings.extend(comparison.findings.iter().cloned());
+    if !comparison.coefficients.is_empty() {
+        findings.extend(shared_errors(&campaign));
+    }
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
-    files.dedup();
-    let data = files
-        .iter()
-        .map(|path| Ok(DataFile { path: relative(path, &campaign.path), sha256: sha256_of_file(path)? }))
-        .collect::<Result<Vec<_>, Error>>()?;
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
         data,
@@ -147,6 +150,42 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         sources,
         comparison,
     })
+}
+
+/// Errors that two fitted sources have in common: the comparison takes their uncertainties as independent.
+///
+/// u²(a − b) = u_a² + u_b² − 2 cov(a, b) (GUM 5.2.2): with the same error on both sides E_n and χ² come out too small.
+fn shared_errors(campaign: &Campaign) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for (i, a) in campaign.sources.iter().enumerate() {
+        for b in &campaign.sources[i + 1..] {
+            let mut what: Vec<String> = a
+                .uncertainty
+                .iter()
+                .filter(|x| x.shared == Shared::Campaign)
+                .filter(|x| b.uncertainty.iter().any(|y| y.shared == Shared::Campaign && x.quantity == y.quantity))
+                .map(|x| format!("an error of {} shared by the campaign", x.quantity))
+                .collect();
+            if let (Some(x), Some(y)) = (&a.tare, &b.tare)
+                && x.record == y.record
+            {
+                what.push("the same subtracted tare".to_owned());
+            }
+            if !what.is_empty() {
+                out.push(Finding::new(
+                    Severity::Warning,
+                    "shared-errors",
+                    format!(
+                        "{} and {} have in common: {}; E_n and χ² take the two as independent and are too small by that part",
+                        a.name,
+                        b.name,
+                        what.join(", ")
+                    ),
+                ));
+            }
+        }
+    }
+    out
 }
 
 /// A campaign as it is read, or the one that a bare table stands for.

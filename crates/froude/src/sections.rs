@@ -1,5 +1,6 @@
 //! Identification results as the report wants them: points, curves with bands, budget, selection.
 
+use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
 use froude_identify::compare::{Comparison, SAME_DATA, Stated};
 use froude_identify::dataset::Dataset;
@@ -92,7 +93,7 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
     let bounded = sources.iter().flat_map(|s| &s.models).any(|m| m.options.bounds.iter().any(|b| b.lower == 0.0));
     if bounded {
         out.push(
-            "Coefficients are bounded below by zero, as the zeros of published tables imply. A value at its bound is the \
+            "Coefficients are bounded below by zero, as the campaign asks. A value at its bound is the \
              constrained fit; its interval is that of the unconstrained fit, cut at the bound."
                 .to_owned(),
         );
@@ -128,9 +129,12 @@ fn error_models(source: &SourceResult) -> Vec<String> {
         let is_plain = |m: &ModelFit| !m.law.in_logarithms() && m.law.responses.contains(load);
         // The same law in the load's unit tells the two error models apart best; any other law will do.
         let plain = position(&|m| is_plain(m) && m.law.is_nonlinear()).or_else(|| position(&is_plain));
+        let has_std = source.data.channels.contains_key(&format!("std_{load}"));
         let assumes = format!(
-            "{}, {load}: {} is fitted to logarithms and takes every point to have the same relative error",
-            source.name, logarithmic.law.name
+            "{}, {load}: {} is fitted to logarithms and takes every point to have {}",
+            source.name,
+            logarithmic.law.name,
+            if has_std { "the relative error of its std column" } else { "the same relative error" }
         );
         let Some(j) = plain else {
             out.push(format!(
@@ -143,8 +147,9 @@ fn error_models(source: &SourceResult) -> Vec<String> {
         let unit = response_unit(&source.data, load);
         let support = supported(source, (i, logarithmic), (j, newton), load);
         out.push(format!(
-            "{assumes}, {} is fitted in {unit} and takes every point to have the same absolute error; {support}.",
-            newton.law.name
+            "{assumes}, {} is fitted in {unit} and takes every point to have {}; {support}.",
+            newton.law.name,
+            if has_std { "the absolute error of that column" } else { "the same absolute error" }
         ));
     }
     out
@@ -208,7 +213,12 @@ fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Unevenness
     let n = data.rows;
     let speed = data.values("speed").filter(|_| n >= FEWEST_FOR_SCATTER)?;
     let r = model.law.responses.iter().position(|name| name == load)?;
-    let size: Vec<f64> = (0..n).map(|i| model.fit.residuals.get(r * n + i).map(|x| x.abs())).collect::<Option<_>>()?;
+    let size: Vec<f64> = (0..n)
+        .map(|i| {
+            let weight = model.problem.weight.as_ref().map_or(1.0, |w| w[r * n + i]);
+            model.fit.residuals.get(r * n + i).map(|x| x.abs() * weight.sqrt())
+        })
+        .collect::<Option<_>>()?;
     let rho = rank_correlation(&size, speed);
     Some(Unevenness { rho, z: rho * ((n - 1) as f64).sqrt() })
 }
@@ -503,17 +513,20 @@ fn bands(
     let n = places.rows;
     let mut out = Vec::new();
     for (r, response) in model.law.responses.iter().enumerate() {
-        // The fewest degrees of freedom among the coefficients of this load: those of the clusters, say.
+        // Of the scatter: the fewest among the coefficients of this load, those of the clusters, say.
         let touches = |j: usize| (0..n).any(|i| slopes[(r * n + i, j)] != 0.0);
-        let dof = (0..slopes.ncols())
+        let scatter_dof = (0..slopes.ncols())
             .filter(|&j| touches(j))
-            .filter_map(|j| model.combined[j].map(|c| c.dof))
+            .filter_map(|j| model.fit.coefficients[j].dof)
             .fold(f64::INFINITY, f64::min);
-        let t = coverage_factor(dof);
         let half: Vec<f64> = (0..n)
             .map(|i| {
                 let row: Vec<f64> = (0..slopes.ncols()).map(|j| slopes[(r * n + i, j)]).collect();
-                t * model.prediction_std(&row)
+                let standard = model.prediction_std(&row);
+                // Welch–Satterthwaite (GUM G.4.1) with a budget of infinitely many degrees of freedom.
+                let scatter = spread(&model.fit.covariance, &row);
+                let share = if scatter > 0.0 { (standard / scatter).powi(4) } else { f64::INFINITY };
+                coverage_factor(scatter_dof * share) * standard
             })
             .collect();
         let y = &y[r * n..(r + 1) * n];
@@ -530,6 +543,16 @@ fn bands(
         });
     }
     Ok(out)
+}
+
+/// √(xᵀCx) of the coefficients that x belongs to.
+fn spread(covariance: &Mat<f64>, x: &[f64]) -> f64 {
+    let variance: f64 = x
+        .iter()
+        .enumerate()
+        .map(|(a, p)| x.iter().enumerate().map(|(b, q)| p * q * covariance[(a, b)]).sum::<f64>())
+        .sum();
+    variance.max(0.0).sqrt()
 }
 
 /// Values of `held` at which at least three distinct values of `moving` were run, the most frequent first.

@@ -404,7 +404,8 @@ pub fn residuals(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>>
 /// truth; the recommendation must not be far from the best of them.
 pub fn recommendation(claims: &mut Claims, root: &Path, seeds: u64) -> Result<(), Box<dyn Error>> {
     let models = "models = [\"f1\", \"f2\", \"f3\", \"f4\", \"f5\", \"f6\"]\nbounds = \"non-negative\"";
-    /// Mean force error of what is recommended, relative to that of the best model.
+    /// Force error of what is recommended, relative to that of the best model. Dropping m of p coefficients for an AICc less
+    /// than 2 worse lets the mean square grow by (m + 2)/p: 22 % in the root for f5 in f4, and the scatter of the seeds.
     const LARGEST_COST: f64 = 1.25;
     let cases: [(&str, &str, Vec<String>, f64, bool); 4] = [
         ("pooled Table 2 twin", TABLE_2, configurations(1..=9), 0.02, true),
@@ -432,7 +433,11 @@ pub fn recommendation(claims: &mut Claims, root: &Path, seeds: u64) -> Result<()
         claims.holds(
             CHOICE,
             &case,
-            if is_rich { "mostly f4: the noise supports it" } else { "mostly a simpler one: the noise hides the rest" },
+            if is_rich {
+                "mostly f4: the noise supports it"
+            } else {
+                "mostly a simpler one: the noise nearly hides the rest"
+            },
             format!(
                 "{}; first seed: {}",
                 list(&|m| format!("{} {:.1} %", laws[m].name, 100.0 * chosen[m] as f64 / seeds as f64)),
