@@ -4,6 +4,7 @@
 //! standard output as one JSON document; progress and messages go to standard error.
 
 mod args;
+mod out;
 mod print;
 
 use std::process::ExitCode;
@@ -73,10 +74,10 @@ fn run(cli: Cli) -> Result<(), Error> {
                 return print::json(&rows);
             }
             for w in written {
-                println!("{}: {} observations in {}", w.source, w.rows, w.path.display());
+                out::say!("{}: {} observations in {}", w.source, w.rows, w.path.display());
             }
         }
-        Verb::Schema => print!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA),
+        Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
     Ok(())
 }

@@ -9,11 +9,13 @@ use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
 use froude::report::number;
 
+use crate::out::say;
+
 /// One JSON document on standard output.
 pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Error> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|e| Error::Nothing(format!("the result cannot be written as JSON: {e}")))?;
-    println!("{text}");
+    say!("{text}");
     Ok(())
 }
 
@@ -37,27 +39,30 @@ fn right(text: String) -> Cell {
 /// The coefficient tables, the findings, and where the report lies.
 pub fn outcome(outcome: &Outcome) {
     for source in &outcome.sources {
-        println!("\n{} ({} observations)", source.name, source.data.rows);
+        say!("\n{} ({} observations)", source.name, source.data.rows);
         if let Some(r) = &source.recommendation {
-            println!("  recommended: {}", r.reason);
+            say!("  recommended: {}", r.reason);
             if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
-                println!("  cross-validation: {why}");
+                say!("  cross-validation: {why}");
             }
         }
         for estimate in source.estimates.iter().filter(|e| e.recommended) {
-            println!("{}", coefficients(estimate));
+            say!("{}", coefficients(estimate));
             for combination in &estimate.undetermined {
-                println!("  determined only together: {combination}");
+                say!("  determined only together: {combination}");
             }
         }
         let others: Vec<&str> = source.estimates.iter().filter(|e| !e.recommended).map(|e| e.model.as_str()).collect();
         if !others.is_empty() {
-            println!("  also fitted: {} (see the report)", others.join(", "));
+            say!("  also fitted: {} (see the report)", others.join(", "));
         }
     }
+    if !outcome.comparison.coefficients.is_empty() {
+        say!("\nThe sources are compared in the report (E_n, χ², predicted forces).");
+    }
     findings(&outcome.file.findings);
-    println!("\nestimates {}", outcome.estimate.display());
-    println!("report    {}", outcome.report.display());
+    say!("\nestimates {}", outcome.estimate.display());
+    say!("report    {}", outcome.report.display());
 }
 
 fn coefficients(estimate: &Estimate) -> Table {
@@ -91,10 +96,10 @@ fn status(s: Status) -> &'static str {
 /// Findings, the gravest first.
 pub fn findings(findings: &[Finding]) {
     if findings.is_empty() {
-        println!("\nNo findings.");
+        say!("\nNo findings.");
         return;
     }
-    println!("\nFindings");
+    say!("\nFindings");
     for f in findings {
         let grade = match f.severity {
             Severity::Error => "ERROR  ",
@@ -102,7 +107,7 @@ pub fn findings(findings: &[Finding]) {
             Severity::Note => "note   ",
         };
         let source = f.source.as_ref().map_or(String::new(), |s| format!("{s}: "));
-        println!("  {grade}  [{}] {source}{}", f.code, f.message);
+        say!("  {grade}  [{}] {source}{}", f.code, f.message);
     }
 }
 
@@ -111,23 +116,23 @@ fn sentence(text: &str) {
     let mut line = " ".to_owned();
     for word in text.split_whitespace() {
         if line.chars().count() + 1 + word.chars().count() > usize::from(WIDEST) && !line.trim().is_empty() {
-            println!("{line}");
+            say!("{line}");
             line.clear();
             line.push_str("   ");
         }
         line = line + " " + word;
     }
-    println!("{line}");
+    say!("{line}");
 }
 
 /// What is in a file.
 pub fn inspection(i: &Inspection) {
-    println!("{}", i.kind);
+    say!("{}", i.kind);
     for (name, value) in &i.facts {
         sentence(&format!("{name}: {value}"));
     }
     if !i.columns.is_empty() {
-        println!("{}", columns(&i.columns));
+        say!("{}", columns(&i.columns));
     }
     for source in &i.sources {
         source_facts(source);
@@ -155,7 +160,7 @@ fn columns(columns: &[ColumnFacts]) -> Table {
 }
 
 fn source_facts(s: &SourceFacts) {
-    println!("\nsource {} ({})", s.name, s.kind);
+    say!("\nsource {} ({})", s.name, s.kind);
     let there = match (s.rows, s.kept, s.exists) {
         (Some(rows), Some(kept), _) if kept == rows => format!(", {rows} observations"),
         (Some(rows), Some(kept), _) => format!(", {kept} of {rows} observations are fitted"),
@@ -164,17 +169,17 @@ fn source_facts(s: &SourceFacts) {
     };
     sentence(&format!("{}: {}{there}", s.input, s.path));
     if let Some(runs) = s.planned_runs {
-        println!("  plan: {runs} runs");
+        say!("  plan: {runs} runs");
     }
     let what = if s.input == "record" { "estimates" } else { "models" };
     if !s.models.is_empty() {
         sentence(&format!("{what}: {}", s.models.join(", ")));
     }
     if !s.columns.is_empty() {
-        println!("{}", columns(&s.columns));
+        say!("{}", columns(&s.columns));
     }
     if s.input == "table" && s.budget.is_empty() {
-        println!("  budget: none; without [[source.uncertainty]] the uncertainties hold the scatter alone");
+        say!("  budget: none; without [[source.uncertainty]] the uncertainties hold the scatter alone");
     }
     if !s.budget.is_empty() {
         let mut out = table(&["budget", "standard", "shared by", "dof", "name"]);
@@ -187,12 +192,12 @@ fn source_facts(s: &SourceFacts) {
                 Cell::new(b.name.as_deref().unwrap_or("")),
             ]);
         }
-        println!("{out}");
+        say!("{out}");
     }
 }
 
 fn estimate_facts(e: &Estimate) {
-    println!("\n{}{}", e.id, if e.recommended { " (recommended)" } else { "" });
+    say!("\n{}{}", e.id, if e.recommended { " (recommended)" } else { "" });
     if let Some(reason) = &e.reason {
         sentence(reason);
     }
@@ -211,7 +216,7 @@ fn estimate_facts(e: &Estimate) {
             Cell::new(if c.status == Status::Free { "free" } else { status(c.status) }),
         ]);
     }
-    println!("{out}");
+    say!("{out}");
     for combination in &e.undetermined {
         sentence(&format!("determined only together: {combination}"));
     }
@@ -221,7 +226,7 @@ fn estimate_facts(e: &Estimate) {
             let (low, high) = (right(number::plain(r.low, 5)), right(number::plain(r.high, 5)));
             out.add_row(vec![Cell::new(name), low, high, Cell::new(&r.unit)]);
         }
-        println!("{out}");
+        say!("{out}");
     }
     for (name, value) in diagnostics(&e.diagnostics) {
         sentence(&format!("{name}: {value}"));
@@ -305,7 +310,7 @@ pub fn comparison(c: &Comparison, all: bool) {
         let own = |j: &&JointRow| pair.iter().any(|r| r.first == j.first && r.second == j.second);
         for j in c.joint.iter().filter(own) {
             match &j.result {
-                Ok((chi2, dof, p)) => println!(
+                Ok((chi2, dof, p)) => say!(
                     "  jointly: χ² = {} with {dof} degree{} of freedom, p {}{}",
                     number::significant(*chi2, 3),
                     if *dof == 1 { "" } else { "s" },
@@ -314,12 +319,12 @@ pub fn comparison(c: &Comparison, all: bool) {
                 ),
                 // A missing uncertainty has been named with the missing E_n.
                 Err(why) if reasons(pair.iter().map(|r| &r.e_n)).contains(&why.as_str()) => {}
-                Err(why) => println!("  no joint χ²: {why}"),
+                Err(why) => say!("  no joint χ²: {why}"),
             }
         }
     }
     if !hidden.is_empty() {
-        println!("\n{} further pairs of coefficients; --all prints them", hidden.len());
+        say!("\n{} further pairs of coefficients; --all prints them", hidden.len());
     }
     if !c.forces.is_empty() {
         forces(c);
@@ -331,7 +336,7 @@ pub fn comparison(c: &Comparison, all: bool) {
 fn coefficient_pair(rows: &[&CoefficientRow]) {
     let Some(one) = rows.first() else { return };
     let has_e_n = rows.iter().any(|r| r.e_n.is_ok());
-    println!("\nModel {}", one.model);
+    say!("\nModel {}", one.model);
     let (first, second) = if one.first == one.second {
         (format!("1: {}", one.first), format!("2: {}", one.second))
     } else {
@@ -356,22 +361,22 @@ fn coefficient_pair(rows: &[&CoefficientRow]) {
         }
         out.add_row(row);
     }
-    println!("{out}");
+    say!("{out}");
     if is_stated {
-        println!("  ± U: expanded uncertainty, 95 %, U = k·u");
-        println!("    {}", coverage_note(&one.first, rows.iter().map(|r| &r.by_first)));
+        say!("  ± U: expanded uncertainty, 95 %, U = k·u");
+        say!("    {}", coverage_note(&one.first, rows.iter().map(|r| &r.by_first)));
         if one.first != one.second {
-            println!("    {}", coverage_note(&one.second, rows.iter().map(|r| &r.by_second)));
+            say!("    {}", coverage_note(&one.second, rows.iter().map(|r| &r.by_second)));
         }
     }
     for why in reasons(rows.iter().map(|r| &r.e_n)) {
-        println!("  no E_n: {why}");
+        say!("  no E_n: {why}");
     }
 }
 
 /// Predicted forces: a column per estimate, in blocks that fit beside each other.
 fn forces(c: &Comparison) {
-    println!("\nPredicted force over the common range");
+    say!("\nPredicted force over the common range");
     let has_links = c.forces.iter().any(|r| r.n_links.is_some());
     let mut place = vec!["load".to_owned()];
     if has_links {
@@ -416,19 +421,19 @@ fn forces(c: &Comparison) {
             row.extend(block.iter().map(|(_, cells)| right(cells[i].clone())));
             out.add_row(row);
         }
-        println!("{out}");
+        say!("{out}");
     }
     if c.forces.iter().flat_map(|r| &r.forces).any(|f| f.standard.is_some()) {
-        println!("  ± U: expanded uncertainty, 95 %, U = k·u");
+        say!("  ± U: expanded uncertainty, 95 %, U = k·u");
     }
     for note in c.coverage_notes() {
-        println!("    {note}");
+        say!("    {note}");
     }
     for (j, id) in c.force_ids.iter().enumerate().skip(1) {
         // A missing uncertainty has just been named.
         let others = reasons(c.forces.iter().map(|r| &r.e_n[j - 1]));
         for why in others.into_iter().filter(|why| !why.starts_with("no uncertainty stated")) {
-            println!("  no E_n of {id} against {}: {why}", c.force_ids[0]);
+            say!("  no E_n of {id} against {}: {why}", c.force_ids[0]);
         }
     }
 }

@@ -319,3 +319,58 @@ fn inspect_shows_the_estimates_of_a_record() {
     assert_eq!(json["estimates"], file["estimates"], "every number of the record");
     assert_eq!(json["findings"], file["findings"]);
 }
+
+/// The published record of the conventions page, word for word.
+#[test]
+fn the_record_that_the_book_shows_can_be_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let page =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../book/src/conventions.md")).unwrap();
+    let record = page.split("```json\n").nth(1).and_then(|rest| rest.split("```").next()).unwrap();
+    std::fs::write(folder.path().join("handbook.json"), record).unwrap();
+    let mut table = "speed [m/s],f_x [gf]\n".to_owned();
+    for (v, f) in [(0.2, -1.8), (0.4, -7.1), (0.6, -15.7), (0.8, -28.4), (0.7, -21.3)] {
+        table += &format!("{v},{f}\n");
+    }
+    std::fs::write(folder.path().join("t.csv"), table).unwrap();
+    assert_eq!(froude(folder.path(), &["identify", "t.csv"]).status.code(), Some(0));
+    let out = json(&froude(folder.path(), &["--json", "compare", "t-results/estimate.json", "handbook.json"]));
+    assert!(out["coefficients"][0]["e_n"].is_number(), "{out}");
+    assert!(!out["forces"].as_array().unwrap().is_empty(), "{out}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_reader_that_goes_away_is_no_panic() {
+    use std::process::{Command, Stdio};
+    let record = example("mamba/published/cfd.json");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+        .args(["inspect", record.to_str().unwrap()])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    assert_eq!(output.status.code(), Some(0));
+}
+
+#[test]
+fn a_body_without_links_is_simulated_too() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(
+        folder.path().join("c.toml"),
+        "schema = 1\nname = \"torpedo\"\n[fluid]\ntemperature = \"19 degC\"\n[[source]]\nname = \"tow\"\nkind = \"towing\"\ntable = \"t.csv\"\n\
+         [[source.plan]]\nspeed = { start = \"0.1 m/s\", stop = \"0.8 m/s\", step = \"0.1 m/s\" }\nrepeats = 3\n\
+         [simulate]\nseed = 1\nmodel = \"quadratic\"\n[simulate.coefficients]\nD_x_II = \"0.4 kg/m\"\n\
+         [[simulate.sensor]]\nquantity = \"f_x\"\nnoise = \"0.002 N\"\n",
+    )
+    .unwrap();
+    let made = froude(folder.path(), &["simulate", "c.toml"]);
+    assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
+    let out = json(&froude(folder.path(), &["--json", "identify", "c.toml", "--models", "quadratic"]));
+    let c = &out["estimates"][0]["coefficients"]["D_x_II"];
+    let (value, u) = (c["value"].as_f64().unwrap(), c["standard_uncertainty"].as_f64().unwrap());
+    assert!((value - 0.4).abs() < 4.0 * u && u < 0.01, "{c}");
+}

@@ -345,7 +345,7 @@ fn joint(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> JointRow {
                     .filter(|(c, _)| c.is_none())
                     .map(|(_, id)| id)
                     .collect();
-            return Err(format!("no uncertainty stated by {}", without.join(" and ")));
+            return Err(format!("no covariance matrix stated by {}", without.join(" and ")));
         };
         if is_same_data {
             return Err(SAME_DATA_JOINTLY.to_owned());

@@ -36,12 +36,18 @@ const NEAR_LARGEST_SPEED: f64 = 0.9;
 /// Density where neither campaign nor table says one: fresh water. Sea water differs by 3 %, which no bound notices.
 const DENSITY_UNSTATED_KG_M3: f64 = 1000.0;
 
+/// How well rigs repeat a setting, as part of the largest: 2 mm/s in 1 m/s moves a drag by 0.4 % there.
+const REPEATS_WITHIN: f64 = 2e-3;
+/// The fastest towing carriages run 20 to 30 m/s; a model that is said to go faster was typed in another unit.
+const FASTEST_M_S: f64 = 40.0;
+
 /// Every lint that looks at observations alone.
 #[must_use]
 pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
     let mut findings = Vec::new();
     findings.extend(force_along_motion(data));
-    findings.extend(drag_area(data));
+    findings.extend(implausible_speed(data));
+    findings.extend(drag_area(data, campaign.body.as_ref().and_then(|b| b.reference_area_m2)));
     findings.extend(saturation(data));
     findings.extend(angle_in_radians(data));
     findings.extend(distinct_speeds(data));
@@ -159,10 +165,29 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
     findings
 }
 
+/// A speed that no tank and no model has.
+fn implausible_speed(data: &Dataset) -> Option<Finding> {
+    let speed = data.values("speed")?;
+    let i = (0..data.rows).max_by(|&i, &j| speed[i].total_cmp(&speed[j]))?;
+    (speed[i] > FASTEST_M_S).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "implausible-speed",
+            format!(
+                "line {}: {:.1} m/s is faster than any towing carriage (20 to 30 m/s); check the unit of the speed",
+                data.line.get(i).copied().unwrap_or(i + 1),
+                speed[i]
+            ),
+        )
+    })
+}
+
 /// A force that no body at that speed has: a prefix of a unit is probably wrong.
 ///
 /// Only the largest of the loads is asked: a side force at no angle, a drag at broadside may be as small as they like.
-fn drag_area(data: &Dataset) -> Option<Finding> {
+///
+/// With a stated reference area it is asked for the drag coefficient that bodies have.
+fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> {
     let speed = data.values("speed")?;
     let largest = speed.iter().fold(0.0_f64, |m, u| m.max(*u));
     let near: Vec<usize> =
@@ -174,7 +199,26 @@ fn drag_area(data: &Dataset) -> Option<Finding> {
         .max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
     let density_kg_m3 = data.values("density").map_or(DENSITY_UNSTATED_KG_M3, |d| d[i]);
     let area_m2 = f.abs() / (0.5 * density_kg_m3 * speed[i] * speed[i]);
-    if f == 0.0 || DRAG_AREA_M2.contains(&area_m2) {
+    if f == 0.0 {
+        return None;
+    }
+    if let Some(reference) = reference_area_m2
+        && !BODY_DRAG_COEFFICIENT.contains(&(area_m2 / reference))
+    {
+        return Some(Finding::new(
+            Severity::Warning,
+            "unphysical-drag-coefficient",
+            format!(
+                "line {}: {load} = {f:.3e} N at {:.3} m/s on {reference:.3e} m^2 is C_D = {:.2e}: no body has that (0.04 to 2.3 is the \
+                 range of shapes); check the units of `{}` and of the speed, and the reference area",
+                data.line.get(i).copied().unwrap_or(i + 1),
+                speed[i],
+                area_m2 / reference,
+                data.header(load),
+            ),
+        ));
+    }
+    if DRAG_AREA_M2.contains(&area_m2) {
         return None;
     }
     let (side, yardstick) = if area_m2 > *DRAG_AREA_M2.end() {
@@ -281,31 +325,49 @@ fn repeats(data: &Dataset) -> Option<Finding> {
     })
 }
 
-/// Settings as labels: rows with the same configuration, setup and motion (to 1e-9) share one.
+/// Settings as labels: rows with the same configuration and setup, and the same motion as far as a rig repeats it.
+///
+/// A measured speed is never twice the same number. Values of a channel within [`REPEATS_WITHIN`] of its largest belong
+/// together, counted from the smallest of them, so that a fine sweep does not run together.
 #[must_use]
 pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
-    let configurations = crate::dataset::labels(&data.configuration);
-    let setups = crate::dataset::labels(&data.setup);
-    let mut seen: HashMap<Vec<i64>, usize> = HashMap::new();
+    let mut keys = vec![crate::dataset::labels(&data.configuration), crate::dataset::labels(&data.setup)];
+    for (name, channel) in &data.channels {
+        let is_measured = LOADS.contains(&name.as_str())
+            || name.starts_with("std_")
+            || name.starts_with("zero_")
+            || matches!(
+                name.as_str(),
+                "repeat" | "run" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y"
+            );
+        if !is_measured {
+            keys.push(within(&channel.values, REPEATS_WITHIN));
+        }
+    }
+    let mut seen: HashMap<Vec<usize>, usize> = HashMap::new();
     (0..data.rows)
         .map(|i| {
-            let mut key = vec![configurations[i] as i64, setups[i] as i64];
-            for (name, channel) in &data.channels {
-                let measured = LOADS.contains(&name.as_str())
-                    || name.starts_with("std_")
-                    || name.starts_with("zero_")
-                    || matches!(
-                        name.as_str(),
-                        "repeat" | "run" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y"
-                    );
-                if !measured {
-                    key.push((channel.values[i] * 1e9).round() as i64);
-                }
-            }
             let next = seen.len();
-            *seen.entry(key).or_insert(next)
+            *seen.entry(keys.iter().map(|k| k[i]).collect()).or_insert(next)
         })
         .collect()
+}
+
+/// Labels of values that lie within a part of the largest from the smallest of their group.
+fn within(values: &[f64], part: f64) -> Vec<usize> {
+    let width = part * values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
+    let mut out = vec![0; values.len()];
+    let (mut label, mut first) = (0, order.first().map_or(0.0, |&i| values[i]));
+    for i in order {
+        if values[i] > first + width {
+            label += 1;
+            first = values[i];
+        }
+        out[i] = label;
+    }
+    out
 }
 
 /// Volumes of the configurations that do not grow by one link's volume a link.

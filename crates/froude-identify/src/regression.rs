@@ -166,6 +166,9 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         ));
     }
     let coefficients = step(&fitted);
+    if law.is_nonlinear() {
+        relative_residual(law, data, &coefficients, &newtons, &problem, &mut fitted)?;
+    }
     findings.extend(contradicted_priors(law, data, settings, &problem, &options, &specs)?);
     let mut contributions = contributions(
         Linearised {
@@ -217,6 +220,30 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         covariance_kind: if in_variables { "model-based, errors in variables".to_owned() } else { covariance_kind },
         findings,
     })
+}
+
+/// √(Σ w r²/Σ w f²) of the loads themselves: the fit knows only the response of its last linear step.
+fn relative_residual(
+    law: &ForceLaw,
+    data: &Dataset,
+    coefficients: &[f64],
+    newtons: &[f64],
+    problem: &fit::Problem,
+    fitted: &mut fit::Fit,
+) -> Result<(), IdentifyError> {
+    let predicted = law.predict(data, &coefficients[..law.coefficients.len()])?;
+    let n = data.rows;
+    for (r, summary) in fitted.components.iter_mut().enumerate() {
+        // The weights of logarithms are relative ones.
+        let weight = |i: usize| match &problem.weight {
+            Some(w) if law.in_logarithms() => w[i] / newtons[i].powi(2),
+            Some(w) => w[i],
+            None => 1.0,
+        };
+        let sum = |of: &dyn Fn(usize) -> f64| (r * n..(r + 1) * n).map(|i| weight(i) * of(i).powi(2)).sum::<f64>();
+        summary.relative_residual = (sum(&|i| newtons[i] - predicted[i]) / sum(&|i| newtons[i])).sqrt();
+    }
+    Ok(())
 }
 
 /// Replaces the fit by an orthogonal distance regression where the budget gives row errors of speed or angle.

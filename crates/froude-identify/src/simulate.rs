@@ -28,10 +28,7 @@ pub fn planned(campaign: &Campaign, source: &Source) -> Result<Dataset, Identify
     let (mut speed, mut angle, mut links, mut repeat) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for block in &source.plan {
         for configuration in &block.configurations {
-            let k = links_of(configuration).ok_or_else(|| IdentifyError::Campaign {
-                place: source.place.to_string(),
-                what: format!("plan: configuration {configuration:?} is not of the form HkLT"),
-            })?;
+            let k = links_of(configuration);
             for &u in &block.speed_m_s {
                 for &a in &block.angle_rad {
                     for r in 1..=block.repeats {
@@ -40,7 +37,7 @@ pub fn planned(campaign: &Campaign, source: &Source) -> Result<Dataset, Identify
                         data.run.push(format!("{}", data.run.len() + 1));
                         speed.push(u);
                         angle.push(a);
-                        links.push(f64::from(k));
+                        links.push(k.map(f64::from));
                         repeat.push(r as f64);
                     }
                 }
@@ -51,7 +48,10 @@ pub fn planned(campaign: &Campaign, source: &Source) -> Result<Dataset, Identify
     data.line = (2..2 + data.rows).collect();
     data.put("speed", speed, Dimension::SPEED);
     data.put("angle", angle, Dimension::ONE);
-    data.put("n_links", links, Dimension::ONE);
+    // Where all are HkLT; a law that needs links says so where they are missing.
+    if let Some(links) = links.into_iter().collect() {
+        data.put("n_links", links, Dimension::ONE);
+    }
     data.put("repeat", repeat, Dimension::ONE);
     let density = match (campaign.fluid.density_kg_m3, campaign.fluid.temperature_degc) {
         (Some(rho), _) => rho,
@@ -207,7 +207,9 @@ pub fn table(data: &Dataset, source: &Source) -> Result<Table, IdentifyError> {
     };
     let mut columns = Vec::new();
     for (name, text) in [("configuration", &data.configuration), ("setup", &data.setup), ("run", &data.run)] {
-        columns.push(Column { name: name.to_owned(), data: ColumnData::Text(text.clone()) });
+        if text.iter().any(|t| !t.is_empty()) {
+            columns.push(Column { name: name.to_owned(), data: ColumnData::Text(text.clone()) });
+        }
     }
     for (name, unit) in [("repeat", "1"), ("speed", "m/s"), ("angle", "deg"), ("f_x", "N"), ("f_y", "N")] {
         if let Some(channel) = data.channels.get(name) {

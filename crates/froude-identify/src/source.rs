@@ -67,6 +67,15 @@ pub fn identify_source(
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     findings.extend(lint::observations(&data, campaign));
+    if source.uncertainty.is_empty() && shared_errors.is_empty() {
+        findings.push(Finding::new(
+            Severity::Note,
+            "no-budget",
+            "no uncertainty of an instrument is declared: the intervals hold the scatter of the observations and nothing else \
+             (a calibration error does not show in the scatter)"
+                .to_owned(),
+        ));
+    }
     let settings = Settings {
         source_name: &source.name,
         kind: source.kind,
@@ -366,12 +375,8 @@ fn body(campaign: &Campaign, data: &Dataset, model: &str) -> Result<Body, Identi
 /// A finding that a published source carries no data.
 #[must_use]
 pub fn published_note(source: &Source) -> Finding {
-    Finding::new(
-        Severity::Note,
-        "published",
-        format!("{} is a published record: it is compared, not fitted", source.name),
-    )
-    .of_source(&source.name)
+    Finding::new(Severity::Note, "published", "a published record: it is compared, not fitted".to_owned())
+        .of_source(&source.name)
 }
 
 /// Unit text of a response channel.

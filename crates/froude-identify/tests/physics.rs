@@ -272,7 +272,8 @@ fn a_measured_density_is_used_unless_one_is_stated_and_then_it_is_told() {
     assert_eq!(finding(&bare, "stated-over-measured"), None);
     assert_eq!(
         finding(&bare, "measured-over-stated").unwrap(),
-        "the table's temperatures are used; temperature = 20.00 degC of [fluid] is not"
+        "the table's temperatures are the water's, where density or viscosity is taken from one; temperature = 20.00 degC of \
+         [fluid] is not used"
     );
 }
 

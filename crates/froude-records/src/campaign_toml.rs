@@ -286,15 +286,17 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
     s.only(&["configurations", "speed", "angle", "repeats"])?;
     let speed =
         s.get("speed").ok_or_else(|| s.missing("speed", "write \"0.1 m/s\", a list, or { start, stop, step }"))?;
+    // A body without links has no configuration to name.
+    let mut configurations = s.texts("configurations")?;
+    if configurations.is_empty() {
+        configurations.push(String::new());
+    }
     let out = PlanBlock {
-        configurations: s.texts("configurations")?,
+        configurations,
         speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
         angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
         repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
     };
-    if out.configurations.is_empty() {
-        return Err(s.missing("configurations", "write configurations = [\"H1LT\"], say"));
-    }
     Ok(out)
 }
 

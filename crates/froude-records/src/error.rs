@@ -265,7 +265,7 @@ pub enum RecordError {
         advice: String,
     },
     /// A cell that is not a number.
-    #[error("{place}: column `{column}`: `{found}` is not a number")]
+    #[error("{place}: column `{column}`: `{found}` is not a number{}", decimal_comma(found))]
     NotANumber {
         /// Where.
         place: Place,
@@ -389,4 +389,13 @@ pub(crate) fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, RecordEr
             problem: "the text is not UTF-8; save the file as UTF-8".to_owned(),
         }
     })
+}
+
+/// What to do about a number that is written with a decimal comma.
+fn decimal_comma(found: &str) -> &'static str {
+    let mut parts = found.trim().splitn(2, ',');
+    let digits = |p: Option<&str>| {
+        p.is_some_and(|p| !p.is_empty() && p.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()))
+    };
+    if digits(parts.next()) && digits(parts.next()) { "; write a decimal point, not a comma" } else { "" }
 }

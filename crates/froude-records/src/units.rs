@@ -18,7 +18,7 @@
 //! | symbols | prefixes |
 //! | --- | --- |
 //! | `m s g N Pa Hz A V W J l L rad` | `n u µ m c d h k M G` |
-//! | `ft in kn kt nmi lb lbf t bar min h deg ° rpm rev K degC °C % 1 Nm Nmm` | none (`Nm`: as above) |
+//! | `ft in kn kt nmi lb lbf gf kgf t bar min h deg ° rpm rev K degC °C % 1 Nm Nmm` | none (`Nm`: as above) |
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -705,6 +705,8 @@ const PLAIN: &[(&str, f64, f64, Dimension)] = &[
     ("t", 1000.0, 1.0, Dimension::MASS),
     ("lb", 0.45359237, 1.0, Dimension::MASS),
     ("lbf", 4.4482216152605, 1.0, Dimension::FORCE),
+    ("gf", 9.80665e-3, 1.0, Dimension::FORCE),
+    ("kgf", 9.80665, 1.0, Dimension::FORCE),
     ("bar", 1e5, 1.0, Dimension::PRESSURE),
     ("Nmm", 1.0, 1000.0, Dimension::MOMENT),
     ("min", 60.0, 1.0, Dimension::TIME),

@@ -52,6 +52,10 @@ fn every_row_has_its_numbers_of_similarity_what_was_fitted_and_what_is_left() {
         close("Fr_length [1]", u / (9.806_65 * 2.0_f64).sqrt());
         close("Fr_depth [1]", u / (9.806_65 * 2.5_f64).sqrt());
         close("blockage [1]", 0.01);
+        close(
+            "C_D [1]",
+            -loads[i] / (0.5 * froude::hydro::fluid::Water::at(t, 0.0).unwrap().density_kg_m3 * u * u * 0.1),
+        );
         close("f_x_quadratic [N]", -d * u * u);
         close("f_x_residual [N]", loads[i] + d * u * u);
     }
