@@ -128,10 +128,13 @@ fn fuzz(root: &Path, runs: u64) -> Result<(), String> {
         .collect();
     names.sort();
     for name in names {
+        // Found inputs go into the first folder, the committed ones are read from the second.
+        let (corpus, seeds) = (format!("fuzz/corpus/{name}"), format!("fuzz/seeds/{name}"));
+        std::fs::create_dir_all(root.join(&corpus)).map_err(|e| e.to_string())?;
         // The sanitizer flags are unstable; the stable compiler accepts them in bootstrap mode.
         println!("xtask: cargo fuzz run {name} ({runs} executions)");
         let status = Command::new("cargo")
-            .args(["fuzz", "run", &name, "--", &format!("-runs={runs}"), "-max_len=4096"])
+            .args(["fuzz", "run", &name, &corpus, &seeds, "--", &format!("-runs={runs}"), "-max_len=4096"])
             .env("RUSTC_BOOTSTRAP", "1")
             .current_dir(root)
             .status()
