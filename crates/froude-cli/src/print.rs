@@ -73,8 +73,8 @@ fn coefficients(estimate: &Estimate) -> Table {
             right(number::coefficient(c)),
             Cell::new(&c.unit),
             right(c.interval_95.map_or("—".to_owned(), number::interval)),
-            right(c.type_a.map_or("—".to_owned(), |x| format!("{x:.2e}"))),
-            right(c.type_b.map_or("—".to_owned(), |x| format!("{x:.2e}"))),
+            right(c.type_a.map_or("—".to_owned(), |x| number::significant(x, 2))),
+            right(c.type_b.map_or("—".to_owned(), |x| number::significant(x, 2))),
             Cell::new(status(c.status)),
         ]);
     }

@@ -141,6 +141,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
             ));
         }
     }
+    out.extend(negative_drag(model));
     out.extend(drag_coefficients(model, data, campaign));
     out
 }
@@ -211,6 +212,31 @@ pub fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
     let sxx: f64 = x.iter().map(|p| (p - mean).powi(2)).sum();
     let syy: f64 = y.iter().map(|q| (q - mean).powi(2)).sum();
     if sxx > 0.0 && syy > 0.0 { sxy / (sxx * syy).sqrt() } else { 0.0 }
+}
+
+/// Drag terms of the built-in polynomials that push: the law is a fit of its range, and wrong near rest.
+fn negative_drag(model: &ModelFit) -> Vec<Finding> {
+    if !matches!(model.law.name.as_str(), "quadratic" | "linear_quadratic") {
+        return Vec::new();
+    }
+    model
+        .specs
+        .iter()
+        .zip(&model.fit.coefficients)
+        .filter_map(|(spec, c)| Some((spec, c.value?, c.interval?)))
+        .filter(|(_, _, [_, high])| *high < 0.0)
+        .map(|(spec, value, _)| {
+            Finding::new(
+                Severity::Warning,
+                "negative-drag",
+                format!(
+                    "{}: {} = {value:.4} {} is below zero: this term pushes the body. The law follows the data in their range and \
+                     must not be used below it; compare with the power law, or set bounds",
+                    model.law.name, spec.name, spec.unit
+                ),
+            )
+        })
+        .collect()
 }
 
 /// Quadratic coefficients in N s²/m² that no body of the stated area has.

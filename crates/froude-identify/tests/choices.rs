@@ -318,3 +318,12 @@ fn units_that_were_mixed_up_are_suspected_for_any_law() {
     assert!(has(&codes(&format!("speed [cm/s],f_x [N]\n{}", rows(10.0, 0.8))), "unphysical-drag-coefficient"));
     assert!(has(&codes(&format!("speed [m/s],f_x [gf]\n{}", rows(10.0, 0.8))), "implausible-speed"));
 }
+
+#[test]
+fn a_drag_term_that_pushes_is_told() {
+    let rows: String =
+        (2..=9).map(|k| format!("{},{}\n", 0.1 * f64::from(k), -0.1 * f64::from(k * k) + 0.2 * f64::from(k))).collect();
+    let r = identify(&format!("speed [m/s],f_x [N]\n{rows}"), &format!("{SOURCE}models = [\"linear_quadratic\"]\n"));
+    let finding = r.findings.iter().find(|f| f.code == "negative-drag").expect("a finding");
+    assert!(finding.message.contains("D_x_I = -2.0000 kg/s is below zero"), "{}", finding.message);
+}
