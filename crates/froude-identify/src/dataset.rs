@@ -37,6 +37,12 @@ pub struct Dataset {
     pub headers: Vec<String>,
 }
 
+/// Unit text of a channel; `1` where the table has none of that name.
+#[must_use]
+pub fn unit_text(data: &Dataset, channel: &str) -> String {
+    data.dimension(channel).unwrap_or(Dimension::ONE).to_string()
+}
+
 /// Names of the loads, in the order of the axes.
 pub const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
 

@@ -12,7 +12,6 @@ use froude_records::campaign::{BudgetEntry, Shared};
 
 use crate::dataset::Dataset;
 use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S};
-use crate::regression::stacked;
 
 /// The inputs that may be uncertain, in the order of the regression.
 const INPUTS: [&str; 2] = ["speed", "angle"];
@@ -157,7 +156,7 @@ impl InputModel for LawOfInputs<'_> {
 pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma) -> Result<OdrFit, FitError> {
     let n = data.rows;
     let value = |name: &str, i: usize| data.values(name).map_or(0.0, |v| v[i]);
-    let responses = stacked(law, data).unwrap_or_default();
+    let responses = law.measured(data).unwrap_or_default();
     let drag = match &law.kind {
         Kind::Drag { model, body, cross_term } => {
             let settings = (0..n).map(|i| Setting {

@@ -253,6 +253,19 @@ impl ForceLaw {
         Ok((0..x.nrows()).map(|i| (0..terms).map(|j| x[(i, j)] * at[j]).sum()).collect())
     }
 
+    /// The measured responses, stacked like those of [`Self::predict`].
+    ///
+    /// # Errors
+    ///
+    /// A response that the table does not have.
+    pub fn measured(&self, data: &Dataset) -> Result<Vec<f64>, IdentifyError> {
+        let mut out = Vec::with_capacity(self.responses.len() * data.rows);
+        for response in &self.responses {
+            out.extend_from_slice(self.channel(data, response)?);
+        }
+        Ok(out)
+    }
+
     /// Place of a coefficient by name.
     #[must_use]
     pub fn position(&self, name: &str) -> Option<usize> {

@@ -372,8 +372,11 @@ fn within(values: &[f64], part: f64) -> Vec<usize> {
 
 /// Volumes of the configurations that do not grow by one link's volume a link.
 fn volumes(body: &BodySpec) -> Vec<Finding> {
-    let mut points: Vec<(f64, f64)> =
-        body.volumes.iter().filter_map(|(name, v)| crate::reduce::links_of(name).map(|k| (f64::from(k), *v))).collect();
+    let mut points: Vec<(f64, f64)> = body
+        .volumes
+        .iter()
+        .filter_map(|(name, v)| froude_records::table::links_of_configuration(name).map(|k| (f64::from(k), *v)))
+        .collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     volume_steps(&points, body.link_volume_m3)
 }

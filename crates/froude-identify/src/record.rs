@@ -5,10 +5,9 @@ use froude_records::campaign::Source;
 use froude_records::estimate::{Coefficient, Covariance, Diagnostics, Estimate, Law, Measured, Range, Status};
 use indexmap::IndexMap;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, unit_text};
 use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
 use crate::regression::ModelFit;
-use crate::source::response_unit;
 
 /// The record of one fitted model.
 #[must_use]
@@ -55,7 +54,7 @@ pub fn estimate(
             .components
             .iter()
             .filter_map(|c| {
-                let unit = if in_logarithms { "1".to_owned() } else { response_unit(data, &c.name) };
+                let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
                 c.sigma.map(|value| (c.name.clone(), Measured { value, unit }))
             })
             .collect(),

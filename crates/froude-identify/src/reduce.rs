@@ -5,24 +5,14 @@
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
-use froude_records::table::{Column, ColumnData, Table, read_table};
+use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table};
 use froude_records::units::Dimension;
 use std::path::PathBuf;
 
 use crate::dataset::{Channel, Dataset, LOADS};
 use crate::error::IdentifyError;
 use crate::tare;
-
-/// An error that many observations share: `directions · e`, with `e` of the given covariance.
-#[derive(Debug, Clone)]
-pub struct SharedError {
-    /// What it is, for the budget.
-    pub name: String,
-    /// Which load it belongs to, and a column per component of `e`, a row per observation.
-    pub directions: Vec<(String, Vec<Vec<f64>>)>,
-    /// Covariance of `e`.
-    pub covariance: Vec<Vec<f64>>,
-}
+use crate::uncertainty::SharedError;
 
 /// A source ready to be fitted.
 #[derive(Debug, Clone)]
@@ -149,16 +139,11 @@ fn dataset(table: &Table, source: &Source) -> Result<Dataset, IdentifyError> {
 
 /// `n_links` from names like H3LT, where every configuration is of that form.
 fn links_from_configuration(data: &mut Dataset) {
-    let links: Option<Vec<f64>> = data.configuration.iter().map(|c| links_of(c)).map(|k| k.map(f64::from)).collect();
+    let links: Option<Vec<f64>> =
+        data.configuration.iter().map(|c| links_of_configuration(c)).map(|k| k.map(f64::from)).collect();
     if let Some(links) = links {
         data.put("n_links", links, Dimension::ONE);
     }
-}
-
-/// k of HkLT.
-#[must_use]
-pub fn links_of(configuration: &str) -> Option<u16> {
-    configuration.strip_prefix('H')?.strip_suffix("LT")?.parse().ok()
 }
 
 /// Density and kinematic viscosity per row, from the campaign or the temperature of the run.

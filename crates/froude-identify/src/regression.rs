@@ -8,8 +8,7 @@ use froude_records::finding::{Finding, Severity};
 use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
-use crate::reduce::SharedError;
-use crate::uncertainty::{Combined, Contribution, Linearised, combine, contributions};
+use crate::uncertainty::{Combined, Contribution, Linearised, SharedError, combine, contributions};
 use crate::{dissipation, eiv};
 
 /// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
@@ -102,7 +101,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         model: law.name.clone(),
         source: Box::new(source),
     };
-    let newtons = stacked(law, data)?;
+    let newtons = law.measured(data)?;
     let measured = if law.in_logarithms() { logarithms(law, &newtons, data, settings)? } else { newtons.clone() };
     let setups = offset_setups(law, data, settings.identify);
     let mut specs = law.coefficients.clone();
@@ -300,24 +299,6 @@ fn errors_in_variables(
         })?;
     eiv::replace(fitted, &problem.design, &problem.response, result);
     Ok(true)
-}
-
-/// The measured responses, stacked.
-///
-/// # Errors
-///
-/// A response that the table does not have.
-pub fn stacked(law: &ForceLaw, data: &Dataset) -> Result<Vec<f64>, IdentifyError> {
-    let mut out = Vec::with_capacity(law.responses.len() * data.rows);
-    for response in &law.responses {
-        let values = data.values(response).ok_or_else(|| IdentifyError::NoSuchChannel {
-            model: law.name.clone(),
-            channel: response.clone(),
-            known: data.channels.keys().cloned().collect(),
-        })?;
-        out.extend_from_slice(values);
-    }
-    Ok(out)
 }
 
 /// Logarithms of the loads, for the error model "every point has the same relative error".

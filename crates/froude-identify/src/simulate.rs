@@ -15,7 +15,6 @@ use rand_distr::{Distribution, StandardNormal};
 use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::reduce::links_of;
 use crate::uncertainty::generator;
 
 /// The planned settings of a source: a row per run, with motion and water, loads at zero.
@@ -28,7 +27,7 @@ pub fn planned(campaign: &Campaign, source: &Source) -> Result<Dataset, Identify
     let (mut speed, mut angle, mut links, mut repeat) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for block in &source.plan {
         for configuration in &block.configurations {
-            let k = links_of(configuration);
+            let k = froude_records::table::links_of_configuration(configuration);
             for &u in &block.speed_m_s {
                 for &a in &block.angle_rad {
                     for r in 1..=block.repeats {

@@ -8,7 +8,6 @@ use froude_records::campaign::{Campaign, Source, SourceKind};
 use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
-use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
@@ -377,10 +376,4 @@ fn body(campaign: &Campaign, data: &Dataset, model: &str) -> Result<Body, Identi
 pub fn published_note(source: &Source) -> Finding {
     Finding::new(Severity::Note, "published", "a published record: it is compared, not fitted".to_owned())
         .of_source(&source.name)
-}
-
-/// Unit text of a response channel.
-#[must_use]
-pub fn response_unit(data: &Dataset, response: &str) -> String {
-    data.dimension(response).unwrap_or(Dimension::ONE).to_string()
 }

@@ -8,7 +8,7 @@ use froude_records::json::read_estimates;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::reduce::SharedError;
+use crate::uncertainty::SharedError;
 
 /// Subtracts the tare's predicted loads from `data`.
 ///

@@ -20,8 +20,17 @@ use rayon::prelude::*;
 use crate::dataset::{Dataset, labels};
 use crate::error::IdentifyError;
 use crate::law::{ForceLaw, aliased};
-use crate::reduce::SharedError;
-use crate::regression::stacked;
+
+/// An error that many observations share: `directions · e`, with `e` of the given covariance.
+#[derive(Debug, Clone)]
+pub struct SharedError {
+    /// What it is, for the budget.
+    pub name: String,
+    /// Which load it belongs to, and a column per component of `e`, a row per observation.
+    pub directions: Vec<(String, Vec<Vec<f64>>)>,
+    /// Covariance of `e`.
+    pub covariance: Vec<Vec<f64>>,
+}
 
 /// What one budget entry adds to the covariance of the coefficients.
 #[derive(Debug, Clone)]
@@ -117,7 +126,7 @@ fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, Ident
         for i in 0..n {
             out[r * n + i] = standard(i);
         }
-        as_logarithms(fit, &mut out, &stacked(fit.law, fit.data)?);
+        as_logarithms(fit, &mut out, &fit.law.measured(fit.data)?);
         return Ok(out);
     }
     if quantity == "temperature" {
@@ -185,7 +194,7 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Contribution
     let (p, n, q) = (fit.sensitivity.nrows(), fit.data.rows, error.covariance.len());
     let mut moved = Mat::<f64>::zeros(p, q);
     let mut per_newton = vec![1.0; n * fit.law.responses.len()];
-    as_logarithms(fit, &mut per_newton, &stacked(fit.law, fit.data)?);
+    as_logarithms(fit, &mut per_newton, &fit.law.measured(fit.data)?);
     for (response, rows) in &error.directions {
         if let Some(r) = fit.law.responses.iter().position(|name| name == response) {
             for (i, row) in rows.iter().enumerate().take(n) {

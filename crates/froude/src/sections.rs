@@ -3,10 +3,10 @@
 use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
 use froude_identify::compare::{Comparison, SAME_DATA, Stated};
-use froude_identify::dataset::Dataset;
+use froude_identify::dataset::{Dataset, unit_text};
 use froude_identify::diagnosis::rank_correlation;
 use froude_identify::regression::ModelFit;
-use froude_identify::source::{SourceResult, response_unit};
+use froude_identify::source::SourceResult;
 use froude_identify::uncertainty::{coverage_factor, shares};
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{Estimate, EstimateFile};
@@ -137,14 +137,11 @@ fn error_models(source: &SourceResult) -> Vec<String> {
             if has_std { "the relative error of its std column" } else { "the same relative error" }
         );
         let Some(j) = plain else {
-            out.push(format!(
-                "{assumes}; no law was fitted in {} to compare it with.",
-                response_unit(&source.data, load)
-            ));
+            out.push(format!("{assumes}; no law was fitted in {} to compare it with.", unit_text(&source.data, load)));
             continue;
         };
         let newton = &source.models[j];
-        let unit = response_unit(&source.data, load);
+        let unit = unit_text(&source.data, load);
         let support = supported(source, (i, logarithmic), (j, newton), load);
         out.push(format!(
             "{assumes}, {} is fitted in {unit} and takes every point to have {}; {support}.",
@@ -325,7 +322,7 @@ fn points(model: &ModelFit, data: &Dataset) -> Result<Vec<Point>, IdentifyError>
             out.push(Point {
                 configuration: data.configuration[i].clone(),
                 component: response.clone(),
-                unit: response_unit(data, response),
+                unit: unit_text(data, response),
                 speed_m_s: data.values("speed").map_or(0.0, |v| v[i]),
                 angle_rad: data.values("angle").map_or(0.0, |v| v[i]),
                 other: other.as_ref().and_then(|q| {
@@ -391,11 +388,7 @@ fn selection(source: &SourceResult) -> Vec<SelectionRow> {
                 component: component.name.clone(),
                 n_coefficients: component.rank,
                 sigma: component.sigma.unwrap_or(f64::NAN),
-                unit: if model.law.in_logarithms() {
-                    "1".to_owned()
-                } else {
-                    response_unit(&source.data, &component.name)
-                },
+                unit: if model.law.in_logarithms() { "1".to_owned() } else { unit_text(&source.data, &component.name) },
                 relative_residual: component.relative_residual,
                 delta_aicc: behind(model, diagnostics.aicc),
                 cross_validation: rmse
@@ -533,7 +526,7 @@ fn bands(
         out.push(Curve {
             configuration: configuration.to_owned(),
             component: response.clone(),
-            unit: response_unit(places, response),
+            unit: unit_text(places, response),
             model: model.law.name.clone(),
             against: against.clone(),
             x: x.to_vec(),

@@ -8,7 +8,6 @@ use froude::fit::odr::Sigma;
 use froude::fit::{self, Options, Problem};
 use froude::identify::dataset::Dataset;
 use froude::identify::eiv;
-use froude::identify::regression::stacked;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
@@ -75,7 +74,7 @@ pub fn cases(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<Vec
         let ordinary = coverage(runs, &|data| {
             let fitted = problem_of(&law, data)
                 .ok()
-                .zip(stacked(&law, data).ok())
+                .zip(law.measured(data).ok())
                 .and_then(|(problem, response)| fit::fit(&Problem { response, ..problem }, &Options::default()).ok());
             fitted.map_or_else(Vec::new, |f| f.coefficients.iter().map(|c| c.interval).collect())
         });
