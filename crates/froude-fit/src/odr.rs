@@ -48,6 +48,10 @@ use variance::Variance;
 
 /// σ has converged when it changes by less than this part.
 const SIGMA_TOLERANCE: f64 = 1e-9;
+/// While σ still moves by more than this part, β and δ are not worth their last digits.
+const SIGMA_SETTLES: f64 = 1e-3;
+/// Steps of β and δ between two updates of σ until then.
+const STEPS_WHILE_SIGMA_MOVES: usize = 2;
 /// Most alternations between β, δ and σ.
 const SIGMA_ITERATIONS: usize = 200;
 
@@ -106,16 +110,21 @@ pub fn odr<M: InputModel>(model: &M, problem: &OdrProblem, confidence: f64) -> R
     }
     let (mut state, mut variance) = State::start(model, problem)?;
     let mut report = Report { end: End::IterationLimit, iterations: 0 };
+    let mut steps = if variance.has_estimated() { STEPS_WHILE_SIGMA_MOVES } else { solve::ITERATIONS };
     for _ in 0..SIGMA_ITERATIONS {
-        let step = solve::minimise(model, problem, &mut state, &variance.sigma);
+        let step = solve::minimise(model, problem, &mut state, &variance.sigma, steps);
         report.iterations += step.iterations;
-        if !variance.has_estimated() || step.end == End::IterationLimit {
+        if !variance.has_estimated() || (step.end == End::IterationLimit && steps == solve::ITERATIONS) {
             report.end = step.end;
             break;
         }
         let linear = solve::linearise(model, problem, &state);
         let change = variance.update(problem, &linear);
-        if change < SIGMA_TOLERANCE {
+        let is_whole = steps == solve::ITERATIONS || step.end == End::Converged;
+        if change < SIGMA_SETTLES {
+            steps = solve::ITERATIONS;
+        }
+        if change < SIGMA_TOLERANCE && is_whole {
             report.end = step.end;
             break;
         }

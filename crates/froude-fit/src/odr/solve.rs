@@ -13,7 +13,7 @@ use crate::report::{End, Report};
 const STEP_TOLERANCE: f64 = 1e-10;
 /// Steps that cannot lower the sum are taken as converged below this size.
 const ROUNDING_STEP: f64 = 1e-6;
-const ITERATIONS: usize = 200;
+pub(super) const ITERATIONS: usize = 200;
 const HALVINGS: usize = 30;
 
 /// Where the iteration stands.
@@ -252,12 +252,18 @@ impl Factored {
     }
 }
 
-/// Minimises over β and δ, from where the state stands.
-pub(super) fn minimise<M: InputModel>(model: &M, problem: &OdrProblem, state: &mut State, sigma: &[f64]) -> Report {
+/// Minimises over β and δ, from where the state stands, in at most so many steps.
+pub(super) fn minimise<M: InputModel>(
+    model: &M,
+    problem: &OdrProblem,
+    state: &mut State,
+    sigma: &[f64],
+    most: usize,
+) -> Report {
     let (c, m) = (model.n_components(), model.n_inputs());
     let mut linear = linearise(model, problem, state);
     let mut value = objective(problem, state, &linear.residual, sigma);
-    for iterations in 1..=ITERATIONS {
+    for iterations in 1..=most {
         let rows = whiten(problem, &linear, sigma);
         let d_beta = rows.factor().solve(&rows.response);
         let moved = mul_vec(rows.design.as_ref(), &d_beta);
@@ -309,5 +315,5 @@ pub(super) fn minimise<M: InputModel>(model: &M, problem: &OdrProblem, state: &m
             return Report { end, iterations };
         }
     }
-    Report { end: End::IterationLimit, iterations: ITERATIONS }
+    Report { end: End::IterationLimit, iterations: most }
 }
