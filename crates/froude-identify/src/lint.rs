@@ -327,7 +327,7 @@ fn repeats(data: &Dataset) -> Option<Finding> {
 
 /// Settings as labels: rows with the same configuration and setup, and the same motion as far as a rig repeats it.
 ///
-/// A measured speed is never twice the same number. Values of a channel within [`REPEATS_WITHIN`] of its largest belong
+/// A measured speed is never twice the same number. Values of a channel within 0.2 % of its largest belong
 /// together, counted from the smallest of them, so that a fine sweep does not run together.
 #[must_use]
 pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
