@@ -20,6 +20,8 @@ const SERIAL_BELOW: f64 = 1.0;
 const COLLINEAR_ABOVE: f64 = 30.0;
 /// Rank correlation of |residual| with speed that calls the scatter uneven, in standard errors.
 const UNEVEN_ABOVE_Z: f64 = 2.0;
+/// Fewest observations from which the error model is judged.
+pub const FEWEST_FOR_SCATTER: usize = 8;
 
 /// The numbers for the record.
 ///
@@ -146,22 +148,44 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     out
 }
 
-/// Whether |residual| grows with speed: Spearman's rank correlation against its standard error 1/√(n − 1).
-fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
-    let Some(speed) = data.values("speed") else { return Vec::new() };
-    let n = data.rows;
-    if n < 8 {
-        return Vec::new();
+/// How |residual| goes with speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unevenness {
+    /// Spearman's rank correlation.
+    pub rho: f64,
+    /// The same in standard errors, 1/√(n − 1).
+    pub z: f64,
+}
+
+impl Unevenness {
+    /// True where equal errors are not what the residuals show.
+    #[must_use]
+    pub fn contradicts(self) -> bool {
+        self.z.abs() > UNEVEN_ABOVE_Z
     }
+}
+
+/// Rank correlation of the residuals of a load with speed; `None` below [`FEWEST_FOR_SCATTER`] rows.
+///
+/// With std columns a row may scatter as much as they say: what must be even is r·√w.
+#[must_use]
+pub fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Unevenness> {
+    let n = data.rows;
+    let speed = data.values("speed").filter(|_| n >= FEWEST_FOR_SCATTER)?;
+    let r = model.law.responses.iter().position(|name| name == load)?;
+    let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
+    let size: Vec<f64> = (r * n..(r + 1) * n).map(|row| model.fit.residuals[row].abs() * weight(row).sqrt()).collect();
+    let rho = rank_correlation(&size, speed);
+    Some(Unevenness { rho, z: rho * ((n - 1) as f64).sqrt() })
+}
+
+/// Whether |residual| grows with speed.
+fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
     let mut out = Vec::new();
-    for (r, component) in model.law.responses.iter().enumerate() {
-        // With std columns a row may scatter as much as they say: what must be even is r·√w.
-        let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
-        let size: Vec<f64> =
-            (r * n..(r + 1) * n).map(|row| model.fit.residuals[row].abs() * weight(row).sqrt()).collect();
-        let rho = rank_correlation(&size, speed);
-        let z = rho * ((n - 1) as f64).sqrt();
-        if z.abs() > UNEVEN_ABOVE_Z {
+    for component in &model.law.responses {
+        let Some(found) = unevenness(model, data, component) else { continue };
+        let Unevenness { rho, z } = found;
+        if found.contradicts() {
             let is_weighted = model.problem.weight.is_some();
             let (assumed, advice) = match (model.law.in_logarithms(), is_weighted) {
                 (true, false) => ("equal relative errors", "compare with the fit in newtons"),

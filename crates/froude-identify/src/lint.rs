@@ -38,6 +38,8 @@ const DENSITY_UNSTATED_KG_M3: f64 = 1000.0;
 
 /// How well rigs repeat a setting, as part of the largest: 2 mm/s in 1 m/s moves a drag by 0.4 % there.
 const REPEATS_WITHIN: f64 = 2e-3;
+/// Share of the speed along x from which a body shows its frontal area: within 8°.
+const AHEAD: f64 = 0.99;
 /// The fastest towing carriages run 20 to 30 m/s; a model that is said to go faster was typed in another unit.
 const FASTEST_M_S: f64 = 40.0;
 
@@ -202,7 +204,9 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
     if f == 0.0 {
         return None;
     }
-    if let Some(reference) = reference_area_m2
+    // The reference is a frontal area: a side force on it says nothing (a torpedo at broadside has 15).
+    let goes_ahead = load == "f_x" && data.velocity_m_s(i)[0].abs() >= AHEAD * speed[i];
+    if let Some(reference) = reference_area_m2.filter(|_| goes_ahead)
         && !BODY_DRAG_COEFFICIENT.contains(&(area_m2 / reference))
     {
         return Some(Finding::new(
@@ -338,7 +342,7 @@ pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
             || name.starts_with("zero_")
             || matches!(
                 name.as_str(),
-                "repeat" | "run" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y"
+                "repeat" | "run" | "time" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y"
             );
         if !is_measured {
             keys.push(within(&channel.values, REPEATS_WITHIN));

@@ -108,6 +108,25 @@ pub fn per_observation(data: &Dataset, campaign: &Campaign) -> Vec<(&'static str
     out
 }
 
+/// C_D = −f·v/(½ρU³A) of every row on `body.reference_area`: the force against the motion, before any model.
+///
+/// For planar motion; `None` without the area, the density or f_x, and where the table has v_z.
+#[must_use]
+pub fn drag_coefficient(data: &Dataset, campaign: &Campaign) -> Option<Vec<f64>> {
+    if data.channels.contains_key("v_z") {
+        return None;
+    }
+    let area_m2 = campaign.body.as_ref()?.reference_area_m2?;
+    let (density, f_x) = (data.values("density")?, data.values("f_x")?);
+    let f_y = data.values("f_y");
+    let at = |i: usize| {
+        let [v_x, v_y] = data.velocity_m_s(i);
+        let power_w = -(f_x[i] * v_x + f_y.map_or(0.0, |f| f[i] * v_y));
+        power_w / (0.5 * density[i] * v_x.hypot(v_y).powi(3) * area_m2)
+    };
+    Some((0..data.rows).map(at).collect())
+}
+
 /// The words for a prediction outside the ranges of an estimate, if it is outside.
 #[must_use]
 pub fn extrapolation(name: &str, low: f64, high: f64, fitted: &Range) -> Option<Finding> {

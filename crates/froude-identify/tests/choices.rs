@@ -327,3 +327,16 @@ fn a_drag_term_that_pushes_is_told() {
     let finding = r.findings.iter().find(|f| f.code == "negative-drag").expect("a finding");
     assert!(finding.message.contains("D_x_I = -2.0000 kg/s is below zero"), "{}", finding.message);
 }
+
+#[test]
+fn a_side_force_is_not_held_against_the_frontal_area() {
+    // A torpedo of 0.6 m and 60 mm at broadside: C = 1.1 on its side area is 14 on its frontal area.
+    let body = "[body]\nreference_area = \"0.002827 m^2\"\n";
+    let rows: String = (1..=6)
+        .map(|k| 0.1 * f64::from(k))
+        .map(|u| format!("{u},90,{},{}\n", -0.001 * u * u, 0.5 * 1000.0 * 0.036 * 1.1 * u * u))
+        .collect();
+    let table = format!("speed [m/s],angle [deg],f_x [N],f_y [N]\n{rows}");
+    let r = identify(&table, &format!("{body}{SOURCE}models = [\"quadratic\"]\n"));
+    assert!(!r.findings.iter().any(|f| f.code == "unphysical-drag-coefficient"), "{:?}", r.findings);
+}

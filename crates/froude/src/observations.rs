@@ -56,7 +56,7 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
         columns.retain(|c| c.name != name);
         columns.push(number(name, &values, Unit::one()));
     }
-    if let Some(values) = drag_coefficient(source, campaign) {
+    if let Some(values) = validity::drag_coefficient(data, campaign) {
         columns.push(number("C_D", &values, Unit::one()));
     }
     if let Some(model) = source.recommendation.as_ref().map(|r| &source.models[r.index]) {
@@ -89,20 +89,6 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
         line_of_row: data.line.clone(),
         sidecar: None,
     })
-}
-
-/// C_D = −f·v/(½ρU³A) of every row on the reference area: the force against the motion, before any model.
-fn drag_coefficient(source: &SourceResult, campaign: &Campaign) -> Option<Vec<f64>> {
-    let data = &source.data;
-    let area_m2 = campaign.body.as_ref()?.reference_area_m2?;
-    let (density, f_x) = (data.values("density")?, data.values("f_x")?);
-    let f_y = data.values("f_y");
-    let at = |i: usize| {
-        let [v_x, v_y] = data.velocity_m_s(i);
-        let power_w = -(f_x[i] * v_x + f_y.map_or(0.0, |f| f[i] * v_y));
-        power_w / (0.5 * density[i] * v_x.hypot(v_y).powi(3) * area_m2)
-    };
-    Some((0..data.rows).map(at).collect())
 }
 
 /// `observations-` and the source's name, as far as every file system takes it.

@@ -4,7 +4,7 @@ use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
 use froude_identify::compare::{Comparison, SAME_DATA, Stated};
 use froude_identify::dataset::{Dataset, unit_text};
-use froude_identify::diagnosis::rank_correlation;
+use froude_identify::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use froude_identify::regression::ModelFit;
 use froude_identify::source::SourceResult;
 use froude_identify::uncertainty::{coverage_factor, shares};
@@ -112,10 +112,6 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
     out
 }
 
-/// Fewest observations from which the error model is judged.
-const FEWEST_FOR_SCATTER: usize = 8;
-/// Rank correlation of |residual| with speed that contradicts an error model, in standard errors.
-const UNEVEN_ABOVE_Z: f64 = 2.0;
 /// AICc differences below this are no evidence (Burnham and Anderson 2002, § 2.6).
 const NO_EVIDENCE_BELOW: f64 = 2.0;
 
@@ -185,10 +181,9 @@ fn supported(
             if g > 0.0 { "smaller" } else { "larger" }
         ))
     );
-    let contradicts = |u: &Unevenness| u.z.abs() > UNEVEN_ABOVE_Z;
     let favoured = gain.filter(|g| g.abs() > NO_EVIDENCE_BELOW).map(|g| g > 0.0);
     // AICc weighs the whole likelihood; where it does not decide, the scatter alone may.
-    let verdict = match (favoured, contradicts(&of_log), contradicts(&of_newton)) {
+    let verdict = match (favoured, of_log.contradicts(), of_newton.contradicts()) {
         (Some(true), false, _) | (None, false, true) => "the residuals support the same relative error",
         (Some(false), _, false) | (None, true, false) => "the residuals support the same absolute error",
         (Some(_), ..) => "AICc favours one whose own residuals are uneven: they support neither",
@@ -196,28 +191,6 @@ fn supported(
         (None, false, false) => "the residuals do not tell the two apart",
     };
     format!("{verdict} ({numbers})")
-}
-
-/// How |residual| goes with speed.
-struct Unevenness {
-    /// Spearman's rank correlation.
-    rho: f64,
-    /// The same in standard errors, 1/√(n − 1).
-    z: f64,
-}
-
-fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Unevenness> {
-    let n = data.rows;
-    let speed = data.values("speed").filter(|_| n >= FEWEST_FOR_SCATTER)?;
-    let r = model.law.responses.iter().position(|name| name == load)?;
-    let size: Vec<f64> = (0..n)
-        .map(|i| {
-            let weight = model.problem.weight.as_ref().map_or(1.0, |w| w[r * n + i]);
-            model.fit.residuals.get(r * n + i).map(|x| x.abs() * weight.sqrt())
-        })
-        .collect::<Option<_>>()?;
-    let rho = rank_correlation(&size, speed);
-    Some(Unevenness { rho, z: rho * ((n - 1) as f64).sqrt() })
 }
 
 fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
