@@ -1,0 +1,2 @@
+//! Messages between host and carriage controller.
+#![no_std]

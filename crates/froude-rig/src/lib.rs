@@ -1,0 +1,1 @@
+//! Digital twin of the towing carriage, and the drivers of the real one.

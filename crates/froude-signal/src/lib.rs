@@ -1,0 +1,1 @@
+//! Filters, decimation, spectra and autocorrelation of uniformly sampled records.
