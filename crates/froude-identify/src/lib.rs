@@ -29,6 +29,7 @@ pub mod selection;
 pub mod simulate;
 pub mod source;
 mod tare;
+pub mod tuning;
 pub mod uncertainty;
 pub mod validity;
 

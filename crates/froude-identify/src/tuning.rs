@@ -1,0 +1,123 @@
+//! Tuning of a position loop from experiments on the loop itself.
+//!
+//! | module       | what                                                              | source                        |
+//! |--------------|-------------------------------------------------------------------|-------------------------------|
+//! | [`response`] | frequency response of the drive from a sweep in the closed loop     | Ljung 1999, ch. 13 (joint i/o) |
+//! | [`margins`]  | gain, phase and delay margin, largest sensitivity                   | Åström & Hägglund 2006, ch. 4 |
+//! | [`relay`]    | ultimate gain and period from a relay's limit cycle                 | Åström & Hägglund 2006, ch. 8 |
+//! | [`gains`]    | gains by loop shaping on the measured response; Ziegler–Nichols beside | the same, ch. 6            |
+//! | [`resonance`] | two-mass modes from the response; the shaper that they ask for     | MCD eq. 2; Singer & Seering 1990 |
+//!
+//! **Frame.** Drive command v_c \[V\] to motor angle θ \[rad\], as MCD eq. 6 has them.
+//! **Units.** SI; frequencies at the faces in Hz.
+//!
+//! Not here: driving the rig (`froude-rig`).
+
+pub mod gains;
+pub mod margins;
+pub mod relay;
+pub mod resonance;
+pub mod response;
+
+use num_complex::Complex64;
+
+/// One point of a measured frequency response.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponsePoint {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// θ over v_c, rad/V.
+    pub plant_rad_v: Complex64,
+    /// Coherence between the injected sine and the angle, 0 to 1.
+    pub coherence: f64,
+    /// Relative standard uncertainty of the modulus (and, in rad, of the phase).
+    pub relative_std: f64,
+}
+
+/// Gains of MCD eq. 6, in SI over the motor angle; the derivative has a first-order filter.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopGains {
+    /// V/rad.
+    pub proportional_v_rad: f64,
+    /// V s/rad.
+    pub derivative_v_s_rad: f64,
+    /// V/(rad s).
+    pub integral_v_rad_s: f64,
+    /// Corner of the derivative's filter, Hz.
+    pub derivative_filter_hz: f64,
+}
+
+impl LoopGains {
+    /// The controller's frequency response, V/rad.
+    #[must_use]
+    pub fn response_v_rad(&self, frequency_hz: f64) -> Complex64 {
+        let s = Complex64::new(0.0, std::f64::consts::TAU * frequency_hz);
+        let corner_rad_s = std::f64::consts::TAU * self.derivative_filter_hz;
+        self.proportional_v_rad + self.integral_v_rad_s / s + self.derivative_v_s_rad * s / (1.0 + s / corner_rad_s)
+    }
+}
+
+/// Why an experiment gives no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TuningError {
+    /// The record is too short for what is asked.
+    #[error("{what}: found {found}, at least {least} are needed; {advice}")]
+    TooFew {
+        /// What is counted.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many it takes.
+        least: usize,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// The columns differ in length.
+    #[error("columns of {first} and {second} samples: one row per tick is expected in each")]
+    Lengths {
+        /// One length.
+        first: usize,
+        /// Another.
+        second: usize,
+    },
+    /// A number that must be positive and finite is not.
+    #[error("{name} = {value}: a positive, finite number is expected")]
+    Number {
+        /// Its name.
+        name: &'static str,
+        /// What was found.
+        value: f64,
+    },
+    /// No crossover on the measured response meets the margins.
+    #[error(
+        "no crossover between {low_hz:.2} and {high_hz:.2} Hz keeps a phase margin of {phase_deg:.0}° and a largest \
+         sensitivity of {sensitivity:.1}; measure to lower frequencies, or ask for less"
+    )]
+    NoCrossover {
+        /// Lowest frequency tried.
+        low_hz: f64,
+        /// Highest.
+        high_hz: f64,
+        /// Phase margin asked for.
+        phase_deg: f64,
+        /// Sensitivity allowed.
+        sensitivity: f64,
+    },
+    /// The two-mass model does not follow the response.
+    #[error(
+        "the two-mass model leaves {residual_percent:.0} % of the response unexplained: it has no single antiresonance \
+         and resonance between {low_hz:.1} and {high_hz:.1} Hz"
+    )]
+    NoModes {
+        /// Root-mean-square relative residual.
+        residual_percent: f64,
+        /// Lowest frequency.
+        low_hz: f64,
+        /// Highest.
+        high_hz: f64,
+    },
+    /// The fit itself failed.
+    #[error(transparent)]
+    Fit(#[from] froude_fit::FitError),
+}

@@ -1,0 +1,83 @@
+//! Gains for the loop: shaped on the measured response, and Ziegler–Nichols' beside them for comparison.
+
+use std::f64::consts::{PI, TAU};
+
+use super::margins::margins;
+use super::relay::LimitCycle;
+use super::{LoopGains, ResponsePoint, TuningError};
+
+/// What a loop must keep.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Demand {
+    /// Smallest phase margin, rad.
+    pub phase_rad: f64,
+    /// Smallest gain margin, factor.
+    pub gain: f64,
+    /// Largest sensitivity.
+    pub sensitivity: f64,
+}
+
+impl Default for Demand {
+    /// 45°, 2 (6 dB), 2: the usual values (Åström & Hägglund 2006, §4.6).
+    fn default() -> Self {
+        Self { phase_rad: 0.25 * PI, gain: 2.0, sensitivity: 2.0 }
+    }
+}
+
+/// The fastest PID that keeps the demand on the measured response.
+///
+/// The controller's form is fixed by its crossover f_c: derivative zero at f_c/3, integral at f_c/10, derivative filter at
+/// 10 f_c. Crossovers are tried from the highest measured frequency downwards; at each the gain makes |L(f_c)| = 1.
+///
+/// # Errors
+///
+/// [`TuningError::NoCrossover`] when none keeps it.
+pub fn shaped_on_response(plant: &[ResponsePoint], demand: &Demand) -> Result<LoopGains, TuningError> {
+    plant
+        .iter()
+        .rev()
+        .map(with_crossover)
+        .find(|gains| {
+            let m = margins(plant, gains);
+            m.phase_rad.is_some_and(|x| x >= demand.phase_rad)
+                && m.gain.is_none_or(|x| x >= demand.gain)
+                && m.largest_sensitivity <= demand.sensitivity
+        })
+        .ok_or_else(|| TuningError::NoCrossover {
+            low_hz: plant.first().map_or(f64::NAN, |p| p.frequency_hz),
+            high_hz: plant.last().map_or(f64::NAN, |p| p.frequency_hz),
+            phase_deg: demand.phase_rad.to_degrees(),
+            sensitivity: demand.sensitivity,
+        })
+}
+
+fn with_crossover(point: &ResponsePoint) -> LoopGains {
+    let crossover_rad_s = TAU * point.frequency_hz;
+    let unit = LoopGains {
+        proportional_v_rad: 1.0,
+        derivative_v_s_rad: 3.0 / crossover_rad_s,
+        integral_v_rad_s: crossover_rad_s / 10.0,
+        derivative_filter_hz: 10.0 * point.frequency_hz,
+    };
+    let gain = 1.0 / (unit.response_v_rad(point.frequency_hz) * point.plant_rad_v).norm();
+    LoopGains {
+        proportional_v_rad: gain,
+        derivative_v_s_rad: gain * unit.derivative_v_s_rad,
+        integral_v_rad_s: gain * unit.integral_v_rad_s,
+        derivative_filter_hz: unit.derivative_filter_hz,
+    }
+}
+
+/// Ziegler and Nichols (1942), ultimate-sensitivity rule: K_p = 0.6 K_u, T_i = T_u/2, T_d = T_u/8.
+///
+/// For comparison: it was made for a quarter of decay from swing to swing, which leaves small margins.
+#[must_use]
+pub fn ziegler_nichols(cycle: &LimitCycle) -> LoopGains {
+    let proportional_v_rad = 0.6 * cycle.ultimate_gain_v_rad;
+    LoopGains {
+        proportional_v_rad,
+        derivative_v_s_rad: proportional_v_rad * cycle.period_s / 8.0,
+        integral_v_rad_s: proportional_v_rad * 2.0 / cycle.period_s,
+        derivative_filter_hz: 10.0 / cycle.period_s,
+    }
+}

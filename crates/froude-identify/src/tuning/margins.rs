@@ -1,0 +1,106 @@
+//! Margins of a loop from its measured frequency response.
+//!
+//! L = C·P with the controller's own response and the drive's measured one. Between measured points modulus (in the logarithm)
+//! and unwrapped phase are interpolated in the logarithm of the frequency.
+
+use std::f64::consts::PI;
+
+use num_complex::Complex64;
+
+use super::{LoopGains, ResponsePoint};
+
+/// How far a loop is from instability.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Margins {
+    /// Highest frequency at which |L| falls through 1, Hz.
+    pub crossover_hz: Option<f64>,
+    /// Smallest phase margin over all crossings of |L| = 1, rad.
+    pub phase_rad: Option<f64>,
+    /// Smallest factor > 1 by which the gain may rise (crossings of −180° with |L| < 1).
+    pub gain: Option<f64>,
+    /// Smallest factor < 1 to which the gain may fall (crossings of −180° with |L| > 1): loops with an integrator can lose
+    /// stability by too little gain.
+    pub gain_reduction: Option<f64>,
+    /// Smallest phase margin over its own frequency, s.
+    pub delay_s: Option<f64>,
+    /// Largest |1/(1 + L)| over the measured frequencies.
+    pub largest_sensitivity: f64,
+}
+
+/// A point of the open loop, ready for a Bode plot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoopPoint {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// |L|.
+    pub modulus: f64,
+    /// Unwrapped phase, rad.
+    pub phase_rad: f64,
+}
+
+/// The open loop L = C·P, phase unwrapped from its first point on, which is taken between −270° and +90°.
+#[must_use]
+pub fn open_loop(plant: &[ResponsePoint], gains: &LoopGains) -> Vec<LoopPoint> {
+    let mut before: Option<f64> = None;
+    plant
+        .iter()
+        .map(|p| {
+            let l = p.plant_rad_v * gains.response_v_rad(p.frequency_hz);
+            let mut phase = l.arg();
+            let near = before.unwrap_or(-0.5 * PI);
+            phase += 2.0 * PI * ((near - phase) / (2.0 * PI)).round();
+            before = Some(phase);
+            LoopPoint { frequency_hz: p.frequency_hz, modulus: l.norm(), phase_rad: phase }
+        })
+        .collect()
+}
+
+/// Margins of the loop over the measured frequencies; a margin without a crossing there is `None`.
+#[must_use]
+pub fn margins(plant: &[ResponsePoint], gains: &LoopGains) -> Margins {
+    let points = open_loop(plant, gains);
+    let mut out = Margins::default();
+    for p in &points {
+        let distance = (1.0 + Complex64::from_polar(p.modulus, p.phase_rad)).norm();
+        out.largest_sensitivity = out.largest_sensitivity.max(1.0 / distance);
+    }
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        if let Some(t) = crossing(a.modulus.ln(), b.modulus.ln()) {
+            let frequency_hz = between(a.frequency_hz.ln(), b.frequency_hz.ln(), t).exp();
+            // Not folded into one turn: a delay of a whole turn more is no margin.
+            let margin = between(a.phase_rad, b.phase_rad, t) + PI;
+            if a.modulus > b.modulus {
+                out.crossover_hz = Some(frequency_hz);
+            }
+            out.phase_rad = Some(out.phase_rad.map_or(margin, |m| m.min(margin)));
+            if margin > 0.0 {
+                let delay = margin / (2.0 * PI * frequency_hz);
+                out.delay_s = Some(out.delay_s.map_or(delay, |d| d.min(delay)));
+            }
+        }
+        // Crossings of −180° (and of −540°, …): where the phase less π is a whole number of turns.
+        let turns = |phase: f64| (phase + PI) / (2.0 * PI);
+        let (low, high) = (turns(a.phase_rad).min(turns(b.phase_rad)), turns(a.phase_rad).max(turns(b.phase_rad)));
+        let whole = low.ceil();
+        if whole <= high && high > low {
+            let t = (whole - turns(a.phase_rad)) / (turns(b.phase_rad) - turns(a.phase_rad));
+            let factor = 1.0 / between(a.modulus.ln(), b.modulus.ln(), t).exp();
+            if factor > 1.0 {
+                out.gain = Some(out.gain.map_or(factor, |g| g.min(factor)));
+            } else {
+                out.gain_reduction = Some(out.gain_reduction.map_or(factor, |g| g.max(factor)));
+            }
+        }
+    }
+    out
+}
+
+/// Where a line from `a` to `b` crosses zero, as a part of the way.
+fn crossing(a: f64, b: f64) -> Option<f64> {
+    (a != b && (a > 0.0) != (b > 0.0)).then(|| a / (a - b))
+}
+
+fn between(a: f64, b: f64, part: f64) -> f64 {
+    a + (b - a) * part
+}

@@ -1,0 +1,206 @@
+//! Modes of the two-mass carriage from its motor-side response, and the shaper that they ask for.
+//!
+//! Motor side of MCD eq. 2: θ/v_c = k (s² + 2ζ_a ω_a s + ω_a²) / (s (s + b) (s² + 2ζ_p ω_p s + ω_p²)) · e^(−sT).
+//! Its **antiresonance** ω_a = √(K_e/M) is the load swinging on a motor that stands still, which is what a stiff position loop
+//! makes of the motor: the load's closed-loop mode. Its **resonance** ω_p is the free mode of both masses, the 13 Hz of the
+//! paper. A reference is therefore shaped for ω_a; shaping for ω_p leaves the load's swing as it was.
+
+use froude_fit::{Options, Problem, faer::Mat};
+use num_complex::Complex64;
+
+use super::{ResponsePoint, TuningError};
+
+/// Frequency and damping of a mode, with their standard uncertainties.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    /// Undamped natural frequency, Hz.
+    pub frequency_hz: f64,
+    /// Its standard uncertainty, Hz.
+    pub frequency_std_hz: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Its standard uncertainty.
+    pub damping_std: f64,
+}
+
+/// What the response says of the two masses.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TwoMassModes {
+    /// Load on a motor held still: the mode to shape for.
+    pub load: Mode,
+    /// Both masses free: the peak on the motor side.
+    pub free: Mode,
+    /// M (R/n)²/J_m = (ω_p/ω_a)² − 1.
+    pub inertia_ratio: f64,
+    /// Delay of the loop, s.
+    pub delay_s: f64,
+    /// Root-mean-square relative residual of the response.
+    pub relative_residual: f64,
+}
+
+const PARAMETERS: usize = 7;
+const NAMES: [&str; PARAMETERS] = ["ln k", "ln b", "ln f_a", "zeta_a", "ln f_p", "zeta_p", "T"];
+/// A fit that leaves more than this of the response is none.
+const LARGEST_RESIDUAL: f64 = 0.35;
+
+fn model(p: &[f64; PARAMETERS], frequency_hz: f64) -> Complex64 {
+    let tau = std::f64::consts::TAU;
+    let s = Complex64::new(0.0, tau * frequency_hz);
+    let (k, b, a, pole) = (p[0].exp(), p[1].exp(), tau * p[2].exp(), tau * p[4].exp());
+    k * (s * s + 2.0 * p[3] * a * s + a * a) / (s * (s + b) * (s * s + 2.0 * p[5] * pole * s + pole * pole))
+        * (-s * p[6]).exp()
+}
+
+/// Fits the two-mass model to the logarithm of the response (modulus and phase), weighted by the coherence.
+///
+/// Starts from the deepest dip and the highest peak of |θ/v_c|·ω² above it; Gauss–Newton with halved steps.
+///
+/// # Errors
+///
+/// [`TuningError::NoModes`] when the model does not follow the response; [`TuningError::TooFew`] below 20 points.
+pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningError> {
+    if plant.len() < 20 {
+        return Err(TuningError::TooFew {
+            what: "points of the frequency response",
+            found: plant.len(),
+            least: 20,
+            advice: "sweep longer",
+        });
+    }
+    let mut p = start(plant);
+    let mut sum = residuals(plant, &p).iter().map(|r| r * r).sum::<f64>();
+    let mut last = None;
+    for _ in 0..60 {
+        let fit = froude_fit::fit(&linearised(plant, &p), &Options::default())?;
+        let step: Vec<f64> = fit.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
+        let mut part = 1.0;
+        let mut improved = false;
+        while part > 1e-4 {
+            let mut trial = p;
+            trial.iter_mut().zip(&step).for_each(|(x, s)| *x += part * s);
+            trial[3] = trial[3].abs();
+            trial[5] = trial[5].abs();
+            let trial_sum = residuals(plant, &trial).iter().map(|r| r * r).sum::<f64>();
+            if trial_sum < sum {
+                improved = trial_sum < sum * (1.0 - 1e-10);
+                (p, sum) = (trial, trial_sum);
+                break;
+            }
+            part *= 0.5;
+        }
+        last = Some(fit);
+        if !improved {
+            break;
+        }
+    }
+    let unweighted: f64 =
+        plant.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).sum::<f64>();
+    let relative_residual = (unweighted / plant.len() as f64).sqrt();
+    let (low_hz, high_hz) = (plant[0].frequency_hz, plant[plant.len() - 1].frequency_hz);
+    let (load_hz, free_hz) = (p[2].exp(), p[4].exp());
+    let is_inside = |f: f64| (low_hz..=high_hz).contains(&f);
+    // A comparison with NaN is false, so this also refuses a fit that ran away.
+    if !(relative_residual < LARGEST_RESIDUAL && is_inside(load_hz) && is_inside(free_hz) && load_hz < free_hz) {
+        return Err(TuningError::NoModes { residual_percent: 100.0 * relative_residual, low_hz, high_hz });
+    }
+    let std = |j: usize| last.as_ref().and_then(|f| f.coefficients[j].standard).unwrap_or(f64::NAN);
+    let mode = |f: usize, z: usize| Mode {
+        frequency_hz: p[f].exp(),
+        frequency_std_hz: p[f].exp() * std(f),
+        damping: p[z],
+        damping_std: std(z),
+    };
+    Ok(TwoMassModes {
+        load: mode(2, 3),
+        free: mode(4, 5),
+        inertia_ratio: (free_hz / load_hz).powi(2) - 1.0,
+        delay_s: p[6],
+        relative_residual,
+    })
+}
+
+/// First guess: the line through the acceleration response, its dip and its peak.
+fn start(plant: &[ResponsePoint]) -> [f64; PARAMETERS] {
+    let acceleration = |q: &ResponsePoint| q.plant_rad_v.norm() * q.frequency_hz * q.frequency_hz;
+    let dip = (1..plant.len() - 1).min_by(|&a, &b| prominence(plant, a).total_cmp(&prominence(plant, b))).unwrap_or(1);
+    let peak = (dip..plant.len())
+        .max_by(|&a, &b| acceleration(&plant[a]).total_cmp(&acceleration(&plant[b])))
+        .unwrap_or(plant.len() - 1);
+    let (load_hz, free_hz) = (plant[dip].frequency_hz, plant[peak].frequency_hz.max(1.05 * plant[dip].frequency_hz));
+    let last = &plant[plant.len() - 1];
+    let k = last.plant_rad_v.norm() * (std::f64::consts::TAU * last.frequency_hz).powi(2);
+    [k.ln(), 0.0, load_hz.ln(), 0.05, free_hz.ln(), 0.05, 2.5e-4]
+}
+
+/// ln of the acceleration response less that of its neighbourhood (an octave): most negative at the antiresonance.
+fn prominence(plant: &[ResponsePoint], i: usize) -> f64 {
+    let f = plant[i].frequency_hz;
+    let level = |q: &ResponsePoint| (q.plant_rad_v.norm() * q.frequency_hz * q.frequency_hz).ln();
+    let near: Vec<f64> = plant.iter().filter(|q| (0.5..=2.0).contains(&(q.frequency_hz / f))).map(level).collect();
+    level(&plant[i]) - near.iter().sum::<f64>() / near.len() as f64
+}
+
+/// Weighted residuals ln(measured/model): moduli first, then phases.
+fn residuals(plant: &[ResponsePoint], p: &[f64; PARAMETERS]) -> Vec<f64> {
+    let ratio = |q: &ResponsePoint| (q.plant_rad_v / model(p, q.frequency_hz)).ln() / weight(q);
+    plant.iter().map(|q| ratio(q).re).chain(plant.iter().map(|q| ratio(q).im)).collect()
+}
+
+/// Standard deviation of a point, at least 1 %: what friction bends does not show in the coherence.
+fn weight(point: &ResponsePoint) -> f64 {
+    point.relative_std.max(0.01)
+}
+
+fn linearised(plant: &[ResponsePoint], p: &[f64; PARAMETERS]) -> Problem {
+    let base = residuals(plant, p);
+    let mut design = Mat::zeros(base.len(), PARAMETERS);
+    for j in 0..PARAMETERS {
+        let h = if j == 6 { 1e-6 } else { 1e-5 };
+        let mut moved = *p;
+        moved[j] += h;
+        for (i, r) in residuals(plant, &moved).iter().enumerate() {
+            design[(i, j)] = (base[i] - r) / h;
+        }
+    }
+    Problem::single(design, base, NAMES.iter().map(|&n| n.to_owned()).collect())
+}
+
+/// A shaper for a mode: impulses that leave it at rest (Singer & Seering 1990).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shaper {
+    /// Time that it adds to a move, s.
+    pub added_s: f64,
+    /// Residual swing with the mode `wrong` (relative) off, as a part of the unshaped one.
+    pub residual_10_percent_low: f64,
+    /// The same with the mode higher by 10 %.
+    pub residual_10_percent_high: f64,
+}
+
+/// Zero-vibration shaper, or with `is_robust` the one with zero derivative as well, for a mode, and what it leaves 10 % off it.
+#[must_use]
+pub fn shaper(mode: &Mode, is_robust: bool) -> Shaper {
+    let damped = (1.0 - mode.damping * mode.damping).max(1e-6).sqrt();
+    let half_s = 0.5 / (mode.frequency_hz * damped);
+    let k = (-mode.damping * std::f64::consts::PI / damped).exp();
+    let impulses: Vec<(f64, f64)> = if is_robust {
+        let total = (1.0 + k) * (1.0 + k);
+        vec![(0.0, 1.0 / total), (half_s, 2.0 * k / total), (2.0 * half_s, k * k / total)]
+    } else {
+        vec![(0.0, 1.0 / (1.0 + k)), (half_s, k / (1.0 + k))]
+    };
+    let residual = |factor: f64| {
+        let omega = std::f64::consts::TAU * mode.frequency_hz * factor;
+        let end = impulses.last().map_or(0.0, |i| i.0);
+        impulses
+            .iter()
+            .map(|&(t, a)| a * (Complex64::new(-mode.damping * omega, omega * damped) * (end - t)).exp())
+            .sum::<Complex64>()
+            .norm()
+            / (-mode.damping * omega * end).exp()
+    };
+    Shaper {
+        added_s: if is_robust { 2.0 * half_s } else { half_s },
+        residual_10_percent_low: residual(0.9),
+        residual_10_percent_high: residual(1.1),
+    }
+}
