@@ -27,6 +27,8 @@
 //! page).
 
 mod canvas;
+pub mod chart;
+pub mod document;
 mod figures;
 mod input;
 pub mod number;

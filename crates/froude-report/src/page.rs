@@ -13,7 +13,7 @@ use crate::number;
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
 
-const STYLE: &str = include_str!("report.css");
+pub(crate) const STYLE: &str = include_str!("report.css");
 
 /// The report as one self-contained HTML file.
 ///
@@ -227,26 +227,8 @@ impl Page<'_> {
         if self.report.findings.is_empty() {
             return html! { section { (heading) p { "The checks found nothing to report." } } };
         }
-        let groups = [
-            (
-                Severity::Error,
-                "Errors",
-                "error",
-                "contradict physics or the file itself: do not use the numbers as they are.",
-            ),
-            (Severity::Warning, "Warnings", "warning", "doubtful: look before trusting the numbers."),
-            (Severity::Note, "Notes", "note", "worth knowing; nothing was changed because of them."),
-        ];
-        let mut parts = Vec::new();
-        for (severity, word, class, meaning) in groups {
-            let group: Vec<&Finding> = self.report.findings.iter().filter(|f| f.severity == severity).collect();
-            if group.is_empty() {
-                continue;
-            }
-            let caption = self.tables.caption(&format!("{word}: {meaning}"));
-            parts.push(findings_table(&group, class, &caption));
-        }
-        html! { section { (heading) @for part in &parts { (part) } } }
+        let parts = findings_by_severity(&self.report.findings, &mut self.tables);
+        html! { section { (heading) (parts) } }
     }
 
     fn source(&mut self, i: usize) -> Markup {
@@ -451,6 +433,29 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
             }
         }
     }
+}
+
+/// A table of findings for each severity, the gravest first.
+pub(crate) fn findings_by_severity(findings: &[Finding], tables: &mut Tables) -> Markup {
+    let groups = [
+        (
+            Severity::Error,
+            "Errors",
+            "error",
+            "contradict physics or the file itself: do not use the numbers as they are.",
+        ),
+        (Severity::Warning, "Warnings", "warning", "doubtful: look before trusting the numbers."),
+        (Severity::Note, "Notes", "note", "worth knowing; nothing was changed because of them."),
+    ];
+    let mut parts = Vec::new();
+    for (severity, word, class, meaning) in groups {
+        let group: Vec<&Finding> = findings.iter().filter(|f| f.severity == severity).collect();
+        if !group.is_empty() {
+            let caption = tables.caption(&format!("{word}: {meaning}"));
+            parts.push(findings_table(&group, class, &caption));
+        }
+    }
+    html! { @for part in &parts { (part) } }
 }
 
 fn findings_table(group: &[&Finding], class: &str, caption: &Markup) -> Markup {

@@ -1,0 +1,314 @@
+//! A chart of any two quantities: stacked panels over one abscissa, lines, points, bands; linear or logarithmic.
+//!
+//! For what is not a load against speed or angle: a Bode plot, friction over position, tracking over time, spectra.
+
+use crate::canvas::{Align, Canvas};
+use crate::input::ReportError;
+use crate::plot::{
+    Entry, LABEL_SIZE, MUTED, Panel, Span, Swatch, TEXT, TICK_SIZE, Ticks, WIDTH, category, draw_legend, drawable,
+    legend_height,
+};
+use crate::symbol::Rich;
+
+/// How an axis runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// In decades; numbers ≤ 0 are not drawn.
+    Logarithmic,
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mark {
+    /// A line.
+    #[default]
+    Line,
+    /// A dashed line: a reference, a limit.
+    Dashed,
+    /// Points, with bars where `low` and `high` are given.
+    Points,
+}
+
+/// One line or cloud of points. `low` and `high` are empty or as long as `y`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// Name in the legend; series of the same name share a colour and an entry.
+    pub name: String,
+    /// How it is drawn.
+    pub mark: Mark,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Ordinates.
+    pub y: Vec<f64>,
+    /// Lower ends of the interval.
+    pub low: Vec<f64>,
+    /// Upper ends.
+    pub high: Vec<f64>,
+}
+
+/// One panel.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ChartPanel {
+    /// Label of the ordinate, unit included: `|L| [1]`.
+    pub y_label: String,
+    /// How it runs.
+    pub y_scale: Scale,
+    /// What is drawn.
+    pub series: Vec<Series>,
+}
+
+/// A figure of panels over one abscissa.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Chart {
+    /// Stem of the file's name.
+    pub name: String,
+    /// Title, for readers who do not see the picture.
+    pub title: String,
+    /// Caption below the figure.
+    pub caption: String,
+    /// Label of the abscissa, unit included.
+    pub x_label: String,
+    /// How it runs.
+    pub x_scale: Scale,
+    /// From top to bottom.
+    pub panels: Vec<ChartPanel>,
+}
+
+/// Longest line that is drawn point by point; longer ones are drawn by the extremes of equal stretches.
+const MOST_POINTS: usize = 2_000;
+const LEFT: f64 = 74.0;
+const HEIGHT: f64 = 210.0;
+const GAP: f64 = 26.0;
+
+impl Chart {
+    /// The chart as SVG.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Figure`] when the drawing library refuses it.
+    pub fn svg(&self) -> Result<String, ReportError> {
+        let names = self.names();
+        let legend: Vec<Entry> = names
+            .iter()
+            .enumerate()
+            .map(|(i, (name, mark))| Entry {
+                swatch: match mark {
+                    Mark::Line => Swatch::Line,
+                    Mark::Dashed => Swatch::Dashed,
+                    Mark::Points => Swatch::Dot,
+                },
+                ink: category(i),
+                text: Rich::plain(name),
+            })
+            .collect();
+        let top = legend_height(&legend, LEFT) + 8.0;
+        let n = self.panels.len() as f64;
+        let total = top + n * HEIGHT + (n - 1.0).max(0.0) * GAP + 52.0;
+        let mut canvas = Canvas::new(WIDTH, total);
+        draw_legend(&mut canvas, &legend, LEFT, 0.0);
+        let x_all =
+            self.panels.iter().flat_map(|p| p.series.iter().flat_map(|s| s.x.iter().map(|&x| on(self.x_scale, x))));
+        let x_span = Span::of(x_all).map_or(Span { low: 0.0, high: 1.0 }, |s| s.aired(0.02));
+        for (i, panel) in self.panels.iter().enumerate() {
+            let y_all = panel
+                .series
+                .iter()
+                .flat_map(|s| s.y.iter().chain(&s.low).chain(&s.high).map(|&y| on(panel.y_scale, y)));
+            let y_span = Span::of(y_all).map_or(Span { low: 0.0, high: 1.0 }, |s| s.aired(0.06));
+            let frame = Panel {
+                left: LEFT,
+                top: top + i as f64 * (HEIGHT + GAP),
+                width: WIDTH - LEFT - 20.0,
+                height: HEIGHT,
+                x: x_span,
+                y: y_span,
+            };
+            let is_last = i + 1 == self.panels.len();
+            self.axes(&mut canvas, &frame, panel, is_last);
+            for series in &panel.series {
+                let ink = category(names.iter().position(|(n, _)| *n == series.name).unwrap_or(0));
+                draw(&mut canvas, &frame, series, (self.x_scale, panel.y_scale), ink);
+            }
+        }
+        canvas
+            .svg(&crate::figures::slug(&self.name), &self.title, &self.caption)
+            .map_err(|reason| ReportError::Figure { figure: self.title.clone(), reason })
+    }
+
+    fn names(&self) -> Vec<(&str, Mark)> {
+        let mut out: Vec<(&str, Mark)> = Vec::new();
+        for series in self.panels.iter().flat_map(|p| &p.series) {
+            if !series.name.is_empty() && !out.iter().any(|(n, _)| *n == series.name) {
+                out.push((&series.name, series.mark));
+            }
+        }
+        out
+    }
+
+    fn axes(&self, canvas: &mut Canvas, frame: &Panel, panel: &ChartPanel, is_last: bool) {
+        let x = ticks(frame.x, self.x_scale, 8);
+        let y = ticks(frame.y, panel.y_scale, 5);
+        frame.axes(canvas, None, None, (&x, &y));
+        for &place in &y.places {
+            let text = label(&y, panel.y_scale, place);
+            canvas.text(text, (frame.left - 8.0, frame.at_y(place)), TICK_SIZE, MUTED, Align::Right);
+        }
+        let titled = |ticks: &Ticks, scale: Scale, text: &str| match scale {
+            Scale::Linear => ticks.titled(Rich::plain(text)),
+            Scale::Logarithmic => Rich::plain(text),
+        };
+        let middle = frame.top + 0.5 * frame.height;
+        canvas.upward_text(titled(&y, panel.y_scale, &panel.y_label), (14.0, middle), LABEL_SIZE, TEXT);
+        if is_last {
+            for &place in &x.places {
+                let text = label(&x, self.x_scale, place);
+                canvas.text(text, (frame.at_x(place), frame.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
+            }
+            let at = (frame.left + 0.5 * frame.width, frame.bottom() + 38.0);
+            canvas.text(titled(&x, self.x_scale, &self.x_label), at, LABEL_SIZE, TEXT, Align::Center);
+        }
+    }
+}
+
+/// A number on its axis.
+fn on(scale: Scale, x: f64) -> f64 {
+    match scale {
+        Scale::Linear => x,
+        Scale::Logarithmic if x > 0.0 => x.log10(),
+        Scale::Logarithmic => f64::NAN,
+    }
+}
+
+/// Round ticks; in decades 1, 2, 5 where there are few of them.
+fn ticks(span: Span, scale: Scale, wanted: usize) -> Ticks {
+    match scale {
+        Scale::Linear => span.ticks(wanted),
+        Scale::Logarithmic => {
+            let parts: &[f64] = if span.width() <= 2.5 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+            let every = (span.width() / 10.0).ceil().max(1.0) as i32;
+            let decades = (span.low.floor() as i32)..=(span.high.ceil() as i32);
+            let places = decades
+                .filter(|d| d % every == 0)
+                .flat_map(|d| parts.iter().map(move |p| f64::from(d) + p.log10()))
+                .filter(|&place| span.contains(place))
+                .collect();
+            Ticks { places, power: 0, decimals: 0 }
+        }
+    }
+}
+
+fn label(ticks: &Ticks, scale: Scale, place: f64) -> Rich {
+    match scale {
+        Scale::Linear => Rich::plain(&ticks.label(place)),
+        Scale::Logarithmic if (-3.0..4.0).contains(&place) => {
+            Rich::plain(&crate::number::significant(10f64.powf(place), 1))
+        }
+        Scale::Logarithmic => Rich::plain(&format!("{:.0e}", 10f64.powf(place))),
+    }
+}
+
+fn draw(canvas: &mut Canvas, frame: &Panel, series: &Series, scales: (Scale, Scale), ink: crate::canvas::Ink) {
+    let x: Vec<f64> = series.x.iter().map(|&x| on(scales.0, x)).collect();
+    let put = |values: &[f64]| -> Vec<f64> { values.iter().map(|&y| on(scales.1, y)).collect() };
+    let (y, low, high) = (put(&series.y), put(&series.low), put(&series.high));
+    match series.mark {
+        Mark::Points => {
+            for (i, (&x, &y)) in x.iter().zip(&y).enumerate() {
+                if let (Some(&low), Some(&high)) = (low.get(i), high.get(i))
+                    && drawable(low)
+                    && drawable(high)
+                    && drawable(x)
+                {
+                    let cut = |y: f64| frame.at_y(y.clamp(frame.y.low, frame.y.high));
+                    canvas.line((frame.at_x(x), cut(low)), (frame.at_x(x), cut(high)), ink, 1.2);
+                }
+                if let Some(at) = frame.at(x, y) {
+                    canvas.dot(at, 3.0, ink);
+                }
+            }
+        }
+        Mark::Line | Mark::Dashed => {
+            if low.len() == x.len() && high.len() == x.len() {
+                canvas.area(frame.band(&x, &low, &high), ink.faint(0.18));
+            }
+            let (x, y) = thinned(&x, &y);
+            for stroke in frame.strokes(&x, &y) {
+                if series.mark == Mark::Dashed {
+                    canvas.dashed(&stroke, ink, 1.4, 5.0, 3.5);
+                } else {
+                    canvas.path(stroke, ink, 1.6);
+                }
+            }
+        }
+    }
+}
+
+/// A long line by the smallest and largest of equal stretches, in their order: no peak is lost.
+fn thinned(x: &[f64], y: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let n = x.len().min(y.len());
+    if n <= MOST_POINTS {
+        return (x[..n].to_vec(), y[..n].to_vec());
+    }
+    let stretch = n.div_ceil(MOST_POINTS / 2);
+    let mut out = (Vec::new(), Vec::new());
+    for start in (0..n).step_by(stretch) {
+        let part = start..(start + stretch).min(n);
+        let by = |a: &usize, b: &usize| y[*a].total_cmp(&y[*b]);
+        if let (Some(low), Some(high)) = (part.clone().min_by(by), part.max_by(by)) {
+            for i in [low.min(high), low.max(high)] {
+                out.0.push(x[i]);
+                out.1.push(y[i]);
+            }
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chart(x: Vec<f64>, y: Vec<f64>) -> Chart {
+        Chart {
+            name: "bode".to_owned(),
+            title: "Open loop".to_owned(),
+            x_label: "frequency [Hz]".to_owned(),
+            x_scale: Scale::Logarithmic,
+            panels: vec![ChartPanel {
+                y_label: "|L| [1]".to_owned(),
+                y_scale: Scale::Logarithmic,
+                series: vec![Series { name: "measured".to_owned(), x, y, ..Series::default() }],
+            }],
+            ..Chart::default()
+        }
+    }
+
+    #[test]
+    fn a_bode_panel_has_its_decades_and_labels() {
+        let x: Vec<f64> = (0..50).map(|i| 10f64.powf(f64::from(i) / 24.5)).collect();
+        let y = x.iter().map(|f| 1.0 / (f * f)).collect();
+        let svg = chart(x, y).svg().unwrap();
+        for text in ["frequency [Hz]", "|L| [1]", "10", "100", "measured"] {
+            assert!(svg.lines().any(|line| line.trim() == text), "{text} is missing");
+        }
+    }
+
+    #[test]
+    fn numbers_that_a_logarithm_does_not_take_leave_no_mark_and_no_panic() {
+        let svg = chart(vec![0.0, -1.0, f64::NAN, 1.0, 2.0], vec![1.0, 1.0, 1.0, 0.0, f64::INFINITY]).svg().unwrap();
+        assert!(!svg.contains("NaN") && svg.ends_with("</svg>\n"));
+        assert!(Chart::default().svg().is_ok());
+    }
+
+    #[test]
+    fn a_long_record_is_drawn_with_its_spikes() {
+        let x: Vec<f64> = (0..100_000).map(f64::from).collect();
+        let mut y = vec![0.0; 100_000];
+        y[54_321] = 1.0;
+        let (_, thin) = thinned(&x, &y);
+        assert!(thin.len() <= MOST_POINTS + 2 && thin.contains(&1.0));
+    }
+}

@@ -1,0 +1,191 @@
+//! A page of sections with paragraphs, tables and charts, in the style of the report.
+//!
+//! For results that are not a fit of loads: a carriage's identification, its drag, its tuning. The caller says every word and
+//! every number; nothing is computed here.
+
+use froude_records::finding::Finding;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::chart::Chart;
+use crate::input::ReportError;
+use crate::page::findings_by_severity;
+use crate::tables::Tables;
+
+/// A page.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Document {
+    /// What sort of page, above the title: `Carriage · drag from motor current`.
+    pub sort: String,
+    /// Title.
+    pub title: String,
+    /// Second line.
+    pub subtitle: String,
+    /// Date as text.
+    pub date: Option<String>,
+    /// Sections in order; the first is the summary.
+    pub sections: Vec<DocumentSection>,
+    /// What the checks found.
+    pub findings: Vec<Finding>,
+}
+
+/// A section.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DocumentSection {
+    /// Heading.
+    pub title: String,
+    /// Text before the tables.
+    pub paragraphs: Vec<String>,
+    /// Tables.
+    pub tables: Vec<TextTable>,
+    /// Figures.
+    pub charts: Vec<Chart>,
+}
+
+/// A table whose cells are written already, with the digits that their uncertainty allows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TextTable {
+    /// Caption.
+    pub caption: String,
+    /// Column heads, units included.
+    pub head: Vec<String>,
+    /// Rows, a cell per head; the first cell names the row.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Document {
+    /// The page as one self-contained HTML file.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Figure`] when the drawing library refuses a chart.
+    pub fn html(&self) -> Result<String, ReportError> {
+        let mut figure = 0;
+        let mut tables = Tables::default();
+        let mut body = Vec::new();
+        for (i, section) in self.sections.iter().enumerate() {
+            body.push(section_markup(i, section, &mut tables, &mut figure)?);
+        }
+        let findings = findings_by_severity(&self.findings, &mut tables);
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="generator" content="Froude";
+                    title { (self.title) }
+                    style { (PreEscaped(crate::page::STYLE)) }
+                }
+                body {
+                    div class="sheet" {
+                        nav aria-label="Sections" {
+                            p { "Contents" }
+                            ol {
+                                @for (i, section) in self.sections.iter().enumerate() {
+                                    li { a href={ "#section-" (i + 1) } { span { (i + 1) } (section.title) } }
+                                }
+                                @if !self.findings.is_empty() { li { a href="#findings" { span {} "Findings" } } }
+                            }
+                        }
+                        main {
+                            header class="title" {
+                                p class="sort" { (self.sort) }
+                                h1 { (self.title) }
+                                @if !self.subtitle.is_empty() { p class="subtitle" { (self.subtitle) } }
+                                @if let Some(date) = &self.date { p class="meta" { span { (date) } } }
+                            }
+                            @for part in &body { (part) }
+                            @if !self.findings.is_empty() {
+                                section { h2 id="findings" { "Findings" } (findings) }
+                            }
+                        }
+                    }
+                }
+            }
+        };
+        Ok(page.into_string())
+    }
+}
+
+fn section_markup(
+    i: usize,
+    section: &DocumentSection,
+    tables: &mut Tables,
+    figure: &mut usize,
+) -> Result<Markup, ReportError> {
+    let pictures = section.charts.iter().map(Chart::svg).collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        section {
+            h2 id={ "section-" (i + 1) } { span class="n" { (i + 1) } (section.title) }
+            @for paragraph in &section.paragraphs { p { (paragraph) } }
+            @for t in &section.tables { (table_markup(t, tables)) }
+            @for (chart, svg) in section.charts.iter().zip(&pictures) {
+                figure {
+                    (PreEscaped(svg))
+                    figcaption { b { "Figure " (count(figure)) ". " } (chart.caption) }
+                }
+            }
+        }
+    })
+}
+
+fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {
+    let caption = tables.caption(&table.caption);
+    html! {
+        div class="table wide" {
+            table {
+                (caption)
+                thead {
+                    tr {
+                        @for (i, head) in table.head.iter().enumerate() {
+                            th scope="col" class=[(i > 0).then_some("num")] { (head) }
+                        }
+                    }
+                }
+                tbody {
+                    @for row in &table.rows {
+                        tr {
+                            @for (i, cell) in row.iter().enumerate() {
+                                @if i == 0 { th scope="row" { (cell) } } @else { td class="num" { (cell) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn count(n: &mut usize) -> usize {
+    *n += 1;
+    *n
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_word_of_a_document_is_escaped_and_stands_in_the_page() {
+        let page = Document {
+            title: "Drag of <body>".to_owned(),
+            sections: vec![DocumentSection {
+                title: "Summary".to_owned(),
+                paragraphs: vec!["D_d = 20.1 N s²/m²".to_owned()],
+                tables: vec![TextTable {
+                    caption: "By method.".to_owned(),
+                    head: vec!["method".to_owned(), "D_d [N s²/m²]".to_owned()],
+                    rows: vec![vec!["MCD & FSM".to_owned(), "20.1 ± 0.2".to_owned()]],
+                }],
+                charts: vec![Chart::default()],
+            }],
+            ..Document::default()
+        }
+        .html()
+        .unwrap();
+        for text in ["Drag of &lt;body&gt;", "MCD &amp; FSM", "Table 1", "Figure 1", "20.1 ± 0.2"] {
+            assert!(page.contains(text), "{text} is missing");
+        }
+        assert!(!page.contains("<script"));
+    }
+}
