@@ -12,8 +12,18 @@
 //!
 //! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-identify`'s.
 
+mod file;
+mod layout;
 mod log;
 mod meta;
+mod reader;
+mod recorder;
+mod sidecar;
+mod sync;
 
+pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus};
+pub use reader::{Block, RunReader, read_run};
+pub use recorder::{Packing, Recorder};
+pub use sidecar::{parse_run_meta, read_run_meta, run_meta_text, write_run_meta};

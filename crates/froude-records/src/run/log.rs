@@ -120,6 +120,8 @@ pub enum GapCause {
     CutOff,
     /// A part of the file is damaged.
     Damaged,
+    /// They hold a value that is not a finite number.
+    NotFinite,
 }
 
 impl RunLog {

@@ -2,6 +2,8 @@
 
 use indexmap::IndexMap;
 
+use crate::estimate::Measured;
+
 /// What a run is, on which rig, and how it ended.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunMeta {
@@ -31,6 +33,8 @@ pub struct RunMeta {
     pub hung_weight_n: Option<f64>,
     /// Declared constants of the axes by name (`y`, `x`).
     pub rig: IndexMap<String, AxisConstants>,
+    /// Further constants by name, as a sidecar declares them (`drive_gain = "35.15 N/V"`).
+    pub constants: IndexMap<String, Measured>,
     /// How it ended.
     pub status: RunStatus,
     /// Anything a person wants to add.
