@@ -207,7 +207,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 }
 
 /// One of a few words, with the nearest known one in the message.
-fn one_of<T: Copy>(
+pub(crate) fn one_of<T: Copy>(
     s: &Section<'_>,
     key: &'static str,
     names: &[&'static str],
@@ -273,7 +273,7 @@ fn positive_number(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, Re
 }
 
 /// A whole number from 1 to `most`.
-fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>, RecordError> {
+pub(crate) fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>, RecordError> {
     match (s.integer(key)?, s.get(key)) {
         (Some(n), Some(value)) if n == 0 || n > most => {
             Err(s.wrong(key, value, format!("is {n}; it must lie between 1 and {most}")))

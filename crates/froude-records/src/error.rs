@@ -12,7 +12,7 @@ pub struct Place {
     pub position: Position,
 }
 
-/// Position in a file, counted from 1.
+/// Position in a file; lines, columns and rows are counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Position {
     /// The file as a whole.
@@ -28,6 +28,8 @@ pub enum Position {
     },
     /// A row of a table without lines (Parquet).
     Row(usize),
+    /// A byte of a binary file, counted from 0 as other tools do.
+    Byte(u64),
 }
 
 impl Place {
@@ -49,6 +51,12 @@ impl Place {
         Self { path: path.to_owned(), position: Position::Character { line, column } }
     }
 
+    /// A byte of a binary file, counted from 0.
+    #[must_use]
+    pub fn byte(path: &Path, byte: u64) -> Self {
+        Self { path: path.to_owned(), position: Position::Byte(byte) }
+    }
+
     /// A row, counted from 1.
     #[must_use]
     pub fn row(path: &Path, row: usize) -> Self {
@@ -64,6 +72,7 @@ impl fmt::Display for Place {
             Position::Line(line) => write!(f, "{path}:{line}"),
             Position::Character { line, column } => write!(f, "{path}:{line}:{column}"),
             Position::Row(row) => write!(f, "{path}, row {row}"),
+            Position::Byte(byte) => write!(f, "{path}, byte {byte}"),
         }
     }
 }
@@ -325,6 +334,53 @@ pub enum RecordError {
         /// Its value.
         value: String,
     },
+    /// A column of a run that cannot be recorded as it is named.
+    #[error("channel `{channel}` {problem}")]
+    Channel {
+        /// Its name.
+        channel: String,
+        /// What is wrong, as the rest of a sentence about it.
+        problem: String,
+    },
+    /// What is known about a run does not make sense.
+    #[error("run {run:?}: `{key}` {problem}")]
+    Meta {
+        /// Its id.
+        run: String,
+        /// The key.
+        key: String,
+        /// What is wrong, as the rest of a sentence about the key.
+        problem: String,
+    },
+    /// A run is there already: no recording is ever overwritten.
+    #[error("cannot record {}: a run of this name is there already; give the new run another id, or move the old one", path.display())]
+    RunExists {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Recording failed in the middle of a run: the carriage has to be stopped (category 1).
+    #[error(
+        "cannot go on recording {}: {reason}; the {ticks} ticks before it are kept: stop the carriage, free the disk, and repeat the run",
+        path.display()
+    )]
+    Recording {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        reason: String,
+        /// Ticks that lie in the file whole.
+        ticks: u64,
+    },
+    /// Ticks were not handed to the recorder in order.
+    #[error("cannot record tick {tick} of {}: {problem}", path.display())]
+    Tick {
+        /// The file.
+        path: PathBuf,
+        /// The tick.
+        tick: u64,
+        /// What is wrong with it.
+        problem: String,
+    },
     /// Two estimates of one id.
     #[error("{place}: the id `{id}` appears twice; every estimate needs its own")]
     DuplicateId {
@@ -339,7 +395,7 @@ impl RecordError {
     /// True where writing failed: the machine is at fault, not the input.
     #[must_use]
     pub fn is_output(&self) -> bool {
-        matches!(self, Self::Write { .. } | Self::NonFinite { .. })
+        matches!(self, Self::Write { .. } | Self::NonFinite { .. } | Self::Recording { .. } | Self::RunExists { .. })
     }
 }
 

@@ -9,6 +9,7 @@
 //! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | sidecar (TOML)  | [`sidecar`]                                |
+//! | run (MCAP)      | [`run`]                                    |
 //! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
@@ -25,6 +26,7 @@ pub mod json;
 pub mod keep;
 pub mod nearest;
 pub mod parquet_table;
+pub mod run;
 pub mod scale;
 pub mod schema;
 mod section;

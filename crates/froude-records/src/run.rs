@@ -1,0 +1,29 @@
+//! A run: one log of the carriage, channels over time with what they mean.
+//!
+//! **Setting.** One rig, one movement (or one still wait) of it, recorded tick by tick of the board's clock.
+//! **Frame.** Axis `y` is along the tank, `x` across; positions on the chain, motor side. `force` is what the water
+//! exerts against +y motion: positive for a resistance when the carriage moves forward.
+//! **Units.** Every channel names its own; the columns of a run are SI.
+//!
+//! | what                      | where          |
+//! |---------------------------|----------------|
+//! | a run in memory           | [`RunLog`]     |
+//! | what is known about it    | [`RunMeta`]    |
+//!
+//! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-identify`'s.
+
+mod file;
+mod layout;
+mod log;
+mod meta;
+mod reader;
+mod recorder;
+mod sidecar;
+mod sync;
+
+pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
+pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
+pub use meta::{Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus};
+pub use reader::{Block, RunReader, read_run};
+pub use recorder::{Packing, Recorder};
+pub use sidecar::{parse_run_meta, read_run_meta, run_meta_text, write_run_meta};

@@ -1,0 +1,247 @@
+//! The records of an MCAP file, one after the other, whatever bytes are in it.
+//!
+//! Lengths are believed only as far as the file goes, and as far as [`LARGEST_CHUNK`] and [`LARGEST_RECORD`] allow; records
+//! that nobody needs are passed over unread. A file that ends too early ends; it is not an error here.
+//!
+//! Format: the MCAP specification, version 0 (mcap.dev/spec).
+
+use std::io::{self, Read, Seek, SeekFrom};
+
+use mcap::MAGIC;
+use mcap::records::{ChunkHeader, Record, op};
+
+/// Largest chunk, packed and unpacked. Froude writes at most 1 MiB, other programs usually 1 to 8.
+const LARGEST_CHUNK: u64 = 64 << 20;
+
+/// Largest schema, channel or metadata record.
+const LARGEST_RECORD: u64 = 1 << 20;
+
+/// Opcode and length before every record.
+const HEAD: u64 = 9;
+
+/// How far a file could be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum End {
+    /// To the end of its data.
+    Whole,
+    /// It ends before its end mark; `lost` bytes are left of the record at `offset`.
+    CutOff { offset: u64, lost: u64 },
+    /// At `offset` stands something that cannot be passed over.
+    Broken { offset: u64, lost: u64, problem: String },
+}
+
+/// What comes next.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// A record that somebody may need: its bytes are in the buffer.
+    Record { opcode: u8, offset: u64 },
+    /// Nothing more.
+    End(End),
+}
+
+/// A walk over the records.
+pub(crate) struct Walk<R> {
+    input: R,
+    length: u64,
+    at: u64,
+    /// The record's bytes.
+    pub body: Vec<u8>,
+}
+
+impl<R: Read + Seek> Walk<R> {
+    /// `None` where the file does not begin as MCAP does; an empty or cut beginning counts as one that does.
+    pub fn new(mut input: R) -> io::Result<Option<Self>> {
+        let length = input.seek(SeekFrom::End(0))?;
+        input.seek(SeekFrom::Start(0))?;
+        let mut magic = Vec::new();
+        input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic)?;
+        let is_mcap = MAGIC.starts_with(&magic);
+        Ok(is_mcap.then_some(Self { input, length, at: magic.len() as u64, body: Vec::new() }))
+    }
+
+    /// Back to the first record.
+    pub fn rewind(&mut self) -> io::Result<()> {
+        self.go_to((MAGIC.len() as u64).min(self.length))
+    }
+
+    /// To the summary at the end of a whole file; `false` where there is none.
+    pub fn go_to_summary(&mut self) -> io::Result<bool> {
+        const FOOTER: u64 = HEAD + 20;
+        let magic = MAGIC.len() as u64;
+        let Some(footer) = self.length.checked_sub(FOOTER + magic).filter(|at| *at >= magic) else { return Ok(false) };
+        self.input.seek(SeekFrom::Start(footer))?;
+        let mut end = Vec::new();
+        self.input.by_ref().take(FOOTER + magic).read_to_end(&mut end)?;
+        let is_footer = end.first() == Some(&op::FOOTER) && end.ends_with(MAGIC);
+        let start = end.get(HEAD as usize..).and_then(<[u8]>::first_chunk).map_or(0, |b| u64::from_le_bytes(*b));
+        if !is_footer || start < magic || start >= footer {
+            return Ok(false);
+        }
+        self.go_to(start)?;
+        Ok(true)
+    }
+
+    fn go_to(&mut self, at: u64) -> io::Result<()> {
+        self.at = at;
+        self.input.seek(SeekFrom::Start(at)).map(|_| ())
+    }
+
+    /// The next record that [`is_needed`]; the end is told again and again.
+    pub fn next(&mut self) -> io::Result<Step> {
+        loop {
+            let offset = self.at;
+            let lost = self.length.saturating_sub(offset);
+            let cut = Ok(Step::End(End::CutOff { offset, lost }));
+            let broken = |problem: String| Ok(Step::End(End::Broken { offset, lost, problem }));
+            let mut head = [0; HEAD as usize];
+            if lost < HEAD {
+                return cut;
+            }
+            self.input.read_exact(&mut head)?;
+            let opcode = head[0];
+            let length = head[1..].first_chunk().map_or(0, |bytes| u64::from_le_bytes(*bytes));
+            let limit = if opcode == op::CHUNK { LARGEST_CHUNK + LARGEST_RECORD } else { LARGEST_RECORD };
+            if opcode == 0 {
+                // Also what a power cut leaves: zeros where the disk had not come yet.
+                self.go_to(offset)?;
+                return if length == 0 { cut } else { broken("there is no record that begins with 0".to_owned()) };
+            }
+            if matches!(opcode, op::DATA_END | op::FOOTER) {
+                self.go_to(offset)?;
+                return Ok(Step::End(End::Whole));
+            }
+            if is_needed(opcode) && length > limit {
+                self.go_to(offset)?;
+                return broken(format!("a record of {length} bytes begins there; at most {limit} are read"));
+            }
+            if length > lost - HEAD {
+                self.go_to(offset)?;
+                return cut;
+            }
+            let next = offset + HEAD + length;
+            if !is_needed(opcode) {
+                self.go_to(next)?;
+                continue;
+            }
+            self.body.clear();
+            let read = self.input.by_ref().take(length).read_to_end(&mut self.body)?;
+            if read as u64 != length {
+                self.go_to(offset)?;
+                return cut;
+            }
+            self.at = next;
+            return Ok(Step::Record { opcode, offset });
+        }
+    }
+
+    /// The next record of the summary that declares something; `None` at its end.
+    pub fn next_of_summary(&mut self) -> io::Result<Option<u8>> {
+        loop {
+            match self.next()? {
+                Step::Record { opcode: opcode @ (op::SCHEMA | op::CHANNEL), .. } => return Ok(Some(opcode)),
+                Step::Record { .. } => {}
+                Step::End(_) => return Ok(None),
+            }
+        }
+    }
+}
+
+/// Records that a run is made of.
+fn is_needed(opcode: u8) -> bool {
+    matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE | op::CHUNK | op::METADATA)
+}
+
+/// The records of a chunk, unpacked and checked; `unpacked` is memory that is used again.
+pub(crate) fn unpack<'a>(body: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a [u8], String> {
+    let (header, packed) = split_chunk(body)?;
+    if header.uncompressed_size > LARGEST_CHUNK {
+        let size = header.uncompressed_size;
+        return Err(format!("it unpacks to {size} bytes; at most {LARGEST_CHUNK} are read"));
+    }
+    unpacked.clear();
+    let limit = header.uncompressed_size + 1;
+    let in_words = |e: io::Error| format!("it cannot be unpacked ({e})");
+    let content = match header.compression.as_str() {
+        "" => packed,
+        "lz4" => {
+            let decoder = lz4::Decoder::new(packed).map_err(in_words)?;
+            decoder.take(limit).read_to_end(unpacked).map_err(in_words)?;
+            unpacked
+        }
+        "zstd" => {
+            let decoder = zstd::stream::read::Decoder::with_buffer(packed).map_err(in_words)?;
+            decoder.take(limit).read_to_end(unpacked).map_err(in_words)?;
+            unpacked
+        }
+        other => {
+            return Err(format!(
+                "it is packed with {:?}, which is not known",
+                other.chars().take(40).collect::<String>()
+            ));
+        }
+    };
+    if content.len() as u64 != header.uncompressed_size {
+        return Err(format!("it unpacks to {} bytes and not to {}", content.len(), header.uncompressed_size));
+    }
+    let sum = crc32fast::hash(content);
+    // Zero stands for a sum that was not computed.
+    if header.uncompressed_crc != 0 && sum != header.uncompressed_crc {
+        return Err(format!("its checksum is {sum:08x} and not {:08x}", header.uncompressed_crc));
+    }
+    Ok(content)
+}
+
+fn split_chunk(body: &[u8]) -> Result<(ChunkHeader, &[u8]), String> {
+    match mcap::parse_record(op::CHUNK, body) {
+        Ok(Record::Chunk { header, .. }) => {
+            // start, end, size, crc, length of the name, name, packed size
+            let head = 8 + 8 + 8 + 4 + 4 + header.compression.len() + 8;
+            let packed = body.get(head..).and_then(|rest| rest.get(..usize::try_from(header.compressed_size).ok()?));
+            packed.map(|packed| (header, packed)).ok_or_else(|| "its length is not that of its content".to_owned())
+        }
+        Ok(_) => Err("it is no chunk".to_owned()),
+        Err(error) => Err(format!("its head cannot be read ({error})")),
+    }
+}
+
+/// The records inside a chunk: opcode and bytes, or an error where they do not fit.
+pub(crate) fn records(mut content: &[u8]) -> impl Iterator<Item = Result<(u8, &[u8]), ()>> {
+    std::iter::from_fn(move || {
+        let (opcode, rest) = content.split_first()?;
+        let Some((length, rest)) = rest.split_first_chunk::<8>() else {
+            content = &[];
+            return Some(Err(()));
+        };
+        let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
+        let Some((body, rest)) = rest.split_at_checked(length) else {
+            content = &[];
+            return Some(Err(()));
+        };
+        content = rest;
+        Some(Ok((*opcode, body)))
+    })
+}
+
+/// The head of a message, and the message.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Message<'a> {
+    pub channel: u16,
+    pub sequence: u32,
+    pub log_time: u64,
+    pub data: &'a [u8],
+}
+
+impl<'a> Message<'a> {
+    pub fn parse(body: &'a [u8]) -> Option<Self> {
+        let (channel, rest) = body.split_first_chunk()?;
+        let (sequence, rest) = rest.split_first_chunk()?;
+        let (log_time, rest) = rest.split_first_chunk()?;
+        let (_publish_time, data) = rest.split_first_chunk::<8>()?;
+        Some(Self {
+            channel: u16::from_le_bytes(*channel),
+            sequence: u32::from_le_bytes(*sequence),
+            log_time: u64::from_le_bytes(*log_time),
+            data,
+        })
+    }
+}

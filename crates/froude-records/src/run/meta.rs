@@ -1,0 +1,270 @@
+//! What is known about a run besides its columns.
+
+use indexmap::IndexMap;
+
+use crate::estimate::Measured;
+
+/// What a run is, on which rig, and how it ended.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RunMeta {
+    /// Name of the campaign.
+    pub campaign: String,
+    /// Name of the run, unique in the campaign; also the stem of its files.
+    pub id: String,
+    /// What it is for.
+    pub kind: RunKind,
+    /// ABBA block, from 1.
+    pub set: Option<u32>,
+    /// Wet/dry pair, from 1.
+    pub pair: Option<u32>,
+    /// Repeat at this speed, from 1.
+    pub repeat: Option<u32>,
+    /// The axis that moves.
+    pub axis: Axis,
+    /// Speed of the steady part, ≥ 0.
+    pub target_speed_m_s: Option<f64>,
+    /// Which way the steady part goes.
+    pub direction: Option<Direction>,
+    /// What hangs on the strut.
+    pub body: BodyState,
+    /// Whether a dry carriage carries ballast for the wet wheel load.
+    pub is_ballasted: bool,
+    /// Known weight over the pulley, N, in a calibration.
+    pub hung_weight_n: Option<f64>,
+    /// Declared constants of the axes by name (`y`, `x`).
+    pub rig: IndexMap<String, AxisConstants>,
+    /// Further constants by name, as a sidecar declares them (`drive_gain = "35.15 N/V"`).
+    pub constants: IndexMap<String, Measured>,
+    /// How it ended.
+    pub status: RunStatus,
+    /// Anything a person wants to add.
+    pub note: String,
+    /// Versions of program and board firmware by name.
+    pub versions: IndexMap<String, String>,
+    /// Seed of the twin; `None` for a real rig.
+    pub twin_seed: Option<u64>,
+    /// Board clock against host clock.
+    pub clock: Option<ClockAlignment>,
+    /// Nominal ticks per second.
+    pub log_rate_hz: f64,
+    /// When it began, in words (RFC 3339), e.g. `2026-11-21T10:57:34Z`.
+    pub date: String,
+    /// Host time of run time zero, ns since 1970; 0 where there is none. Log times in the file count from there.
+    pub start_unix_ns: u64,
+}
+
+impl RunMeta {
+    /// Declared constants of the axis that moves.
+    #[must_use]
+    pub fn moving_axis(&self) -> Option<&AxisConstants> {
+        self.rig.get(self.axis.name())
+    }
+
+    /// Target speed with its sign; `None` where either is not known.
+    #[must_use]
+    pub fn target_velocity_m_s(&self) -> Option<f64> {
+        Some(self.target_speed_m_s? * self.direction?.sign())
+    }
+}
+
+/// What a run is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum RunKind {
+    /// Brings gears and grease to temperature; not used in fits.
+    #[default]
+    WarmUp,
+    /// Nothing moves: sensor zero and noise.
+    Still,
+    /// A short open-loop jog: polarity, encoder.
+    Jog,
+    /// Sweep of friction over position and speed.
+    Friction,
+    /// A known weight over the pulley.
+    Calibration,
+    /// Excitation of the drive.
+    Excitation,
+    /// A profile without the body in the water.
+    Dry,
+    /// The same with it.
+    Wet,
+    /// Relay feedback.
+    Relay,
+    /// Frequency sweep.
+    Sweep,
+}
+
+impl RunKind {
+    pub(crate) const ALL: [Self; 10] = [
+        Self::WarmUp,
+        Self::Still,
+        Self::Jog,
+        Self::Friction,
+        Self::Calibration,
+        Self::Excitation,
+        Self::Dry,
+        Self::Wet,
+        Self::Relay,
+        Self::Sweep,
+    ];
+    pub(crate) const NAMES: [&'static str; 10] =
+        ["warm_up", "still", "jog", "friction", "calibration", "excitation", "dry", "wet", "relay", "sweep"];
+
+    /// As it stands in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// An axis of the carriage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Axis {
+    /// The long one, along the tank.
+    #[default]
+    Y,
+    /// The short one, across it.
+    X,
+}
+
+impl Axis {
+    pub(crate) const ALL: [Self; 2] = [Self::Y, Self::X];
+    pub(crate) const NAMES: [&'static str; 2] = ["y", "x"];
+
+    /// As it stands in files and before the slash of channel names.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// Which way a run goes along its axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Direction {
+    /// Towards larger positions.
+    Forward,
+    /// Towards smaller positions.
+    Backward,
+}
+
+impl Direction {
+    pub(crate) const ALL: [Self; 2] = [Self::Forward, Self::Backward];
+    pub(crate) const NAMES: [&'static str; 2] = ["forward", "backward"];
+
+    /// As it stands in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+
+    /// +1 or −1.
+    #[must_use]
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Forward => 1.0,
+            Self::Backward => -1.0,
+        }
+    }
+}
+
+/// What hangs on the strut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum BodyState {
+    /// No body.
+    #[default]
+    None,
+    /// The body, out of the water.
+    Dry,
+    /// The body, in the water.
+    Wet,
+}
+
+impl BodyState {
+    pub(crate) const ALL: [Self; 3] = [Self::None, Self::Dry, Self::Wet];
+    pub(crate) const NAMES: [&'static str; 3] = ["none", "dry", "wet"];
+
+    /// As it stands in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum RunStatus {
+    /// It has not ended: only while a recorder holds the file.
+    #[default]
+    Running,
+    /// As planned.
+    Complete,
+    /// Before its plan, without a fault of the rig: Ctrl-C, power, kill, full disk.
+    Interrupted,
+    /// By a latched fault.
+    Faulted,
+}
+
+impl RunStatus {
+    pub(crate) const ALL: [Self; 4] = [Self::Running, Self::Complete, Self::Interrupted, Self::Faulted];
+    pub(crate) const NAMES: [&'static str; 4] = ["running", "complete", "interrupted", "faulted"];
+
+    /// As it stands in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
+}
+
+/// A declared constant with its standard uncertainty, both in SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Declared {
+    /// The value.
+    pub value: f64,
+    /// Its standard uncertainty; 0 for what is exact by construction (teeth, lines).
+    pub standard_uncertainty: f64,
+}
+
+impl Declared {
+    /// A value and its standard uncertainty, SI.
+    #[must_use]
+    pub const fn new(value: f64, standard_uncertainty: f64) -> Self {
+        Self { value, standard_uncertainty }
+    }
+
+    /// A value without uncertainty.
+    #[must_use]
+    pub const fn exact(value: f64) -> Self {
+        Self::new(value, 0.0)
+    }
+}
+
+/// Declared constants of one axis: what turns counts and volts into metres and newtons.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxisConstants {
+    /// K_T, N m/A.
+    pub torque_constant_n_m_a: Declared,
+    /// K_amp, A/V.
+    pub amplifier_a_v: Declared,
+    /// n, motor turns per turn of the sprocket.
+    pub gear_ratio: Declared,
+    /// R, m.
+    pub sprocket_radius_m: Declared,
+    /// Counts per turn of the motor, after decoding.
+    pub counts_per_revolution: f64,
+    /// η forward (motor drives the load), 0 to 1; `None` where nobody declared or calibrated it.
+    pub efficiency_forward: Option<Declared>,
+    /// η backward (load drives the motor); `None` likewise.
+    pub efficiency_backward: Option<Declared>,
+    /// Whether the efficiencies come from a calibration with known weights.
+    pub is_calibrated: bool,
+}
+
+/// Board clock against host clock: host = `host_at_zero_s` + (1 + `drift`)·board.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ClockAlignment {
+    /// Host time at board time zero, s since the start of the run.
+    pub host_at_zero_s: f64,
+    /// Relative drift of the host clock against the board's, 1.
+    pub drift: f64,
+    /// Standard uncertainty of a host time computed from it, s.
+    pub standard_uncertainty_s: f64,
+}

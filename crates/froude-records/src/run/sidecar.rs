@@ -1,0 +1,315 @@
+//! What is known about a run, as text: `RUN.toml` for people, and the same entries inside `RUN.mcap`.
+//!
+//! A number that measures something is a text with its unit, as in every other file. An entry has one dotted key
+//! (`rig.y.torque_constant.value`) in both places, so one reader does for both.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::campaign_toml::{count, one_of};
+use crate::error::{RecordError, read_bytes, utf8};
+use crate::estimate::Measured;
+use crate::run::meta::{
+    Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus,
+};
+use crate::section::{Section, Source, parse};
+use crate::units::Dimension;
+use crate::write::write_atomically;
+
+/// The largest sidecar that is read.
+const LARGEST_BYTES: u64 = 1 << 20;
+
+/// Name of the metadata record inside `RUN.mcap`.
+pub(crate) const RECORD_NAME: &str = "froude_run";
+
+/// N m/A, of the torque constant.
+pub(crate) const TORQUE_CONSTANT: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
+/// A/V, of the amplifier.
+pub(crate) const AMPLIFIER: Dimension = Dimension { m: -2, kg: -1, s: 3, k: 0, a: 2 };
+
+/// Keys whose values are whole numbers or true and false; all others are texts.
+const BARE: [&str; 8] =
+    ["schema", "set", "pair", "repeat", "ballasted", "twin_seed", "start_unix_ns", "efficiency_is_calibrated"];
+
+/// Reads a run's sidecar.
+///
+/// # Errors
+///
+/// See [`RecordError`].
+pub fn read_run_meta(path: &Path) -> Result<RunMeta, RecordError> {
+    let bytes = read_bytes(path, LARGEST_BYTES, "a run's sidecar")?;
+    parse_run_meta(path, utf8(path, &bytes)?)
+}
+
+/// The same from text; `path` is for messages.
+///
+/// # Errors
+///
+/// See [`RecordError`].
+pub fn parse_run_meta(path: &Path, text: &str) -> Result<RunMeta, RecordError> {
+    let source = Source { path, text };
+    let document = parse(source)?;
+    let root = Section::new(source, "", document.get_ref(), 0);
+    root.schema("run")?;
+    meta(&root)
+}
+
+/// Writes a run's sidecar, whole or not at all.
+///
+/// # Errors
+///
+/// [`RecordError::Write`].
+pub fn write_run_meta(path: &Path, meta: &RunMeta) -> Result<(), RecordError> {
+    write_atomically(path, run_meta_text(meta).as_bytes())
+}
+
+/// The sidecar's text.
+#[must_use]
+pub fn run_meta_text(meta: &RunMeta) -> String {
+    let mut text = String::from("# A run that Froude recorded: what is known about the .mcap file of the same name.\n");
+    let mut section = String::new();
+    for (key, value) in entries(meta) {
+        let (own, name) = split_section(&key);
+        if own != section {
+            text += &format!("\n[{own}]\n");
+            own.clone_into(&mut section);
+        }
+        text += &format!("{name} = {}\n", written(&key, &value));
+    }
+    text
+}
+
+/// `rig.y` and `torque_constant.value`; sections are one word, of the rig two.
+fn split_section(key: &str) -> (&str, &str) {
+    let mut dots = key.match_indices('.').map(|(at, _)| at);
+    let at = if key.starts_with("rig.") { dots.nth(1) } else { dots.next() };
+    at.map_or(("", key), |at| (&key[..at], &key[at + 1..]))
+}
+
+/// The entries as the metadata record of `RUN.mcap` holds them.
+pub(crate) fn to_record(meta: &RunMeta) -> BTreeMap<String, String> {
+    entries(meta).into_iter().collect()
+}
+
+/// Reads them back; `path` is the `.mcap` file, for messages.
+pub(crate) fn of_record(path: &Path, record: &BTreeMap<String, String>) -> Result<RunMeta, RecordError> {
+    let text: String = record.iter().map(|(key, value)| format!("{key} = {}\n", written(key, value))).collect();
+    parse_run_meta(path, &text)
+}
+
+/// A value as TOML: bare, or as a text in quotes.
+fn written(key: &str, value: &str) -> String {
+    let last = key.rsplit('.').next().unwrap_or(key);
+    if BARE.contains(&last) && !key.starts_with("versions.") { value.to_owned() } else { quoted(value) }
+}
+
+/// A basic string of TOML.
+fn quoted(text: &str) -> String {
+    let mut out = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' => out += "\\\"",
+            '\\' => out += "\\\\",
+            c if c.is_control() => out += &format!("\\u{:04X}", u32::from(c)),
+            c => out.push(c),
+        }
+    }
+    out + "\""
+}
+
+/// A key that a person chose: bare where TOML allows it.
+fn key_word(name: &str) -> String {
+    let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
+    if is_bare { name.to_owned() } else { quoted(name) }
+}
+
+/// All entries, in the order of the sidecar.
+fn entries(meta: &RunMeta) -> Vec<(String, String)> {
+    let mut out: Vec<(String, String)> = Vec::new();
+    let mut put = |key: &str, value: String| out.push((key.to_owned(), value));
+    put("schema", "1".to_owned());
+    put("id", meta.id.clone());
+    put("campaign", meta.campaign.clone());
+    put("kind", meta.kind.name().to_owned());
+    put("status", meta.status.name().to_owned());
+    put("date", meta.date.clone());
+    put("start_unix_ns", meta.start_unix_ns.to_string());
+    put("log_rate", format!("{} Hz", meta.log_rate_hz));
+    let numbers = [("set", meta.set), ("pair", meta.pair), ("repeat", meta.repeat)];
+    numbers.iter().for_each(|(key, number)| number.iter().for_each(|n| put(key, n.to_string())));
+    put("axis", meta.axis.name().to_owned());
+    meta.target_speed_m_s.iter().for_each(|v| put("target_speed", format!("{v} m/s")));
+    meta.direction.iter().for_each(|d| put("direction", d.name().to_owned()));
+    put("body", meta.body.name().to_owned());
+    put("ballasted", meta.is_ballasted.to_string());
+    meta.hung_weight_n.iter().for_each(|w| put("hung_weight", format!("{w} N")));
+    meta.twin_seed.iter().for_each(|seed| put("twin_seed", seed.to_string()));
+    put("note", meta.note.clone());
+    for clock in &meta.clock {
+        put("clock.host_at_zero", format!("{} s", clock.host_at_zero_s));
+        put("clock.drift", format!("{} 1", clock.drift));
+        put("clock.standard_uncertainty", format!("{} s", clock.standard_uncertainty_s));
+    }
+    for (axis, constants) in &meta.rig {
+        let axis = key_word(axis);
+        let efficiencies = [
+            ("efficiency_forward", "1", constants.efficiency_forward),
+            ("efficiency_backward", "1", constants.efficiency_backward),
+        ];
+        let declared = [
+            ("torque_constant", "N m/A", Some(constants.torque_constant_n_m_a)),
+            ("amplifier", "A/V", Some(constants.amplifier_a_v)),
+            ("gear_ratio", "1", Some(constants.gear_ratio)),
+            ("sprocket_radius", "m", Some(constants.sprocket_radius_m)),
+        ];
+        for (key, unit, constant) in declared.into_iter().chain(efficiencies) {
+            for constant in constant {
+                put(&format!("rig.{axis}.{key}.value"), format!("{} {unit}", constant.value));
+                put(&format!("rig.{axis}.{key}.standard"), format!("{} {unit}", constant.standard_uncertainty));
+            }
+        }
+        put(&format!("rig.{axis}.counts_per_revolution"), format!("{} 1", constants.counts_per_revolution));
+        put(&format!("rig.{axis}.efficiency_is_calibrated"), constants.is_calibrated.to_string());
+    }
+    for (name, constant) in &meta.constants {
+        put(&format!("constants.{}", key_word(name)), format!("{} {}", constant.value, constant.unit));
+    }
+    for (name, version) in &meta.versions {
+        put(&format!("versions.{}", key_word(name)), version.clone());
+    }
+    out
+}
+
+fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
+    const KEYS: [&str; 23] = [
+        "schema",
+        "id",
+        "campaign",
+        "kind",
+        "status",
+        "date",
+        "start_unix_ns",
+        "log_rate",
+        "set",
+        "pair",
+        "repeat",
+        "axis",
+        "target_speed",
+        "direction",
+        "body",
+        "ballasted",
+        "hung_weight",
+        "twin_seed",
+        "note",
+        "clock",
+        "rig",
+        "constants",
+        "versions",
+    ];
+    s.only(&KEYS)?;
+    let text = |key: &'static str| Ok::<_, RecordError>(s.text(key)?.unwrap_or_default().to_owned());
+    let number = |key: &'static str| count(s, key, u64::from(u32::MAX)).map(|n| n.map(|n| n as u32));
+    let mut out = RunMeta {
+        campaign: text("campaign")?,
+        id: s.text("id")?.ok_or_else(|| s.missing("id", "write id = \"…\", the name of the run's files"))?.to_owned(),
+        kind: one_of(s, "kind", &RunKind::NAMES, &RunKind::ALL)?
+            .ok_or_else(|| s.missing("kind", "say what the run is for: \"wet\", \"dry\", \"still\", …"))?,
+        set: number("set")?,
+        pair: number("pair")?,
+        repeat: number("repeat")?,
+        axis: one_of(s, "axis", &Axis::NAMES, &Axis::ALL)?.unwrap_or_default(),
+        target_speed_m_s: s.quantity("target_speed", Dimension::SPEED)?,
+        direction: one_of(s, "direction", &Direction::NAMES, &Direction::ALL)?,
+        body: one_of(s, "body", &BodyState::NAMES, &BodyState::ALL)?.unwrap_or_default(),
+        is_ballasted: s.flag("ballasted")?.unwrap_or(false),
+        hung_weight_n: s.quantity("hung_weight", Dimension::FORCE)?,
+        status: one_of(s, "status", &RunStatus::NAMES, &RunStatus::ALL)?
+            .ok_or_else(|| s.missing("status", "say how it ended: \"complete\", \"interrupted\" or \"faulted\""))?,
+        note: text("note")?,
+        twin_seed: s.integer("twin_seed")?,
+        log_rate_hz: s.quantity("log_rate", Dimension::ANGULAR_SPEED)?.unwrap_or(0.0),
+        date: text("date")?,
+        start_unix_ns: s.integer("start_unix_ns")?.unwrap_or(0),
+        ..RunMeta::default()
+    };
+    if let Some(clock) = s.section("clock")? {
+        clock.only(&["host_at_zero", "drift", "standard_uncertainty"])?;
+        let part = |key, dimension| Ok::<_, RecordError>(clock.quantity(key, dimension)?.unwrap_or(0.0));
+        out.clock = Some(ClockAlignment {
+            host_at_zero_s: part("host_at_zero", Dimension::TIME)?,
+            drift: part("drift", Dimension::ONE)?,
+            standard_uncertainty_s: part("standard_uncertainty", Dimension::TIME)?,
+        });
+    }
+    if let Some(rig) = s.section("rig")? {
+        for (axis, _, value) in rig.entries() {
+            out.rig.insert(axis.to_owned(), axis_constants(&rig.as_section(axis, value)?)?);
+        }
+    }
+    if let Some(constants) = s.section("constants")? {
+        for (name, _, value) in constants.entries() {
+            let quantity = constants.as_quantity(name, value)?;
+            let unit = quantity.unit.dimension.to_string();
+            out.constants.insert(name.to_owned(), Measured { value: quantity.value_si, unit });
+        }
+    }
+    if let Some(versions) = s.section("versions")? {
+        for (name, _, value) in versions.entries() {
+            out.versions.insert(name.to_owned(), versions.as_text(name, value)?.to_owned());
+        }
+    }
+    Ok(out)
+}
+
+fn axis_constants(s: &Section<'_>) -> Result<AxisConstants, RecordError> {
+    s.only(&[
+        "torque_constant",
+        "amplifier",
+        "gear_ratio",
+        "sprocket_radius",
+        "efficiency_forward",
+        "efficiency_backward",
+        "counts_per_revolution",
+        "efficiency_is_calibrated",
+    ])?;
+    let part = |key, dimension| Ok::<_, RecordError>(declared(s, key, dimension)?.unwrap_or_default());
+    Ok(AxisConstants {
+        torque_constant_n_m_a: part("torque_constant", TORQUE_CONSTANT)?,
+        amplifier_a_v: part("amplifier", AMPLIFIER)?,
+        gear_ratio: part("gear_ratio", Dimension::ONE)?,
+        sprocket_radius_m: part("sprocket_radius", Dimension::LENGTH)?,
+        counts_per_revolution: s.quantity("counts_per_revolution", Dimension::ONE)?.unwrap_or(0.0),
+        efficiency_forward: declared(s, "efficiency_forward", Dimension::ONE)?,
+        efficiency_backward: declared(s, "efficiency_backward", Dimension::ONE)?,
+        is_calibrated: s.flag("efficiency_is_calibrated")?.unwrap_or(false),
+    })
+}
+
+/// A constant: `"0.35 A/V"`, taken as exact, or `{ value = "0.35 A/V", standard = "1 %" }`; per cent are of the value.
+pub(crate) fn declared(
+    s: &Section<'_>,
+    key: &'static str,
+    dimension: Dimension,
+) -> Result<Option<Declared>, RecordError> {
+    let Some(value) = s.get(key) else { return Ok(None) };
+    if value.get_ref().as_table().is_none() {
+        return Ok(Some(Declared::exact(s.as_quantity_of(key, value, dimension)?)));
+    }
+    let table = s.as_section(key, value)?;
+    table.only(&["value", "standard"])?;
+    let written = table
+        .get("value")
+        .ok_or_else(|| table.missing("value", "a constant is a quantity, or { value = \"…\", standard = \"…\" }"))?;
+    let si = table.as_written("value", written, key, dimension)?.value_si;
+    let Some(standard) = table.get("standard") else { return Ok(Some(Declared::exact(si))) };
+    let quantity = table.quantity_like("standard", standard, Some((key, dimension)))?;
+    let standard_uncertainty = if quantity.unit.text == "%" {
+        quantity.value_si * si.abs()
+    } else {
+        table.as_written("standard", standard, key, dimension)?.value_si
+    };
+    if standard_uncertainty < 0.0 {
+        return Err(table.wrong("standard", standard, "is negative; a standard uncertainty is not"));
+    }
+    Ok(Some(Declared { value: si, standard_uncertainty }))
+}

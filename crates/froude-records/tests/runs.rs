@@ -1,0 +1,357 @@
+//! Runs on disk: what was recorded is read back, whatever became of the file.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+
+use common::{RATE_HZ, START_NS, layout, meta, row};
+use froude_records::run::{
+    Block, EventKind, GapCause, Packing, Recorder, RunLog, RunReader, RunStatus, parse_run_meta, read_run,
+    read_run_meta, run_meta_text,
+};
+use froude_records::units::Dimension;
+
+/// Records ticks 0..n, and gives the file.
+fn recorded(folder: &Path, id: &str, ticks: impl IntoIterator<Item = u64>, packing: Packing) -> PathBuf {
+    let mut recorder = Recorder::create(folder, meta(id), layout(), packing).unwrap();
+    for tick in ticks {
+        recorder.record(tick, &row(tick)).unwrap();
+    }
+    recorder.finish(RunStatus::Complete).unwrap()
+}
+
+/// Every value of the run is the one that was recorded in the tick of its time.
+fn assert_values(log: &RunLog) {
+    let names: Vec<_> = layout().channels().iter().map(|c| c.name.clone()).collect();
+    assert_eq!(log.channels.keys().cloned().collect::<Vec<_>>(), names);
+    for (i, time_s) in log.time_s.iter().enumerate() {
+        let tick = (time_s * RATE_HZ).round() as u64;
+        assert_eq!(*time_s, tick as f64 / RATE_HZ, "times are ticks over the rate, to the last bit");
+        for (channel, expected) in log.channels.values().zip(row(tick)) {
+            assert_eq!(channel.values[i].to_bits(), expected.to_bits());
+        }
+    }
+}
+
+#[test]
+fn a_run_reads_back_to_the_bits_that_were_recorded_in_every_packing() {
+    let folder = tempfile::tempdir().unwrap();
+    for (id, packing) in [("plain", Packing::None), ("lz4", Packing::Lz4), ("zstd", Packing::Zstd)] {
+        let log = read_run(&recorded(folder.path(), id, 0..9000, packing)).unwrap();
+        assert_eq!(log.len(), 9000);
+        assert_values(&log);
+        assert_eq!(log.lost, []);
+        let expected = froude_records::run::RunMeta { status: RunStatus::Complete, ..meta(id) };
+        assert_eq!(log.meta, expected);
+        assert_eq!(log.sample_rate_hz().unwrap().round(), RATE_HZ);
+        assert!((log.duration_s() - 8999.0 / RATE_HZ).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_same_run_is_the_same_file_byte_for_byte() {
+    let bytes =
+        |folder: &tempfile::TempDir| std::fs::read(recorded(folder.path(), "run", 0..3000, Packing::Lz4)).unwrap();
+    let (a, b) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    assert_eq!(bytes(&a), bytes(&b));
+}
+
+#[test]
+fn the_file_alone_says_what_the_sidecar_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), "run", 0..100, Packing::Lz4);
+    let sidecar = path.with_extension("toml");
+    let with = read_run(&path).unwrap().meta;
+    assert_eq!(read_run_meta(&sidecar).unwrap(), with);
+    std::fs::remove_file(sidecar).unwrap();
+    assert_eq!(read_run(&path).unwrap().meta, with);
+}
+
+#[test]
+fn a_sidecar_is_for_people_and_reads_back() {
+    let meta = meta("0007-wet");
+    let text = run_meta_text(&meta);
+    assert!(text.contains("target_speed = \"0.55 m/s\"\n"), "{text}");
+    assert!(text.contains("[rig.y]\ntorque_constant.value = \"0.0267 N m/A\"\n"), "{text}");
+    assert_eq!(parse_run_meta(Path::new("0007-wet.toml"), &text).unwrap(), meta);
+}
+
+#[test]
+fn a_misspelt_key_of_a_sidecar_is_told_with_its_line() {
+    let text = "schema = 1\nid = \"a\"\nkind = \"wet\"\nstatus = \"complete\"\ntarget_sped = \"0.5 m/s\"\n";
+    let error = parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
+    assert_eq!(error, "a.toml:5:1: unknown key `target_sped` in the file; did you mean `target_speed`?");
+    let text = "schema = 1\nid = \"a\"\nkind = \"wett\"\nstatus = \"complete\"\n";
+    let error = parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
+    assert_eq!(error, "a.toml:3:8: `kind` is \"wett\"; did you mean `wet`?");
+}
+
+#[test]
+fn a_channel_is_asked_for_with_its_dimension() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), "run", 0..10, Packing::None);
+    let log = read_run(&path).unwrap();
+    assert_eq!(log.channel("force", Dimension::FORCE).unwrap().len(), 10);
+    let at = path.display();
+    assert_eq!(
+        log.channel("y/positon", Dimension::LENGTH).unwrap_err().to_string(),
+        format!("{at}: there is no column `y/positon`; did you mean `y/position`?")
+    );
+    assert_eq!(
+        log.channel("force", Dimension::LENGTH).unwrap_err().to_string(),
+        format!("{at}: column `force [N]`: wrong unit: expected a length (m), found a force (N)")
+    );
+}
+
+#[test]
+fn ticks_that_never_came_are_a_gap_and_in_no_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let ticks = (10..500).chain(700..1000);
+    let log = read_run(&recorded(folder.path(), "run", ticks, Packing::Lz4)).unwrap();
+    assert_eq!(log.len(), 490 + 300);
+    assert_values(&log);
+    let [gap] = log.lost.as_slice() else { panic!("{:?}", log.lost) };
+    assert_eq!((gap.from_s, gap.to_s), (Some(499.0 / RATE_HZ), Some(700.0 / RATE_HZ)));
+    assert_eq!((gap.ticks, gap.cause), (Some(200), GapCause::Link));
+    assert_eq!(gap.text, "200 ticks are missing before 0.175 s: they never reached the recorder");
+    assert_eq!(log.lost_ticks(), 200);
+    let part = log.between(0.1, 0.2);
+    assert_eq!(part.len(), 100 + 100, "0.1 to 0.125 s and 0.175 to 0.2 s");
+    assert_eq!(part.lost.len(), 1);
+    assert_eq!(log.between(0.0, 0.1).lost, []);
+}
+
+#[test]
+fn ticks_count_on_where_the_sequence_number_of_a_message_wraps() {
+    let folder = tempfile::tempdir().unwrap();
+    let first = u64::from(u32::MAX) - 500;
+    let mut recorder = Recorder::create(folder.path(), meta("long"), layout(), Packing::Lz4).unwrap();
+    (first..first + 1000).for_each(|tick| recorder.record(tick, &row(tick)).unwrap());
+    let log = read_run(&recorder.finish(RunStatus::Complete).unwrap()).unwrap();
+    assert_eq!(log.len(), 1000);
+    assert_values(&log);
+    assert_eq!(log.lost, []);
+}
+
+#[test]
+fn events_keep_their_time_their_sort_and_their_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::create(folder.path(), meta("run"), layout(), Packing::Lz4).unwrap();
+    let events = [
+        (3, EventKind::Phase, "steady"),
+        (40, EventKind::Other("odd".to_owned()), "käfer [µs] \u{1F6A2}"),
+        (41, EventKind::Fault, "following error 12 mm, limit 10 mm: controlled stop"),
+    ];
+    for tick in 0..50 {
+        recorder.record(tick, &row(tick)).unwrap();
+        for (_, kind, text) in events.iter().filter(|(at, ..)| *at == tick) {
+            recorder.event(tick, kind, text).unwrap();
+        }
+    }
+    let log = read_run(&recorder.finish(RunStatus::Faulted).unwrap()).unwrap();
+    let read: Vec<_> = log.events.iter().map(|e| (e.time_s, e.kind.clone(), e.text.as_str())).collect();
+    assert_eq!(read, events.map(|(tick, kind, text)| (tick as f64 / RATE_HZ, kind, text)));
+    assert_eq!(log.meta.status, RunStatus::Faulted);
+}
+
+#[test]
+fn a_run_that_is_being_recorded_is_running_and_one_that_was_left_is_interrupted() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::create(folder.path(), meta("run"), layout(), Packing::Lz4).unwrap();
+    (0..1000).for_each(|tick| recorder.record(tick, &row(tick)).unwrap());
+    let path = recorder.path().to_owned();
+    let now = read_run(&path).unwrap();
+    assert_eq!(now.meta.status, RunStatus::Running);
+    assert_eq!(now.len(), 804, "all but the ticks of the last chunk: one of 201 ticks is handed over");
+    assert_eq!(read_run_meta(&path.with_extension("toml")).unwrap().status, RunStatus::Running);
+    drop(recorder);
+    let log = read_run(&path).unwrap();
+    assert_eq!(log.meta.status, RunStatus::Interrupted);
+    assert_eq!(log.len(), 1000);
+    assert_eq!(log.lost.len(), 1);
+    assert_eq!(log.lost[0].cause, GapCause::CutOff);
+}
+
+#[test]
+fn nothing_older_than_50_ms_of_run_time_is_kept_back_even_when_ticks_stop_coming() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::create(folder.path(), meta("run"), layout(), Packing::Lz4).unwrap();
+    let path = recorder.path().to_owned();
+    for tick in 0..1000 {
+        recorder.record(tick, &row(tick)).unwrap();
+        if tick % 37 == 0 {
+            let kept = read_run(&path).unwrap().time_s.last().map_or(0.0, |t| *t);
+            assert!(tick as f64 / RATE_HZ - kept <= 0.05, "tick {tick}, kept up to {kept} s");
+        }
+    }
+    recorder.advance(1200).unwrap();
+    assert_eq!(read_run(&path).unwrap().len(), 1000);
+}
+
+#[test]
+fn what_cannot_be_recorded_is_refused_in_words_and_recording_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::create(folder.path(), meta("run"), layout(), Packing::Lz4).unwrap();
+    let path = recorder.path().display().to_string();
+    recorder.record(5, &row(5)).unwrap();
+    let error = recorder.record(5, &row(5)).unwrap_err().to_string();
+    assert_eq!(error, format!("cannot record tick 5 of {path}: the last one was 5; ticks must increase"));
+    let error = recorder.record(6, &[1.0]).unwrap_err().to_string();
+    assert_eq!(error, format!("cannot record tick 6 of {path}: it has 1 values, the layout has 21 channels"));
+    recorder.record(6, &row(6)).unwrap();
+    let again = Recorder::create(folder.path(), meta("run"), layout(), Packing::Lz4);
+    let error = again.err().unwrap().to_string();
+    assert!(error.ends_with("a run of this name is there already; give the new run another id, or move the old one"));
+    recorder.finish(RunStatus::Complete).unwrap();
+    assert_eq!(read_run(Path::new(&path)).unwrap().len(), 2);
+    let error = Recorder::create(folder.path(), meta("../a"), layout(), Packing::Lz4).err().unwrap().to_string();
+    assert_eq!(
+        error,
+        "run \"../a\": `id` is \"../a\"; it names the run's files: write letters, digits, `-`, `_` and `.`"
+    );
+}
+
+#[test]
+fn a_tick_with_a_number_that_is_none_is_kept_in_the_file_and_told_as_a_gap() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut recorder = Recorder::create(folder.path(), meta("run"), layout(), Packing::Lz4).unwrap();
+    for tick in 0..10 {
+        let mut row = row(tick);
+        if tick == 4 {
+            row[5] = f64::NAN;
+        }
+        recorder.record(tick, &row).unwrap();
+    }
+    let log = read_run(&recorder.finish(RunStatus::Complete).unwrap()).unwrap();
+    assert_eq!(log.len(), 9);
+    let [gap] = log.lost.as_slice() else { panic!("{:?}", log.lost) };
+    assert_eq!((gap.ticks, gap.cause), (Some(1), GapCause::NotFinite));
+    assert_eq!(gap.text, "1 ticks are missing before 0.00125 s: y/command is NaN in tick 4");
+}
+
+#[test]
+fn a_log_cut_off_at_any_byte_gives_its_whole_chunks_and_says_what_is_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    for packing in [Packing::None, Packing::Lz4] {
+        let id = format!("{packing:?}");
+        let path = recorded(folder.path(), &id, 0..700, packing);
+        let bytes = std::fs::read(&path).unwrap();
+        let whole = read_run(&path).unwrap();
+        std::fs::remove_file(path.with_extension("toml")).unwrap();
+        let cut = folder.path().join("cut.mcap");
+        let mut before = 0;
+        // Every byte of the head, of a chunk's borders and of the end would do; a prime step meets all of them.
+        let ends = (0..bytes.len()).step_by(if packing == Packing::None { 61 } else { 7 });
+        for end in ends.chain(bytes.len() - 60..bytes.len()) {
+            std::fs::write(&cut, &bytes[..end]).unwrap();
+            let log = read_run(&cut).unwrap();
+            assert!(log.len() >= before || end >= bytes.len() - 60, "a longer file holds no less");
+            before = log.len();
+            assert!([0, 201, 402, 603, 700].contains(&log.len()), "{end} bytes gave {} ticks", log.len());
+            assert_eq!(log.time_s, whole.time_s[..log.len()]);
+            let is_ended = end >= bytes.len() - 8 - 29;
+            assert_eq!(log.lost.len(), usize::from(log.meta.status != RunStatus::Complete), "{end}: {:?}", log.lost);
+            if !is_ended && log.len() < 700 {
+                assert_eq!(log.meta.status, RunStatus::Interrupted, "{end}");
+                assert_eq!(log.lost[0].cause, GapCause::CutOff);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_damaged_chunk_is_a_gap_with_its_byte_or_an_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), "run", 0..1000, Packing::Lz4);
+    let mut bytes = std::fs::read(&path).unwrap();
+    // Three chunks in: the first holds the channels, each later one 201 ticks.
+    let chunks = chunks(&bytes);
+    let (offset, length) = chunks[2];
+    bytes[offset + length / 2] ^= 0x10;
+    std::fs::write(&path, &bytes).unwrap();
+    let log = read_run(&path).unwrap();
+    assert_eq!(log.len(), 799);
+    assert_values(&log);
+    let [gap] = log.lost.as_slice() else { panic!("{:?}", log.lost) };
+    assert_eq!((gap.from_s, gap.to_s), (Some(200.0 / RATE_HZ), Some(402.0 / RATE_HZ)));
+    assert_eq!((gap.ticks, gap.cause), (Some(201), GapCause::Damaged));
+    let begin = format!("201 ticks are missing before 0.1005 s: the chunk at byte {offset} is damaged: ");
+    assert!(gap.text.starts_with(&begin), "{}", gap.text);
+    assert_eq!(log.meta.status, RunStatus::Complete, "the run itself ended as planned");
+
+    let error = RunReader::open(&path).unwrap().refuse_damage().read_all().unwrap_err().to_string();
+    let begin = format!("{}, byte {offset}: the chunk at byte {offset} is damaged: ", path.display());
+    assert!(error.starts_with(&begin), "{error}");
+    assert!(error.ends_with("; copy the file again, or read it without what is damaged"), "{error}");
+}
+
+#[test]
+fn a_whole_file_is_read_even_when_the_chunk_with_its_channels_is_damaged() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), "run", 0..1000, Packing::None);
+    let mut bytes = std::fs::read(&path).unwrap();
+    let (offset, length) = chunks(&bytes)[0];
+    bytes[offset + length / 2] ^= 0x10;
+    std::fs::write(&path, &bytes).unwrap();
+    let log = read_run(&path).unwrap();
+    assert_eq!(log.len(), 1000);
+    assert_values(&log);
+    assert_eq!(log.lost.len(), 1);
+}
+
+/// Offset and length of each chunk record, from the index of the official library.
+fn chunks(bytes: &[u8]) -> Vec<(usize, usize)> {
+    let summary = mcap::Summary::read(bytes).unwrap().unwrap();
+    summary.chunk_indexes.iter().map(|c| (c.chunk_start_offset as usize, c.chunk_length as usize)).collect()
+}
+
+#[test]
+fn a_run_streams_in_blocks_of_a_chunk_and_only_what_is_wanted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), "run", 0..4000, Packing::Lz4);
+    let mut reader = RunReader::open(&path).unwrap().select(&["force", "y/position"]).unwrap();
+    assert_eq!(reader.channels(), [("y/position".to_owned(), "m".to_owned()), ("force".to_owned(), "N".to_owned())]);
+    let (mut block, mut ticks) = (Block::default(), 0u64);
+    while reader.read_block(&mut block).unwrap() {
+        assert!(block.time_s.len() <= 201, "one chunk at a time");
+        for i in 0..block.time_s.len() {
+            let row = row(ticks);
+            assert_eq!((block.columns[0][i], block.columns[1][i]), (row[1], row[18]));
+            ticks += 1;
+        }
+    }
+    assert_eq!(ticks, 4000);
+    let error = RunReader::open(&path).unwrap().select(&["forces"]).err().unwrap().to_string();
+    assert_eq!(error, format!("{}: there is no column `forces`; did you mean `force`?", path.display()));
+}
+
+#[test]
+fn the_official_library_counts_the_messages_that_were_recorded() {
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = std::fs::read(recorded(folder.path(), "run", 0..2000, Packing::Lz4)).unwrap();
+    let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
+    let statistics = summary.stats.unwrap();
+    assert_eq!(statistics.message_count, 4 * 2000);
+    assert_eq!(statistics.message_start_time, START_NS);
+    assert_eq!(statistics.message_end_time, START_NS + 1999 * 250_000);
+    let mut topics: Vec<_> = summary.channels.values().map(|c| c.topic.clone()).collect();
+    topics.sort();
+    assert_eq!(topics, ["/axis/x", "/axis/y", "/events", "/force", "/truth/y"]);
+    let read = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+    assert_eq!(read.filter(|m| m.channel.topic == "/axis/y" && m.data.len() == 4 + 7 * 8 + 2).count(), 2000);
+}
+
+#[test]
+fn what_is_no_run_is_refused_in_words() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    std::fs::write(&path, "time,force\n0,1\n").unwrap();
+    assert_eq!(
+        read_run(&path).unwrap_err().to_string(),
+        format!(
+            "{}, byte 0: the file does not begin as MCAP does; runs are MCAP files that `froude run` records",
+            path.display()
+        )
+    );
+    assert!(read_run(folder.path()).unwrap_err().to_string().ends_with("it is a folder"));
+}
