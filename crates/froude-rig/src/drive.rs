@@ -1,0 +1,111 @@
+//! A rig that can be driven: the twin or the real one behind the same few calls.
+//!
+//! [`Rig::tick`] hands over one request, if there is one, and gives back what the rig was at the end of the tick. Everything
+//! that a campaign does is made of these ticks, so the campaign's code does not know which rig it drives.
+
+use froude_control::fault::Fault;
+use froude_control::request::Request;
+use froude_control::status::{Phase, Refusal};
+use froude_control::tick::AXES;
+
+use crate::load::Load;
+use crate::twin::Truth;
+
+/// One axis at one tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxisSample {
+    /// Unwrapped count since power-up.
+    pub count: i64,
+    /// Position, m.
+    pub position_m: f64,
+    /// Reference position, m.
+    pub reference_m: f64,
+    /// Reference speed, m/s.
+    pub reference_m_s: f64,
+    /// Reference acceleration, m/s².
+    pub reference_m_s2: f64,
+    /// Drive command v_c, V.
+    pub command_v: f64,
+    /// Motor current that the amplifier reports, A.
+    pub current_a: f64,
+    /// What the axis is doing.
+    pub phase: Phase,
+    /// Whether its coordinate is known.
+    pub is_homed: bool,
+}
+
+/// The rig at one tick.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sample {
+    /// Ticks of the board since it began; ticks that were lost on the way are counted, so numbers may be missing.
+    pub tick: u64,
+    /// The axes.
+    pub axes: [AxisSample; AXES],
+    /// Force sensor on y, N, resistance to +y motion positive; `None` where there is none.
+    pub force_n: Option<f64>,
+    /// Latched fault and its axis.
+    pub fault: Option<(Fault, u8)>,
+    /// Why the last request was refused.
+    pub refusal: Option<Refusal>,
+    /// What no sensor shows; only a twin knows.
+    pub truth: Option<[Truth; AXES]>,
+}
+
+/// Why a rig cannot be driven on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RigError {
+    /// The board sent nothing for too long.
+    #[error(
+        "the board at {port} has sent no valid frame for {silent_s:.1} s; its own watchdog stops the carriage. Check power and \
+         cable, then run again: the campaign goes on where it stopped"
+    )]
+    Silent {
+        /// The port.
+        port: String,
+        /// How long.
+        silent_s: f64,
+    },
+    /// The port failed.
+    #[error("{port}: {reason}; the board's own watchdog stops the carriage")]
+    Port {
+        /// The port.
+        port: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// The board speaks another version.
+    #[error("the board at {port} speaks version {board} of the protocol, this program {ours}; flash the matching firmware")]
+    Version {
+        /// The port.
+        port: String,
+        /// The board's.
+        board: String,
+        /// Ours.
+        ours: String,
+    },
+    /// The controller does not take the configuration.
+    #[error("the controller does not take the configuration: {0:?}")]
+    Config(froude_control::config::ConfigError),
+}
+
+/// Something that can be driven.
+pub trait Rig {
+    /// One tick. Blocks until the board has sent it, or simulates it.
+    ///
+    /// # Errors
+    ///
+    /// [`RigError`] when the rig can no longer be talked to.
+    fn tick(&mut self, request: Option<Request>) -> Result<Sample, RigError>;
+
+    /// Ticks per second.
+    fn rate_hz(&self) -> f64;
+
+    /// Begins a run with what the operator has mounted. Nothing to do on a real rig.
+    fn begin_run(&mut self, load: &Load, run_number: u64);
+
+    /// What it is, for the record: `twin`, or the firmware's name and version.
+    fn version(&self) -> String;
+}
+
+pub mod twin;
