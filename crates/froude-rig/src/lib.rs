@@ -8,11 +8,15 @@
 //! | [`amplifier`], [`encoder`], [`force_sensor`], [`noise`] | what stands between plant and controller |
 //! | [`twin`] | all of it, tick by tick, from one seed |
 //! | [`injection`] | what can be broken |
+//! | [`drive`] | twin and real rig behind the same few calls |
+//! | [`campaign`] | a whole campaign: planned, checked, driven, recorded, resumed |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod amplifier;
+pub mod campaign;
+pub mod drive;
 pub mod encoder;
 pub mod force_sensor;
 pub mod injection;

@@ -1,54 +1,10 @@
-//! From a schedule to runs in order.
+//! From what is asked for to runs in order.
 
+use froude_records::carriage::{CarriagePlan, Directions, Order};
 use froude_records::run::{Axis, BodyState, Direction, RunKind};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
-
-/// What a campaign is to do, in SI.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Schedule {
-    /// Steady speeds of the dry and wet runs, m/s.
-    pub speeds_m_s: Vec<f64>,
-    /// Wet/dry pairs at every speed.
-    pub pairs: u32,
-    /// Where profiles begin, m.
-    pub start_m: f64,
-    /// Longest way of a profile, m.
-    pub travel_m: f64,
-    /// Longest steady part, s: slow runs need not go the whole way.
-    pub longest_steady_s: f64,
-    /// Acceleration of the profiles, m/s².
-    pub acceleration_m_s2: f64,
-    /// Jerk, m/s³; 0 is a trapezoid.
-    pub jerk_m_s3: f64,
-    /// Shape the reference for the load's mode.
-    pub is_shaped: bool,
-    /// Speed of returns and of the way to the start, m/s.
-    pub return_speed_m_s: f64,
-    /// Rest before and after each profile that is recorded (sensor zero), s.
-    pub still_s: f64,
-    /// Wait for the water to come to rest before each wet run, s.
-    pub settle_wet_s: f64,
-    /// The same before other runs (structure), s.
-    pub settle_dry_s: f64,
-    /// Warm-up strokes over the profile's way.
-    pub warm_up_strokes: u32,
-    /// Speeds of the friction sweep, m/s; each forward and backward over the travel. Empty for none.
-    pub friction_speeds_m_s: Vec<f64>,
-    /// Known weights over the pulley, N; each forward and backward. Empty for none.
-    pub calibration_weights_n: Vec<f64>,
-    /// Speed of calibration strokes, m/s.
-    pub calibration_speed_m_s: f64,
-    /// Strokes per weight.
-    pub calibration_strokes: u32,
-    /// Whether dry runs carry ballast for the wet wheel load.
-    pub is_ballasted: bool,
-    /// Identification pulses (MCD: 60 %, 1 s): amplitude V and length s; `None` for none.
-    pub pulses: Option<(f64, f64)>,
-    /// Seed of the order of speeds.
-    pub order_seed: u64,
-}
 
 /// What the operator does before the next runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,6 +35,10 @@ pub enum Drive {
         from_m: f64,
         /// Amplitude, V.
         volts: f64,
+        /// Period, s.
+        period_s: f64,
+        /// Part of the period that is on.
+        duty: f64,
         /// Length, s.
         duration_s: f64,
     },
@@ -150,57 +110,56 @@ pub enum Step {
 
 /// Way of the jog test, m: a reversed polarity is caught within it.
 const JOG_M: f64 = 0.01;
+/// Its command, V: twice breakaway of the paper's rig.
+const JOG_V: f64 = 1.0;
 
 struct Planner<'a> {
-    schedule: &'a Schedule,
+    asked: &'a CarriagePlan,
+    start_m: f64,
     steps: Vec<Step>,
     body: BodyState,
     hung_weight_n: f64,
     number: u32,
 }
 
-/// The whole campaign in order: jog, warm-up, friction, calibration, pulses, then dry and wet blocks in ABBA order.
+/// The whole campaign in order: jog, warm-up, friction, calibration, pulses, then dry and wet halves of the pairs.
+///
+/// `start_m` is where forward runs begin. The order of the speeds within a half is drawn from `order_seed`.
 #[must_use]
-pub fn plan(schedule: &Schedule) -> Vec<Step> {
+pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
     let mut planner =
-        Planner { schedule, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
-    for volts in [1.0, -1.0] {
-        let name = if volts > 0.0 { "jog-forward" } else { "jog-backward" };
+        Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
+    for (name, volts) in [("jog-forward", JOG_V), ("jog-backward", -JOG_V)] {
         planner.run(name, RunKind::Jog, Drive::Jog { volts, distance_m: JOG_M }, None);
     }
     planner.warm_up();
     planner.friction();
     planner.calibration();
-    if let Some((volts, duration_s)) = schedule.pulses {
-        let from_m = schedule.start_m + 0.5 * schedule.travel_m;
-        planner.run("pulses", RunKind::Excitation, Drive::Pulses { from_m, volts, duration_s }, None);
+    if let Some(p) = &asked.excitation {
+        let from_m = start_m + 0.5 * asked.distance_m;
+        let drive =
+            Drive::Pulses { from_m, volts: p.amplitude_v, period_s: p.period_s, duty: p.duty, duration_s: p.duration_s };
+        planner.run("pulses", RunKind::Excitation, drive, None);
     }
-    planner.blocks();
+    planner.pairs(order_seed);
     planner.steps
 }
 
 impl Planner<'_> {
-    /// Way of a profile at this speed, m.
-    fn way_m(&self, speed_m_s: f64) -> f64 {
-        let ramps_m = speed_m_s * speed_m_s / self.schedule.acceleration_m_s2;
-        self.schedule.travel_m.min(ramps_m + speed_m_s * self.schedule.longest_steady_s)
-    }
-
     fn run(&mut self, name: &str, kind: RunKind, drive: Drive, pair: Option<(u32, u32)>) {
         self.number += 1;
-        let settle_s =
-            if self.body == BodyState::Wet { self.schedule.settle_wet_s } else { self.schedule.settle_dry_s };
+        let is_wet = self.body == BodyState::Wet;
         self.steps.push(Step::Run(PlannedRun {
             id: format!("{:03}-{name}", self.number),
             kind,
-            axis: Axis::Y,
+            axis: self.asked.axis,
             set: pair.map(|p| p.0),
             pair: pair.map(|p| p.1),
             drive,
             body: self.body,
-            is_ballasted: self.body == BodyState::Dry && self.schedule.is_ballasted,
+            is_ballasted: self.body != BodyState::None && self.asked.is_ballasted,
             hung_weight_n: self.hung_weight_n,
-            settle_s,
+            settle_s: if is_wet { self.asked.settling_wet_s } else { self.asked.settling_dry_s },
         }));
     }
 
@@ -212,10 +171,14 @@ impl Planner<'_> {
         if self.body != body {
             prompts.push(match body {
                 BodyState::None => "take the body off".to_owned(),
-                BodyState::Dry if self.schedule.is_ballasted => {
-                    "mount the body dry, on top of the platform, with the ballast that makes up for its buoyancy".to_owned()
+                BodyState::Dry if self.asked.is_ballasted => {
+                    "mount the body dry, on top of the platform, without the ballast".to_owned()
                 }
                 BodyState::Dry => "mount the body dry, on top of the platform".to_owned(),
+                BodyState::Wet if self.asked.is_ballasted => {
+                    "mount the body wet, below the platform, and put on the ballast that weighs as much as the water that it displaces"
+                        .to_owned()
+                }
                 BodyState::Wet => "mount the body wet, below the platform".to_owned(),
             });
         }
@@ -230,63 +193,66 @@ impl Planner<'_> {
         self.steps.push(Step::Operator(OperatorStep { prompt: prompts.join("; "), body, hung_weight_n }));
     }
 
-    /// Strokes there and back; every stroke is a run of its own.
-    fn strokes(&mut self, name: &str, kind: RunKind, speed_m_s: f64, way_m: f64) {
-        let (from_m, to_m) = (self.schedule.start_m, self.schedule.start_m + way_m);
-        self.run(&format!("{name}-forward"), kind, Drive::Profile { from_m, to_m, speed_m_s }, None);
-        self.run(&format!("{name}-backward"), kind, Drive::Profile { from_m: to_m, to_m: from_m, speed_m_s }, None);
+    /// There, or there and back; each way is a run of its own.
+    fn strokes(&mut self, name: &str, kind: RunKind, speed_m_s: f64, is_both: bool, pair: Option<(u32, u32)>) {
+        let (from_m, to_m) = (self.start_m, self.start_m + self.asked.distance_m);
+        self.run(&format!("{name}-forward"), kind, Drive::Profile { from_m, to_m, speed_m_s }, pair);
+        if is_both {
+            let back = Drive::Profile { from_m: to_m, to_m: from_m, speed_m_s };
+            self.run(&format!("{name}-backward"), kind, back, pair);
+        }
     }
 
     fn warm_up(&mut self) {
-        let speed_m_s = self.schedule.return_speed_m_s;
-        for _ in 0..self.schedule.warm_up_strokes {
-            self.strokes("warm-up", RunKind::WarmUp, speed_m_s, self.schedule.travel_m);
+        let Some(warm_up) = self.asked.warm_up else { return };
+        let stroke_s = self.asked.distance_m / warm_up.speed_m_s;
+        for _ in 0..(0.5 * warm_up.duration_s / stroke_s).ceil().clamp(1.0, 1e3) as usize {
+            self.strokes("warm-up", RunKind::WarmUp, warm_up.speed_m_s, true, None);
         }
     }
 
     fn friction(&mut self) {
-        for &speed_m_s in &self.schedule.friction_speeds_m_s {
-            let name = format!("friction-{:.0}mm_s", 1e3 * speed_m_s);
-            self.strokes(&name, RunKind::Friction, speed_m_s, self.schedule.travel_m);
+        let Some(sweep) = &self.asked.friction else { return };
+        for _ in 0..sweep.repeats {
+            for &speed_m_s in &sweep.speed_m_s {
+                let name = format!("friction-{:.0}mm_s", 1e3 * speed_m_s);
+                self.strokes(&name, RunKind::Friction, speed_m_s, true, None);
+            }
         }
     }
 
     /// No weight, then each weight, then no weight again: the drift of friction shows between the two.
     fn calibration(&mut self) {
-        if self.schedule.calibration_weights_n.is_empty() {
-            return;
-        }
-        let weights = self.schedule.calibration_weights_n.clone();
-        let all = std::iter::once(0.0).chain(weights).chain(std::iter::once(0.0));
-        for weight_n in all {
+        let Some(calibration) = &self.asked.calibration else { return };
+        let weights = calibration.weights_n.iter().copied();
+        for weight_n in std::iter::once(0.0).chain(weights).chain(std::iter::once(0.0)) {
             self.mount(self.body, weight_n);
-            for _ in 0..self.schedule.calibration_strokes {
+            for _ in 0..calibration.repeats {
                 let name = format!("calibration-{weight_n:.0}N");
-                let speed_m_s = self.schedule.calibration_speed_m_s;
-                self.strokes(&name, RunKind::Calibration, speed_m_s, self.way_m(speed_m_s));
+                self.strokes(&name, RunKind::Calibration, calibration.speed_m_s, true, None);
             }
         }
     }
 
-    /// Blocks of one pair: dry then wet, then wet then dry, …: ABBA over two pairs.
-    fn blocks(&mut self) {
-        let mut rng = Pcg64Mcg::seed_from_u64(self.schedule.order_seed);
-        for pair in 1..=self.schedule.pairs {
-            let mut halves = [BodyState::Dry, BodyState::Wet];
-            if pair % 2 == 0 {
-                halves.reverse();
-            }
-            for (half, body) in (0..).zip(halves) {
-                self.mount(body, 0.0);
-                let kind = if body == BodyState::Wet { RunKind::Wet } else { RunKind::Dry };
-                let mut speeds = self.schedule.speeds_m_s.clone();
-                speeds.shuffle(&mut rng);
-                for speed_m_s in speeds {
-                    let (from_m, to_m) = (self.schedule.start_m, self.schedule.start_m + self.way_m(speed_m_s));
-                    let name = format!("{}-p{pair}-{:.0}mm_s", kind.name(), 1e3 * speed_m_s);
-                    let drive = Drive::Profile { from_m, to_m, speed_m_s };
-                    self.run(&name, kind, drive, Some((2 * (pair - 1) + half + 1, pair)));
-                }
+    /// The halves of the pairs in the order asked for.
+    fn pairs(&mut self, order_seed: u64) {
+        let mut rng = Pcg64Mcg::seed_from_u64(order_seed);
+        let n = self.asked.repeats as u32;
+        let (dry, wet) = (BodyState::Dry, BodyState::Wet);
+        let halves: Vec<(u32, BodyState)> = match self.asked.order {
+            Order::Abba => (1..=n).flat_map(|p| if p % 2 == 1 { [(p, dry), (p, wet)] } else { [(p, wet), (p, dry)] }).collect(),
+            Order::Ab => (1..=n).flat_map(|p| [(p, dry), (p, wet)]).collect(),
+            Order::Blocks => (1..=n).map(|p| (p, dry)).chain((1..=n).map(|p| (p, wet))).collect(),
+        };
+        for (set, (pair, body)) in (1..).zip(halves) {
+            self.mount(body, 0.0);
+            let kind = if body == wet { RunKind::Wet } else { RunKind::Dry };
+            let mut speeds = self.asked.speed_m_s.clone();
+            speeds.shuffle(&mut rng);
+            for speed_m_s in speeds {
+                let name = format!("{}-p{pair}-{:.0}mm_s", kind.name(), 1e3 * speed_m_s);
+                let is_both = self.asked.directions == Directions::Both;
+                self.strokes(&name, kind, speed_m_s, is_both, Some((set, pair)));
             }
         }
     }
@@ -295,29 +261,36 @@ impl Planner<'_> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use froude_records::Place;
+    use froude_records::carriage::{Calibration, FrictionSweep};
 
-    pub(crate) fn schedule() -> Schedule {
-        Schedule {
-            speeds_m_s: vec![0.05, 0.25, 0.55],
-            pairs: 4,
-            start_m: 0.5,
-            travel_m: 2.2,
-            longest_steady_s: 10.0,
-            acceleration_m_s2: 0.7,
-            jerk_m_s3: 0.0,
-            is_shaped: true,
-            return_speed_m_s: 0.3,
+    pub(crate) fn asked() -> CarriagePlan {
+        CarriagePlan {
+            axis: Axis::Y,
+            speed_m_s: vec![0.05, 0.25, 0.55],
+            repeats: 4,
+            order: Order::Abba,
+            directions: Directions::Forward,
+            distance_m: 2.2,
+            start_m: None,
+            acceleration_m_s2: 0.6,
+            jerk_m_s3: None,
+            settling_dry_s: 2.0,
+            settling_wet_s: 20.0,
             still_s: 1.0,
-            settle_wet_s: 20.0,
-            settle_dry_s: 2.0,
-            warm_up_strokes: 1,
-            friction_speeds_m_s: vec![0.1],
-            calibration_weights_n: vec![10.0],
-            calibration_speed_m_s: 0.1,
-            calibration_strokes: 1,
+            warm_up: None,
+            friction: Some(FrictionSweep { speed_m_s: vec![0.1], repeats: 1 }),
+            calibration: Some(Calibration {
+                weights_n: vec![10.0],
+                weight_standard_n: 0.01,
+                speed_m_s: 0.1,
+                repeats: 1,
+            }),
+            excitation: None,
             is_ballasted: true,
-            pulses: Some((2.0, 10.0)),
-            order_seed: 1,
+            stop_at_relative_half_width: None,
+            expected_drag_n_s2_m2: Some(20.0),
+            place: Place::whole("campaign.toml".as_ref()),
         }
     }
 
@@ -327,7 +300,7 @@ pub(crate) mod tests {
 
     #[test]
     fn blocks_stand_in_abba_order_and_the_operator_is_asked_once_between_them() {
-        let steps = plan(&schedule());
+        let steps = plan(&asked(), 0.5, 1);
         let mut blocks: Vec<RunKind> = Vec::new();
         let mut asked = 0;
         for step in &steps {
@@ -347,7 +320,7 @@ pub(crate) mod tests {
 
     #[test]
     fn every_pair_has_each_speed_once_dry_and_once_wet_over_the_same_way() {
-        let steps = plan(&schedule());
+        let steps = plan(&asked(), 0.5, 1);
         for pair in 1..=4 {
             for speed in [0.05, 0.25, 0.55] {
                 let of = |kind| -> Vec<Drive> {
@@ -364,21 +337,33 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn a_slow_run_is_cut_at_the_longest_steady_part_and_none_leaves_the_travel() {
-        let s = schedule();
-        for run in runs(&plan(&s)) {
-            if let Drive::Profile { from_m, to_m, speed_m_s } = run.drive {
-                assert!((to_m - from_m).abs() <= s.travel_m + 1e-12);
-                if run.kind == RunKind::Dry && speed_m_s == 0.05 {
-                    assert!(((to_m - from_m) - (0.05 * 10.0 + 0.05 * 0.05 / 0.7)).abs() < 1e-12);
-                }
-            }
-        }
+    fn the_weight_hangs_for_the_calibration_only() {
+        let steps = plan(&asked(), 0.5, 1);
+        let weights: Vec<f64> = runs(&steps)
+            .iter()
+            .filter(|r| r.kind == RunKind::Calibration)
+            .map(|r| r.hung_weight_n)
+            .collect();
+        assert_eq!(weights, [0.0, 0.0, 10.0, 10.0, 0.0, 0.0]);
+        assert!(runs(&steps).iter().filter(|r| r.kind != RunKind::Calibration).all(|r| r.hung_weight_n == 0.0));
+    }
+
+    #[test]
+    fn every_order_has_the_same_runs() {
+        let names = |order| {
+            let plan = CarriagePlan { order, directions: Directions::Both, ..asked() };
+            let steps = super::plan(&plan, 0.5, 1);
+            let mut names: Vec<String> = runs(&steps).iter().map(|r| r.id[4..].to_owned()).collect();
+            names.sort();
+            names
+        };
+        assert_eq!(names(Order::Abba), names(Order::Ab));
+        assert_eq!(names(Order::Abba), names(Order::Blocks));
     }
 
     #[test]
     fn names_are_unique_and_sort_in_the_order_of_the_plan() {
-        let steps = plan(&schedule());
+        let steps = plan(&asked(), 0.5, 1);
         let names: Vec<&str> = runs(&steps).iter().map(|r| r.id.as_str()).collect();
         assert!(names.windows(2).all(|w| w[0] < w[1]));
     }

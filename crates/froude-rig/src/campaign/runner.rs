@@ -17,7 +17,9 @@ use froude_records::run::{
 };
 use indexmap::IndexMap;
 
-use super::plan::{Drive, OperatorStep, PlannedRun, Schedule, Step};
+use froude_records::carriage::CarriagePlan;
+
+use super::plan::{Drive, OperatorStep, PlannedRun, Step};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample};
 use crate::load::Load;
@@ -122,8 +124,12 @@ pub struct Setting {
     pub campaign: String,
     /// Folder of the runs; it exists.
     pub folder: PathBuf,
-    /// The schedule.
-    pub schedule: Schedule,
+    /// What is asked for.
+    pub asked: CarriagePlan,
+    /// Speed of the ways between runs, m/s.
+    pub return_speed_m_s: f64,
+    /// Shape the reference for the load's mode.
+    pub is_shaped: bool,
     /// Declared constants by axis.
     pub constants: IndexMap<String, AxisConstants>,
     /// What rides on the carriage apart from where it is mounted: only a twin needs it.
@@ -299,18 +305,18 @@ impl Session<'_> {
             Drive::Profile { from_m, .. } | Drive::Pulses { from_m, .. } => from_m,
             Drive::Jog { .. } => return Ok(()),
         };
-        self.go(target_m, self.setting.schedule.return_speed_m_s)
+        self.go(target_m, self.setting.return_speed_m_s)
     }
 
     fn go(&mut self, target_m: f64, speed_m_s: f64) -> Result<(), RunnerError> {
         let axis = self.axis();
-        let s = &self.setting.schedule;
+        let s = &self.setting.asked;
         let profile = Move {
             target_m,
             speed_m_s,
             acceleration_m_s2: s.acceleration_m_s2,
-            jerk_m_s3: s.jerk_m_s3,
-            is_shaped: s.is_shaped,
+            jerk_m_s3: s.jerk_m_s3.unwrap_or(0.0),
+            is_shaped: self.setting.is_shaped,
         };
         self.ask("move", Request::Move { axis, profile })?;
         // The longest way at this speed, and time for ramps and shaping.
@@ -321,13 +327,13 @@ impl Session<'_> {
     /// Still, motion, still.
     fn motion(&mut self) -> Result<(), RunnerError> {
         let axis = self.axis();
-        let still_s = self.setting.schedule.still_s;
+        let still_s = self.setting.asked.still_s;
         self.wait(still_s)?;
         self.event(EventKind::Phase, "the motion begins")?;
         match self.run.drive {
             Drive::Profile { to_m, speed_m_s, .. } => self.go(to_m, speed_m_s)?,
-            Drive::Pulses { volts, duration_s, .. } => {
-                let excitation = Excitation::Pulses { volts, period_s: 1.0, duty: 0.6, duration_s };
+            Drive::Pulses { volts, period_s, duty, duration_s, .. } => {
+                let excitation = Excitation::Pulses { volts, period_s, duty, duration_s };
                 self.ask("excite", Request::Excite { axis, excitation })?;
                 self.until("the pulses", duration_s + 30.0, |s| s.axes[axis].phase == Phase::Holding)?;
             }
@@ -475,6 +481,7 @@ impl Session<'_> {
             is_ballasted: run.is_ballasted,
             hung_weight_n: (run.kind == froude_records::run::RunKind::Calibration).then_some(run.hung_weight_n),
             rig: setting.constants.clone(),
+            constants: IndexMap::new(),
             status: RunStatus::Running,
             note: String::new(),
             versions: IndexMap::from([

@@ -1,7 +1,7 @@
 //! The twin as a rig: the same controller that runs on the board, in the loop with the simulated plant.
 
+use froude_control::Controller;
 use froude_control::config::Config;
-use froude_control::controller::Controller;
 use froude_control::request::Request;
 use froude_control::tick::{AXES, Command, Tick};
 
