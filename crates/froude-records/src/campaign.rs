@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use indexmap::IndexMap;
 
 use crate::campaign_toml;
+use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError, read_bytes, utf8};
 pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
 use crate::units::Dimension;
@@ -36,6 +37,8 @@ pub struct Campaign {
     pub identify: Identify,
     /// How to make up observations.
     pub simulate: Option<Simulate>,
+    /// What is driven, and what it is to do.
+    pub carriage: Option<CarriageCampaign>,
 }
 
 /// The water: density, or temperature and salinity.
@@ -442,6 +445,7 @@ impl Campaign {
             }],
             identify: Identify::default(),
             simulate: None,
+            carriage: None,
         }
     }
 

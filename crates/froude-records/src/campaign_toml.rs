@@ -10,6 +10,7 @@ use crate::campaign::{
     AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, LinkSpec, PlanBlock,
     PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
 };
+use crate::carriage_toml::carriage;
 use crate::error::RecordError;
 use crate::keep::parse_keep;
 use crate::nearest::suggestion;
@@ -32,7 +33,9 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     let document = parse_toml(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("campaign")?;
-    root.only(&["schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate"])?;
+    root.only(&[
+        "schema", "name", "cite", "fluid", "body", "tank", "source", "identify", "simulate", "rig", "carriage",
+    ])?;
     let campaign = Campaign {
         path: path.to_owned(),
         name: root
@@ -46,6 +49,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
         sources: root.sections("source")?.iter().map(read_source).collect::<Result<_, _>>()?,
         identify: root.section("identify")?.map(|s| identify(&s)).transpose()?.unwrap_or_default(),
         simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
+        carriage: carriage(&root)?,
     };
     for (i, a) in campaign.sources.iter().enumerate() {
         if campaign.sources[..i].iter().any(|b| b.name == a.name) {
@@ -301,7 +305,7 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
 }
 
 /// One value, a list, or start, stop and step.
-fn series<'a>(
+pub(crate) fn series<'a>(
     s: &Section<'a>,
     key: &'static str,
     value: &'a Spanned<DeValue<'a>>,

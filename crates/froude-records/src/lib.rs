@@ -5,7 +5,7 @@
 //!
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
-//! | campaign (TOML) | [`campaign`]                               |
+//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`] |
 //! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | sidecar (TOML)  | [`sidecar`]                                |
@@ -16,6 +16,8 @@
 mod assemble;
 pub mod campaign;
 mod campaign_toml;
+pub mod carriage;
+mod carriage_toml;
 pub mod csv_table;
 mod error;
 pub mod estimate;

@@ -8,19 +8,30 @@
 //! | what                      | where          |
 //! |---------------------------|----------------|
 //! | a run in memory           | [`RunLog`]     |
-//! | what is known about it    | [`RunMeta`]    |
+//! | what is known about it    | [`RunMeta`]; as text [`read_run_meta`], [`write_run_meta`] |
+//! | which columns, which topics | [`Layout`] |
+//! | recording (MCAP)          | [`Recorder`]   |
+//! | reading, whole or streamed | [`read_run`], [`RunReader`] |
+//! | another program's log     | [`import_run`] |
+//!
+//! **On disk.** `ID.mcap`: topics `/axis/y`, `/axis/x`, `/force`, `/truth/…`, one message a tick (ROS 2 definitions, CDR bytes),
+//! `/events` (`rcl_interfaces/msg/Log`), and a metadata record `froude_run` with the entries of the sidecar `ID.toml`. Foxglove,
+//! PlotJuggler and the MCAP tools open it as it is. Log time is the board's: start of the run plus tick over log rate; the
+//! sequence number of a message is its tick.
 //!
 //! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-identify`'s.
 
 mod file;
+mod import;
 mod layout;
 mod log;
 mod meta;
 mod reader;
 mod recorder;
-mod sidecar;
+pub(crate) mod sidecar;
 mod sync;
 
+pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus};

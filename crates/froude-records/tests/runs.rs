@@ -162,7 +162,7 @@ fn a_run_that_is_being_recorded_is_running_and_one_that_was_left_is_interrupted(
     let path = recorder.path().to_owned();
     let now = read_run(&path).unwrap();
     assert_eq!(now.meta.status, RunStatus::Running);
-    assert_eq!(now.len(), 804, "all but the ticks of the last chunk: one of 201 ticks is handed over");
+    assert_eq!(now.len(), 966, "all but the ticks of the last chunk: one of 161 ticks is handed over");
     assert_eq!(read_run_meta(&path.with_extension("toml")).unwrap().status, RunStatus::Running);
     drop(recorder);
     let log = read_run(&path).unwrap();
@@ -241,13 +241,13 @@ fn a_log_cut_off_at_any_byte_gives_its_whole_chunks_and_says_what_is_lost() {
         let cut = folder.path().join("cut.mcap");
         let mut before = 0;
         // Every byte of the head, of a chunk's borders and of the end would do; a prime step meets all of them.
-        let ends = (0..bytes.len()).step_by(if packing == Packing::None { 61 } else { 7 });
+        let ends = (0..bytes.len()).step_by(if packing == Packing::None { 241 } else { 53 });
         for end in ends.chain(bytes.len() - 60..bytes.len()) {
             std::fs::write(&cut, &bytes[..end]).unwrap();
             let log = read_run(&cut).unwrap();
             assert!(log.len() >= before || end >= bytes.len() - 60, "a longer file holds no less");
             before = log.len();
-            assert!([0, 201, 402, 603, 700].contains(&log.len()), "{end} bytes gave {} ticks", log.len());
+            assert!([0, 161, 322, 483, 644, 700].contains(&log.len()), "{end} bytes gave {} ticks", log.len());
             assert_eq!(log.time_s, whole.time_s[..log.len()]);
             let is_ended = end >= bytes.len() - 8 - 29;
             assert_eq!(log.lost.len(), usize::from(log.meta.status != RunStatus::Complete), "{end}: {:?}", log.lost);
@@ -264,18 +264,18 @@ fn a_damaged_chunk_is_a_gap_with_its_byte_or_an_error() {
     let folder = tempfile::tempdir().unwrap();
     let path = recorded(folder.path(), "run", 0..1000, Packing::Lz4);
     let mut bytes = std::fs::read(&path).unwrap();
-    // Three chunks in: the first holds the channels, each later one 201 ticks.
+    // Three chunks in: the first holds the channels, each later one 161 ticks.
     let chunks = chunks(&bytes);
     let (offset, length) = chunks[2];
     bytes[offset + length / 2] ^= 0x10;
     std::fs::write(&path, &bytes).unwrap();
     let log = read_run(&path).unwrap();
-    assert_eq!(log.len(), 799);
+    assert_eq!(log.len(), 839);
     assert_values(&log);
     let [gap] = log.lost.as_slice() else { panic!("{:?}", log.lost) };
-    assert_eq!((gap.from_s, gap.to_s), (Some(200.0 / RATE_HZ), Some(402.0 / RATE_HZ)));
-    assert_eq!((gap.ticks, gap.cause), (Some(201), GapCause::Damaged));
-    let begin = format!("201 ticks are missing before 0.1005 s: the chunk at byte {offset} is damaged: ");
+    assert_eq!((gap.from_s, gap.to_s), (Some(160.0 / RATE_HZ), Some(322.0 / RATE_HZ)));
+    assert_eq!((gap.ticks, gap.cause), (Some(161), GapCause::Damaged));
+    let begin = format!("161 ticks are missing before 0.0805 s: the chunk at byte {offset} is damaged: ");
     assert!(gap.text.starts_with(&begin), "{}", gap.text);
     assert_eq!(log.meta.status, RunStatus::Complete, "the run itself ended as planned");
 
@@ -313,7 +313,7 @@ fn a_run_streams_in_blocks_of_a_chunk_and_only_what_is_wanted() {
     assert_eq!(reader.channels(), [("y/position".to_owned(), "m".to_owned()), ("force".to_owned(), "N".to_owned())]);
     let (mut block, mut ticks) = (Block::default(), 0u64);
     while reader.read_block(&mut block).unwrap() {
-        assert!(block.time_s.len() <= 201, "one chunk at a time");
+        assert!(block.time_s.len() <= 161, "one chunk at a time");
         for i in 0..block.time_s.len() {
             let row = row(ticks);
             assert_eq!((block.columns[0][i], block.columns[1][i]), (row[1], row[18]));

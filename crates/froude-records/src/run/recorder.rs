@@ -10,8 +10,8 @@
 //! Run time is what the caller's ticks say, simulated or real. A caller whose ticks stop coming calls
 //! [`Recorder::advance`], so that the last of them are not kept back.
 //!
-//! **Memory.** One chunk (at most 50 ms, or 1 MiB), and the index that viewers want at the end of the file: about 0.3 kB a
-//! chunk, 20 MB for an hour.
+//! **Memory.** One chunk (at most 40 ms, or 1 MiB), and the index that viewers want at the end of the file: about 0.3 kB a
+//! chunk, 27 MB for an hour.
 //!
 //! **A full disk** is an error of [`Recorder::record`]. What was torn is cut off again, so the file ends with a whole chunk;
 //! the caller stops the carriage (category 1) and calls [`Recorder::finish`].
@@ -32,8 +32,8 @@ use crate::run::sync::Syncer;
 
 type Writer = mcap::Writer<NoSeek<BufWriter<File>>>;
 
-/// Run time after which a chunk is handed to the system.
-const CHUNK_NS: u64 = 50_000_000;
+/// Run time after which a chunk is handed to the system: 10 ms before the 50 ms that are claimed.
+const CHUNK_NS: u64 = 40_000_000;
 
 /// A chunk that is larger is handed over earlier.
 const LARGEST_CHUNK: u64 = 1 << 20;
@@ -167,7 +167,7 @@ impl Recorder {
         self.advance(tick)
     }
 
-    /// Tells that run time has come to `tick` without anything to record: what is older than 50 ms is handed to the system.
+    /// Tells that run time has come to `tick` without anything to record: what is older than 40 ms is handed to the system.
     ///
     /// # Errors
     ///

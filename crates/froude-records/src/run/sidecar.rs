@@ -145,7 +145,7 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     meta.hung_weight_n.iter().for_each(|w| put("hung_weight", format!("{w} N")));
     meta.twin_seed.iter().for_each(|seed| put("twin_seed", seed.to_string()));
     put("note", meta.note.clone());
-    for clock in &meta.clock {
+    if let Some(clock) = &meta.clock {
         put("clock.host_at_zero", format!("{} s", clock.host_at_zero_s));
         put("clock.drift", format!("{} 1", clock.drift));
         put("clock.standard_uncertainty", format!("{} s", clock.standard_uncertainty_s));
@@ -163,7 +163,7 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
             ("sprocket_radius", "m", Some(constants.sprocket_radius_m)),
         ];
         for (key, unit, constant) in declared.into_iter().chain(efficiencies) {
-            for constant in constant {
+            if let Some(constant) = constant {
                 put(&format!("rig.{axis}.{key}.value"), format!("{} {unit}", constant.value));
                 put(&format!("rig.{axis}.{key}.standard"), format!("{} {unit}", constant.standard_uncertainty));
             }

@@ -1,0 +1,209 @@
+//! Anyone's servo log as a run: a CSV, and a sidecar that says what its columns are.
+//!
+//! ```toml
+//! schema = 1
+//! [constants]
+//! drive_gain = "35.15 N/V"
+//! [columns]
+//! t_s       = { name = "time", unit = "s" }
+//! q_ref_m   = { name = "reference_position", unit = "m" }
+//! q_meas_m  = { name = "position", unit = "m" }
+//! u_ctrl_V  = { name = "command", unit = "V" }
+//! ```
+//!
+//! The names of an axis ([`AXIS_NAMES`]) become channels of axis `y`, as in a run of the carriage; `force` and every other
+//! name stay as they are. Times are kept as they are written; steps that are not even are told, never resampled.
+
+use std::path::Path;
+
+use indexmap::IndexMap;
+
+use crate::error::{Place, RecordError};
+use crate::estimate::Measured;
+use crate::finding::{Finding, Severity};
+use crate::run::log::{Channel, Gap, GapCause, RunLog};
+use crate::run::meta::{RunKind, RunMeta, RunStatus};
+use crate::sidecar::{Sidecar, read_sidecar};
+use crate::table::{Column, ColumnData, Table, read_table};
+use crate::units::{Dimension, Unit};
+
+/// Names that belong to an axis; a sidecar may also write `y/position` or `x/position` itself.
+pub const AXIS_NAMES: [&str; 9] = [
+    "encoder",
+    "position",
+    "reference_position",
+    "reference_velocity",
+    "reference_acceleration",
+    "command",
+    "current",
+    "state",
+    "fault",
+];
+
+/// Steps that differ less than this from their median, relative to it, are even but for the clock's resolution.
+const EVEN: f64 = 0.01;
+
+/// A step longer than this many medians has ticks missing in it.
+const GAP: f64 = 1.5;
+
+/// A log that was imported, with what was found in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImportedRun {
+    /// The run; its gaps are where ticks are missing.
+    pub log: RunLog,
+    /// How even its time steps are.
+    pub steps: TimeSteps,
+    /// What a reader should know.
+    pub findings: Vec<Finding>,
+}
+
+/// Steps between ticks, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeSteps {
+    /// The median: gaps do not move it.
+    pub median_s: f64,
+    /// The shortest.
+    pub shortest_s: f64,
+    /// The longest.
+    pub longest_s: f64,
+}
+
+/// Reads a CSV (or Parquet) log through its sidecar; `None` for the `.toml` beside it, or for headers `name [unit]`.
+///
+/// # Errors
+///
+/// See [`RecordError`]; a time column that is missing or does not increase names its line.
+pub fn import_run(path: &Path, sidecar: Option<&Path>) -> Result<ImportedRun, RecordError> {
+    let table = read_table(path, sidecar)?;
+    let own = table.sidecar.as_deref().map(read_sidecar).transpose()?;
+    run_of_table(&table, own.as_ref())
+}
+
+/// The same from a table in memory.
+///
+/// # Errors
+///
+/// As [`import_run`].
+pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<ImportedRun, RecordError> {
+    let time_s = times(table)?;
+    let steps = steps(&time_s);
+    let mut channels = IndexMap::new();
+    for column in &table.columns {
+        let ColumnData::Number { si, dimension, .. } = &column.data else { continue };
+        if column.name == "time" {
+            continue;
+        }
+        let name = channel_name(&column.name);
+        let unit = Unit::si(*dimension).text;
+        if channels.insert(name, Channel { unit, values: si.clone() }).is_some() {
+            return Err(RecordError::DuplicateColumn { place: Place::whole(&table.path), column: column.name.clone() });
+        }
+    }
+    let constants = sidecar.map(|s| &s.constants).into_iter().flatten().map(|(name, quantity)| {
+        let unit = quantity.unit.dimension.to_string();
+        (name.clone(), Measured { value: quantity.value_si, unit })
+    });
+    let meta = RunMeta {
+        id: table.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
+        kind: RunKind::Excitation,
+        status: RunStatus::Complete,
+        constants: constants.collect(),
+        log_rate_hz: 1.0 / steps.median_s,
+        ..RunMeta::default()
+    };
+    let lost = gaps(&time_s, steps);
+    let findings = vec![finding(table, steps, &lost)];
+    let log = RunLog { path: table.path.clone(), time_s, channels, events: Vec::new(), lost, meta };
+    Ok(ImportedRun { log, steps, findings })
+}
+
+fn channel_name(name: &str) -> String {
+    if AXIS_NAMES.contains(&name) { format!("y/{name}") } else { name.to_owned() }
+}
+
+/// The time column, two ticks at least, increasing.
+fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
+    let is_time = |c: &&Column| c.name == "time";
+    let Some(_) = table.columns.iter().find(is_time) else {
+        return Err(RecordError::UnknownColumn {
+            place: Place::whole(&table.path),
+            column: "time".to_owned(),
+            advice: "a log needs its times: head the column `time [s]`, or map it with { name = \"time\", unit = \"s\" } in \
+                     the sidecar"
+                .to_owned(),
+        });
+    };
+    let time_s = table.number("time", Dimension::TIME)?;
+    let refuse = |row: usize, problem: String| RecordError::Value {
+        place: table.place_of_row(row),
+        key: "time".to_owned(),
+        problem,
+    };
+    if time_s.len() < 2 {
+        return Err(refuse(0, "has one value; a log needs two ticks at least".to_owned()));
+    }
+    match time_s.windows(2).position(|w| w[1] <= w[0]) {
+        Some(row) => {
+            let (before, now) = (time_s[row], time_s[row + 1]);
+            Err(refuse(
+                row + 1,
+                format!("is {now} s after {before} s; it must increase: sort the rows, or delete doubled ones"),
+            ))
+        }
+        None => Ok(time_s.to_vec()),
+    }
+}
+
+fn steps(time_s: &[f64]) -> TimeSteps {
+    let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
+    let middle = steps.len() / 2;
+    let median_s = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let (shortest_s, longest_s) =
+        steps.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), step| (low.min(*step), high.max(*step)));
+    TimeSteps { median_s, shortest_s, longest_s }
+}
+
+/// Where a step is so long that ticks are missing in it.
+fn gaps(time_s: &[f64], steps: TimeSteps) -> Vec<Gap> {
+    let long = time_s.windows(2).filter(|w| w[1] - w[0] > GAP * steps.median_s);
+    long.map(|w| {
+        let ticks = ((w[1] - w[0]) / steps.median_s).round() as u64 - 1;
+        Gap {
+            from_s: Some(w[0]),
+            to_s: Some(w[1]),
+            ticks: Some(ticks),
+            cause: GapCause::Link,
+            text: format!("{ticks} ticks are missing between {} s and {} s of the log", w[0], w[1]),
+        }
+    })
+    .collect()
+}
+
+fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
+    let TimeSteps { median_s, shortest_s, longest_s } = steps;
+    let off = (longest_s - median_s).max(median_s - shortest_s);
+    let numbers = format!(
+        "time steps are {:.6} ms in the middle, {:.6} ms at least and {:.6} ms at most",
+        1e3 * median_s,
+        1e3 * shortest_s,
+        1e3 * longest_s
+    );
+    let (severity, code, message) = if !lost.is_empty() {
+        let ticks: u64 = lost.iter().filter_map(|gap| gap.ticks).sum();
+        let text =
+            format!("{numbers}: {ticks} ticks are missing in {} gaps; filters must not run across them", lost.len());
+        (Severity::Warning, "time-gaps", text)
+    } else if off > EVEN * median_s {
+        let text = format!(
+            "{numbers}: the log is not evenly sampled; filters take every step as {:.6} ms, so look into the logger, or resample it",
+            1e3 * median_s
+        );
+        (Severity::Warning, "uneven-time-steps", text)
+    } else {
+        let text = format!("{numbers}: even within {:.2e} of a step", off / median_s);
+        (Severity::Note, "time-steps", text)
+    };
+    let mut finding = Finding::new(severity, code, message);
+    finding.place = Some(table.path.display().to_string());
+    finding
+}

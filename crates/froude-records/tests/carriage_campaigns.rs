@@ -1,0 +1,174 @@
+//! Campaigns that drive a carriage.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::Path;
+
+use froude_records::campaign::{parse_campaign, read_campaign};
+use froude_records::carriage::{CarriageCampaign, Directions, Order, RigKind};
+use froude_records::run::{Axis, Declared};
+
+const EXAMPLE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/towing-carriage/campaign.toml");
+
+fn example() -> String {
+    std::fs::read_to_string(EXAMPLE).unwrap()
+}
+
+/// The message about the example with one text replaced by another.
+fn refused(from: &str, to: &str) -> String {
+    let text = example();
+    assert_eq!(text.matches(from).count(), 1, "{from:?} stands once in the example");
+    parse_campaign(Path::new("c.toml"), &text.replace(from, to)).unwrap_err().to_string()
+}
+
+/// `c.toml:line` of a text of the example.
+fn line(of: &str) -> String {
+    let at = example().lines().position(|l| l.starts_with(of)).unwrap() + 1;
+    format!("c.toml:{at}")
+}
+
+#[test]
+fn the_papers_campaign_is_read_as_it_is_written() {
+    let campaign = read_campaign(Path::new(EXAMPLE)).unwrap();
+    assert!(campaign.sources.is_empty(), "what drives a rig needs no source");
+    let CarriageCampaign { rig, plan } = campaign.carriage.unwrap();
+    let RigKind::Twin { seed, truths } = &rig.kind else { panic!("{:?}", rig.kind) };
+    assert_eq!(*seed, 1);
+    assert_eq!((truths[0].name.as_str(), truths[0].quantity.value_si), ("drag", 20.0));
+    assert_eq!(rig.log_rate_hz, 4000.0);
+    assert_eq!(rig.y.travel_m, [0.0, 5.0]);
+    let constants = rig.y.constants;
+    assert_eq!(constants.gear_ratio, Declared::exact(34.97));
+    assert_eq!(constants.torque_constant_n_m_a.value, 26.7e-3);
+    assert!((constants.torque_constant_n_m_a.standard_uncertainty - 26.7e-5).abs() < 1e-12, "1 % of the value");
+    assert!((constants.efficiency_forward.unwrap().standard_uncertainty - 0.04).abs() < 1e-12, "5 % of 0.8");
+    // n/R · K_T K_amp, newtons at the chain per volt: the constant of eq. 8 and 9 of the paper.
+    let n_per_v = constants.gear_ratio.value / constants.sprocket_radius_m.value
+        * constants.torque_constant_n_m_a.value
+        * constants.amplifier_a_v.value;
+    assert!((n_per_v - 5.976).abs() < 5e-4, "{n_per_v}");
+    let gains = rig.y.gains;
+    assert_eq!(gains.derivative_v_s_rad / gains.proportional_v_rad, 0.1);
+    let plan = plan.unwrap();
+    assert_eq!(plan.axis, Axis::Y);
+    assert_eq!(plan.speed_m_s, [0.05, 0.15, 0.25, 0.35, 0.45, 0.55]);
+    assert_eq!((plan.repeats, plan.order, plan.directions), (5, Order::Abba, Directions::Forward));
+    assert_eq!((plan.distance_m, plan.settling_dry_s, plan.settling_wet_s), (2.2, 5.0, 120.0));
+    assert_eq!(plan.stop_at_relative_half_width, Some(0.01));
+    assert_eq!(plan.expected_drag_n_s2_m2, Some(20.0));
+    assert_eq!(plan.calibration.unwrap().weights_n.len(), 3);
+    assert_eq!(plan.excitation.unwrap().duty, 0.6);
+    assert!(plan.is_ballasted);
+    assert_eq!(campaign.body.unwrap().reference_area_m2, Some(0.04));
+}
+
+#[test]
+fn speeds_may_be_written_as_a_range_in_steps() {
+    let text = example().replace(
+        "speeds = [\"0.05 m/s\", \"0.15 m/s\", \"0.25 m/s\", \"0.35 m/s\", \"0.45 m/s\", \"0.55 m/s\"]",
+        "speeds = { start = \"5 cm/s\", stop = \"55 cm/s\", step = \"10 cm/s\" }",
+    );
+    let plan = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().plan.unwrap();
+    assert_eq!(plan.speed_m_s.len(), 6);
+    // A centimetre per second is no binary fraction: one rounding.
+    let written = [0.05, 0.15, 0.25, 0.35, 0.45, 0.55];
+    assert!(plan.speed_m_s.iter().zip(written).all(|(v, w)| (v - w).abs() <= f64::EPSILON * w));
+}
+
+#[test]
+fn a_board_at_a_serial_port_has_a_port_and_no_seed() {
+    let twin = "kind = \"twin\"                     # \"serial\" drives a board: port = \"/dev/ttyUSB0\", baud = 3_000_000\nseed = 1";
+    let text = example().replace(twin, "kind = \"serial\"\nport = \"/dev/ttyUSB0\"");
+    let text = text.replace(
+        "[rig.twin]                        # the truth that identification has to find\ndrag = \"20 N s^2/m^2\"",
+        "",
+    );
+    let rig = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().rig;
+    assert_eq!(rig.kind, RigKind::Serial { port: "/dev/ttyUSB0".to_owned(), baud: 3_000_000 });
+    let at = line("kind = \"twin\"");
+    assert_eq!(
+        refused(twin, "kind = \"serial\"\nseed = 1"),
+        format!("{}:8: `seed` does not belong to a rig of kind \"serial\"; take it out", line("seed = 1"))
+    );
+    assert!(
+        refused("kind = \"twin\" ", "kind = \"twins\" ")
+            .starts_with(&format!("{at}:8: `kind` is \"twins\"; did you mean `twin`?"))
+    );
+}
+
+#[test]
+fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
+    let cases = [
+        (
+            "gear_ratio = \"34.97 1\"",
+            "gear_ratio = \"34.97 m\"",
+            format!(
+                "{}:14: `gear_ratio` is \"34.97 m\": expected a pure number or angle (1), found a length (m)",
+                line("gear_ratio")
+            ),
+        ),
+        (
+            "speed_limit = \"0.7 m/s\"  ",
+            "sped_limit = \"0.7 m/s\"  ",
+            format!("{}:1: unknown key `sped_limit` in [rig.y]; did you mean `speed_limit`?", line("speed_limit")),
+        ),
+        (
+            "travel = [\"0 m\", \"5 m\"] ",
+            "travel = [\"5 m\", \"0 m\"] ",
+            format!("{}:10: `travel` goes from 5 m to 0 m; the first hard stop is the lower one", line("travel")),
+        ),
+        (
+            "efficiency = { value = \"80 %\"",
+            "efficiency = { value = \"80 1\"",
+            format!("{}:14: `efficiency` is 80; an efficiency is at most 1, or 100 %", line("efficiency = ")),
+        ),
+        (
+            "order = \"ABBA\"",
+            "order = \"ABAB\"",
+            format!("{}:9: `order` is \"ABAB\"; did you mean `ABBA`?", line("order")),
+        ),
+        (
+            "\"0.45 m/s\", \"0.55 m/s\"]\nrepeats = 5",
+            "\"0.55 m/s\", \"0.55 m/s\"]\nrepeats = 5",
+            format!(
+                "{}:10: `speeds` names 0.55 m/s twice; say how often in repeats",
+                line("speeds = [\"0.05 m/s\", \"0.15")
+            ),
+        ),
+        (
+            "stop_when = \"1 %\"",
+            "stop_when = \"1 1\"",
+            format!(
+                "{}:13: `stop_when` is \"1 1\"; the relative half-width of D_d's 95 % interval lies between 0 and 100 %",
+                line("stop_when")
+            ),
+        ),
+        (
+            "distance = \"2.2 m\"\n",
+            "",
+            format!(
+                "{}:1: [carriage] has no `distance`; write the travel of a run with its ramps, \"2.2 m\", say",
+                line("[carriage]")
+            ),
+        ),
+        (
+            "proportional = \"0.64 V/rad\"",
+            "proportional = \"0.64 V\"\nintegrall = \"1 V/s\"",
+            format!(
+                "c.toml:{}:1: unknown key `integrall` in [rig.y.controller]; did you mean `integral`?",
+                example().lines().position(|l| l.starts_with("proportional")).unwrap() + 2
+            ),
+        ),
+    ];
+    for (from, to, message) in cases {
+        assert_eq!(refused(from, to), message);
+    }
+}
+
+#[test]
+fn a_carriage_without_a_rig_is_told_to_name_one() {
+    let text = "schema = 1\nname = \"a\"\n[carriage]\nspeeds = [\"0.1 m/s\"]\ndistance = \"1 m\"\nacceleration = \"1 m/s^2\"\n";
+    assert_eq!(
+        parse_campaign(Path::new("c.toml"), text).unwrap_err().to_string(),
+        "c.toml:1:1: the file has no `rig`; [carriage] says what to do; [rig] says with what: kind = \"twin\", say"
+    );
+}
