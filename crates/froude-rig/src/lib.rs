@@ -13,6 +13,8 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod amplifier;
+pub mod closed_loop;
+pub mod defaults;
 pub mod encoder;
 pub mod force_sensor;
 pub mod injection;
@@ -23,6 +25,7 @@ pub mod plant;
 pub mod propagator;
 pub mod twin;
 
+pub use closed_loop::ClosedLoop;
 pub use injection::{Injection, Scheduled};
 pub use load::{HungWeight, Load, Mounting, Strut, TowedBody};
 pub use parameters::AxisParameters;
