@@ -188,7 +188,9 @@ impl Axis {
             Phase::Disabled => {
                 self.hold(self.position_m);
                 self.reference = State::at_rest(self.position_m);
+                self.pending = None;
                 self.restart_loop();
+                self.monitor.watch_polarity();
                 Ok(())
             }
             Phase::Holding => Ok(()),
@@ -212,7 +214,7 @@ impl Axis {
         self.is_homed = false;
         let (homing, speed_m_s) = Homing::start(&self.law, self.reference.position_m, input.is_low_end);
         self.homing = homing;
-        self.begin(Phase::Homing);
+        self.begin_from_rest(Phase::Homing);
         self.ramp_to(speed_m_s, self.law.limits.acceleration_m_s2, 0.0);
         Ok(())
     }
@@ -223,7 +225,7 @@ impl Axis {
             return Err(Refusal::NotHomed);
         }
         let profile = travel::checked_move(&self.law, self.reference.position_m, asked)?;
-        self.begin(Phase::Moving);
+        self.begin_from_rest(Phase::Moving);
         self.smooth = (asked.acceleration_m_s2, asked.jerk_m_s3);
         self.plan = Plan::Move(profile);
         Ok(())
@@ -242,9 +244,8 @@ impl Axis {
         {
             return Err(Refusal::BeyondTravel);
         }
-        self.begin(Phase::Exciting);
+        self.begin_from_rest(Phase::Exciting);
         self.exciter = Some(Exciter::new(asked, &self.law, self.position_m));
-        self.smooth = (self.law.limits.acceleration_m_s2, 0.0);
         self.ramp_to(speed_m_s, self.law.limits.acceleration_m_s2, 0.0);
         Ok(())
     }
@@ -261,18 +262,16 @@ impl Axis {
 
     /// Brings the axis to rest. With `is_astray` the reference no longer says where the axis is: the stop begins from what is measured.
     pub(crate) fn stop(&mut self, category: StopCategory, is_astray: bool) {
-        let is_stopping = self.phase == Phase::Stopping;
         match (self.phase, category) {
             (Phase::Disabled | Phase::Coasting, _) => {}
             (_, StopCategory::Zero) => self.torque_off(),
             (Phase::Stopping, StopCategory::One) if self.is_final_stop => {}
             (Phase::Stopping | Phase::Holding, StopCategory::Two) => {}
             _ => {
-                let is_hard = category == StopCategory::One || is_stopping;
-                let (acceleration_m_s2, jerk_m_s3) =
-                    if is_hard { (self.law.limits.acceleration_m_s2, 0.0) } else { self.smooth };
+                let is_hard = category == StopCategory::One;
+                let (acceleration_m_s2, jerk_m_s3) = if is_hard { self.hardest() } else { self.smooth };
                 if is_astray || self.is_open_loop() {
-                    self.from_measured();
+                    self.restart_from_measured();
                 }
                 self.begin(Phase::Stopping);
                 self.is_final_stop = category == StopCategory::One;
@@ -293,10 +292,11 @@ impl Axis {
 
     fn torque_off(&mut self) {
         self.begin(Phase::Coasting);
+        self.pending = None;
         self.command = AxisCommand::default();
     }
 
-    fn from_measured(&mut self) {
+    fn restart_from_measured(&mut self) {
         self.reference = State { position_m: self.position_m, speed_m_s: self.speed_m_s, acceleration_m_s2: 0.0 };
         self.restart_loop();
     }
@@ -312,6 +312,17 @@ impl Axis {
         self.elapsed_ticks = 0;
         self.exciter = None;
         self.is_final_stop = false;
+        self.smooth = self.hardest();
+    }
+
+    /// Acceleration and jerk (none) of a controlled stop.
+    fn hardest(&self) -> (f64, f64) {
+        (self.law.limits.acceleration_m_s2, 0.0)
+    }
+
+    /// Begins what only begins at rest: from here on polarity is judged.
+    fn begin_from_rest(&mut self, phase: Phase) {
+        self.begin(phase);
         self.monitor.watch_polarity();
     }
 
@@ -388,7 +399,7 @@ impl Axis {
     fn give(&mut self, cut: Cut) {
         self.is_saturated = cut.is_saturated;
         self.saturated_ticks = if cut.is_saturated { self.saturated_ticks.saturating_add(1) } else { 0 };
-        if self.saturated_ticks > self.law.ticks(self.law.limits.saturation_s) {
+        if self.saturated_ticks > self.law.ticks.saturation {
             self.pending = self.pending.or(Some(Fault::Saturated));
         }
         let is_valid = libm::fabs(cut.volts) <= self.law.limit_v; // false for NaN
@@ -400,7 +411,7 @@ impl Axis {
 
     fn excitation(&mut self) -> Asked {
         let is_at_speed = f64::from(self.elapsed_ticks) * self.law.tick_s >= self.plan.duration_s();
-        let is_inside = !self.is_homed || travel::is_inside_soft(&self.law, self.position_m, self.speed_m_s);
+        let is_inside = !self.is_homed || travel::is_inside_soft(&self.law, self.position_m, self.speed_ahead_m_s());
         let asked = match &mut self.exciter {
             Some(exciter) if is_inside => exciter.step(self.position_m, is_at_speed),
             _ => Asked::Done,
@@ -417,6 +428,12 @@ impl Axis {
             }
             other => other,
         }
+    }
+
+    /// The speed, and what the estimate may lag behind under the command.
+    fn speed_ahead_m_s(&self) -> f64 {
+        let push_v = libm::fmax(0.0, libm::fabs(self.command.volts) - self.law.volts_coulomb_lower);
+        self.speed_m_s + libm::copysign(push_v * self.law.lag_m_s_v, self.command.volts)
     }
 
     fn find_home(&mut self, input: &AxisInput) {

@@ -38,6 +38,13 @@ pub(crate) struct Law {
     pub amplifier_a_v: f64,
     /// Largest acceleration that the motor can give at peak current, m/s².
     pub motor_m_s2: f64,
+    /// What the speed estimate may lag behind for every volt above friction, m/s.
+    pub lag_m_s_v: f64,
+    /// Share of the thermal model's lag in a tick.
+    pub heat_share: f64,
+    pub per_continuous_a: f64,
+    /// The limits' and the monitor's times in ticks.
+    pub ticks: TickCounts,
     pub stopping: StoppingWay,
     pub coast: Coast,
     pub shaper: Shaper,
@@ -45,6 +52,24 @@ pub(crate) struct Law {
     pub soft_low_m: f64,
     pub soft_high_m: f64,
 }
+
+/// Times of an axis in ticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TickCounts {
+    pub second: u32,
+    pub rest: u32,
+    pub over_current: u32,
+    pub mismatch: u32,
+    pub stuck: u32,
+    pub saturation: u32,
+}
+
+/// The axis is at rest when it stays within a count for this long, s.
+const REST_S: f64 = 0.1;
+/// Above the peak current for this long is over-current, s.
+const OVER_CURRENT_S: f64 = 1e-3;
+/// Off the commanded current for this long is over-current, s.
+const MISMATCH_S: f64 = 10e-3;
 
 impl Law {
     pub(crate) fn new(config: &AxisConfig, tick_us: u32) -> Self {
@@ -54,6 +79,8 @@ impl Law {
         let count_rad = 2.0 * core::f64::consts::PI / drive.counts_per_revolution;
         let n_m_per_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
         let coast = Coast::of(drive);
+        let volts_inertia = drive.inertia_kg_m2 * rad_per_m / n_m_per_v;
+        let ticks = |time_s: f64| ticks_in(time_s, 1.0 / tick_s);
         let share = |corner_hz: f64| 1.0 - libm::exp(-2.0 * core::f64::consts::PI * corner_hz * tick_s);
         Self {
             limits: *limits,
@@ -68,7 +95,7 @@ impl Law {
             derivative_share: share(gains.derivative_filter_hz),
             speed_share: share(SPEED_FILTER_HZ),
             per_tick_s: 1.0 / tick_s,
-            volts_inertia: drive.inertia_kg_m2 * rad_per_m / n_m_per_v,
+            volts_inertia,
             volts_viscous: drive.viscous_n_m_s_rad * rad_per_m / n_m_per_v,
             volts_coulomb: drive.coulomb_n_m / n_m_per_v,
             volts_drag: drive.drag_n_s2_m2 / (rad_per_m * n_m_per_v),
@@ -76,6 +103,17 @@ impl Law {
             limit_v: libm::fmin(limits.command_v, limits.current_a / drive.amplifier_a_v),
             amplifier_a_v: drive.amplifier_a_v,
             motor_m_s2: drive.torque_constant_n_m_a * limits.current_a / (drive.inertia_kg_m2 * rad_per_m),
+            lag_m_s_v: tick_s / (share(SPEED_FILTER_HZ) * volts_inertia),
+            heat_share: tick_s / limits.thermal_time_s,
+            per_continuous_a: 1.0 / limits.continuous_current_a,
+            ticks: TickCounts {
+                second: ticks(1.0),
+                rest: ticks(REST_S),
+                over_current: ticks(OVER_CURRENT_S),
+                mismatch: ticks(MISMATCH_S),
+                stuck: ticks(limits.stuck_s),
+                saturation: ticks(limits.saturation_s),
+            },
             stopping: StoppingWay::new(coast, limits.acceleration_m_s2),
             coast,
             shaper: if config.mode_hz <= 0.0 {
@@ -100,8 +138,23 @@ impl Law {
 
     /// Ticks in `time_s`, at least one.
     pub(crate) fn ticks(&self, time_s: f64) -> u32 {
-        let ticks = (time_s * self.per_tick_s + 0.5) as u32; // saturating
-        if ticks < 1 { 1 } else { ticks }
+        ticks_in(time_s, self.per_tick_s)
+    }
+}
+
+fn ticks_in(time_s: f64, per_tick_s: f64) -> u32 {
+    let ticks = (time_s * per_tick_s + 0.5) as u32; // saturating
+    if ticks < 1 { 1 } else { ticks }
+}
+
+/// The value within ± `limit`; NaN stays NaN.
+pub(crate) fn held_within(value: f64, limit: f64) -> f64 {
+    if value > limit {
+        limit
+    } else if value < -limit {
+        -limit
+    } else {
+        value
     }
 }
 

@@ -12,7 +12,7 @@
 //! A motor cannot stop within a tick; its encoder can. That is why a count that stands still at speed is a fault at once.
 
 use crate::fault::Fault;
-use crate::law::{Law, settled};
+use crate::law::{Law, held_within, settled};
 use crate::tick::AxisInput;
 
 /// Reaction of chain and load on the motor alone, and torque ripple: what J_eff does not know, as a factor.
@@ -25,11 +25,7 @@ const STUCK_ERROR_COUNTS: f64 = 8.0;
 const STUCK_TORQUE_FACTOR: f64 = 2.0;
 /// Part of the configured way at which polarity is judged, so that the axis is at rest or cut within the whole.
 const POLARITY_PART: f64 = 0.8;
-const OVER_CURRENT_S: f64 = 1e-3;
-const MISMATCH_S: f64 = 10e-3;
 const MISMATCH_PART: f64 = 0.25;
-/// The axis is at rest when it stays within a count for this long.
-const REST_S: f64 = 0.1;
 /// Above this part of its limit the winding is too warm to clear an overload.
 const COOL: f64 = 0.9;
 
@@ -84,12 +80,18 @@ impl Monitor {
         self.errors = self.errors.saturating_add(errors);
         self.errors_ticks = self.errors_ticks.saturating_add(1);
         let is_illegal = self.errors > law.limits.encoder_errors_per_s;
-        if self.errors_ticks >= law.ticks(1.0) {
+        if self.errors_ticks >= law.ticks.second {
             (self.errors, self.errors_ticks) = (0, 0);
         }
 
         // Counts that the last tick's speed would give in this tick's time.
-        let expected = if self.last_gap_us > 0.0 { self.last_moved * gap_us / self.last_gap_us } else { moved };
+        let expected = if gap_us == self.last_gap_us {
+            self.last_moved
+        } else if self.last_gap_us > 0.0 {
+            self.last_moved * gap_us / self.last_gap_us
+        } else {
+            moved
+        };
         (self.last_moved, self.last_gap_us) = (moved, gap_us);
         let possible = ACCELERATION_MARGIN * law.motor_m_s2 * law.counts_per_m * 1e-12 * gap_us * gap_us + COUNT_MARGIN;
         let is_jump = libm::fabs(moved - expected) > possible;
@@ -98,7 +100,7 @@ impl Monitor {
             && libm::fabs(applied.volts) > STUCK_TORQUE_FACTOR * law.volts_coulomb
             && applied.error_m.is_none_or(|e| libm::fabs(e) * law.counts_per_m > STUCK_ERROR_COUNTS);
         self.stuck_ticks = if is_driven && moved == 0.0 { self.stuck_ticks.saturating_add(1) } else { 0 };
-        let is_stuck = self.stuck_ticks > law.ticks(law.limits.stuck_s);
+        let is_stuck = self.stuck_ticks > law.ticks.stuck;
 
         if is_stuck || (is_jump && moved == 0.0) {
             Some(Fault::EncoderStuck)
@@ -125,7 +127,7 @@ impl Monitor {
 
     /// Within a count for a tenth of a second.
     pub(crate) fn is_at_rest(&self, law: &Law) -> bool {
-        self.rest_ticks >= law.ticks(REST_S)
+        self.rest_ticks >= law.ticks.rest
     }
 
     fn polarity(&mut self, law: &Law, moved: i32, applied: Applied) -> Option<Fault> {
@@ -163,14 +165,14 @@ impl Monitor {
 
     fn current(&mut self, law: &Law, current_a: f64, applied: Applied) -> Option<Fault> {
         let limits = &law.limits;
-        let ratio = libm::fmin(libm::fabs(current_a) / limits.continuous_current_a, 1e3);
-        self.heat = settled(self.heat + law.tick_s / limits.thermal_time_s * (ratio * ratio - self.heat));
+        let ratio = held_within(current_a * law.per_continuous_a, 1e3);
+        self.heat = settled(self.heat + law.heat_share * (ratio * ratio - self.heat));
         let is_over = libm::fabs(current_a) > limits.current_a;
         self.over_current_ticks = if is_over { self.over_current_ticks.saturating_add(1) } else { 0 };
         let wanted_a = law.amplifier_a_v * applied.volts;
         let is_off = applied.is_enabled && libm::fabs(current_a - wanted_a) > MISMATCH_PART * limits.current_a;
         self.mismatch_ticks = if is_off { self.mismatch_ticks.saturating_add(1) } else { 0 };
-        if self.over_current_ticks >= law.ticks(OVER_CURRENT_S) || self.mismatch_ticks >= law.ticks(MISMATCH_S) {
+        if self.over_current_ticks >= law.ticks.over_current || self.mismatch_ticks >= law.ticks.mismatch {
             Some(Fault::OverCurrent)
         } else if self.heat > 1.0 {
             Some(Fault::Overload)

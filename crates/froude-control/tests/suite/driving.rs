@@ -1,18 +1,10 @@
 //! Enable, home, move and hold, on a rigid plant.
 
-mod common;
 
-use common::Rig;
+use crate::rig::{Rig, homed_at};
 use froude_control::config::Config;
 use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
-
-fn homed_at(start_m: f64) -> Rig {
-    let mut rig = Rig::new(Config::PUBLISHED, start_m);
-    rig.until(Some(Request::Enable { axis: 0 }), 0.1, |o| o.status.axes[0].phase == Phase::Holding);
-    rig.until(Some(Request::Home { axis: 0 }), 60.0, |o| o.status.axes[0].phase == Phase::Holding);
-    rig
-}
 
 #[test]
 fn homing_sets_the_coordinate_within_the_way_of_one_tick() {
