@@ -2,7 +2,11 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use divan::{Bencher, counter::ItemsCount};
+use froude_control::request::{Move, Request};
+use froude_control::status::Phase;
 use froude_control::tick::{AxisCommand, Command};
+use froude_rig::closed_loop::ClosedLoop;
+use froude_rig::defaults::control_config;
 use froude_rig::load::{Load, Mounting};
 use froude_rig::twin::{Twin, TwinConfig};
 
@@ -33,5 +37,35 @@ fn twin_alone(bencher: Bencher<'_, '_>, is_x_moving: bool) {
             twin.tick(to_and_fro(i, is_x_moving));
         }
         twin.state_hash()
+    });
+}
+
+/// Twin and controller: homed, then to and fro on both axes.
+#[divan::bench]
+fn twin_and_controller(bencher: Bencher<'_, '_>) {
+    let load = Load::mounted(Mounting::Wet);
+    let mut config = TwinConfig::loaded(load);
+    for axis in &mut config.axes {
+        axis.start_m = 0.1;
+    }
+    let mut homed = ClosedLoop::new(&config, control_config(&[load, load]), 1).unwrap();
+    assert!(homed.home());
+    let profile = |target_m, speed_m_s| {
+        Move { target_m, speed_m_s, acceleration_m_s2: 0.5, jerk_m_s3: 5.0, is_shaped: true }
+    };
+    bencher.counter(ItemsCount::new(TICKS)).with_inputs(|| homed.clone()).bench_local_refs(|rig| {
+        let (far_m, speed_m_s) = ([2.5, 0.7], [0.3, 0.15]);
+        for _ in 0..TICKS {
+            for axis in 0..2 {
+                let status = &rig.output.status.axes[axis];
+                if status.phase == Phase::Holding {
+                    let target_m = if status.reference_m > 0.5 * far_m[axis] { 0.3 } else { far_m[axis] };
+                    rig.request(Request::Move { axis, profile: profile(target_m, speed_m_s[axis]) });
+                }
+            }
+            assert_eq!(rig.step().status.refusal, None);
+        }
+        assert!(rig.output.status.fault.is_none());
+        rig.twin.state_hash()
     });
 }

@@ -16,6 +16,8 @@
 
 pub mod amplifier;
 pub mod campaign;
+pub mod closed_loop;
+pub mod defaults;
 pub mod drive;
 pub mod encoder;
 pub mod force_sensor;
@@ -27,6 +29,7 @@ pub mod plant;
 pub mod propagator;
 pub mod twin;
 
+pub use closed_loop::ClosedLoop;
 pub use injection::{Injection, Scheduled};
 pub use load::{HungWeight, Load, Mounting, Strut, TowedBody};
 pub use parameters::AxisParameters;

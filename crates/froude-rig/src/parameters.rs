@@ -145,9 +145,9 @@ impl AxisParameters {
             sprocket_radius_m: SPROCKET_RADIUS_M,
             counts_per_revolution: COUNTS_PER_REVOLUTION,
             encoder_sign: 1.0,
-            hard_low_m: 0.0,
-            hard_high_m: 4.6,
-            switch_margin_m: 0.02,
+            hard_low_m: -0.05,
+            hard_high_m: 4.95,
+            switch_margin_m: 0.05,
             strut_drag_n_s2_m2: 1.5,
         }
     }
@@ -167,7 +167,7 @@ impl AxisParameters {
             load_viscous_n_s_m: 0.5,
             motor_coulomb_n_m: 0.9e-3,
             load_coulomb_n: 0.5,
-            hard_high_m: 1.2,
+            hard_high_m: 1.15,
             ..Self::long()
         }
     }
@@ -195,6 +195,18 @@ impl AxisParameters {
     #[must_use]
     pub const fn chain_m_rad(&self) -> f64 {
         self.sprocket_radius_m / self.gear_ratio
+    }
+
+    /// Where the low end switch opens, m.
+    #[must_use]
+    pub const fn low_switch_m(&self) -> f64 {
+        self.hard_low_m + self.switch_margin_m
+    }
+
+    /// Where the high end switch opens, m.
+    #[must_use]
+    pub const fn high_switch_m(&self) -> f64 {
+        self.hard_high_m - self.switch_margin_m
     }
 
     /// J_m (n/R)²: the rotor's inertia as a mass at the chain, kg.
@@ -351,8 +363,8 @@ pub fn declared() -> Vec<Declared> {
         row("yx", "bump", y.bump, "1", Chosen, "friction grows mid-tank (seen, not modelled, in MCD)"),
         row("yx", "eta", y.efficiency_forward, "1", Chosen, "two-stage planetary gearbox; MCD leaves it out"),
         row("yx", "eta_b", y.efficiency_backward, "1", Chosen, "back-driven it loses more"),
-        row("y", "travel", y.hard_high_m, "m", Chosen, "tank of 5 m less the carriage"),
-        row("x", "travel", x.hard_high_m, "m", Chosen, "the tank's width less the platform"),
+        row("y", "travel", y.hard_high_m - y.hard_low_m, "m", Chosen, "between hard stops; end switches 50 mm before them"),
+        row("x", "travel", x.hard_high_m - x.hard_low_m, "m", Chosen, "the tank's width less the platform"),
         row("yx", "strut", y.strut_drag_n_s2_m2, "N s^2/m^2", Chosen, "tare of the strut when the body is wet"),
     ]
 }

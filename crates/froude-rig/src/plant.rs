@@ -6,12 +6,12 @@
 //! **Setting.** One run: masses and wheel load do not change. **Frame.** Chain coordinate; q = Rθ/n is the motor, y the load.
 //! **Units.** SI; forces at the chain, so the rotor is the mass J_m (n/R)².
 //!
-//! **Steps.** The linear part is exact ([`crate::propagator`]). What else acts while sliding is extrapolated to mid-step (second
-//! order, Adams–Bashforth). A mass at rest stays there, bit for bit, while the force on it is below breakaway; one whose speed
-//! passes zero within a step stops, or turns when the force carries it on.
+//! **Steps.** The linear part, gear included, is exact ([`crate::propagator`]). Drag and friction of the sliding load are
+//! extrapolated to mid-step (second order, Adams–Bashforth). A mass at rest stays there, bit for bit, while the force on it is below
+//! breakaway; one whose speed passes zero within a step stops, or turns when the force carries it on.
 //!
-//! **Gear.** Torque T from the chain loads the motor by T/η while the motor drives and by η_b T while it is driven. Both are one
-//! law: ½(1/η + η_b) T, and a Coulomb friction of ½(1/η − η_b)|T| that also locks the gear at rest.
+//! **Gear.** Torque T from the chain loads the motor by T/η while the motor drives and by η_b T while it is driven. At rest it may be
+//! anything between: the gear is a mean load ½(1/η + η_b) T and a friction ½(1/η − η_b)|T| that locks it.
 //!
 //! **Friction of the load.** C = (C₀ + μ_r N)·run·bump(y)·stribeck(v)·(1 ± asymmetry) + slow noise + pulley, with
 //! stribeck = 1 + e/(1 + (v/v_s)²) (Hess & Soom 1990) and bump = 1 + b(1 − u²), u from −1 to 1 along the travel.
@@ -30,28 +30,18 @@ struct Mass {
     speed_m_s: f64,
     /// Direction of sliding: +1, −1, or 0 at rest.
     direction: f64,
-    /// What acted on it besides the linear part in the last step, N; NaN when it has just begun to slide.
-    last_n: f64,
 }
 
 impl Mass {
     fn at_rest(position_m: f64) -> Self {
-        Self { position_m, speed_m_s: 0.0, direction: 0.0, last_n: f64::NAN }
+        Self { position_m, speed_m_s: 0.0, direction: 0.0 }
     }
 
     /// Breaks away when the force exceeds the friction.
     fn release(&mut self, net_n: f64, friction_n: f64) {
         if self.direction == 0.0 && net_n.abs() > friction_n {
             self.direction = 1.0_f64.copysign(net_n);
-            self.last_n = f64::NAN;
         }
-    }
-
-    /// The force at mid-step, from this step's start and the last one's.
-    fn extrapolated(&mut self, now_n: f64) -> f64 {
-        let last_n = if self.last_n.is_nan() { now_n } else { self.last_n };
-        self.last_n = now_n;
-        now_n + 0.5 * (now_n - last_n)
     }
 
     /// Takes the new speed; where it passed zero the mass stops, or goes on backwards with friction now against it.
@@ -69,7 +59,32 @@ impl Mass {
             self.speed_m_s = 0.0;
             self.direction = 0.0;
         }
-        self.last_n = f64::NAN;
+    }
+}
+
+/// What acted on the sliding load in the steps before, N, for the extrapolation to mid-step.
+///
+/// Friction is taken from the two steps before this one: its division then has a step's time, which is worth a third of the run time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Memory {
+    /// Direction of sliding that it belongs to; 0 when there is none.
+    direction: f64,
+    outer_n: f64,
+    friction_n: [f64; 2],
+}
+
+impl Memory {
+    const NONE: Self = Self { direction: 0.0, outer_n: 0.0, friction_n: [0.0; 2] };
+
+    /// The load's force at mid-step; takes the values at the step's start.
+    #[inline]
+    fn extrapolated(&mut self, outer_n: f64, friction_n: f64) -> f64 {
+        let [before_n, last_n] = self.friction_n;
+        let outer_mid_n = outer_n + 0.5 * (outer_n - self.outer_n);
+        let friction_mid_n = last_n + 1.5 * (last_n - before_n);
+        self.outer_n = outer_n;
+        self.friction_n = [last_n, friction_n];
+        outer_mid_n - self.direction * friction_mid_n
     }
 }
 
@@ -87,13 +102,14 @@ pub struct Disturbance {
 pub struct Plant {
     motor: Mass,
     load: Mass,
+    memory: Memory,
     linear: Linear,
     propagators: Propagators,
     step_s: f64,
-    gear_mean: f64,
-    gear_loss: f64,
+    /// Reaction of the chain on the motor: driving 1/η, driven η_b.
+    reactions: [f64; 2],
     motor_friction_n: f64,
-    load_friction_n: f64,
+    sliding_n: f64,
     pulley_n: f64,
     stribeck_excess: f64,
     per_stribeck_speed_s_m: f64,
@@ -122,17 +138,17 @@ impl Plant {
             motor_viscous_n_s_m: axis.motor_viscous_n_m_s_rad / (r * r),
             load_viscous_n_s_m: axis.load_viscous_n_s_m,
         };
-        let (drive, driven) = (1.0 / axis.efficiency_forward, axis.efficiency_backward);
+        let reactions = [1.0 / axis.efficiency_forward, axis.efficiency_backward];
         Self {
             motor: Mass::at_rest(position_m),
             load: Mass::at_rest(position_m),
+            memory: Memory::NONE,
             linear,
-            propagators: linear.propagators(step_s),
+            propagators: linear.propagators(step_s, reactions),
             step_s,
-            gear_mean: 0.5 * (drive + driven),
-            gear_loss: 0.5 * (drive - driven),
+            reactions,
             motor_friction_n: axis.motor_coulomb_n_m / r * friction_factor,
-            load_friction_n: axis.load_friction_n(load.wheel_load_n(axis)) * friction_factor,
+            sliding_n: axis.load_friction_n(load.wheel_load_n(axis)) * friction_factor,
             pulley_n: load.hung.pulley_friction * load.hung.weight_n.abs(),
             stribeck_excess: axis.stribeck_excess,
             per_stribeck_speed_s_m: 1.0 / axis.stribeck_speed_m_s,
@@ -157,39 +173,88 @@ impl Plant {
         Self::new(axis, load, self.step_s, self.motor.position_m, friction_factor)
     }
 
-    /// One step under the motor's force at the chain, (n/R) τ_m, N.
+    /// Several steps under the motor's forces at the chain, N: the same as [`Self::step`] for each, bit for bit, with the state kept in
+    /// registers while both masses slide on.
     #[inline]
+    pub fn steps<const COUNT: usize>(&mut self, motor_n: [f64; COUNT]) {
+        let mut done = 0;
+        while done < COUNT {
+            done += self.slide(&motor_n[done..]);
+            if let Some(&motor_n) = motor_n.get(done) {
+                self.step(motor_n);
+                done += 1;
+            }
+        }
+    }
+
+    /// As many of the steps as both masses slide through without an event.
+    #[inline]
+    fn slide(&mut self, motor_n: &[f64]) -> usize {
+        let (d_q, d_y) = (self.motor.direction, self.load.direction);
+        if d_q == 0.0 || d_y == 0.0 || self.memory.direction != d_y {
+            return 0;
+        }
+        let Self { mut memory, mut friction_n, low_m, high_m, .. } = *self;
+        let (mut q, mut v_q) = (self.motor.position_m, self.motor.speed_m_s);
+        let (mut y, mut v_y) = (self.load.position_m, self.load.speed_m_s);
+        let is_driven = d_q * self.spring_n() < 0.0;
+        let [to_q, to_y, to_vq, to_vy] = self.propagators.both[usize::from(is_driven)];
+        let mut done = 0;
+        for &motor_n in motor_n {
+            let extension_m = q - y;
+            let spring_n = self.linear.stiffness_n_m * extension_m + self.linear.damping_n_s_m * (v_q - v_y);
+            let now_n = self.friction_of(y, v_y, d_y);
+            let mut next = memory;
+            let f_q = motor_n - d_q * self.motor_friction_n;
+            let f_y = next.extrapolated(-self.drag_n_s2_m2 * v_y * v_y.abs() - self.hung_n, now_n);
+            let row = |r: [f64; 5]| ((r[0] * extension_m + r[1] * v_q) + (r[2] * v_y + r[3] * f_q)) + r[4] * f_y;
+            let (dq, dy, vq, vy) = (row(to_q), row(to_y), row(to_vq), row(to_vy));
+            let is_plain = (d_q * spring_n < 0.0) == is_driven && y >= low_m && y <= high_m;
+            if !(vq * d_q > 0.0 && vy * d_y > 0.0 && is_plain) {
+                break;
+            }
+            (q, y, v_q, v_y) = (q + dq, y + dy, vq, vy);
+            (memory, friction_n) = (next, now_n);
+            done += 1;
+        }
+        (self.motor.position_m, self.motor.speed_m_s) = (q, v_q);
+        (self.load.position_m, self.load.speed_m_s) = (y, v_y);
+        (self.memory, self.friction_n) = (memory, friction_n);
+        done
+    }
+
+    /// One step under the motor's force at the chain, (n/R) τ_m, N.
     pub fn step(&mut self, motor_n: f64) {
         let extension_m = self.motor.position_m - self.load.position_m;
         let spring_n = self.spring_at(extension_m);
         let outer_n = self.outer_n();
-        let motor_net_n = motor_n - self.gear_mean * spring_n;
-        let motor_friction_n = self.motor_friction_n + self.gear_loss * spring_n.abs();
+        let [drive, driven] = self.reactions;
+        let motor_net_n = motor_n - 0.5 * (drive + driven) * spring_n;
+        let motor_friction_n = self.motor_friction_n + 0.5 * (drive - driven) * spring_n.abs();
         let load_net_n = spring_n + outer_n;
         let load_friction_n = self.load_friction_at(load_net_n);
         self.friction_n = load_friction_n;
         self.motor.release(motor_net_n, motor_friction_n);
         self.load.release(load_net_n, load_friction_n);
 
-        let (is_motor, is_load) = (self.motor.direction != 0.0, self.load.direction != 0.0);
-        let motor_extra_n = (1.0 - self.gear_mean) * spring_n - self.motor.direction * motor_friction_n;
-        let load_extra_n = outer_n - self.load.direction * load_friction_n;
+        let (d_q, d_y) = (self.motor.direction, self.load.direction);
+        if self.memory.direction != d_y {
+            self.memory = Memory { direction: d_y, outer_n, friction_n: [load_friction_n; 2] };
+        }
+        let f_q = motor_n - d_q * self.motor_friction_n;
+        let reaction = usize::from(d_q * spring_n < 0.0);
         let (v_q, v_y) = (self.motor.speed_m_s, self.load.speed_m_s);
-        if is_motor && is_load {
-            let f_q = motor_n + self.motor.extrapolated(motor_extra_n);
-            let f_y = self.load.extrapolated(load_extra_n);
-            let [dq, dy, vq, vy] = self
-                .propagators
-                .both
-                .map(|r| (r[0] * extension_m + r[1] * v_q) + (r[2] * v_y + r[3] * f_q) + r[4] * f_y);
+        if d_q != 0.0 && d_y != 0.0 {
+            let f_y = self.memory.extrapolated(outer_n, load_friction_n);
+            let [dq, dy, vq, vy] = self.propagators.both[reaction]
+                .map(|r| ((r[0] * extension_m + r[1] * v_q) + (r[2] * v_y + r[3] * f_q)) + r[4] * f_y);
             self.motor.advance(dq, vq, motor_net_n, motor_friction_n);
             self.load.advance(dy, vy, load_net_n, load_friction_n);
-        } else if is_motor {
-            let f_q = motor_n + self.motor.extrapolated(motor_extra_n);
-            let [dq, vq] = self.propagators.motor.map(|r| r[0] * extension_m + r[1] * v_q + r[2] * f_q);
+        } else if d_q != 0.0 {
+            let [dq, vq] = self.propagators.motor[reaction].map(|r| r[0] * extension_m + r[1] * v_q + r[2] * f_q);
             self.motor.advance(dq, vq, motor_net_n, motor_friction_n);
-        } else if is_load {
-            let f_y = self.load.extrapolated(load_extra_n);
+        } else if d_y != 0.0 {
+            let f_y = self.memory.extrapolated(outer_n, load_friction_n);
             let [dy, vy] = self.propagators.load.map(|r| r[0] * extension_m + r[1] * v_y + r[2] * f_y);
             self.load.advance(dy, vy, load_net_n, load_friction_n);
         }
@@ -216,11 +281,16 @@ impl Plant {
     /// Friction of the load, N ≥ 0; at rest, breakaway in the direction of the force on it.
     fn load_friction_at(&self, net_n: f64) -> f64 {
         let direction = if self.load.direction == 0.0 { 1.0_f64.copysign(net_n) } else { self.load.direction };
-        let u = (self.load.position_m - self.mid_m) * self.per_half_travel_1_m;
+        self.friction_of(self.load.position_m, self.load.speed_m_s, direction)
+    }
+
+    #[inline]
+    fn friction_of(&self, position_m: f64, speed_m_s: f64, direction: f64) -> f64 {
+        let u = (position_m - self.mid_m) * self.per_half_travel_1_m;
         let bump = 1.0 + self.bump * (1.0 - u * u).max(0.0);
-        let w = self.load.speed_m_s * self.per_stribeck_speed_s_m;
+        let w = speed_m_s * self.per_stribeck_speed_s_m;
         let stribeck = 1.0 + self.stribeck_excess / (1.0 + w * w);
-        let sliding_n = self.load_friction_n * bump * stribeck * (1.0 + self.asymmetry * direction);
+        let sliding_n = self.sliding_n * bump * stribeck * (1.0 + self.asymmetry * direction);
         (sliding_n + self.pulley_n + self.disturbance.noise_n + self.disturbance.jam_n).max(0.0)
     }
 
@@ -233,7 +303,7 @@ impl Plant {
     pub fn break_chain(&mut self) {
         self.linear.stiffness_n_m = 0.0;
         self.linear.damping_n_s_m = 0.0;
-        self.propagators = self.linear.propagators(self.step_s);
+        self.propagators = self.linear.propagators(self.step_s, self.reactions);
     }
 
     /// Sets both masses moving at one speed, the chain slack (a test's initial state).
@@ -241,8 +311,8 @@ impl Plant {
         for mass in [&mut self.motor, &mut self.load] {
             mass.speed_m_s = speed_m_s;
             mass.direction = if speed_m_s == 0.0 { 0.0 } else { 1.0_f64.copysign(speed_m_s) };
-            mass.last_n = f64::NAN;
         }
+        self.memory = Memory::NONE;
     }
 
     /// Moves the load against the motor by this much at rest (a test's initial state: a tensioned chain).
@@ -282,7 +352,7 @@ impl Plant {
 
     /// Sliding (or, at rest, breakaway) friction of the load at the last step, N ≥ 0.
     #[must_use]
-    pub fn load_friction_n(&self) -> f64 {
+    pub fn friction_n(&self) -> f64 {
         self.friction_n
     }
 

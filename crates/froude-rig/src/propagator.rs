@@ -32,36 +32,46 @@ pub type Both = [[f64; 5]; 4];
 /// One step with one mass held: rows Δ and v' of the other from (s, its v, its f).
 pub type One = [[f64; 3]; 2];
 
-/// The propagators of one step: which masses slide is the only thing that changes from step to step.
+/// The propagators of one step: which masses slide, and which of two reactions of the chain the motor feels, is all that changes
+/// from step to step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Propagators {
-    /// Both slide.
-    pub both: Both,
-    /// Only the motor slides.
-    pub motor: One,
+    /// Both slide; for each reaction.
+    pub both: [Both; 2],
+    /// Only the motor slides; for each reaction.
+    pub motor: [One; 2],
     /// Only the load slides.
     pub load: One,
 }
 
 impl Linear {
-    /// The three propagators of a step.
+    /// The propagators of a step. The motor feels the chain's force times a reaction factor: 1 for a perfect gear, two values for a
+    /// lossy one (driving, driven).
     #[must_use]
-    pub fn propagators(&self, step_s: f64) -> Propagators {
-        let (both, motor, load) =
-            (self.step(step_s, true, true), self.step(step_s, true, false), self.step(step_s, false, true));
+    pub fn propagators(&self, step_s: f64, reactions: [f64; 2]) -> Propagators {
         let pick = |m: &Matrix, row: usize, columns: [usize; 3]| columns.map(|c| m[row][c]);
         Propagators {
-            both: [0, 1, 2, 3].map(|r| [4, 2, 3, 5, 6].map(|c| both[r][c])),
-            motor: [0, 2].map(|r| pick(&motor, r, [4, 2, 5])),
-            load: [1, 3].map(|r| pick(&load, r, [4, 3, 6])),
+            both: reactions.map(|reaction| {
+                let m = self.step(step_s, Some(reaction), true);
+                [0, 1, 2, 3].map(|r| [4, 2, 3, 5, 6].map(|c| m[r][c]))
+            }),
+            motor: reactions.map(|reaction| {
+                let m = self.step(step_s, Some(reaction), false);
+                [0, 2].map(|r| pick(&m, r, [4, 2, 5]))
+            }),
+            load: {
+                let m = self.step(step_s, None, true);
+                [1, 3].map(|r| pick(&m, r, [4, 3, 6]))
+            },
         }
     }
 
-    fn step(&self, step_s: f64, motor_slides: bool, load_slides: bool) -> Matrix {
+    /// `reaction`: of the chain on a sliding motor; none when the motor is held.
+    fn step(&self, step_s: f64, reaction: Option<f64>, load_slides: bool) -> Matrix {
         let (k, c) = (self.stiffness_n_m, self.damping_n_s_m);
         let mut a = [[0.0; N]; N];
-        if motor_slides {
-            let m = self.motor_mass_kg;
+        if let Some(reaction) = reaction {
+            let (m, k, c) = (self.motor_mass_kg, reaction * k, reaction * c);
             a[0][2] = 1.0;
             a[2] = [-k / m, k / m, -(c + self.motor_viscous_n_s_m) / m, c / m, -k / m, 1.0 / m, 0.0];
         }
@@ -140,7 +150,7 @@ mod tests {
     fn the_free_mode_is_a_cosine_at_any_step() {
         let omega = 125.0_f64.sqrt();
         for step_s in [1e-4, 1e-2, 0.3] {
-            let p = FREE.propagators(step_s).both;
+            let p = FREE.propagators(step_s, [1.0; 2]).both[0];
             // From rest with extension 1 the extension is cos ωt: Δq takes 4/5 of the change, Δy 1/5.
             let change = (omega * step_s).cos() - 1.0;
             // Each squaring doubles the rounding; ‖A‖ = 400 h halved eight times at most: 2⁸ · 4 · ε · 1/2.
@@ -152,7 +162,7 @@ mod tests {
     #[test]
     fn a_force_on_both_masses_by_their_weight_moves_them_as_one() {
         let t = 0.25;
-        let p = FREE.propagators(t).both;
+        let p = FREE.propagators(t, [1.0; 2]).both[0];
         let of = |row: [f64; 5]| row[3] * 1.0 + row[4] * 4.0;
         assert!((of(p[0]) - 0.5 * t * t).abs() < 1e-15 && (of(p[2]) - t).abs() < 1e-15);
         assert!((of(p[1]) - 0.5 * t * t).abs() < 1e-15 && (of(p[3]) - t).abs() < 1e-15);
@@ -161,14 +171,28 @@ mod tests {
     #[test]
     fn with_one_mass_held_the_other_swings_alone() {
         let t = 0.2;
-        let p = FREE.propagators(t);
-        assert!((p.motor[1][1] - (10.0 * t).cos()).abs() < 1e-14);
+        let p = FREE.propagators(t, [1.0; 2]);
+        assert!((p.motor[0][1][1] - (10.0 * t).cos()).abs() < 1e-14);
         assert!((p.load[1][1] - (5.0 * t).cos()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_reaction_factor_acts_as_a_lighter_motor_on_the_same_chain() {
+        // m v̇ = −κ F is (m/κ) v̇ = −F: a motor of half the mass, and half its own force.
+        let t = 0.1;
+        let light = Linear { motor_mass_kg: 0.5, ..FREE }.propagators(t, [1.0; 2]).both[0];
+        let driven = FREE.propagators(t, [1.0, 2.0]).both[1];
+        for (l, d) in light.iter().zip(&driven) {
+            for (i, (l, d)) in l.iter().zip(d).enumerate() {
+                let scale = if i == 3 { 0.5 } else { 1.0 };
+                assert!((l * scale - d).abs() < 1e-13, "{l} {d}");
+            }
+        }
     }
 
     #[test]
     fn a_lone_viscous_mass_decays_exponentially() {
         let slow = Linear { stiffness_n_m: 0.0, load_viscous_n_s_m: 3.0, ..FREE };
-        assert!((slow.propagators(2.0).both[3][2] - (-1.5_f64).exp()).abs() < 1e-15);
+        assert!((slow.propagators(2.0, [1.0; 2]).both[0][3][2] - (-1.5_f64).exp()).abs() < 1e-15);
     }
 }

@@ -21,7 +21,7 @@ use crate::load::Load;
 use crate::noise::OrnsteinUhlenbeck;
 use crate::parameters::AxisParameters;
 use crate::plant::{Disturbance, Plant};
-use froude_control::tick::{AXES, AxisInput, Command, Tick};
+use froude_control::tick::{AXES, AxisCommand, AxisInput, Command, Tick};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
@@ -159,7 +159,7 @@ struct Axis {
 }
 
 impl Axis {
-    fn new(config: AxisTwin, spread: &Spread, rng: &mut Pcg64Mcg) -> Self {
+    fn new(config: &AxisTwin, spread: &Spread, rng: &mut Pcg64Mcg) -> Self {
         let p = &config.parameters;
         let step_s = TICK_S / STEPS as f64;
         let counts_per_m = p.encoder_sign / p.metres_per_count();
@@ -176,7 +176,7 @@ impl Axis {
             is_high_wire_cut: false,
             is_current_bad: false,
             acceleration_m_s2: 0.0,
-            config,
+            config: *config,
         };
         axis.begin_run(config.load, spread, rng);
         axis
@@ -197,26 +197,27 @@ impl Axis {
         self.plant = self.plant.reloaded(p, &load, self.friction_factor);
     }
 
-    fn advance(&mut self, command: froude_control::tick::AxisCommand, is_estop: bool, rng: &mut Pcg64Mcg) {
+    fn disturb(&mut self, rng: &mut Pcg64Mcg) {
         self.plant.disturb(Disturbance { noise_n: self.noise.step(rng), jam_n: self.jam_n });
-        let speed_m_s = self.plant.load_speed_m_s();
-        self.plant.step(self.newtons_per_ampere * self.amplifier.step());
+    }
+
+    fn command(&mut self, command: AxisCommand, is_estop: bool) {
         self.amplifier.command(command.volts, command.is_enabled);
         self.amplifier.interlock(is_estop, self.is_low_end(), self.is_high_end());
-        for _ in 1..STEPS {
-            self.plant.step(self.newtons_per_ampere * self.amplifier.step());
-        }
-        self.acceleration_m_s2 = (self.plant.load_speed_m_s() - speed_m_s) * (1.0 / TICK_S);
+    }
+
+    #[inline]
+    fn steps<const COUNT: usize>(&mut self) {
+        let motor_n = core::array::from_fn::<f64, COUNT, _>(|_| self.newtons_per_ampere * self.amplifier.step());
+        self.plant.steps(motor_n);
     }
 
     fn is_low_end(&self) -> bool {
-        let p = &self.config.parameters;
-        self.is_low_wire_cut || self.plant.load_position_m() < p.hard_low_m + p.switch_margin_m
+        self.is_low_wire_cut || self.plant.load_position_m() < self.config.parameters.low_switch_m()
     }
 
     fn is_high_end(&self) -> bool {
-        let p = &self.config.parameters;
-        self.is_high_wire_cut || self.plant.load_position_m() > p.hard_high_m - p.switch_margin_m
+        self.is_high_wire_cut || self.plant.load_position_m() > self.config.parameters.high_switch_m()
     }
 
     fn latch(&mut self, rng: &mut Pcg64Mcg) -> AxisInput {
@@ -254,7 +255,7 @@ impl Twin {
     #[must_use]
     pub fn new(config: &TwinConfig, seed: u64) -> Self {
         let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let axes = config.axes.map(|axis| Axis::new(axis, &config.spread, &mut rng));
+        let axes = [0, 1].map(|i| Axis::new(&config.axes[i], &config.spread, &mut rng));
         Self {
             axes,
             sensor: ForceSensor::new(config.force_sensor, TICK_S, &mut rng),
@@ -293,9 +294,7 @@ impl Twin {
     pub fn tick(&mut self, command: Command) -> Tick {
         let late_us = if self.schedule.is_empty() { 0 } else { self.break_what_is_due() };
         for _ in 0..=late_us / TICK_US {
-            for (axis, command) in self.axes.iter_mut().zip(command.axes) {
-                axis.advance(command, self.is_estop_open, &mut self.rng);
-            }
+            self.advance(command);
         }
         self.latched_us = self.latched_us.wrapping_add(TICK_US + late_us / TICK_US * TICK_US);
         self.ticks += 1;
@@ -311,6 +310,23 @@ impl Twin {
         };
         self.trace = folded(self.trace, &tick);
         tick
+    }
+
+    /// One tick of both axes. The command arrives one step after the tick that it answers.
+    fn advance(&mut self, command: Command) {
+        let [y, x] = &mut self.axes;
+        let speeds_m_s = [y.plant.load_speed_m_s(), x.plant.load_speed_m_s()];
+        y.disturb(&mut self.rng);
+        x.disturb(&mut self.rng);
+        y.steps::<1>();
+        x.steps::<1>();
+        y.command(command.axes[0], self.is_estop_open);
+        x.command(command.axes[1], self.is_estop_open);
+        y.steps::<{ STEPS - 1 }>();
+        x.steps::<{ STEPS - 1 }>();
+        for (axis, before_m_s) in self.axes.iter_mut().zip(speeds_m_s) {
+            axis.acceleration_m_s2 = (axis.plant.load_speed_m_s() - before_m_s) * (1.0 / TICK_S);
+        }
     }
 
     fn sensed_drag_n(&self) -> f64 {
@@ -388,7 +404,7 @@ impl Twin {
             motor_speed_m_s: a.plant.motor_speed_m_s(),
             drag_n: a.config.load.drag_n_s2_m2() * v * v.abs(),
             spring_n: a.plant.spring_n(),
-            friction_n: a.plant.load_friction_n(),
+            friction_n: a.plant.friction_n(),
             current_a: a.amplifier.current_a(),
             torque_n_m: a.newtons_per_ampere * a.amplifier.current_a() * a.config.parameters.chain_m_rad(),
             count: a.encoder.true_count(a.plant.motor_position_m()),
