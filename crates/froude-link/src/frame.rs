@@ -23,6 +23,8 @@ pub const OVERHEAD: usize = 1 + 2 + 4 + 1 + 1;
 pub trait Message: Sized {
     /// The first byte of its frame.
     fn kind(&self) -> u8;
+    /// With number 0 it is the first word of an end that just started: numbers begin anew with it.
+    fn is_greeting(&self) -> bool;
     #[doc(hidden)]
     fn write_body(&self, to: &mut Body<'_, '_>);
     #[doc(hidden)]
@@ -138,11 +140,6 @@ impl<M: Message> FrameReader<M> {
         LinkCounts { order: self.order.counts(), ..self.counts }
     }
 
-    /// The other end started anew: its numbers begin where they like.
-    pub fn restart(&mut self) {
-        self.order.restart();
-    }
-
     /// Takes the next byte of the line; a message when that byte completes one.
     pub fn feed(&mut self, byte: u8) -> Option<Received<M>> {
         if byte == 0 {
@@ -184,6 +181,9 @@ impl<M: Message> FrameReader<M> {
         let mut from = Reader::new(framed);
         let (kind, sequence) = (u8::take(&mut from)?, u16::take(&mut from)?);
         let message = M::read_body(kind, &mut BodyReader(&mut from)).filter(|_| from.is_empty());
+        if sequence == 0 && message.as_ref().is_some_and(M::is_greeting) {
+            self.order.restart();
+        }
         let arrival = self.order.note(sequence);
         let Some(message) = message else {
             self.counts.unknown = self.counts.unknown.wrapping_add(1);

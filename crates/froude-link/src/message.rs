@@ -133,6 +133,10 @@ impl Message for ToBoard {
         }
     }
 
+    fn is_greeting(&self) -> bool {
+        matches!(self, Self::Hello | Self::ForeignHello { .. })
+    }
+
     fn write_body(&self, Body(to): &mut Body<'_, '_>) {
         match self {
             Self::Hello => put_hello(to, VERSION),
@@ -185,6 +189,10 @@ impl Message for FromBoard {
             Self::TimeReply(_) => 0x07,
             Self::LockStep(_) => 0x08,
         }
+    }
+
+    fn is_greeting(&self) -> bool {
+        matches!(self, Self::Hello(_) | Self::ForeignHello { .. })
     }
 
     fn write_body(&self, Body(to): &mut Body<'_, '_>) {
