@@ -12,8 +12,23 @@
 #![no_std]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod axis;
+pub mod coast;
 pub mod config;
+mod controller;
+pub mod encoder;
+mod excite;
 pub mod fault;
+mod feedback;
+mod homing;
+mod law;
+mod monitor;
+pub mod profile;
+pub mod ramp;
 pub mod request;
+pub mod shaper;
 pub mod status;
 pub mod tick;
+mod travel;
+
+pub use controller::Controller;

@@ -45,6 +45,8 @@ pub enum Refusal {
     NoSuchAxis = 7,
     /// The named fault is not the latched one, or its cause persists.
     NotCleared = 8,
+    /// The amplifier is not ready.
+    NotReady = 9,
 }
 
 /// State of one axis.

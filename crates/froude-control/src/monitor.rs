@@ -1,0 +1,186 @@
+//! Detection of what can go wrong at one axis, from the inputs alone.
+//!
+//! | fault | evidence |
+//! | --- | --- |
+//! | encoder jump | counts a tick change more than ten times what peak current can do, plus four counts |
+//! | encoder stuck | that change, to no count at all; or torque twice above breakaway, an error, and no count for the set time |
+//! | encoder illegal | more illegal transitions within a second than allowed |
+//! | polarity | from rest, the motor has taken in work over 4/5 of the set way, and in closed loop the axis is not where it was asked to be |
+//! | over-current | above the peak for 1 ms, or off the command by a quarter of the peak for 10 ms |
+//! | overload | (I/I_c)² through a first-order lag of the winding's time constant passes 1 |
+//!
+//! A motor cannot stop within a tick; its encoder can. That is why a count that stands still at speed is a fault at once.
+
+use crate::fault::Fault;
+use crate::law::{Law, settled};
+use crate::tick::AxisInput;
+
+/// Reaction of chain and load on the motor alone, and torque ripple: what J_eff does not know, as a factor.
+const ACCELERATION_MARGIN: f64 = 10.0;
+/// Quantisation of two differences, and one count for the latch's jitter, counts.
+const COUNT_MARGIN: f64 = 4.0;
+/// An error that a loop at rest may leave, counts.
+const STUCK_ERROR_COUNTS: f64 = 8.0;
+/// Breakaway is up to this much above C_eff (position, stiction).
+const STUCK_TORQUE_FACTOR: f64 = 2.0;
+/// Part of the configured way at which polarity is judged, so that the axis is at rest or cut within the whole.
+const POLARITY_PART: f64 = 0.8;
+const OVER_CURRENT_S: f64 = 1e-3;
+const MISMATCH_S: f64 = 10e-3;
+const MISMATCH_PART: f64 = 0.25;
+/// The axis is at rest when it stays within a count for this long.
+const REST_S: f64 = 0.1;
+/// Above this part of its limit the winding is too warm to clear an overload.
+const COOL: f64 = 0.9;
+
+/// What the monitor sees of the last tick's command.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Applied {
+    pub volts: f64,
+    pub is_enabled: bool,
+    /// Reference less position, m; `None` with the loop open.
+    pub error_m: Option<f64>,
+}
+
+/// Detectors of one axis.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Monitor {
+    last_moved: f64,
+    last_gap_us: f64,
+    last_errors: Option<u32>,
+    errors: u32,
+    errors_ticks: u32,
+    stuck_ticks: u32,
+    /// Work of the command since rest, V counts; `None` once judged.
+    work_v_counts: Option<f64>,
+    way_counts: i64,
+    over_current_ticks: u32,
+    mismatch_ticks: u32,
+    heat: f64,
+    rest_count: i64,
+    rest_ticks: u32,
+}
+
+impl Monitor {
+    /// Looks at one tick: `moved` counts in `gap_us`, the tick's inputs, the command that was on since the last tick.
+    pub(crate) fn step(
+        &mut self,
+        law: &Law,
+        moved: i32,
+        gap_us: f64,
+        input: &AxisInput,
+        applied: Applied,
+    ) -> Option<Fault> {
+        let encoder = self.encoder(law, f64::from(moved), gap_us, input, applied);
+        self.rest(law, moved);
+        let polarity = self.polarity(law, moved, applied);
+        let current = self.current(law, input.current_a, applied);
+        encoder.or(polarity).or(current)
+    }
+
+    fn encoder(&mut self, law: &Law, moved: f64, gap_us: f64, input: &AxisInput, applied: Applied) -> Option<Fault> {
+        let errors = input.encoder_errors.wrapping_sub(self.last_errors.unwrap_or(input.encoder_errors));
+        self.last_errors = Some(input.encoder_errors);
+        self.errors = self.errors.saturating_add(errors);
+        self.errors_ticks = self.errors_ticks.saturating_add(1);
+        let is_illegal = self.errors > law.limits.encoder_errors_per_s;
+        if self.errors_ticks >= law.ticks(1.0) {
+            (self.errors, self.errors_ticks) = (0, 0);
+        }
+
+        // Counts that the last tick's speed would give in this tick's time.
+        let expected = if self.last_gap_us > 0.0 { self.last_moved * gap_us / self.last_gap_us } else { moved };
+        (self.last_moved, self.last_gap_us) = (moved, gap_us);
+        let possible = ACCELERATION_MARGIN * law.motor_m_s2 * law.counts_per_m * 1e-12 * gap_us * gap_us + COUNT_MARGIN;
+        let is_jump = libm::fabs(moved - expected) > possible;
+
+        let is_driven = applied.is_enabled
+            && libm::fabs(applied.volts) > STUCK_TORQUE_FACTOR * law.volts_coulomb
+            && applied.error_m.is_none_or(|e| libm::fabs(e) * law.counts_per_m > STUCK_ERROR_COUNTS);
+        self.stuck_ticks = if is_driven && moved == 0.0 { self.stuck_ticks.saturating_add(1) } else { 0 };
+        let is_stuck = self.stuck_ticks > law.ticks(law.limits.stuck_s);
+
+        if is_stuck || (is_jump && moved == 0.0) {
+            Some(Fault::EncoderStuck)
+        } else if is_jump {
+            Some(Fault::EncoderJump)
+        } else if is_illegal {
+            Some(Fault::EncoderIllegal)
+        } else {
+            None
+        }
+    }
+
+    fn rest(&mut self, law: &Law, moved: i32) {
+        self.rest_count = self.rest_count.wrapping_add(i64::from(moved));
+        if self.rest_count.unsigned_abs() > 1 {
+            (self.rest_count, self.rest_ticks) = (0, 0);
+        } else {
+            self.rest_ticks = self.rest_ticks.saturating_add(1);
+        }
+        if self.is_at_rest(law) {
+            (self.work_v_counts, self.way_counts) = (Some(0.0), 0);
+        }
+    }
+
+    /// Within a count for a tenth of a second.
+    pub(crate) fn is_at_rest(&self, law: &Law) -> bool {
+        self.rest_ticks >= law.ticks(REST_S)
+    }
+
+    fn polarity(&mut self, law: &Law, moved: i32, applied: Applied) -> Option<Fault> {
+        if !applied.is_enabled {
+            self.work_v_counts = None;
+            return None;
+        }
+        let work =
+            settled(self.work_v_counts? + applied.volts * f64::from(moved) * libm::copysign(1.0, law.m_per_count));
+        self.work_v_counts = Some(work);
+        self.way_counts = self.way_counts.wrapping_add(i64::from(moved));
+        let way_m = libm::fabs(self.way_counts as f64 * law.m_per_count);
+        if way_m < POLARITY_PART * law.limits.polarity_m {
+            return None;
+        }
+        self.work_v_counts = None;
+        let is_astray = applied.error_m.is_none_or(|e| libm::fabs(e) > 0.5 * way_m);
+        (self.is_work_negative(law, work) && is_astray).then_some(Fault::Polarity)
+    }
+
+    fn is_work_negative(&self, law: &Law, work_v_counts: f64) -> bool {
+        work_v_counts < -0.5 * law.volts_coulomb_lower * libm::fabs(self.way_counts as f64)
+    }
+
+    /// Judges polarity on the way so far, when an open-loop excitation ends before the configured way. A way below twenty counts says nothing.
+    pub(crate) fn polarity_so_far(&self, law: &Law) -> Option<Fault> {
+        let work = self.work_v_counts?;
+        (self.way_counts.unsigned_abs() > 20 && self.is_work_negative(law, work)).then_some(Fault::Polarity)
+    }
+
+    /// A new excitation or move is judged from here.
+    pub(crate) fn watch_polarity(&mut self) {
+        (self.work_v_counts, self.way_counts) = (Some(0.0), 0);
+    }
+
+    fn current(&mut self, law: &Law, current_a: f64, applied: Applied) -> Option<Fault> {
+        let limits = &law.limits;
+        let ratio = libm::fmin(libm::fabs(current_a) / limits.continuous_current_a, 1e3);
+        self.heat = settled(self.heat + law.tick_s / limits.thermal_time_s * (ratio * ratio - self.heat));
+        let is_over = libm::fabs(current_a) > limits.current_a;
+        self.over_current_ticks = if is_over { self.over_current_ticks.saturating_add(1) } else { 0 };
+        let wanted_a = law.amplifier_a_v * applied.volts;
+        let is_off = applied.is_enabled && libm::fabs(current_a - wanted_a) > MISMATCH_PART * limits.current_a;
+        self.mismatch_ticks = if is_off { self.mismatch_ticks.saturating_add(1) } else { 0 };
+        if self.over_current_ticks >= law.ticks(OVER_CURRENT_S) || self.mismatch_ticks >= law.ticks(MISMATCH_S) {
+            Some(Fault::OverCurrent)
+        } else if self.heat > 1.0 {
+            Some(Fault::Overload)
+        } else {
+            None
+        }
+    }
+
+    /// Whether the winding has cooled enough to clear an overload.
+    pub(crate) fn is_cool(&self) -> bool {
+        self.heat < COOL
+    }
+}

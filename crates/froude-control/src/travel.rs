@@ -1,0 +1,124 @@
+//! What is refused before it moves, and what is still stoppable while it moves.
+//!
+//! A move is accepted only if, after the loss of torque at any moment of it, the coast ends before the hard stop with the allowed following
+//! error to spare, and if its target keeps that distance from the end switches too. While it moves, half of that is kept.
+
+use crate::axis::SPEED_NOISE_M_S;
+use crate::law::Law;
+use crate::profile::{Bounds, Profile};
+use crate::request::{Excitation, Move};
+use crate::shaper::{ShapedProfile, Shaper};
+use crate::status::Refusal;
+
+/// Slowest, gentlest and softest that a request may ask for. Below these a move takes hours.
+const SLOWEST_M_S: f64 = 1e-5;
+const GENTLEST_M_S2: f64 = 1e-4;
+const SOFTEST_M_S3: f64 = 1e-3;
+/// Longest single move or excitation, s.
+const LONGEST_S: f64 = 7200.0;
+/// Longest jog before homing, m.
+const JOG_M: f64 = 0.1;
+
+/// Whether the axis can still be brought to rest `guard_m` before the hard stop ahead, by torque or without it.
+pub(crate) fn is_stoppable(law: &Law, position_m: f64, speed_m_s: f64, guard_m: f64) -> bool {
+    let way_m = law.stopping.way_m(speed_m_s) + guard_m;
+    if speed_m_s > 0.0 {
+        position_m + way_m <= law.limits.hard_high_m
+    } else {
+        position_m - way_m >= law.limits.hard_low_m
+    }
+}
+
+/// Whether the axis can still be brought to rest inside the range of targets.
+pub(crate) fn is_inside_soft(law: &Law, position_m: f64, speed_m_s: f64) -> bool {
+    let way_m = law.stopping.way_m(speed_m_s);
+    if speed_m_s > SPEED_NOISE_M_S {
+        position_m + way_m <= law.soft_high_m
+    } else if speed_m_s < -SPEED_NOISE_M_S {
+        position_m - way_m >= law.soft_low_m
+    } else {
+        true
+    }
+}
+
+fn is_within(value: f64, low: f64, high: f64) -> bool {
+    value >= low && value <= high // false for NaN
+}
+
+/// Checks a move from rest at `start_m` and plans it.
+pub(crate) fn checked_move(law: &Law, start_m: f64, asked: &Move) -> Result<ShapedProfile, Refusal> {
+    let limits = &law.limits;
+    let is_in_range = is_within(asked.target_m, -1e6, 1e6)
+        && is_within(asked.speed_m_s, SLOWEST_M_S, limits.speed_m_s)
+        && is_within(asked.acceleration_m_s2, GENTLEST_M_S2, limits.acceleration_m_s2)
+        && (asked.jerk_m_s3 == 0.0 || is_within(asked.jerk_m_s3, SOFTEST_M_S3, 1e9));
+    if !is_in_range {
+        return Err(Refusal::OutOfRange);
+    }
+    if !is_within(asked.target_m, law.soft_low_m, law.soft_high_m) {
+        return Err(Refusal::BeyondTravel);
+    }
+    let bounds =
+        Bounds { speed_m_s: asked.speed_m_s, acceleration_m_s2: asked.acceleration_m_s2, jerk_m_s3: asked.jerk_m_s3 };
+    let profile = Profile::plan(start_m, asked.target_m, bounds);
+    let (speed, acceleration) = (profile.peak_speed_m_s(), profile.peak_acceleration_m_s2());
+    if profile.duration_s() > LONGEST_S || law.volts_for(acceleration, speed, 1.0) > law.limit_v {
+        return Err(Refusal::OutOfRange);
+    }
+    let beyond_m = law.stopping.beyond_target_m(speed, asked.acceleration_m_s2) + limits.following_error_m;
+    let is_free = if profile.direction() > 0.0 {
+        asked.target_m + beyond_m <= limits.hard_high_m
+    } else {
+        asked.target_m - beyond_m >= limits.hard_low_m
+    };
+    if !is_free {
+        return Err(Refusal::BeyondTravel);
+    }
+    Ok(ShapedProfile::new(profile, if asked.is_shaped { law.shaper } else { Shaper::NONE }))
+}
+
+/// Checks an excitation at rest at `start_m`; gives the speed that the reference is to have below it, m/s.
+pub(crate) fn checked_excitation(law: &Law, start_m: f64, is_homed: bool, asked: &Excitation) -> Result<f64, Refusal> {
+    let is_time = |time_s: f64| is_within(time_s, law.tick_s, LONGEST_S);
+    let is_volts = |volts: f64| is_within(volts, -law.limit_v, law.limit_v);
+    let (is_in_range, speed_m_s) = match *asked {
+        Excitation::Pulses { volts, period_s, duty, duration_s } => {
+            (is_volts(volts) && is_time(period_s) && is_time(duration_s) && is_within(duty, 0.0, 1.0), 0.0)
+        }
+        Excitation::Relay { volts, hysteresis_m, duration_s } => {
+            (is_volts(volts) && is_within(hysteresis_m, 0.0, law.limits.following_error_m) && is_time(duration_s), 0.0)
+        }
+        Excitation::Sweep { volts, from_hz, to_hz, duration_s, speed_m_s } => {
+            let is_frequency = |hz: f64| is_within(hz, 1e-3, 0.25 * law.per_tick_s);
+            let top_m_s = law.limits.speed_m_s;
+            let is_all = is_volts(volts)
+                && is_frequency(from_hz)
+                && is_within(to_hz, from_hz, f64::MAX)
+                && is_frequency(to_hz)
+                && is_time(duration_s)
+                && is_within(speed_m_s, -top_m_s, top_m_s);
+            (is_all, speed_m_s)
+        }
+        Excitation::Jog { volts, distance_m, duration_s } => {
+            (is_volts(volts) && is_within(distance_m, 0.0, JOG_M) && is_time(duration_s), 0.0)
+        }
+    };
+    if !is_in_range {
+        return Err(Refusal::OutOfRange);
+    }
+    if !is_homed {
+        return Ok(speed_m_s);
+    }
+    // The reference's own way: ramp, constant speed, and the way that must stay free.
+    let way_m = match *asked {
+        Excitation::Sweep { duration_s, speed_m_s, .. } => {
+            let ramp_s = libm::fabs(speed_m_s) / law.limits.acceleration_m_s2;
+            let end_m = libm::copysign(law.stopping.way_m(speed_m_s), speed_m_s);
+            speed_m_s * (0.5 * ramp_s + duration_s) + end_m
+        }
+        _ => 0.0,
+    };
+    let is_free = is_within(start_m, law.soft_low_m, law.soft_high_m)
+        && is_within(start_m + way_m, law.soft_low_m, law.soft_high_m);
+    if is_free { Ok(speed_m_s) } else { Err(Refusal::BeyondTravel) }
+}
