@@ -1,0 +1,234 @@
+//! The two vocabularies: what the host says to the board and what the board says to the host.
+//!
+//! Hello keeps its place for all versions: kind, a magic number, the version. An end that reads another version than its own
+//! learns that and nothing else.
+
+use froude_control::config::Config;
+use froude_control::request::Request;
+use froude_control::tick::Tick;
+
+use crate::VERSION;
+use crate::codec::{Reader, Wire, Writer};
+use crate::frame::{Body, BodyReader, Message};
+use crate::status::{Ack, BoardHello, Event, FaultReport, Health, LockStepReply, TimeReply};
+use crate::telemetry::Telemetry;
+
+/// "FROU" in ASCII.
+const MAGIC: u32 = u32::from_le_bytes(*b"FROU");
+
+/// Host to board.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(clippy::large_enum_variant)] // there is no heap to put the configuration on
+pub enum ToBoard {
+    /// The host is there and speaks this version. Requests before it are not heard.
+    Hello,
+    /// The host speaks another version.
+    ForeignHello {
+        /// Its version.
+        version: u16,
+    },
+    /// Do this. Answered by [`FromBoard::Ack`]; repeat with the same `id` when no answer comes.
+    Request {
+        /// Number by which the answer is known, not 0.
+        id: u16,
+        /// What to do.
+        request: Request,
+    },
+    /// Be configured so. Only while both axes are disabled.
+    Configure {
+        /// Number by which the answer is known, not 0.
+        id: u16,
+        /// The configuration.
+        config: Config,
+    },
+    /// The host is still there.
+    Heartbeat,
+    /// What time is it?
+    TimeRequest {
+        /// The host's clock, µs; given back unread.
+        host_sent_us: u64,
+    },
+    /// Step the controller with these inputs instead of the board's own: for the test of the board against the host.
+    LockStep {
+        /// Number of the tick; a repetition is answered again and not stepped again.
+        number: u32,
+        /// The inputs.
+        tick: Tick,
+    },
+}
+
+/// Board to host.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FromBoard {
+    /// Who the board is.
+    Hello(BoardHello),
+    /// The board speaks another version.
+    ForeignHello {
+        /// Its version.
+        version: u16,
+    },
+    /// A tick.
+    Telemetry(Telemetry),
+    /// Something happened.
+    Event(Event),
+    /// A fault was latched.
+    Fault(FaultReport),
+    /// Answer to a request or a configuration.
+    Ack(Ack),
+    /// How board and link are.
+    Health(Health),
+    /// Answer to a clock request.
+    TimeReply(TimeReply),
+    /// Answer to a lock-step tick.
+    LockStep(LockStepReply),
+}
+
+/// The two ends do not speak the same version.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VersionMismatch {
+    /// The board's.
+    pub board: u16,
+    /// Ours.
+    pub host: u16,
+}
+
+impl core::fmt::Display for VersionMismatch {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { board, host } = self;
+        write!(
+            f,
+            "the board speaks protocol {board}, this program {host}: flash the firmware of this release, \
+             or use the program that came with the board"
+        )
+    }
+}
+
+impl core::error::Error for VersionMismatch {}
+
+fn put_hello(to: &mut Writer<'_>, version: u16) {
+    MAGIC.put(to);
+    version.put(to);
+}
+
+/// The version of a hello, if it is one of ours.
+fn take_hello(from: &mut Reader<'_>) -> Option<u16> {
+    (u32::take(from)? == MAGIC).then_some(())?;
+    u16::take(from)
+}
+
+/// Swallows the rest of a hello that this version cannot read.
+fn skip(from: &mut Reader<'_>) {
+    while u8::take(from).is_some() {}
+}
+
+impl Message for ToBoard {
+    fn kind(&self) -> u8 {
+        match self {
+            Self::Hello | Self::ForeignHello { .. } => 0x80,
+            Self::Request { .. } => 0x81,
+            Self::Configure { .. } => 0x82,
+            Self::Heartbeat => 0x83,
+            Self::TimeRequest { .. } => 0x84,
+            Self::LockStep { .. } => 0x85,
+        }
+    }
+
+    fn is_greeting(&self) -> bool {
+        matches!(self, Self::Hello | Self::ForeignHello { .. })
+    }
+
+    fn write_body(&self, Body(to): &mut Body<'_, '_>) {
+        match self {
+            Self::Hello => put_hello(to, VERSION),
+            Self::ForeignHello { version } => put_hello(to, *version),
+            Self::Request { id, request } => {
+                id.put(to);
+                request.put(to);
+            }
+            Self::Configure { id, config } => {
+                id.put(to);
+                config.put(to);
+            }
+            Self::Heartbeat => {}
+            Self::TimeRequest { host_sent_us } => host_sent_us.put(to),
+            Self::LockStep { number, tick } => {
+                number.put(to);
+                tick.put(to);
+            }
+        }
+    }
+
+    fn read_body(kind: u8, BodyReader(from): &mut BodyReader<'_, '_>) -> Option<Self> {
+        Some(match kind {
+            0x80 => match take_hello(from)? {
+                VERSION => Self::Hello,
+                version => {
+                    skip(from);
+                    Self::ForeignHello { version }
+                }
+            },
+            0x81 => Self::Request { id: Wire::take(from)?, request: Wire::take(from)? },
+            0x82 => Self::Configure { id: Wire::take(from)?, config: Wire::take(from)? },
+            0x83 => Self::Heartbeat,
+            0x84 => Self::TimeRequest { host_sent_us: Wire::take(from)? },
+            0x85 => Self::LockStep { number: Wire::take(from)?, tick: Wire::take(from)? },
+            _ => return None,
+        })
+    }
+}
+
+impl Message for FromBoard {
+    fn kind(&self) -> u8 {
+        match self {
+            Self::Hello(_) | Self::ForeignHello { .. } => 0x01,
+            Self::Telemetry(_) => 0x02,
+            Self::Event(_) => 0x03,
+            Self::Fault(_) => 0x04,
+            Self::Ack(_) => 0x05,
+            Self::Health(_) => 0x06,
+            Self::TimeReply(_) => 0x07,
+            Self::LockStep(_) => 0x08,
+        }
+    }
+
+    fn is_greeting(&self) -> bool {
+        matches!(self, Self::Hello(_) | Self::ForeignHello { .. })
+    }
+
+    fn write_body(&self, Body(to): &mut Body<'_, '_>) {
+        match self {
+            Self::Hello(hello) => {
+                put_hello(to, VERSION);
+                hello.put(to);
+            }
+            Self::ForeignHello { version } => put_hello(to, *version),
+            Self::Telemetry(telemetry) => telemetry.put(to),
+            Self::Event(event) => event.put(to),
+            Self::Fault(report) => report.put(to),
+            Self::Ack(ack) => ack.put(to),
+            Self::Health(health) => health.put(to),
+            Self::TimeReply(reply) => reply.put(to),
+            Self::LockStep(reply) => reply.put(to),
+        }
+    }
+
+    fn read_body(kind: u8, BodyReader(from): &mut BodyReader<'_, '_>) -> Option<Self> {
+        Some(match kind {
+            0x01 => match take_hello(from)? {
+                VERSION => Self::Hello(Wire::take(from)?),
+                version => {
+                    skip(from);
+                    Self::ForeignHello { version }
+                }
+            },
+            0x02 => Self::Telemetry(Wire::take(from)?),
+            0x03 => Self::Event(Wire::take(from)?),
+            0x04 => Self::Fault(Wire::take(from)?),
+            0x05 => Self::Ack(Wire::take(from)?),
+            0x06 => Self::Health(Wire::take(from)?),
+            0x07 => Self::TimeReply(Wire::take(from)?),
+            0x08 => Self::LockStep(Wire::take(from)?),
+            _ => return None,
+        })
+    }
+}

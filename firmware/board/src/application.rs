@@ -1,0 +1,424 @@
+//! The application: steps the controller at every tick and talks to the host in between.
+//!
+//! A tick comes before everything else. Between ticks bytes go in and out one at a time, so the next tick never waits for the
+//! port longer than it takes to decode a frame.
+//!
+//! After power-up there is no configuration, no torque and no controller; telemetry runs from the first hello on. Any valid frame
+//! from the host counts as a sign of life for the controller's host watchdog. The hardware watchdog is fed only after a tick
+//! that was stepped, so a main loop that hangs takes the torque away by reset.
+
+use froude_control::Controller;
+use froude_control::request::Request;
+use froude_control::status::{Output, Phase, Status};
+use froude_control::tick::{AXES, AxisInput, Command, Tick};
+use froude_link::budget::Decimation;
+use froude_link::frame::{FrameReader, FrameWriter};
+use froude_link::ring::TelemetryRing;
+use froude_link::sequence::Arrival;
+use froude_link::status::{Ack, BoardHello, Event, EventKind, FaultReport, Health, LockStepReply, TimeReply, Verdict};
+use froude_link::{FromBoard, Telemetry, ToBoard, VERSION};
+use heapless::Deque;
+
+use crate::board::{Board, Latched};
+
+/// Longest frame that the board sends.
+const FRAME_BYTES: usize = 160;
+/// Ticks between two health reports: a second.
+const HEALTH_TICKS: u32 = 4000;
+/// Nominal tick, µs.
+pub const TICK_US: u32 = 250;
+
+/// State of the whole program.
+pub struct Application {
+    controller: Option<Controller>,
+    output: Output,
+    tick: u32,
+    requests: Requests,
+    lock_step: Option<LockStep>,
+    link: Link,
+    overruns: u32,
+    worst_step_us: u32,
+}
+
+/// What the host asked for and what became of it.
+#[derive(Default)]
+struct Requests {
+    is_host_heard: bool,
+    /// To be carried out at the next tick.
+    waiting: Option<(u16, Request)>,
+    /// The last answer, for a host that did not get it.
+    answered: Option<Ack>,
+}
+
+/// The host gives the ticks, one by one.
+struct LockStep {
+    reply: LockStepReply,
+}
+
+/// Both directions of the serial line.
+struct Link {
+    is_greeted: bool,
+    reader: FrameReader<ToBoard>,
+    writer: FrameWriter,
+    frame: [u8; FRAME_BYTES],
+    len: usize,
+    sent: usize,
+    messages: Deque<FromBoard, 32>,
+    messages_lost: u32,
+    telemetry: TelemetryRing,
+}
+
+impl Default for Application {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Application {
+    /// As after power-up.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            controller: None,
+            output: NOTHING,
+            tick: 0,
+            requests: Requests { is_host_heard: false, waiting: None, answered: None },
+            lock_step: None,
+            link: Link {
+                is_greeted: false,
+                reader: FrameReader::new(),
+                writer: FrameWriter::starting_at(0),
+                frame: [0; FRAME_BYTES],
+                len: 0,
+                sent: 0,
+                messages: Deque::new(),
+                messages_lost: 0,
+                telemetry: TelemetryRing::new(),
+            },
+            overruns: 0,
+            worst_step_us: 0,
+        }
+    }
+
+    /// Says hello unasked, once, so that a host on the line learns of the restart.
+    pub fn announce(&mut self, board: &mut impl Board) {
+        self.say_hello(board);
+    }
+
+    /// One turn of the main loop: a tick if one is due, else a byte each way. Says whether anything was done.
+    pub fn turn(&mut self, board: &mut impl Board) -> bool {
+        if let Some(latched) = board.take_tick() {
+            self.tick(board, &latched);
+            return true;
+        }
+        let received = board.read_byte();
+        if let Some(byte) = received {
+            self.hear(board, byte);
+        }
+        let was_sent = self.link.send(board);
+        received.is_some() || was_sent
+    }
+
+    /// What the controller said last.
+    #[must_use]
+    pub const fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// Ticks that took longer than their period.
+    #[must_use]
+    pub const fn overruns(&self) -> u32 {
+        self.overruns
+    }
+
+    /// Longest time from a tick to its command, µs.
+    #[must_use]
+    pub const fn worst_step_us(&self) -> u32 {
+        self.worst_step_us
+    }
+
+    fn tick(&mut self, board: &mut impl Board, latched: &Latched) {
+        self.tick = self.tick.wrapping_add(latched.ticks);
+        let missed = latched.ticks.saturating_sub(1);
+        if missed > 0 {
+            self.overruns = self.overruns.wrapping_add(missed);
+            let kind = EventKind::Overrun(u16::try_from(missed).unwrap_or(u16::MAX));
+            self.link.say(FromBoard::Event(Event { tick: self.tick, latched_us: latched.latched_us, kind }));
+        }
+        if self.lock_step.is_some() {
+            // The host's ticks count, not the timer's; the outputs stay dead.
+            board.actuate(&Command::default());
+            board.feed_watchdog();
+            return;
+        }
+        let scales = board.scales();
+        let input = |k: usize| {
+            let axis = latched.axes.get(k).copied().unwrap_or_default();
+            AxisInput {
+                encoder_count: axis.encoder_count,
+                encoder_errors: axis.encoder_errors,
+                current_a: f64::from(axis.current_counts) * scales.current_a_per_count.get(k).unwrap_or(&0.0),
+                is_low_end: axis.is_low_end,
+                is_high_end: axis.is_high_end,
+                is_amplifier_ready: axis.is_amplifier_ready,
+            }
+        };
+        let waiting = self.requests.waiting.take();
+        let tick = Tick {
+            latched_us: latched.latched_us,
+            axes: [input(0), input(1)],
+            is_estop_open: latched.is_estop_open,
+            is_host_heard: core::mem::take(&mut self.requests.is_host_heard),
+            request: waiting.map(|(_, request)| request),
+        };
+        let before = self.output.status;
+        self.output = match &mut self.controller {
+            Some(controller) => controller.step(&tick),
+            None => NOTHING,
+        };
+        let codes = board.actuate(&self.output.command);
+        board.feed_watchdog();
+        let took = board.now_us().wrapping_sub(latched.latched_us);
+        self.worst_step_us = self.worst_step_us.max(took);
+
+        let currents = latched.axes.map(|axis| axis.current_counts);
+        let mut telemetry = Telemetry::of(&tick, &self.output, codes, currents);
+        telemetry.tick = self.tick;
+        telemetry.is_after_overrun = missed > 0;
+        self.link.file(telemetry, decimation(board));
+        self.report(&before, latched.latched_us);
+        if let Some((id, _)) = waiting {
+            let verdict = match (&self.controller, self.output.status.refusal) {
+                (None, _) => Verdict::NotConfigured,
+                (_, Some(refusal)) => Verdict::Refused(refusal),
+                (_, None) => Verdict::Accepted,
+            };
+            self.answer(id, verdict);
+        }
+        if self.tick % HEALTH_TICKS < latched.ticks {
+            self.report_health(board);
+        }
+    }
+
+    /// Tells what changed: faults, cleared faults, phases.
+    fn report(&mut self, before: &Status, latched_us: u32) {
+        let (tick, now) = (self.tick, self.output.status);
+        match (before.fault, now.fault) {
+            (was, Some((fault, axis))) if was != now.fault => {
+                let category = fault.category();
+                self.link.say(FromBoard::Fault(FaultReport { tick, latched_us, fault, axis, category }));
+            }
+            (Some((fault, _)), None) => {
+                self.link.say(FromBoard::Event(Event { tick, latched_us, kind: EventKind::Cleared(fault) }));
+            }
+            _ => {}
+        }
+        for (axis, (was, is)) in before.axes.iter().zip(&now.axes).enumerate() {
+            if was.phase != is.phase {
+                let kind = EventKind::Phase { axis: axis as u8, phase: is.phase };
+                self.link.say(FromBoard::Event(Event { tick, latched_us, kind }));
+            }
+        }
+    }
+
+    fn report_health(&mut self, board: &impl Board) {
+        let counts = self.link.reader.counts();
+        self.link.say(FromBoard::Health(Health {
+            tick: self.tick,
+            telemetry_lost: self.link.telemetry.lost(),
+            overruns: self.overruns,
+            worst_step_us: self.worst_step_us,
+            port_overflows: board.port_overflows().wrapping_add(self.link.messages_lost),
+            corrupt: counts.corrupt,
+            lost: counts.order.lost,
+            late: counts.order.late,
+            duplicates: counts.order.duplicates,
+        }));
+    }
+
+    fn answer(&mut self, id: u16, verdict: Verdict) {
+        let ack = Ack { id, tick: self.tick, verdict };
+        self.requests.answered = Some(ack);
+        self.link.say(FromBoard::Ack(ack));
+    }
+
+    /// A byte came from the host.
+    fn hear(&mut self, board: &mut impl Board, byte: u8) {
+        let Some(received) = self.link.reader.feed(byte) else { return };
+        match received.message {
+            ToBoard::Hello => return self.greet(board),
+            ToBoard::ForeignHello { version } => {
+                self.link.is_greeted = false;
+                self.link.say(FromBoard::ForeignHello { version: VERSION });
+                let kind = EventKind::VersionMismatch(version);
+                let latched_us = board.now_us();
+                return self.link.say(FromBoard::Event(Event { tick: self.tick, latched_us, kind }));
+            }
+            _ if !self.link.is_greeted => return, // who does not greet is not heard
+            _ => {}
+        }
+        self.requests.is_host_heard = true;
+        let is_stale = matches!(received.arrival, Arrival::Late);
+        match received.message {
+            ToBoard::Hello | ToBoard::ForeignHello { .. } | ToBoard::Heartbeat => {}
+            ToBoard::TimeRequest { host_sent_us } => {
+                let board_received_us = board.now_us();
+                // The answer is stamped when it is written; it waits behind what is already in the queue.
+                let reply = TimeReply { host_sent_us, board_received_us, board_sent_us: board_received_us };
+                self.link.say(FromBoard::TimeReply(reply));
+            }
+            ToBoard::Request { id, request } => self.request(id, request, is_stale),
+            ToBoard::Configure { id, config } => {
+                if let Some(ack) = self.requests.answered.filter(|ack| ack.id == id) {
+                    return self.link.say(FromBoard::Ack(ack));
+                }
+                let verdict = self.configure(config);
+                self.answer(id, verdict);
+            }
+            ToBoard::LockStep { number, tick } => self.lock_step(number, &tick),
+        }
+    }
+
+    fn greet(&mut self, board: &mut impl Board) {
+        self.link.is_greeted = true;
+        self.lock_step = None;
+        self.requests.answered = None;
+        self.say_hello(board);
+        self.report_health(board);
+    }
+
+    fn say_hello(&mut self, board: &impl Board) {
+        let scales = board.scales();
+        self.link.say(FromBoard::Hello(BoardHello {
+            board: board_id(board),
+            boot: board.boot_number(),
+            baud: baud(board),
+            telemetry_every: decimation(board).every,
+            tick_us: TICK_US,
+            command_v_per_count: scales.command_v_per_count,
+            current_a_per_count: scales.current_a_per_count,
+            is_configured: self.controller.is_some(),
+            was_watchdog_reset: board.was_watchdog_reset(),
+        }));
+    }
+
+    /// A request is carried out once, whatever the line does: its number is remembered until the next one.
+    fn request(&mut self, id: u16, request: Request, is_stale: bool) {
+        if let Some(ack) = self.requests.answered.filter(|ack| ack.id == id) {
+            return self.link.say(FromBoard::Ack(ack));
+        }
+        // A late frame is older than one that was carried out: its sender has moved on, except for a stop.
+        if is_stale && !matches!(request, Request::Stop(_)) {
+            return;
+        }
+        self.requests.waiting = Some((id, request));
+    }
+
+    fn configure(&mut self, config: froude_control::config::Config) -> Verdict {
+        let is_at_rest = self.output.status.axes.iter().all(|axis| axis.phase == Phase::Disabled);
+        if !is_at_rest {
+            return Verdict::NotNow;
+        }
+        match Controller::new(config) {
+            Ok(controller) => {
+                self.controller = Some(controller);
+                self.output = NOTHING;
+                self.lock_step = None;
+                Verdict::Accepted
+            }
+            Err(_) => Verdict::BadConfiguration,
+        }
+    }
+
+    /// Steps with the host's inputs. The same number again gets the same answer; any other but the next one gets none.
+    fn lock_step(&mut self, number: u32, tick: &Tick) {
+        let Some(controller) = &mut self.controller else { return };
+        let next = self.lock_step.as_ref().map_or(0, |last| last.reply.number.wrapping_add(1));
+        if number == next {
+            let Output { command, status } = controller.step(tick);
+            let reply = LockStepReply {
+                number,
+                command,
+                reference_m: status.axes.map(|axis| axis.reference_m),
+                position_m: status.axes.map(|axis| axis.position_m),
+                phases: status.axes.map(|axis| axis.phase),
+                fault: status.fault.map(|(fault, _)| fault),
+                refusal: status.refusal,
+            };
+            self.lock_step = Some(LockStep { reply });
+        }
+        if let Some(last) = self.lock_step.as_ref().filter(|last| last.reply.number == number) {
+            let reply = last.reply;
+            self.link.say(FromBoard::LockStep(reply));
+        }
+    }
+}
+
+const NOTHING: Output = Output {
+    command: Command { axes: [froude_control::tick::AxisCommand { volts: 0.0, is_enabled: false }; AXES] },
+    status: Status {
+        tick: 0,
+        axes: [froude_control::status::AxisStatus {
+            phase: Phase::Disabled,
+            is_homed: false,
+            count: 0,
+            position_m: 0.0,
+            reference_m: 0.0,
+            reference_m_s: 0.0,
+            reference_m_s2: 0.0,
+            is_saturated: false,
+        }; AXES],
+        fault: None,
+        refusal: None,
+    },
+};
+
+fn board_id<B: Board>(_: &B) -> froude_link::status::BoardId {
+    B::ID
+}
+
+fn baud<B: Board>(_: &B) -> u32 {
+    B::BAUD
+}
+
+fn decimation<B: Board>(_: &B) -> Decimation {
+    const { Decimation::of(B::BAUD) }
+}
+
+impl Link {
+    /// Queues a message; it goes before telemetry.
+    fn say(&mut self, message: FromBoard) {
+        if self.messages.push_back(message).is_err() {
+            self.messages_lost = self.messages_lost.wrapping_add(1);
+        }
+    }
+
+    /// Files telemetry of a tick that is sent.
+    fn file(&mut self, telemetry: Telemetry, decimation: Decimation) {
+        if self.is_greeted && decimation.takes(telemetry.tick) {
+            self.telemetry.put(telemetry);
+        }
+    }
+
+    /// Moves a byte towards the host, if there is one and the port has room.
+    fn send(&mut self, board: &mut impl Board) -> bool {
+        if self.sent == self.len && !self.next_frame(board) {
+            return false;
+        }
+        let Some(&byte) = self.frame.get(self.sent) else { return false };
+        let was_sent = board.write_byte(byte);
+        self.sent += usize::from(was_sent);
+        was_sent
+    }
+
+    fn next_frame(&mut self, board: &mut impl Board) -> bool {
+        let message = self.messages.pop_front().or_else(|| self.telemetry.take().map(FromBoard::Telemetry));
+        let Some(mut message) = message else { return false };
+        if let FromBoard::TimeReply(reply) = &mut message {
+            reply.board_sent_us = board.now_us();
+        }
+        self.len = self.writer.write(&message, &mut self.frame).len();
+        self.sent = 0;
+        self.len > 0
+    }
+}
