@@ -5,6 +5,7 @@
 //! | [`plan`]      | from the schedule to runs in order, with the operator's steps in between       |
 //! | [`preflight`] | travel, coast, speed, command, current and heating of every run, before it moves |
 //! | [`runner`]    | drives and records one run after the other; stops, resumes                     |
+//! | [`setup`]     | controller and twin from the campaign's `[rig]` section                            |
 //! | [`stop`]      | Ctrl-C: once is a controlled stop, twice cuts the torque                        |
 //!
 //! **Order.** Dry and wet runs stand in ABBA blocks (dry, wet, wet, dry), so that a drift that is linear in time falls out of
@@ -13,4 +14,5 @@
 pub mod plan;
 pub mod preflight;
 pub mod runner;
+pub mod setup;
 pub mod stop;

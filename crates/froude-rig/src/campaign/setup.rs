@@ -1,0 +1,190 @@
+//! From the `[rig]` section to a configured controller and, for a twin, to the plant behind it.
+//!
+//! The controller is told what the campaign declares; the twin has its own truth ([`crate::parameters`]), of which `[rig.twin]`
+//! overrides what it names. The two differ as they do in a laboratory: the gear's efficiency, for instance, is in the truth and in
+//! no declared friction.
+
+use froude_control::config::{AxisConfig, Config, Drive, Gains, Limits};
+use froude_records::RecordError;
+use froude_records::carriage::{AxisSpec, CarriageCampaign, RigKind, TwinTruth};
+use froude_records::nearest::suggestion;
+use froude_records::units::parse_unit;
+
+use crate::defaults::control_config;
+use crate::force_sensor::Drift;
+use crate::load::Load;
+use crate::parameters::AxisParameters;
+use crate::twin::{TwinConfig, TICK_US};
+
+/// End switches open this far before the hard stops, m.
+const SWITCH_MARGIN_M: f64 = 0.02;
+/// The part of declared friction that a coast distance may count on, where no standard uncertainty is declared.
+const SURE_FRICTION: f64 = 0.85;
+
+/// Why a rig cannot be set up.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// Something of the file is wrong.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A constant is missing without which nothing may move.
+    #[error("{place}: `{key}` is missing: {why}")]
+    Missing {
+        /// The axis's section.
+        place: String,
+        /// The key.
+        key: &'static str,
+        /// What it is needed for.
+        why: &'static str,
+    },
+}
+
+/// The controller's configuration from the campaign's declarations. `drag_n_s2_m2` is the declared drag of the body (0 when dry).
+///
+/// # Errors
+///
+/// [`SetupError::Missing`]: inertia and Coulomb friction must be declared, the coast distance hangs on them.
+pub fn control(campaign: &CarriageCampaign, drag_n_s2_m2: f64) -> Result<Config, SetupError> {
+    let standard = control_config(&[Load::default(); 2]);
+    let [_, short] = standard.axes;
+    let y = axis(&campaign.rig.y, drag_n_s2_m2)?;
+    let x = campaign.rig.x.as_ref().map_or(Ok(short), |x| axis(x, drag_n_s2_m2))?;
+    Ok(Config { axes: [y, x], tick_us: TICK_US, ..standard })
+}
+
+fn axis(spec: &AxisSpec, drag_n_s2_m2: f64) -> Result<AxisConfig, SetupError> {
+    let missing = |key, why| SetupError::Missing { place: spec.place.to_string(), key, why };
+    let coast = "the coast distance, and with it what may move, hangs on it; take it from `froude carriage identify`, or declare a \
+                 lower bound with a large `standard`";
+    let inertia = spec.inertia_kg_m2.ok_or_else(|| missing("inertia", coast))?;
+    let coulomb = spec.coulomb_n_m.ok_or_else(|| missing("coulomb_friction", coast))?;
+    let (constants, limits, gains) = (&spec.constants, &spec.limits, &spec.gains);
+    let sure = if coulomb.standard_uncertainty > 0.0 {
+        // The lower end of its 95 % interval.
+        (coulomb.value - 1.96 * coulomb.standard_uncertainty).max(0.1 * coulomb.value)
+    } else {
+        SURE_FRICTION * coulomb.value
+    };
+    Ok(AxisConfig {
+        gains: Gains {
+            proportional_v_rad: gains.proportional_v_rad,
+            derivative_v_s_rad: gains.derivative_v_s_rad,
+            integral_v_rad_s: gains.integral_v_rad_s,
+            derivative_filter_hz: gains.derivative_filter_hz.unwrap_or(300.0),
+        },
+        drive: Drive {
+            inertia_kg_m2: inertia.value,
+            viscous_n_m_s_rad: spec.viscous_n_m_s_rad.map_or(0.0, |b| b.value),
+            coulomb_n_m: coulomb.value,
+            coulomb_lower_n_m: sure,
+            drag_n_s2_m2,
+            torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
+            amplifier_a_v: constants.amplifier_a_v.value,
+            gear_ratio: constants.gear_ratio.value,
+            sprocket_radius_m: constants.sprocket_radius_m.value,
+            counts_per_revolution: constants.counts_per_revolution.abs(),
+            encoder_sign: constants.counts_per_revolution.signum(),
+        },
+        limits: Limits {
+            hard_low_m: spec.travel_m[0],
+            hard_high_m: spec.travel_m[1],
+            low_switch_m: spec.travel_m[0] + SWITCH_MARGIN_M,
+            high_switch_m: spec.travel_m[1] - SWITCH_MARGIN_M,
+            speed_m_s: limits.speed_m_s,
+            unhomed_speed_m_s: limits.unhomed_speed_m_s.unwrap_or(0.018),
+            acceleration_m_s2: limits.acceleration_m_s2,
+            command_v: limits.command_v,
+            current_a: limits.current_a,
+            continuous_current_a: limits.continuous_current_a.unwrap_or(0.5 * limits.current_a),
+            thermal_time_s: limits.thermal_time_s.unwrap_or(20.0),
+            following_error_m: limits.following_error_m.unwrap_or(0.01),
+            saturation_s: 0.1,
+            encoder_errors_per_s: 10,
+            polarity_m: 0.005,
+            stuck_s: 0.05,
+        },
+        mode_hz: gains.shaped_mode_hz.unwrap_or(0.0),
+        mode_damping: gains.shaped_damping.unwrap_or(0.0),
+        is_robust_shaper: gains.is_robust_shaper,
+    })
+}
+
+/// The twin behind the campaign: the paper's rig with the campaign's travel, body and overriding truths.
+///
+/// `body` is the load's base (its mounting changes from run to run).
+///
+/// # Errors
+///
+/// An unknown truth (with the nearest name), or one of another dimension, at its place.
+pub fn twin(campaign: &CarriageCampaign, mut body: Load) -> Result<(TwinConfig, Load), SetupError> {
+    let mut config = TwinConfig::loaded(body);
+    if let Some(sensor) = &campaign.rig.force_sensor {
+        let f = &mut config.force_sensor;
+        f.range_n = sensor.range_n.unwrap_or(f.range_n);
+        f.step_n = sensor.resolution_n.unwrap_or(f.step_n);
+        f.noise_n = sensor.noise_n.unwrap_or(f.noise_n);
+        if let Some(drift_n) = sensor.drift_n {
+            f.drift = Drift::PerRun(drift_n);
+        }
+    }
+    for (i, spec) in [Some(&campaign.rig.y), campaign.rig.x.as_ref()].into_iter().enumerate() {
+        if let Some(spec) = spec {
+            let p = &mut config.axes[i].parameters;
+            [p.hard_low_m, p.hard_high_m] = spec.travel_m;
+            p.switch_margin_m = SWITCH_MARGIN_M;
+            config.axes[i].start_m = spec.travel_m[0] + 0.1 * (spec.travel_m[1] - spec.travel_m[0]);
+        }
+    }
+    if let RigKind::Twin { truths, .. } = &campaign.rig.kind {
+        for truth in truths {
+            apply(truth, &mut config, &mut body)?;
+        }
+    }
+    for axis in &mut config.axes {
+        axis.load = body;
+    }
+    Ok((config, body))
+}
+
+/// One truth: its name, its unit, and where it goes.
+type Entry = (&'static str, &'static str, fn(&mut TwinConfig, &mut Load, f64));
+
+fn both(config: &mut TwinConfig, change: impl Fn(&mut AxisParameters)) {
+    config.axes.iter_mut().for_each(|a| change(&mut a.parameters));
+}
+
+/// Everything that `[rig.twin]` may say.
+const TRUTHS: [Entry; 17] = [
+    ("drag", "N s^2/m^2", |_, l, v| l.body.drag_n_s2_m2 = v),
+    ("added_mass", "kg", |_, l, v| l.body.added_mass_kg = v),
+    ("body_mass", "kg", |_, l, v| l.body.mass_kg = v),
+    ("body_water", "kg", |_, l, v| l.body.body_water_kg = v),
+    ("displaced_volume", "m^3", |_, l, v| l.body.displaced_m3 = v),
+    ("water_density", "kg/m^3", |_, l, v| l.density_kg_m3 = v),
+    ("pulley_friction", "1", |_, l, v| l.hung.pulley_friction = v),
+    ("strut_drag", "N s^2/m^2", |c, _, v| both(c, |p| p.strut_drag_n_s2_m2 = v)),
+    ("friction_bump", "1", |c, _, v| both(c, |p| p.bump = v)),
+    ("friction_asymmetry", "1", |c, _, v| both(c, |p| p.asymmetry = v)),
+    ("rolling_coefficient", "1", |c, _, v| both(c, |p| p.rolling_coefficient = v)),
+    ("efficiency", "1", |c, _, v| both(c, |p| p.efficiency_forward = v)),
+    ("efficiency_backward", "1", |c, _, v| both(c, |p| p.efficiency_backward = v)),
+    ("friction_run_to_run", "1", |c, _, v| c.spread.friction_run = v),
+    ("friction_noise", "N", |c, _, v| c.spread.friction_noise_n = v),
+    ("friction_noise_time", "s", |c, _, v| c.spread.friction_noise_s = v),
+    ("torque_constant_run_to_run", "1", |c, _, v| c.spread.torque_constant_run = v),
+];
+
+fn apply(truth: &TwinTruth, config: &mut TwinConfig, body: &mut Load) -> Result<(), SetupError> {
+    let bad = |problem: String| RecordError::Syntax { place: truth.place.clone(), problem };
+    let Some((_, unit, set)) = TRUTHS.iter().find(|(name, _, _)| *name == truth.name) else {
+        let known = TRUTHS.iter().map(|t| t.0);
+        let names: Vec<&str> = known.collect();
+        let advice = suggestion(&truth.name, names.iter().copied());
+        return Err(bad(format!("the twin has no truth `{}`; {advice}", truth.name)).into());
+    };
+    let dimension = parse_unit(unit).map_err(|e| bad(e.to_string()))?.dimension;
+    let value = truth.quantity.expect(dimension).map_err(|e| bad(format!("`{}`: {e}", truth.name)))?;
+    set(config, body, value);
+    Ok(())
+}

@@ -1,0 +1,199 @@
+//! A whole small campaign on the twin: driven, stopped, resumed, and what happens when something breaks.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::Path;
+
+use froude_control::fault::Fault;
+use froude_records::Place;
+use froude_records::carriage::{Calibration, CarriagePlan, Directions, Order};
+use froude_records::run::{Axis, RunKind, RunStatus, read_run};
+use froude_rig::campaign::plan::{PlannedRun, Step, plan};
+use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Setting, drive};
+use froude_rig::campaign::stop::StopSwitch;
+use froude_rig::defaults::control_config;
+use froude_rig::drive::Sample;
+use froude_rig::drive::twin::TwinRig;
+use froude_rig::load::{Load, Mounting};
+use froude_rig::twin::TwinConfig;
+use froude_rig::{Injection, Scheduled};
+use indexmap::IndexMap;
+
+fn asked() -> CarriagePlan {
+    CarriagePlan {
+        axis: Axis::Y,
+        speed_m_s: vec![0.3],
+        repeats: 1,
+        order: Order::Abba,
+        directions: Directions::Forward,
+        distance_m: 1.0,
+        start_m: None,
+        acceleration_m_s2: 0.5,
+        jerk_m_s3: None,
+        settling_dry_s: 0.5,
+        settling_wet_s: 0.5,
+        still_s: 0.5,
+        warm_up: None,
+        friction: None,
+        calibration: Some(Calibration {
+            weights_n: vec![10.0],
+            weight_standard_n: 0.01,
+            speed_m_s: 0.2,
+            repeats: 1,
+        }),
+        excitation: None,
+        is_ballasted: true,
+        stop_at_relative_half_width: None,
+        expected_drag_n_s2_m2: Some(20.0),
+        place: Place::whole(Path::new("campaign.toml")),
+    }
+}
+
+/// Says yes and remembers what it was asked; presses the switch when a certain run has gone on for a while.
+#[derive(Default)]
+struct Hand {
+    asked: Vec<String>,
+    begun: Vec<String>,
+    press: Option<(&'static str, f64, usize)>,
+    switch: StopSwitch,
+}
+
+impl Operator for Hand {
+    fn confirm(&mut self, prompt: &str) -> bool {
+        self.asked.push(prompt.to_owned());
+        true
+    }
+}
+
+struct Watch<'a>(&'a mut Vec<String>, Option<(&'static str, f64, usize)>, StopSwitch);
+
+impl Progress for Watch<'_> {
+    fn run_begins(&mut self, run: &PlannedRun, _: usize, _: usize) {
+        self.0.push(run.id.clone());
+    }
+    fn sample(&mut self, run: &PlannedRun, _: &Sample, time_s: f64) {
+        if let Some((name, at_s, presses)) = self.1
+            && run.id.contains(name)
+            && time_s > at_s
+        {
+            (0..presses).for_each(|_| self.2.press());
+            self.1 = None;
+        }
+    }
+    fn say(&mut self, _: &str) {}
+}
+
+fn setting(folder: &Path) -> Setting {
+    Setting {
+        campaign: "small".to_owned(),
+        folder: folder.to_owned(),
+        asked: asked(),
+        return_speed_m_s: 0.4,
+        is_shaped: true,
+        constants: IndexMap::new(),
+        load: Load::default(),
+        twin_seed: Some(7),
+        decimation: 4,
+        start_unix_ns: 0,
+        date: "2026-11-21".to_owned(),
+    }
+}
+
+fn rig() -> TwinRig {
+    let load = Load::mounted(Mounting::Dry);
+    let config = TwinConfig::loaded(Load::default());
+    TwinRig::new(&config, control_config(&[load, load]), 7).unwrap()
+}
+
+fn run(folder: &Path, hand: &mut Hand, rig: &mut TwinRig) -> Result<Outcome, RunnerError> {
+    let steps = plan(&asked(), 1.5, 1);
+    let mut begun = Vec::new();
+    let switch = hand.switch.clone();
+    let mut watch = Watch(&mut begun, hand.press, switch.clone());
+    let outcome = drive(&steps, &setting(folder), rig, &switch, hand, &mut watch, &mut |_, _| None);
+    hand.begun = begun;
+    outcome
+}
+
+fn names(steps: &[Step]) -> Vec<&str> {
+    steps.iter().filter_map(|s| if let Step::Run(r) = s { Some(r.id.as_str()) } else { None }).collect()
+}
+
+#[test]
+fn a_campaign_is_driven_recorded_and_not_driven_twice() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut hand = Hand::default();
+    let outcome = run(folder.path(), &mut hand, &mut rig()).unwrap();
+    let steps = plan(&asked(), 1.5, 1);
+    assert_eq!(outcome.driven, names(&steps).len());
+    assert_eq!(hand.begun, names(&steps));
+    assert_eq!(hand.asked.len(), 4, "{:?}", hand.asked);
+    for name in names(&steps) {
+        let log = read_run(&folder.path().join(format!("{name}.mcap"))).unwrap();
+        assert_eq!(log.meta.status, RunStatus::Complete);
+        assert_eq!(log.lost_ticks(), 0);
+        assert!((log.sample_rate_hz().unwrap() - 1_000.0).abs() < 1e-6);
+    }
+    // The wet run's sensor sees the drag, 20 · 0.3² = 1.8 N, within its drift of ± 0.2 N and the ripple.
+    let wet = names(&steps).into_iter().find(|n| n.contains("wet")).unwrap();
+    let log = read_run(&folder.path().join(format!("{wet}.mcap"))).unwrap();
+    let (force, speed) = (&log.channels["force"].values, &log.channels["y/reference_velocity"].values);
+    let steady: Vec<f64> = force.iter().zip(speed).filter(|(_, v)| **v > 0.299).map(|(f, _)| *f).collect();
+    let mean = steady.iter().sum::<f64>() / steady.len() as f64;
+    assert!((mean - 1.8).abs() < 0.25, "{mean} N over {} ticks", steady.len());
+
+    let again = run(folder.path(), &mut Hand::default(), &mut rig()).unwrap();
+    assert_eq!((again.driven, again.resumed), (0, outcome.driven));
+}
+
+#[test]
+fn the_first_press_stops_and_holds_and_the_campaign_goes_on_from_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut hand = Hand { press: Some(("dry", 2.0, 1)), ..Hand::default() };
+    let mut driven = rig();
+    let error = run(folder.path(), &mut hand, &mut driven).unwrap_err();
+    let stopped = hand.begun.last().unwrap().clone();
+    assert_eq!(
+        error.to_string(),
+        format!("stopped by the operator in {stopped}; run the campaign again to go on from there")
+    );
+    // Stopped under control: at rest, and still holding.
+    let log = read_run(&folder.path().join(format!("{stopped}.mcap"))).unwrap();
+    assert_eq!(log.meta.status, RunStatus::Interrupted);
+    assert_eq!(*log.channels["y/state"].values.last().unwrap(), 1.0, "holding");
+    assert!(log.channels["truth/y/load_velocity"].values.last().unwrap().abs() < 0.02);
+
+    let mut hand = Hand::default();
+    let outcome = run(folder.path(), &mut hand, &mut rig()).unwrap();
+    assert_eq!(hand.begun.first().unwrap(), &stopped);
+    assert!(outcome.resumed > 0);
+    // What was interrupted is kept beside the run that replaced it.
+    assert!(folder.path().join(format!("{stopped}.interrupted-1.mcap")).exists());
+    let log = read_run(&folder.path().join(format!("{stopped}.mcap"))).unwrap();
+    assert_eq!((log.meta.kind, log.meta.status), (RunKind::Dry, RunStatus::Complete));
+}
+
+#[test]
+fn the_second_press_cuts_the_torque() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut hand = Hand { press: Some(("dry", 2.0, 2)), ..Hand::default() };
+    run(folder.path(), &mut hand, &mut rig()).unwrap_err();
+    let log = read_run(&folder.path().join(format!("{}.mcap", hand.begun.last().unwrap()))).unwrap();
+    assert_eq!(*log.channels["y/state"].values.last().unwrap(), 0.0, "disabled");
+    assert_eq!(*log.channels["y/command"].values.last().unwrap(), 0.0);
+}
+
+#[test]
+fn a_fault_ends_the_run_and_the_run_is_kept_and_marked() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut driven = rig();
+    // The board's clock at the dry run is not known beforehand: broken while the first calibration stroke is on its way.
+    driven.twin_mut().inject(Scheduled { tick: 400_000, axis: 0, injection: Injection::EncoderStuck });
+    let mut hand = Hand::default();
+    match run(folder.path(), &mut hand, &mut driven).unwrap_err() {
+        RunnerError::Fault { fault, category, run } => {
+            assert!(matches!(fault, Fault::EncoderStuck | Fault::FollowingError), "{fault:?} in {run}");
+            assert_eq!(category, fault.category() as u8);
+        }
+        other => panic!("{other}"),
+    }
+}
