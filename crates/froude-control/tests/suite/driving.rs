@@ -1,6 +1,5 @@
 //! Enable, home, move and hold, on a rigid plant.
 
-
 use crate::rig::{Rig, homed_at};
 use froude_control::config::Config;
 use froude_control::request::{Move, Request};
