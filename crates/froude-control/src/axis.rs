@@ -162,7 +162,7 @@ impl Axis {
         }
         let is_outward = libm::fabs(self.speed_m_s) > SPEED_NOISE_M_S;
         if self.is_homed && self.phase != Phase::Homing && is_outward {
-            let guard_m = 0.5 * self.law.limits.following_error_m;
+            let guard_m = 0.25 * self.law.limits.following_error_m;
             if !travel::is_stoppable(&self.law, self.position_m, self.speed_m_s, guard_m) {
                 return Some(Fault::SoftLimit);
             }

@@ -65,6 +65,36 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// An operator's stop keeps the move's acceleration and jerk: no step of the reference's acceleration is larger than one tick of it.
+    #[test]
+    fn an_operators_stop_is_as_smooth_as_its_move(
+        speed_m_s in 0.05..0.6, acceleration_m_s2 in 0.1..1.0, jerk_m_s3 in 0.5..20.0, part in 0.0..1.0, is_shaped: bool,
+    ) {
+        let mut config = Config::PUBLISHED;
+        (config.axes[0].mode_hz, config.axes[0].mode_damping) = (3.0, 0.05);
+        let mut rig = homed(&config, 0.02);
+        let profile = Move { target_m: 2.0, speed_m_s, acceleration_m_s2, jerk_m_s3, is_shaped };
+        prop_assert_eq!(rig.step(Some(Request::Move { axis: 0, profile })).status.refusal, None);
+        let ticks = (part * 1.0 * 4000.0) as u32;
+        let mut last = rig.output.status.axes[0];
+        for i in 0..20_000 {
+            let status = rig.step((i == ticks).then_some(Request::Stop(StopCategory::Two))).status.axes[0];
+            let step_m_s3 = (status.reference_m_s2 - last.reference_m_s2).abs() / 250e-6;
+            prop_assert!(step_m_s3 <= jerk_m_s3 * (1.0 + 1e-6), "tick {}: {} of {}", i, step_m_s3, jerk_m_s3);
+            prop_assert!(status.reference_m_s2.abs() <= acceleration_m_s2 * (1.0 + 1e-9));
+            last = status;
+            if status.phase == Phase::Holding {
+                break;
+            }
+        }
+        prop_assert_eq!(last.phase, Phase::Holding);
+        prop_assert_eq!(rig.output.status.fault, None);
+    }
+}
+
 #[test]
 fn a_move_that_could_coast_into_the_stop_is_refused_and_a_slower_one_is_not() {
     let mut rig = slippery(&short_tank());
