@@ -95,6 +95,88 @@ proptest! {
     }
 }
 
+/// What may break in the middle of a move.
+#[derive(Debug, Clone, Copy)]
+enum Injury {
+    FrozenEncoder,
+    ReversedEncoder,
+    LostCounts(u32),
+    EmergencyStop,
+    Load(f64),
+    SilentHost,
+    LostTicks(u32),
+    DeadAmplifier,
+}
+
+fn any_injury() -> impl Strategy<Value = Injury> {
+    prop_oneof![
+        Just(Injury::FrozenEncoder),
+        Just(Injury::ReversedEncoder),
+        (1_u32..1000).prop_map(Injury::LostCounts),
+        Just(Injury::EmergencyStop),
+        (-20.0..20.0).prop_map(Injury::Load),
+        Just(Injury::SilentHost),
+        (1_u32..40).prop_map(Injury::LostTicks),
+        Just(Injury::DeadAmplifier),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(100))]
+
+    /// An axis that is hurt anywhere in an accepted move, also near the end of travel, stays inside the hard stops and comes to rest,
+    /// or goes on as if nothing had been.
+    #[test]
+    fn an_injury_at_any_moment_ends_inside_the_hard_stops(
+        target_m in 0.2..1.4, speed_m_s in 0.02..0.6, acceleration_m_s2 in 0.1..1.0, part in 0.0..1.1, is_down: bool, injury in any_injury(),
+    ) {
+        let mut rig = slippery(&short_tank());
+        if is_down && ask(&mut rig, 1.3, 0.3, 1.0, 0.0).is_none() {
+            rig.until(None, 20.0, |o| o.status.axes[0].phase == Phase::Holding);
+        }
+        let from_m = rig.plants[0].position_m;
+        let target_m = if is_down { 1.41 - target_m } else { target_m };
+        prop_assume!(ask(&mut rig, target_m, speed_m_s, acceleration_m_s2, 0.0).is_none());
+        let ticks = (part * ((target_m - from_m).abs() / speed_m_s + speed_m_s / acceleration_m_s2) * 4000.0) as u32;
+        for _ in 0..ticks {
+            rig.step(None);
+        }
+        let limits = rig.config.axes[0].limits;
+        for i in 0..24_000 {
+            match injury {
+                Injury::FrozenEncoder if i == 0 => rig.plants[0].frozen_count = Some(rig.plants[0].input().encoder_count),
+                Injury::ReversedEncoder if i == 0 => {
+                    let before = rig.plants[0].input().encoder_count;
+                    rig.plants[0].encoder_polarity = -1.0;
+                    let after = rig.plants[0].input().encoder_count;
+                    rig.plants[0].count_at_zero = rig.plants[0].count_at_zero.wrapping_add(before.wrapping_sub(after));
+                }
+                Injury::LostCounts(counts) if i == 0 => {
+                    rig.plants[0].count_at_zero = rig.plants[0].count_at_zero.wrapping_add(counts);
+                }
+                Injury::Load(load_n) => rig.plants[0].load_n = if i < 400 { load_n } else { 0.0 },
+                Injury::LostTicks(ticks) if i == 0 => {
+                    for _ in 0..ticks {
+                        let command = rig.output.command.axes[0];
+                        rig.plants[0].step(command, 250e-6);
+                        rig.tick.latched_us = rig.tick.latched_us.wrapping_add(250);
+                    }
+                }
+                _ => {}
+            }
+            rig.step_with(None, |t| {
+                t.is_estop_open = matches!(injury, Injury::EmergencyStop);
+                t.is_host_heard = !matches!(injury, Injury::SilentHost);
+                t.axes[0].is_amplifier_ready = !matches!(injury, Injury::DeadAmplifier);
+            });
+            let position_m = rig.plants[0].position_m;
+            prop_assert!(position_m > limits.hard_low_m && position_m < limits.hard_high_m, "{} {:?}", position_m, rig.output.status);
+        }
+        let is_at_rest = matches!(rig.output.status.axes[0].phase, Phase::Disabled | Phase::Holding | Phase::Moving);
+        prop_assert!(is_at_rest, "{:?}", rig.output.status);
+    }
+}
+
 #[test]
 fn a_move_that_could_coast_into_the_stop_is_refused_and_a_slower_one_is_not() {
     let mut rig = slippery(&short_tank());
