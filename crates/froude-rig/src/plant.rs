@@ -121,7 +121,8 @@ pub struct Plant {
     hung_n: f64,
     low_m: f64,
     high_m: f64,
-    disturbance: Disturbance,
+    /// Friction that neither place nor speed changes: slow noise, a jam, the pulley.
+    added_n: f64,
     friction_n: f64,
 }
 
@@ -160,7 +161,7 @@ impl Plant {
             hung_n: load.hung.weight_n,
             low_m: axis.hard_low_m,
             high_m: axis.hard_high_m,
-            disturbance: Disturbance::default(),
+            added_n: load.hung.pulley_friction * load.hung.weight_n.abs(),
             friction_n: 0.0,
         }
     }
@@ -291,12 +292,12 @@ impl Plant {
         let w = speed_m_s * self.per_stribeck_speed_s_m;
         let stribeck = 1.0 + self.stribeck_excess / (1.0 + w * w);
         let sliding_n = self.sliding_n * bump * stribeck * (1.0 + self.asymmetry * direction);
-        (sliding_n + self.pulley_n + self.disturbance.noise_n + self.disturbance.jam_n).max(0.0)
+        (sliding_n + self.added_n).max(0.0)
     }
 
     /// Sets what changes from outside.
     pub fn disturb(&mut self, disturbance: Disturbance) {
-        self.disturbance = disturbance;
+        self.added_n = self.pulley_n + disturbance.noise_n + disturbance.jam_n;
     }
 
     /// The chain breaks: from here on the two masses know nothing of each other.

@@ -206,10 +206,17 @@ impl Axis {
         self.amplifier.interlock(is_estop, self.is_low_end(), self.is_high_end());
     }
 
-    #[inline]
-    fn steps<const COUNT: usize>(&mut self) {
-        let motor_n = core::array::from_fn::<f64, COUNT, _>(|_| self.newtons_per_ampere * self.amplifier.step());
-        self.plant.steps(motor_n);
+    /// One tick of the mechanics. The command arrives one step after the tick that it answers.
+    fn advance(&mut self, command: AxisCommand, is_estop: bool) {
+        let before_m_s = self.plant.load_speed_m_s();
+        let mut current_a = [0.0; STEPS];
+        current_a[0] = self.amplifier.step();
+        self.command(command, is_estop);
+        for mean_a in &mut current_a[1..] {
+            *mean_a = self.amplifier.step();
+        }
+        self.plant.steps(current_a.map(|a| self.newtons_per_ampere * a));
+        self.acceleration_m_s2 = (self.plant.load_speed_m_s() - before_m_s) * (1.0 / TICK_S);
     }
 
     fn is_low_end(&self) -> bool {
@@ -294,7 +301,10 @@ impl Twin {
     pub fn tick(&mut self, command: Command) -> Tick {
         let late_us = if self.schedule.is_empty() { 0 } else { self.break_what_is_due() };
         for _ in 0..=late_us / TICK_US {
-            self.advance(command);
+            for (axis, command) in self.axes.iter_mut().zip(command.axes) {
+                axis.disturb(&mut self.rng);
+                axis.advance(command, self.is_estop_open);
+            }
         }
         self.latched_us = self.latched_us.wrapping_add(TICK_US + late_us / TICK_US * TICK_US);
         self.ticks += 1;
@@ -310,23 +320,6 @@ impl Twin {
         };
         self.trace = folded(self.trace, &tick);
         tick
-    }
-
-    /// One tick of both axes. The command arrives one step after the tick that it answers.
-    fn advance(&mut self, command: Command) {
-        let [y, x] = &mut self.axes;
-        let speeds_m_s = [y.plant.load_speed_m_s(), x.plant.load_speed_m_s()];
-        y.disturb(&mut self.rng);
-        x.disturb(&mut self.rng);
-        y.steps::<1>();
-        x.steps::<1>();
-        y.command(command.axes[0], self.is_estop_open);
-        x.command(command.axes[1], self.is_estop_open);
-        y.steps::<{ STEPS - 1 }>();
-        x.steps::<{ STEPS - 1 }>();
-        for (axis, before_m_s) in self.axes.iter_mut().zip(speeds_m_s) {
-            axis.acceleration_m_s2 = (axis.plant.load_speed_m_s() - before_m_s) * (1.0 / TICK_S);
-        }
     }
 
     fn sensed_drag_n(&self) -> f64 {
