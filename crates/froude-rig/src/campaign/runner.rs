@@ -446,8 +446,10 @@ impl Session<'_> {
         }
     }
 
+    /// Goes on until both axes are at rest, and a tenth of a second more, so that the record shows it.
     fn until_rest(&mut self) -> Result<(), RunnerError> {
         let mut is_cut = false;
+        let mut rest_ticks = 0.0;
         for _ in 0..(STOP_S * self.rig.rate_hz()) as u64 {
             let request = (!is_cut && self.switch.asked() == Asked::Cut).then(|| {
                 is_cut = true;
@@ -455,8 +457,10 @@ impl Session<'_> {
             });
             let sample = self.rig.tick(request)?;
             self.record(&sample)?;
-            if sample.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Holding)) {
-                return Ok(());
+            let is_at_rest = sample.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Holding));
+            rest_ticks = if is_at_rest { rest_ticks + 1.0 } else { 0.0 };
+            if rest_ticks >= 0.1 * self.rig.rate_hz() {
+                break;
             }
         }
         Ok(())
