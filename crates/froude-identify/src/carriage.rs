@@ -46,5 +46,5 @@ pub mod simulate;
 pub mod steady;
 
 pub use error::DragError;
-//pub use report::{DragReport, drag_report};
+pub use report::{DragReport, drag_report};
 pub use run::{BodyState, DragRun, DragSetup, RunKind, Uncertain};

@@ -162,6 +162,18 @@ impl Coefficient {
     }
 }
 
+impl Coefficient {
+    /// Adds a line to the budget and widens the interval by it.
+    pub(super) fn widen(&mut self, part: Part) {
+        self.type_b = self.type_b.hypot(part.standard);
+        self.budget.push(part);
+        if self.standard.is_some() {
+            let (standard, dof, interval) = combine(self.value, &self.budget);
+            (self.standard, self.dof, self.interval_95) = (Some(standard), dof, Some(interval));
+        }
+    }
+}
+
 /// Slope through the origin over v|v|; `None` without a moving point.
 #[must_use]
 pub fn slope<'a>(points: impl IntoIterator<Item = &'a Point>) -> Option<f64> {

@@ -32,12 +32,17 @@ pub struct Friction {
     pub range_m: [f64; 2],
 }
 
-/// Means over one cell of a run.
-struct Cell {
-    position_m: f64,
-    speed_m_s: f64,
-    direction: f64,
-    command_v: f64,
+/// Means over one stretch of a run's steady window, one knot spacing long.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cell {
+    /// Mean position, m.
+    pub position_m: f64,
+    /// Mean speed over the whole window, m/s, signed.
+    pub speed_m_s: f64,
+    /// +1 or −1.
+    pub direction: f64,
+    /// Mean command, V.
+    pub command_v: f64,
 }
 
 impl Friction {
@@ -58,17 +63,12 @@ impl Friction {
         if part == 0.0 { here } else { here + part * (self.coulomb_v[i + 1] - here) }
     }
 
-    /// Identifies friction from the steady windows of runs without drag.
+    /// Identifies friction from the [`cells`] of runs without drag; B is left out where all runs have one speed.
     ///
-    /// `None` when they do not determine it: no window, or one speed only where two parts are asked for (then B is
-    /// left out).
+    /// `None` without cells, or where a stretch between two knots was never passed.
     #[must_use]
-    pub fn identify<'a>(
-        runs: impl IntoIterator<Item = &'a DragRun<'a>>,
-        is_mapped: bool,
-        settings: SteadySettings,
-    ) -> Option<Self> {
-        let cells: Vec<Cell> = runs.into_iter().flat_map(|run| cells(run, settings)).collect();
+    pub fn identify<'a>(cells: impl IntoIterator<Item = &'a Cell>, is_mapped: bool) -> Option<Self> {
+        let cells: Vec<&Cell> = cells.into_iter().collect();
         let range_m = reach(&cells.iter().map(|c| c.position_m).collect::<Vec<_>>());
         if cells.is_empty() {
             return None;
@@ -118,8 +118,9 @@ fn locate(position_m: f64, first_m: f64, spacing_m: f64, knots: usize) -> (usize
     (i as usize, part)
 }
 
-/// Means of a run's steady window over cells of one knot spacing.
-fn cells(run: &DragRun<'_>, settings: SteadySettings) -> Vec<Cell> {
+/// Means of a run's steady window over stretches of one knot spacing; none without a steady window.
+#[must_use]
+pub fn cells(run: &DragRun<'_>, settings: SteadySettings) -> Vec<Cell> {
     let Ok(window) = window(run, settings) else { return Vec::new() };
     let speed_m_s = super::fsm::mean_speed(run, window);
     let travelled = (speed_m_s * window.len() as f64 * run.step_s()).abs();

@@ -310,11 +310,13 @@ fn whole_periods(force: &[f64], window: Window) -> Window {
     // Half periods, so that a ripple between two whole numbers is found.
     let strongest = (2 * RIPPLE_PERIODS.start..2 * RIPPLE_PERIODS.end.min(n / 4))
         .map(|half| {
-            let w = std::f64::consts::PI * half as f64 / n as f64;
-            let (c, s) = left.iter().enumerate().fold((0.0, 0.0), |(c, s), (i, x)| {
-                let (sin, cos) = (w * i as f64).sin_cos();
-                (c + x * cos, s + x * sin)
-            });
+            let (sin, cos) = (std::f64::consts::PI * half as f64 / n as f64).sin_cos();
+            let (mut c, mut s, mut turn) = (0.0, 0.0, (1.0, 0.0));
+            for x in &left {
+                c += x * turn.0;
+                s += x * turn.1;
+                turn = (turn.0 * cos - turn.1 * sin, turn.0 * sin + turn.1 * cos);
+            }
             (half, 2.0 * (c * c + s * s) / n as f64)
         })
         .max_by(|a, b| a.1.total_cmp(&b.1));
