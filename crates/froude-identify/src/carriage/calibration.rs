@@ -233,10 +233,7 @@ pub fn encoder_scale(logged_m: &[f64], known_m: Uncertain) -> Result<Uncertain, 
     let average = logged_m.iter().map(|x| x.abs()).sum::<f64>() / n;
     let variance = logged_m.iter().map(|x| (x.abs() - average).powi(2)).sum::<f64>() / (n - 1.0) / n;
     let scale = known_m.value / average;
-    let entries = [
-        (variance / (average * average), n - 1.0),
-        (known_m.relative() * known_m.relative(), known_m.dof),
-    ];
+    let entries = [(variance / (average * average), n - 1.0), (known_m.relative() * known_m.relative(), known_m.dof)];
     let relative = entries.iter().map(|e| e.0).sum::<f64>().sqrt();
     Ok(Uncertain { value: scale, standard: scale * relative, dof: froude_fit::propagate::effective_dof(&entries) })
 }
@@ -275,4 +272,77 @@ pub fn jog(position_m: &[f64], command_v: &[f64]) -> Jog {
         pushed += v;
     }
     Jog::NoMotion { largest_v: command_v.iter().fold(0.0, |m: f64, v| m.max(v.abs())) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::carriage::simulate::{Logged, Scenario};
+
+    fn quiet() -> Scenario {
+        let mut s = Scenario::pinned(20.0);
+        (s.run_to_run, s.torque_drift, s.noise_n) = (1e-4, 1e-4, 1e-4);
+        s
+    }
+
+    fn calibrated(
+        scenario: &Scenario,
+        weights: &[f64],
+        keep: impl Fn(&DragRun<'_>) -> bool,
+    ) -> Result<Calibration, DragError> {
+        let logged = scenario.calibration_runs(weights, 4, 1);
+        let runs: Vec<_> = logged.iter().map(Logged::view).filter(keep).collect();
+        let setup = CalibrationSetup {
+            ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
+            weight_relative: 0.0,
+            pulley_loss: PULLEY_LOSS,
+            steady: SteadySettings::default(),
+        };
+        calibrate(&runs, &setup)
+    }
+
+    /// Without noise to speak of, only the pulley's declared loss (0.3 % of the weight) is left, and light weights lowered
+    /// under power measure it.
+    #[test]
+    fn a_known_weight_finds_the_gears_efficiency() {
+        let mut scenario = quiet();
+        scenario.pulley_loss = 0.013; // one standard uncertainty beside the declared one
+        let heavy = calibrated(&scenario, &[0.0, 20.0], |_| true).unwrap();
+        let both = calibrated(&scenario, &[0.0, 2.0, 20.0], |_| true).unwrap();
+        let off = |c: &Calibration| c.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
+        assert!((off(&heavy) + 0.003).abs() < 4e-4, "{}", off(&heavy));
+        assert!(off(&both).abs() < 4e-4, "{}", off(&both));
+        assert!((both.pulley_loss.value - 0.013).abs() < 5e-4);
+        assert!((both.efficiency.value - 0.8).abs() < 1e-3);
+        // Lowering 20 N drives the motor: four runs that do not count.
+        assert_eq!((heavy.overhauled, heavy.used), (4, 12));
+    }
+
+    #[test]
+    fn lifting_one_weight_only_is_refused_with_what_to_add() {
+        let why = calibrated(&quiet(), &[20.0], |r| r.direction > 0.0).unwrap_err();
+        assert_eq!(
+            why.to_string(),
+            "calibration: 4 runs, all lifting 20.00 N: friction and weight cannot be told apart; add runs without weight, or \
+             lower a weight that is lighter than the friction"
+        );
+    }
+
+    #[test]
+    fn a_jog_with_motor_or_encoder_reversed_is_caught_within_a_millimetre_or_two() {
+        let command = vec![0.3; 200];
+        let there: Vec<f64> = (0..200).map(|i| 5e-5 * f64::from(i)).collect();
+        let back: Vec<f64> = there.iter().map(|x| -x).collect();
+        assert_eq!(jog(&there, &command), Jog::Right);
+        assert!(matches!(jog(&back, &command), Jog::Reversed { after_m } if after_m < 2e-3));
+        assert_eq!(jog(&[0.0; 200], &command), Jog::NoMotion { largest_v: 0.3 });
+    }
+
+    #[test]
+    fn a_known_distance_scales_the_encoder() {
+        let scale = encoder_scale(&[2.002, -2.001, 2.003, -2.002], Uncertain::new(2.0, 0.0005)).unwrap();
+        assert!((scale.value - 2.0 / 2.002).abs() < 1e-12);
+        // 0.5 mm of 2 m, and a scatter of 0.8 mm over four: 0.25e-3 and 0.2e-3.
+        assert!((scale.standard / scale.value - 3.2e-4).abs() < 2e-5, "{}", scale.standard / scale.value);
+    }
 }

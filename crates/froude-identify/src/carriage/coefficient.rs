@@ -306,7 +306,8 @@ pub fn coefficient(
 
 /// Puts the friction back that buoyancy took off the wheels in the wet runs, where the rolling coefficient is declared.
 fn restore_buoyancy(method: Method, points: &mut [Point], setup: &DragSetup) {
-    if let (true, Ballast::Unballasted { unloaded_n, rolling: Some(rolling) }) = (method.is_sensorless(), setup.ballast) {
+    if let (true, Ballast::Unballasted { unloaded_n, rolling: Some(rolling) }) = (method.is_sensorless(), setup.ballast)
+    {
         for p in points {
             p.force_n += rolling.value * unloaded_n * p.speed_m_s.signum();
         }
@@ -317,7 +318,15 @@ fn restore_buoyancy(method: Method, points: &mut [Point], setup: &DragSetup) {
 fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSetup, budget: &mut Vec<Part>) {
     let mut part = |name: &str, standard: f64, dof: f64, shape: Shape, shared: &'static str, in_scatter: bool| {
         if standard > 0.0 {
-            budget.push(Part { name: name.to_owned(), shared, standard: standard.abs(), dof, shape, kind: 'B', in_scatter });
+            budget.push(Part {
+                name: name.to_owned(),
+                shared,
+                standard: standard.abs(),
+                dof,
+                shape,
+                kind: 'B',
+                in_scatter,
+            });
         }
     };
     let never = f64::INFINITY;
@@ -354,7 +363,14 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
                 let [low, high] = UNDECLARED_ROLLING.map(|c| c * unloaded_n * per_newton);
                 let shape = Shape::Between(low, high);
                 let standard = one_sided(low, high);
-                part("rolling friction that buoyancy takes off, not declared", standard, never, shape, "campaign", false);
+                part(
+                    "rolling friction that buoyancy takes off, not declared",
+                    standard,
+                    never,
+                    shape,
+                    "campaign",
+                    false,
+                );
             }
         }
     } else {
@@ -446,7 +462,8 @@ mod tests {
     fn a_constant_force_beside_the_drag_is_told() {
         let points: Vec<Point> = (0..3)
             .flat_map(|k| {
-                [0.1, 0.3, -0.5].map(|v: f64| point(k, v, 20.0 * v * v.abs() - (0.6 + 0.01 * f64::from(k)) * v.signum()))
+                [0.1, 0.3, -0.5]
+                    .map(|v: f64| point(k, v, 20.0 * v * v.abs() - (0.6 + 0.01 * f64::from(k)) * v.signum()))
             })
             .collect();
         let offset = offset(&points).unwrap();

@@ -139,3 +139,43 @@ pub fn cells(run: &DragRun<'_>, settings: SteadySettings) -> Vec<Cell> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::carriage::run::BodyState;
+    use crate::carriage::simulate::{Logged, Scenario};
+
+    /// Noise small: what is left is a bump of 0.35 m width seen through cells of 0.1 m, 0.5 N·(0.1/0.35)²/24 = 2 mN, and
+    /// the broken line, twice that.
+    #[test]
+    fn the_map_shows_the_bump_where_it_is() {
+        let mut scenario = Scenario::pinned(20.0);
+        (scenario.run_to_run, scenario.torque_drift, scenario.noise_n) = (1e-5, 1e-5, 1e-5);
+        scenario.pairs = 1;
+        let logged = scenario.runs(1);
+        let cells: Vec<Cell> = logged
+            .iter()
+            .map(Logged::view)
+            .filter(|r| r.body == BodyState::Dry)
+            .flat_map(|r| cells(&r, SteadySettings::default()))
+            .collect();
+        let map = Friction::identify(&cells, true).unwrap();
+        let k = scenario.force_per_volt_n();
+        for i in 0..16 {
+            let x = 1.7 + 0.1 * f64::from(i);
+            let found = k * map.coulomb_at(x);
+            assert!((found - scenario.coulomb_at_n(x)).abs() < 0.01, "{x} m: {found} for {}", scenario.coulomb_at_n(x));
+        }
+        assert!((k * map.viscous_v_s_m - scenario.viscous_n_s_m).abs() < 0.02);
+        assert!(map.bias_v.abs() < 1e-4);
+    }
+
+    #[test]
+    fn one_speed_alone_leaves_the_viscous_part_out() {
+        let cell = |position_m: f64| Cell { position_m, speed_m_s: 0.3, direction: 1.0, command_v: 0.5 };
+        let friction = Friction::identify(&[cell(1.0), cell(2.0)], false).unwrap();
+        assert!((friction.coulomb_v[0] - 0.5).abs() < 1e-12 && friction.viscous_v_s_m == 0.0);
+        assert!(Friction::identify(&[], true).is_none());
+    }
+}

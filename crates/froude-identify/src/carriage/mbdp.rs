@@ -44,35 +44,53 @@ pub fn point(
     force_per_volt_n: f64,
     settings: SteadySettings,
 ) -> Result<Point, Rejected> {
+    let w = on_the_map(wet, friction, settings)?;
+    let left: Vec<f64> = (w.first..w.end)
+        .map(|i| {
+            force_per_volt_n * (wet.command_v[i] - friction.command_v(wet.position_m[i], wet.reference_speed_m_s[i]))
+        })
+        .collect();
+    Ok(of_force(wet, w, &left))
+}
+
+/// The steady point of a wet run by the two-mass model.
+///
+/// # Errors
+///
+/// As [`point`].
+pub fn flexible_point(
+    wet: &DragRun<'_>,
+    friction: &Friction,
+    force_per_volt_n: f64,
+    model: Flexible,
+    settings: SteadySettings,
+) -> Result<Point, Rejected> {
+    let w = on_the_map(wet, friction, settings)?;
+    Ok(of_force(wet, w, w.of(&flexible_force_n(wet, friction, force_per_volt_n, model))))
+}
+
+/// The steady window, if the friction is known there.
+fn on_the_map(wet: &DragRun<'_>, friction: &Friction, settings: SteadySettings) -> Result<Window, Rejected> {
     let w = window(wet, settings)?;
     let [from_m, to_m] = reach(w.of(wet.position_m));
     let [low, high] = friction.range_m;
     if friction.coulomb_v.len() > 1 && (from_m < low - BEYOND_M || to_m > high + BEYOND_M) {
-        return Err(Rejected::OffTheMap {
-            run: wet.id.to_owned(),
-            from_m,
-            to_m,
-            known_from_m: low,
-            known_to_m: high,
-        });
+        return Err(Rejected::OffTheMap { run: wet.id.to_owned(), from_m, to_m, known_from_m: low, known_to_m: high });
     }
-    let left: Vec<f64> = (w.first..w.end)
-        .map(|i| wet.command_v[i] - friction.command_v(wet.position_m[i], wet.reference_speed_m_s[i]))
-        .collect();
-    Ok(in_newtons(wet, w, &left, force_per_volt_n))
+    Ok(w)
 }
 
-fn in_newtons(wet: &DragRun<'_>, w: Window, left_v: &[f64], force_per_volt_n: f64) -> Point {
-    let m = mean(left_v, wet.step_s());
+fn of_force(wet: &DragRun<'_>, w: Window, force_n: &[f64]) -> Point {
+    let m = mean(force_n, wet.step_s());
     Point {
         run: wet.id.to_owned(),
         speed_m_s: mean_speed(wet, w),
-        force_n: force_per_volt_n * m.value,
-        standard_n: force_per_volt_n * m.standard,
+        force_n: m.value,
+        standard_n: m.standard,
         effective_n: m.effective_n,
         pair: wet.pair,
         position_m: reach(w.of(wet.position_m)),
-        trend_n: m.has_trend().then_some(force_per_volt_n * m.trend),
+        trend_n: m.has_trend().then_some(m.trend),
     }
 }
 
@@ -98,21 +116,13 @@ pub fn rigid_force_n(
 
 /// Eq. 2 solved for the resistance, sample by sample, from motor-side signals alone.
 #[must_use]
-pub fn flexible_force_n(
-    run: &DragRun<'_>,
-    friction: &Friction,
-    force_per_volt_n: f64,
-    model: Flexible,
-) -> Vec<f64> {
+pub fn flexible_force_n(run: &DragRun<'_>, friction: &Friction, force_per_volt_n: f64, model: Flexible) -> Vec<f64> {
     let step = run.step_s();
     let motor = Derivatives::of(run.position_m, step, model.span_s);
     // 2a: what the motor puts into the chain, smoothed like the acceleration that it is balanced with.
     let drive = smooth(run.command_v, step, model.span_s);
-    let chain: Vec<f64> = drive
-        .iter()
-        .zip(&motor.acceleration)
-        .map(|(v, a)| force_per_volt_n * v - model.motor_mass_kg * a)
-        .collect();
+    let chain: Vec<f64> =
+        drive.iter().zip(&motor.acceleration).map(|(v, a)| force_per_volt_n * v - model.motor_mass_kg * a).collect();
     // K_e δ + B_e δ̇ = chain: how far the load lags behind the motor.
     let lag = lag_m(&chain, step, model);
     let load_m: Vec<f64> = motor.value.iter().zip(&lag).map(|(q, d)| q - d).collect();
@@ -191,4 +201,117 @@ fn smooth(column: &[f64], step_s: f64, span_s: f64) -> Vec<f64> {
 
 fn half_width(step_s: f64, span_s: f64, n: usize) -> usize {
     ((0.5 * span_s / step_s).round() as usize).clamp(1, (n.max(3) - 1) / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::carriage::run::{BodyState, RunKind};
+
+    const DRAG: f64 = 20.0;
+    const ADDED_KG: f64 = 6.0;
+    const COULOMB_N: f64 = 2.0;
+    const VISCOUS: f64 = 1.5;
+    const N_PER_VOLT: f64 = 5.0;
+    /// Load mode with the motor held: 4 Hz wet, little damped, as a plastic chain has it.
+    const MODEL: Flexible =
+        Flexible { motor_mass_kg: 2.0, load_mass_kg: 4.0, stiffness_n_m: 6300.0, damping_n_s_m: 12.0, span_s: 0.02 };
+
+    /// Motor side on a trapezoid of constant jerk pieces: value, speed, acceleration.
+    fn motor(t: f64) -> [f64; 3] {
+        // Acceleration 1 − cos over 0.5 s up to 0.4 m/s, then constant speed.
+        let (ramp, top) = (0.5, 0.4);
+        let t = t - 0.5;
+        if t <= 0.0 {
+            return [0.0; 3];
+        }
+        let w = std::f64::consts::TAU / ramp;
+        if t < ramp {
+            let a = top / ramp;
+            let s = (w * t).sin();
+            return [a * (0.5 * t * t - (1.0 - (w * t).cos()) / (w * w)), a * (t - s / w), a * (1.0 - (w * t).cos())];
+        }
+        [0.5 * top * ramp + top * (t - ramp), top, 0.0]
+    }
+
+    /// Simulates the load by Runge and Kutta; gives columns and the true resistance.
+    fn logged() -> ([Vec<f64>; 4], Vec<f64>) {
+        let step = 1e-3;
+        let chain = |t: f64, y: f64, u: f64| {
+            let [q, v, _] = motor(t);
+            MODEL.stiffness_n_m * (q - y) + MODEL.damping_n_s_m * (v - u)
+        };
+        // Friction starts with the motion, smoothly enough for a fixed step.
+        let friction = |u: f64| COULOMB_N * (u / 1e-3).tanh() + VISCOUS * u;
+        let acceleration = |t: f64, y: f64, u: f64| {
+            (chain(t, y, u) - friction(u) - DRAG * u * u.abs()) / (MODEL.load_mass_kg + ADDED_KG)
+        };
+        let (mut y, mut u) = (0.0, 0.0);
+        let mut columns: [Vec<f64>; 4] = Default::default();
+        let mut truth = Vec::new();
+        for i in 0..4000 {
+            let t = f64::from(i) * step;
+            let [q, v, a] = motor(t);
+            let command = (MODEL.motor_mass_kg * a + chain(t, y, u)) / N_PER_VOLT;
+            for (column, x) in columns.iter_mut().zip([t, q, v, command]) {
+                column.push(x);
+            }
+            truth.push(DRAG * u * u.abs() + ADDED_KG * acceleration(t, y, u));
+            for k in 0..10 {
+                let (t, h) = (t + 0.1 * step * f64::from(k), 0.1 * step);
+                let (k1y, k1u) = (u, acceleration(t, y, u));
+                let (k2y, k2u) = (u + 0.5 * h * k1u, acceleration(t + 0.5 * h, y + 0.5 * h * k1y, u + 0.5 * h * k1u));
+                let (k3y, k3u) = (u + 0.5 * h * k2u, acceleration(t + 0.5 * h, y + 0.5 * h * k2y, u + 0.5 * h * k2u));
+                let (k4y, k4u) = (u + h * k3u, acceleration(t + h, y + h * k3y, u + h * k3u));
+                y += h / 6.0 * (k1y + 2.0 * k2y + 2.0 * k3y + k4y);
+                u += h / 6.0 * (k1u + 2.0 * k2u + 2.0 * k3u + k4u);
+            }
+        }
+        (columns, truth)
+    }
+
+    /// Both models know masses and friction; only one knows the chain. Compared from 0.1 s after the start (before, the
+    /// tanh of the simulated friction and the sign of the model differ) to 0.5 s after the ramp.
+    #[test]
+    fn on_the_ramp_the_flexible_model_finds_the_force_that_the_rigid_one_smears() {
+        let ([time_s, position_m, reference_speed_m_s, command_v], truth) = logged();
+        let run = DragRun {
+            id: "ramp",
+            time_s: &time_s,
+            position_m: &position_m,
+            reference_speed_m_s: &reference_speed_m_s,
+            command_v: &command_v,
+            force_n: None,
+            kind: RunKind::Tow,
+            body: BodyState::Wet,
+            target_speed_m_s: 0.4,
+            direction: 1.0,
+            pair: 1,
+            is_ballasted: true,
+            hung_weight_n: None,
+        };
+        let friction = Friction {
+            coulomb_v: vec![COULOMB_N / N_PER_VOLT],
+            first_knot_m: 0.0,
+            spacing_m: 1.0,
+            viscous_v_s_m: VISCOUS / N_PER_VOLT,
+            bias_v: 0.0,
+            range_m: [0.0, 2.0],
+        };
+        let rms = |found: &[f64], from: usize, to: usize| {
+            let sum: f64 = found[from..to].iter().zip(&truth[from..to]).map(|(f, t)| (f - t).powi(2)).sum();
+            (sum / (to - from) as f64).sqrt()
+        };
+        let mass = MODEL.motor_mass_kg + MODEL.load_mass_kg;
+        let rigid = rigid_force_n(&run, &friction, N_PER_VOLT, mass, MODEL.span_s);
+        let flexible = flexible_force_n(&run, &friction, N_PER_VOLT, MODEL);
+        let (r, f) = (rms(&rigid, 600, 1500), rms(&flexible, 600, 1500));
+        assert!(f < 0.1 * r && r > 0.2, "rigid {r} N, flexible {f} N");
+        // Once the chain is quiet both say D v².
+        let quiet = DRAG * 0.4 * 0.4;
+        for found in [&rigid, &flexible] {
+            let mean = found[3500..3900].iter().sum::<f64>() / 400.0;
+            assert!((mean - quiet).abs() < 0.02, "{mean} against {quiet}");
+        }
+    }
 }

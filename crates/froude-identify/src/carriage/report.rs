@@ -67,11 +67,9 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let k = setup.force_per_volt_n();
     let differences = wet.iter().map(|w| match dry.iter().find(|d| d.is_partner_of(w)) {
         Some(d) => mcd::point(w, d, k, setup.steady),
-        None => Err(Rejected::NoPartner {
-            run: w.id.to_owned(),
-            pair: w.pair,
-            speed_m_s: w.target_speed_m_s * w.direction,
-        }),
+        None => {
+            Err(Rejected::NoPartner { run: w.id.to_owned(), pair: w.pair, speed_m_s: w.target_speed_m_s * w.direction })
+        }
     });
     if !dry.is_empty() {
         coefficients.extend(coefficient(Method::Mcd, keep(differences, Method::Mcd, &mut rejected), setup, None));
@@ -93,13 +91,13 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let reference = by(Method::Fsm).or(current).or(coefficients.first()).map(|c| c.value);
     let recommended = recommended(&coefficients);
     findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agreement));
-    findings.extend(rejected.iter().map(|(method, why)| {
-        Finding::new(Severity::Warning, "run-left-out", format!("{}: {why}", method.name()))
-    }));
-    let estimates = coefficients
-        .iter()
-        .map(|c| record::estimate(c, setup, runs, recommended == Some(c.method)))
-        .collect();
+    findings.extend(
+        rejected
+            .iter()
+            .map(|(method, why)| Finding::new(Severity::Warning, "run-left-out", format!("{}: {why}", method.name()))),
+    );
+    let estimates =
+        coefficients.iter().map(|c| record::estimate(c, setup, runs, recommended == Some(c.method))).collect();
     Ok(DragReport {
         drag_coefficients: coefficients
             .iter()
@@ -157,7 +155,12 @@ fn model_based(
         Friction::identify(without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1), is_mapped)
     };
     let friction = identify(None)?;
-    let points = keep(wet.iter().map(|w| mbdp::point(w, &friction, k, setup.steady)), method, rejected);
+    let model = setup.flexible.filter(|_| method == Method::MbdpFlexible);
+    let point = |run: &DragRun<'_>| match model {
+        Some(model) => mbdp::flexible_point(run, &friction, k, model, setup.steady),
+        None => mbdp::point(run, &friction, k, setup.steady),
+    };
+    let points = keep(wet.iter().map(|w| point(w)), method, rejected);
     let groups = pairs(&points);
     let type_a = jackknife(groups.len(), |g| {
         let without = identify(Some(groups[g]))?;
@@ -172,7 +175,7 @@ fn model_based(
     });
     let mut out = coefficient(method, points, setup, type_a)?;
     // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
-    let of_nothing: Vec<Point> = dry.iter().filter_map(|d| mbdp::point(d, &friction, k, setup.steady).ok()).collect();
+    let of_nothing: Vec<Point> = dry.iter().filter_map(|d| point(d).ok()).collect();
     if let Some(phantom) = slope(&of_nothing) {
         let scatter = type_a.map_or(f64::INFINITY, |t| t.0);
         if phantom.abs() > scatter {
@@ -265,7 +268,8 @@ fn doubts(
     for c in all {
         let name = c.method.name();
         if let Some(area) = setup.reference_area_m2
-            && let Some(finding) = crate::lint::drag_coefficient(&format!("D_d ({name})"), c.value, setup.density_kg_m3, area)
+            && let Some(finding) =
+                crate::lint::drag_coefficient(&format!("D_d ({name})"), c.value, setup.density_kg_m3, area)
         {
             out.push(finding);
         }
@@ -301,7 +305,11 @@ fn doubts(
             out.push(Finding::new(
                 Severity::Note,
                 "force-drifts-in-window",
-                format!("{name}: in {} of {} windows the force changes by more than chance", trending.len(), c.points.len()),
+                format!(
+                    "{name}: in {} of {} windows the force changes by more than chance",
+                    trending.len(),
+                    c.points.len()
+                ),
             ));
         }
     }

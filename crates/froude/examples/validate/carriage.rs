@@ -83,11 +83,7 @@ impl Errors {
 }
 
 /// Runs campaigns in parallel; `setup` may change what is declared.
-fn campaigns(
-    scenario: &Scenario,
-    seeds: usize,
-    setup: impl Fn(&mut DragSetup) + Sync,
-) -> Vec<DragReport> {
+fn campaigns(scenario: &Scenario, seeds: usize, setup: impl Fn(&mut DragSetup) + Sync) -> Vec<DragReport> {
     (0..seeds)
         .into_par_iter()
         .filter_map(|seed| {
@@ -177,7 +173,9 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
     let agreeing = reports.iter().filter(|r| r.agreement.is_some_and(|a| a.is_within_band())).count();
     claims.holds(
         SECTION,
-        &format!("{head}: scatter promised by dry repeats alone and that of the wet ones agree (95 % band of their ratio)"),
+        &format!(
+            "{head}: scatter promised by dry repeats alone and that of the wet ones agree (95 % band of their ratio)"
+        ),
         "more than 90 % of the campaigns",
         format!("{:.1} %", 100.0 * agreeing as f64 / reports.len() as f64),
         agreeing as f64 > 0.9 * reports.len() as f64,
@@ -192,7 +190,8 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
     );
     let masses: Vec<_> = reports.iter().filter_map(|r| r.added_mass.as_ref()).collect();
     let mean = masses.iter().map(|m| m.mass_kg.value).sum::<f64>() / masses.len() as f64;
-    let hits = masses.iter().filter(|m| (m.interval_95[0]..=m.interval_95[1]).contains(&scenario.added_mass_kg)).count();
+    let hits =
+        masses.iter().filter(|m| (m.interval_95[0]..=m.interval_95[1]).contains(&scenario.added_mass_kg)).count();
     claims.holds(
         SECTION,
         &format!("{head}: water that moves along, from the ramps"),
@@ -214,10 +213,9 @@ fn band(trials: u64) -> (u64, u64) {
 
 /// What the scenario leaves open, as figures without a bar.
 fn variants(claims: &mut Claims, d: f64, seeds: usize) {
-    for (name, out_and_back, viscous_changes) in [
-        ("one way only", false, false),
-        ("out and back, viscous friction changes from run to run too", true, true),
-    ] {
+    for (name, out_and_back, viscous_changes) in
+        [("one way only", false, false), ("out and back, viscous friction changes from run to run too", true, true)]
+    {
         let scenario = Scenario { out_and_back, viscous_changes, ..Scenario::pinned(d) };
         let reports = campaigns(&scenario, seeds, |_| {});
         let text = of(&reports, Method::Mcd, d).text();
@@ -341,10 +339,12 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
             let mut live = OnLine::new(0.018, CALIBRATED_TO, 8);
             let mut all = Vec::new();
             for pair in 1..=scenario.pairs {
-                for wet in runs.iter().filter(|r| r.pair == pair && r.body == froude::identify::carriage::BodyState::Wet) {
-                    let dry = runs.iter().find(|r| {
-                        r.body == froude::identify::carriage::BodyState::Dry && r.is_partner_of(wet)
-                    })?;
+                for wet in
+                    runs.iter().filter(|r| r.pair == pair && r.body == froude::identify::carriage::BodyState::Wet)
+                {
+                    let dry = runs
+                        .iter()
+                        .find(|r| r.body == froude::identify::carriage::BodyState::Dry && r.is_partner_of(wet))?;
                     let point = mcd::point(wet, dry, k, setup.steady).ok()?;
                     live.push(&point);
                     all.push(point);
@@ -354,10 +354,8 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
                     let shown = (status.value - d).abs() <= status.half_width?;
                     let mut setup = setup.clone();
                     setup.speed_scale_relative = 0.0;
-                    setup.calibration =
-                        Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
-                    let plain =
-                        froude::identify::carriage::coefficient::coefficient(Method::Mcd, all, &setup, None)?;
+                    setup.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
+                    let plain = froude::identify::carriage::coefficient::coefficient(Method::Mcd, all, &setup, None)?;
                     let [low, high] = plain.interval_95?;
                     return Some((pair, shown, (low..=high).contains(&d)));
                 }
