@@ -12,6 +12,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod bootstrap;
+pub mod carriage;
 pub mod compare;
 pub mod dataset;
 pub mod diagnosis;

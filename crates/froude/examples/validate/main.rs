@@ -4,6 +4,7 @@
 //! `book/src/validation.md`. A line that misses its bar fails the run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
 
+mod carriage;
 mod claims;
 mod coverage;
 mod eiv;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
         rm2::all(claims, &root)?;
         kvlcc2::hmri(claims, &shared)?;
         kvlcc2::fhr(claims, &shared)?;
+        carriage::all(claims, if full { 400 } else { 60 })?;
         coverage::all(claims, &root, repetitions)?;
         Ok(())
     };

@@ -1,0 +1,348 @@
+//! Newtons a volt from a known weight over a pulley, encoder scale from a known distance, polarity from a jog.
+//!
+//! **Setting.** The carriage creeps at one speed both ways; a weight W pulls towards −y through a cord over a pulley. With
+//! s = ±1 the direction of motion, f the carriage's friction and λW the pulley's, the chain must give, along the motion,
+//! f + sW + λW. As long as that is positive the motor drives and its command is s·v_c = (f + sW + λW)/k.
+//!
+//! - Both directions with W below the friction: the half-difference of s·v_c over s = ±1 is W/k; carriage and pulley cancel.
+//! - Heavier weights going down drive the motor backward through the gear, which loses the other way: these runs do not
+//!   tell k. Their lifting runs do, against runs with less weight, once the pulley's loss λ is known: from light
+//!   weights both ways, or declared.
+//!
+//! Fitted by least squares over all driving runs: s·v_c = a₀ + a₁ sW + a₂ W with a₁ = 1/k, a₂ = λ/k, the declared loss as
+//! a prior of a₂.
+//! Position-dependent friction cancels only if all runs cover the same positions.
+
+use froude_fit::distribution::coverage_factor;
+use froude_fit::faer::Mat;
+use froude_fit::{CovarianceKind, Fit, Options, Prior, Problem, fit};
+
+use super::error::DragError;
+use super::fsm::reach;
+use super::run::{DragRun, RunKind, Uncertain};
+use super::steady::{SteadySettings, mean, window};
+
+/// The pulley's loss where both directions with light weights do not measure it, and nobody declared it: a ball bearing
+/// with a thin cord loses some 0.5 to 1.5 %.
+pub const PULLEY_LOSS: Uncertain = Uncertain::new(0.01, 0.003);
+
+/// Newtons at the chain for a volt of the drive command, driving forward.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ForcePerVolt {
+    /// Its value, N/V.
+    pub force_per_volt_n: Uncertain,
+}
+
+/// What is declared about a calibration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CalibrationSetup {
+    /// (n/R)·K_T·K_amp, N/V: the efficiency is told against it.
+    pub ideal_force_per_volt_n: f64,
+    /// Standard uncertainty of the weights, as a part (mass, gravity, buoyancy in air).
+    pub weight_relative: f64,
+    /// Friction of the pulley as a part of the weight, where the runs do not measure it.
+    pub pulley_loss: Uncertain,
+    /// How windows are chosen.
+    pub steady: SteadySettings,
+}
+
+/// Result of the calibration runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// Newtons a volt.
+    pub force_per_volt: ForcePerVolt,
+    /// Its 95 % interval, N/V.
+    pub interval_95: [f64; 2],
+    /// Efficiency that it stands for: over the ideal newtons a volt.
+    pub efficiency: Uncertain,
+    /// Part of the standard uncertainty from the scatter of the runs and the pulley, N/V.
+    pub type_a: f64,
+    /// Pulley's loss: as declared, sharpened by light weights both ways.
+    pub pulley_loss: Uncertain,
+    /// Whether any run lowered a weight under power.
+    pub is_pulley_measured: bool,
+    /// Friction of the carriage at the creeping speed, N.
+    pub friction_n: f64,
+    /// Driving runs used.
+    pub used: usize,
+    /// Runs in which the weight drove the motor; left out.
+    pub overhauled: usize,
+    /// Sentences for the reader.
+    pub notes: Vec<String>,
+}
+
+/// Command over a steady window, with the weight's pull.
+struct Reading {
+    direction: f64,
+    weight_n: f64,
+    along_v: f64,
+}
+
+/// Calibrates newtons a volt from runs with known weights (and the same carriage without any).
+///
+/// Runs of [`RunKind::Calibration`]; a missing weight counts as none hung.
+///
+/// # Errors
+///
+/// [`DragError::Calibration`] with what is missing: weights, directions, repeats.
+pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calibration, DragError> {
+    let readings = readings(runs, setup)?;
+    let total = readings.len();
+    let driving: Vec<Reading> = readings.into_iter().filter(|r| r.along_v > 0.0).collect();
+    let overhauled = total - driving.len();
+    let weights = reach(&driving.iter().map(|r| r.weight_n).collect::<Vec<_>>());
+    if driving.is_empty() || weights[1] <= 0.0 {
+        return Err(DragError::Calibration(
+            "no run in which the motor drives against a known weight; hang one over the pulley and lift it".to_owned(),
+        ));
+    }
+    let is_pulley_measured = driving.iter().any(|r| r.weight_n > 0.0 && r.direction < 0.0);
+    if !is_pulley_measured && weights[0] > 0.9 * weights[1] {
+        return Err(DragError::Calibration(format!(
+            "{total} runs, all lifting {:.2} N: friction and weight cannot be told apart; add runs without weight, or lower \
+             a weight that is lighter than the friction",
+            weights[1]
+        )));
+    }
+    let loss = setup.pulley_loss;
+    // The declared loss is of the weight, the coefficient is in volts: it takes k from a first fit.
+    let first = fitted(&driving, loss, setup.ideal_force_per_volt_n)?;
+    let k = 1.0 / take(&first, 1)?.value;
+    let fitted = fitted(&driving, loss, k)?;
+    let inverse = take(&fitted, 1)?;
+    let k = 1.0 / inverse.value;
+    let type_a = k * k * inverse.standard;
+    let from_weight = k * setup.weight_relative;
+    let entries = [(type_a * type_a, inverse.dof), (from_weight * from_weight, f64::INFINITY)];
+    let combined = froude_fit::propagate::expanded(&entries, 0.95);
+    let slope = take(&fitted, 2)?;
+    let pulley_loss = Uncertain { value: slope.value * k, standard: slope.standard * k, dof: slope.dof };
+    let force = Uncertain { value: k, standard: combined.standard, dof: combined.dof };
+    let ideal = setup.ideal_force_per_volt_n;
+    let friction_v = take(&fitted, 0)?.value;
+    Ok(Calibration {
+        force_per_volt: ForcePerVolt { force_per_volt_n: force },
+        interval_95: [k - combined.expanded, k + combined.expanded],
+        efficiency: Uncertain { value: k / ideal, standard: force.standard / ideal, dof: force.dof },
+        type_a,
+        pulley_loss,
+        is_pulley_measured,
+        friction_n: friction_v * k,
+        used: driving.len(),
+        overhauled,
+        notes: notes(force, ideal, overhauled, is_pulley_measured, loss),
+    })
+}
+
+/// Least squares of friction, 1/k and λ/k, the declared loss as a prior that light weights both ways sharpen.
+fn fitted(driving: &[Reading], loss: Uncertain, force_per_volt_n: f64) -> Result<Fit, DragError> {
+    let design = Mat::from_fn(driving.len(), 3, |i, j| match j {
+        0 => 1.0,
+        1 => driving[i].direction * driving[i].weight_n,
+        _ => driving[i].weight_n,
+    });
+    let response = driving.iter().map(|r| r.along_v).collect();
+    let names = ["friction", "1/k", "loss/k"].map(str::to_owned).to_vec();
+    let prior = Prior { index: 2, value: loss.value / force_per_volt_n, standard: loss.standard / force_per_volt_n };
+    // Heavy weights scatter more: K_T drifts in proportion to the force.
+    let options = Options { priors: vec![prior], covariance: CovarianceKind::Hc3, ..Options::default() };
+    fit(&Problem::single(design, response, names), &options).map_err(|e| DragError::Calibration(e.to_string()))
+}
+
+fn take(fitted: &Fit, j: usize) -> Result<Uncertain, DragError> {
+    let c = &fitted.coefficients[j];
+    match (c.value, c.standard, c.dof) {
+        (Some(value), Some(standard), Some(dof)) => Ok(Uncertain { value, standard, dof }),
+        _ => Err(DragError::Calibration(format!(
+            "{} driving runs do not determine {} with any to spare; repeat every weight at least twice",
+            fitted.residuals.len(),
+            c.name
+        ))),
+    }
+}
+
+fn readings(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Vec<Reading>, DragError> {
+    let mut out = Vec::new();
+    let mut refused = String::new();
+    for run in runs.iter().filter(|r| r.kind == RunKind::Calibration) {
+        match window(run, setup.steady) {
+            Ok(w) => out.push(Reading {
+                direction: run.direction,
+                weight_n: run.hung_weight_n.unwrap_or(0.0),
+                along_v: run.direction * mean(w.of(run.command_v), run.step_s()).value,
+            }),
+            Err(why) => refused = why.to_string(),
+        }
+    }
+    if out.is_empty() {
+        let why = if refused.is_empty() { "no calibration run".to_owned() } else { refused };
+        return Err(DragError::Calibration(why));
+    }
+    Ok(out)
+}
+
+fn notes(force: Uncertain, ideal: f64, overhauled: usize, is_pulley_measured: bool, loss: Uncertain) -> Vec<String> {
+    let efficiency = force.value / ideal;
+    let half = coverage_factor(0.95, force.dof) * force.relative();
+    let mut out = vec![format!(
+        "{:.4} N a volt ± {:.2} % (95 %): the gear gives {:.1} % of the ideal {ideal:.3} N a volt",
+        force.value,
+        100.0 * half,
+        100.0 * efficiency
+    )];
+    if efficiency > 1.0 {
+        out.push(format!(
+            "that is an efficiency of {efficiency:.3}: look at K_T, the amplifier's gain, the sprocket's radius and the weight"
+        ));
+    }
+    if overhauled > 0 {
+        out.push(format!(
+            "{overhauled} runs were left out: the weight drove the motor, and a gear loses differently that way; weights \
+             below the carriage's friction can be lowered under power"
+        ));
+    }
+    if !is_pulley_measured {
+        out.push(format!(
+            "only lifting runs: the pulley's loss is taken as declared, {:.1} ± {:.1} % of the weight",
+            100.0 * loss.value,
+            100.0 * loss.standard
+        ));
+    }
+    out
+}
+
+/// Metres for a unit of encoder position, from a known distance: measured marks against logged positions.
+///
+/// `logged_m` are end positions less start positions by the declared scale, one per traverse; `known_m` the distance
+/// between the marks with its uncertainty. The result multiplies every position and speed.
+///
+/// # Errors
+///
+/// [`DragError::Calibration`] below two traverses, or for a distance that is not positive.
+pub fn encoder_scale(logged_m: &[f64], known_m: Uncertain) -> Result<Uncertain, DragError> {
+    if logged_m.len() < 2 {
+        return Err(DragError::Calibration(format!(
+            "{} traverse between the marks; two are needed to see how well they repeat",
+            logged_m.len()
+        )));
+    }
+    if !(known_m.value > 0.0) {
+        return Err(DragError::Calibration(format!("the distance between the marks is {} m", known_m.value)));
+    }
+    let n = logged_m.len() as f64;
+    let average = logged_m.iter().map(|x| x.abs()).sum::<f64>() / n;
+    let variance = logged_m.iter().map(|x| (x.abs() - average).powi(2)).sum::<f64>() / (n - 1.0) / n;
+    let scale = known_m.value / average;
+    let entries = [(variance / (average * average), n - 1.0), (known_m.relative() * known_m.relative(), known_m.dof)];
+    let relative = entries.iter().map(|e| e.0).sum::<f64>().sqrt();
+    Ok(Uncertain { value: scale, standard: scale * relative, dof: froude_fit::propagate::effective_dof(&entries) })
+}
+
+/// What a jog says about polarity.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Jog {
+    /// A positive command moved the encoder up.
+    Right,
+    /// A positive command moved the encoder down: motor or encoder is connected the wrong way round, and the position
+    /// loop would run away.
+    Reversed {
+        /// How far the carriage had gone when it was plain, m.
+        after_m: f64,
+    },
+    /// The command never overcame the friction.
+    NoMotion {
+        /// Largest command, V.
+        largest_v: f64,
+    },
+}
+
+/// Way after which a jog is decided, m: 400 counts of the paper's encoder.
+pub const JOG_DECIDED_M: f64 = 1e-3;
+
+/// Evaluates a jog: does the encoder follow the command's sign? Decided within [`JOG_DECIDED_M`].
+#[must_use]
+pub fn jog(position_m: &[f64], command_v: &[f64]) -> Jog {
+    let start = position_m.first().copied().unwrap_or(0.0);
+    let mut pushed = 0.0;
+    for (x, v) in position_m.iter().zip(command_v) {
+        let way = x - start;
+        if way.abs() >= JOG_DECIDED_M {
+            return if way * pushed > 0.0 { Jog::Right } else { Jog::Reversed { after_m: way.abs() } };
+        }
+        pushed += v;
+    }
+    Jog::NoMotion { largest_v: command_v.iter().fold(0.0, |m: f64, v| m.max(v.abs())) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::carriage::simulate::{Logged, Scenario};
+
+    fn quiet() -> Scenario {
+        let mut s = Scenario::pinned(20.0);
+        (s.run_to_run, s.torque_drift, s.noise_n) = (1e-4, 1e-4, 1e-4);
+        s
+    }
+
+    fn calibrated(
+        scenario: &Scenario,
+        weights: &[f64],
+        keep: impl Fn(&DragRun<'_>) -> bool,
+    ) -> Result<Calibration, DragError> {
+        let logged = scenario.calibration_runs(weights, 4, 1);
+        let runs: Vec<_> = logged.iter().map(Logged::view).filter(keep).collect();
+        let setup = CalibrationSetup {
+            ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
+            weight_relative: 0.0,
+            pulley_loss: PULLEY_LOSS,
+            steady: SteadySettings::default(),
+        };
+        calibrate(&runs, &setup)
+    }
+
+    /// Without noise to speak of, only the pulley's declared loss (0.3 % of the weight) is left, and light weights lowered
+    /// under power measure it.
+    #[test]
+    fn a_known_weight_finds_the_gears_efficiency() {
+        let mut scenario = quiet();
+        scenario.pulley_loss = 0.013; // one standard uncertainty beside the declared one
+        let heavy = calibrated(&scenario, &[0.0, 20.0], |_| true).unwrap();
+        let both = calibrated(&scenario, &[0.0, 2.0, 20.0], |_| true).unwrap();
+        let off = |c: &Calibration| c.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
+        assert!((off(&heavy) + 0.003).abs() < 4e-4, "{}", off(&heavy));
+        assert!(off(&both).abs() < 4e-4, "{}", off(&both));
+        assert!((both.pulley_loss.value - 0.013).abs() < 5e-4);
+        assert!((both.efficiency.value - 0.8).abs() < 1e-3);
+        // Lowering 20 N drives the motor: four runs that do not count.
+        assert_eq!((heavy.overhauled, heavy.used), (4, 12));
+    }
+
+    #[test]
+    fn lifting_one_weight_only_is_refused_with_what_to_add() {
+        let why = calibrated(&quiet(), &[20.0], |r| r.direction > 0.0).unwrap_err();
+        assert_eq!(
+            why.to_string(),
+            "calibration: 4 runs, all lifting 20.00 N: friction and weight cannot be told apart; add runs without weight, or \
+             lower a weight that is lighter than the friction"
+        );
+    }
+
+    #[test]
+    fn a_jog_with_motor_or_encoder_reversed_is_caught_within_a_millimetre_or_two() {
+        let command = vec![0.3; 200];
+        let there: Vec<f64> = (0..200).map(|i| 5e-5 * f64::from(i)).collect();
+        let back: Vec<f64> = there.iter().map(|x| -x).collect();
+        assert_eq!(jog(&there, &command), Jog::Right);
+        assert!(matches!(jog(&back, &command), Jog::Reversed { after_m } if after_m < 2e-3));
+        assert_eq!(jog(&[0.0; 200], &command), Jog::NoMotion { largest_v: 0.3 });
+    }
+
+    #[test]
+    fn a_known_distance_scales_the_encoder() {
+        let scale = encoder_scale(&[2.002, -2.001, 2.003, -2.002], Uncertain::new(2.0, 0.0005)).unwrap();
+        assert!((scale.value - 2.0 / 2.002).abs() < 1e-12);
+        // 0.5 mm of 2 m, and a scatter of 0.8 mm over four: 0.25e-3 and 0.2e-3.
+        assert!((scale.standard / scale.value - 3.2e-4).abs() < 2e-5, "{}", scale.standard / scale.value);
+    }
+}

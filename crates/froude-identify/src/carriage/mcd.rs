@@ -1,0 +1,91 @@
+//! Motor current difference, eq. 8: the command of the wet run less that of the dry run *at the same positions*.
+//!
+//! Friction that depends on position is in both and cancels; what differs from run to run stays and is the scatter of
+//! the pairs. The difference is taken where both runs are steady.
+
+use super::coefficient::Point;
+use super::fsm::{mean_speed, reach};
+use super::run::DragRun;
+use super::steady::{Rejected, SteadySettings, Window, mean, window};
+
+/// Shortest stretch of positions in common, as part of the wet window.
+const SHARED: f64 = 0.5;
+
+/// The steady point of a wet and a dry run, in newtons by `force_per_volt_n`.
+///
+/// # Errors
+///
+/// [`Rejected`] when one of them has no steady window, or they share too little of the tank.
+pub fn point(
+    wet: &DragRun<'_>,
+    dry: &DragRun<'_>,
+    force_per_volt_n: f64,
+    settings: SteadySettings,
+) -> Result<Point, Rejected> {
+    let in_wet = window(wet, settings)?;
+    let in_dry = window(dry, settings)?;
+    let [wet_low, wet_high] = reach(in_wet.of(wet.position_m));
+    let [dry_low, dry_high] = reach(in_dry.of(dry.position_m));
+    let shared_m = wet_high.min(dry_high) - wet_low.max(dry_low);
+    let needed_m = SHARED * (wet_high - wet_low);
+    if shared_m < needed_m {
+        return Err(Rejected::NoOverlap {
+            wet: wet.id.to_owned(),
+            dry: dry.id.to_owned(),
+            shared_m: shared_m.max(0.0),
+            needed_m,
+        });
+    }
+    let (difference_v, used) = difference(wet, in_wet, dry, in_dry);
+    let m = mean(&difference_v, wet.step_s());
+    Ok(Point {
+        run: wet.id.to_owned(),
+        speed_m_s: mean_speed(wet, used),
+        force_n: force_per_volt_n * m.value,
+        standard_n: force_per_volt_n * m.standard,
+        effective_n: m.effective_n,
+        pair: wet.pair,
+        position_m: reach(used.of(wet.position_m)),
+        trend_n: m.has_trend().then_some(force_per_volt_n * m.trend),
+    })
+}
+
+/// Wet less dry command, V, at the samples of the wet window whose positions the dry window reaches.
+///
+/// The dry command is interpolated on position. Samples in which the dry carriage did not get further (encoder steps,
+/// a reversal by vibration) are passed over.
+#[must_use]
+pub fn difference(wet: &DragRun<'_>, in_wet: Window, dry: &DragRun<'_>, in_dry: Window) -> (Vec<f64>, Window) {
+    let s = wet.direction;
+    let (position, command) = (in_dry.of(dry.position_m), in_dry.of(dry.command_v));
+    let mut out = Vec::with_capacity(in_wet.len());
+    let (mut first, mut end) = (in_wet.first, in_wet.first);
+    let mut last = 0; // the furthest dry sample at or behind the wet position
+    let mut next = 0; // the first one beyond it
+    for i in in_wet.first..in_wet.end {
+        let here = s * wet.position_m[i];
+        while next < position.len() && s * position[next] <= here {
+            if s * position[next] >= s * position[last] {
+                last = next;
+            }
+            next += 1;
+        }
+        if next == position.len() {
+            break;
+        }
+        if next == 0 {
+            continue;
+        }
+        let (low, high) = (s * position[last], s * position[next]);
+        if high <= low || here < low {
+            continue;
+        }
+        let part = (here - low) / (high - low);
+        if out.is_empty() {
+            first = i;
+        }
+        out.push(wet.command_v[i] - (command[last] + part * (command[next] - command[last])));
+        end = i + 1;
+    }
+    (out, Window { first, end })
+}

@@ -1,0 +1,87 @@
+//! D_d and C_D as an estimate record.
+
+use froude_records::estimate::{Coefficient as Recorded, Diagnostics, Estimate, Law, Measured, Range, Status};
+use indexmap::IndexMap;
+
+use super::coefficient::{Coefficient, Method};
+use super::run::{DragRun, DragSetup, Efficiency};
+
+/// The record of one method's result.
+pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>], recommended: bool) -> Estimate {
+    let mut coefficients = IndexMap::new();
+    let recorded = |scale: f64, unit: &str| Recorded {
+        value: Some(c.value * scale),
+        unit: unit.to_owned(),
+        status: Status::Free,
+        standard_uncertainty: c.standard.map(|u| u * scale),
+        type_a: c.type_a.map(|u| u * scale),
+        type_b: Some(c.type_b * scale),
+        interval_95: c.interval_95.map(|[low, high]| [low * scale, high * scale]),
+        effective_dof: Some(c.dof).filter(|d| d.is_finite()),
+    };
+    coefficients.insert("D_d".to_owned(), recorded(1.0, "N s^2/m^2"));
+    let mut geometry = IndexMap::new();
+    if let Some(area) = setup.reference_area_m2 {
+        coefficients.insert("C_D".to_owned(), recorded(2.0 / (setup.density_kg_m3 * area), "1"));
+        geometry.insert("A".to_owned(), Measured { value: area, unit: "m^2".to_owned() });
+    }
+    let mut constants = IndexMap::new();
+    if c.method.is_sensorless() {
+        let value = setup.force_per_volt_n();
+        constants.insert("force_per_volt".to_owned(), Measured { value, unit: "N/V".to_owned() });
+    }
+    let speeds = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s.abs()).collect::<Vec<_>>());
+    let mut validity = IndexMap::new();
+    let range = Range { low: speeds[0], high: speeds[1], unit: "m/s".to_owned() };
+    validity.insert("speed".to_owned(), range);
+    Estimate {
+        id: format!("{}/{}", setup.name, c.method.name()),
+        source: setup.name.clone(),
+        kind: "towing".to_owned(),
+        model: format!("drag_{}", c.method.name()),
+        law: Law { version: 1, constants, formulas: IndexMap::new() },
+        geometry,
+        density: Some(Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() }),
+        frame: "along the chain; F = D_d v|v| resists the motion".to_owned(),
+        reference_point: "body centre".to_owned(),
+        method: format!("{}; least squares over v|v| through the origin", c.method.words()),
+        covariance_kind: "jackknife over pairs".to_owned(),
+        dof: std::iter::once(("f_x".to_owned(), c.budget.iter().find(|p| p.kind == 'A').map(|p| p.dof))).collect(),
+        sigma: IndexMap::new(),
+        n_observations: c.points.len(),
+        coefficients,
+        covariance: None,
+        undetermined: Vec::new(),
+        validity,
+        diagnostics: Diagnostics { notes: notes(c, setup, runs), ..Diagnostics::default() },
+        recommended,
+        reason: None,
+    }
+}
+
+/// The budget and what the value rests on, in sentences.
+fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) -> Vec<String> {
+    let mut out: Vec<String> = c
+        .budget
+        .iter()
+        .map(|p| {
+            let held = if p.in_scatter { ", in the scatter and not added" } else { "" };
+            format!(
+                "{} (type {}, shared by {}): {:.4} N s^2/m^2, {:.2} % of D_d{held}",
+                p.name,
+                p.kind,
+                p.shared,
+                p.standard,
+                100.0 * p.standard / c.value.abs()
+            )
+        })
+        .collect();
+    if c.method.is_sensorless() && setup.calibration.is_none() && setup.efficiency == Efficiency::Undeclared {
+        out.push("not calibrated: eq. 8 and 9 as printed give F/η".to_owned());
+    }
+    if c.method == Method::Fsm {
+        out.push("the sensor also carries what hangs below it beside the body".to_owned());
+    }
+    out.push(format!("{} runs given, {} points used, {} pairs", runs.len(), c.points.len(), c.pairs));
+    out
+}

@@ -1,0 +1,376 @@
+//! All methods side by side over one campaign: the paper's Table IV with what it lacked.
+
+use froude_records::estimate::Estimate;
+use froude_records::finding::{Finding, Severity};
+
+use super::added_mass::{AddedMass, added_mass};
+use super::coefficient::{Coefficient, Method, Part, Point, Shape, coefficient, jackknife, pairs, slope};
+use super::detectability::{Agreement, Detectability, agreement, predict};
+use super::error::DragError;
+use super::friction::{Cell, Friction, cells};
+use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
+use super::steady::Rejected;
+use super::{fsm, mbdp, mcd, record};
+
+/// Fewer pairs than this have an interval that is mostly Student's t.
+const FEW_PAIRS: usize = 4;
+/// A constant force beside the drag is told when it exceeds this many standard uncertainties of its own …
+const OFFSET_TOLD: f64 = 3.0;
+/// … and moves D_d by more than this part of it.
+const OFFSET_MATTERS: f64 = 0.005;
+
+/// What the runs say about the drag.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DragReport {
+    /// D_d by every method that the runs allow: FSM, MCD, MBDP constant, mapped, flexible.
+    pub coefficients: Vec<Coefficient>,
+    /// C_D of each, with its interval, where an area is declared; same order.
+    pub drag_coefficients: Vec<Option<(f64, Option<[f64; 2]>)>>,
+    /// Each D_d over that of the reference method (force sensor, else MCD); same order.
+    pub ratios: Vec<f64>,
+    /// The method whose estimate is recommended.
+    pub recommended: Option<Method>,
+    /// What the dry repeats promised.
+    pub detectability: Option<Detectability>,
+    /// Whether the wet repeats kept it.
+    pub agreement: Option<Agreement>,
+    /// Water that moves along.
+    pub added_mass: Option<AddedMass>,
+    /// Runs that gave no point, with the method.
+    pub rejected: Vec<(Method, Rejected)>,
+    /// What is doubtful.
+    pub findings: Vec<Finding>,
+    /// The coefficients as records.
+    pub estimates: Vec<Estimate>,
+}
+
+/// Reduces a campaign's runs to D_d and C_D by every method that they allow.
+///
+/// # Errors
+///
+/// [`DragError`] for columns of unequal length, samples that are not finite, impossible declarations, no wet run. A run
+/// without a usable window is no error: it is left out and told.
+pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport, DragError> {
+    check(runs, setup)?;
+    let wet: Vec<&DragRun<'_>> = tows(runs, BodyState::Wet);
+    let dry: Vec<&DragRun<'_>> = tows(runs, BodyState::Dry);
+    if wet.is_empty() {
+        return Err(DragError::NoWetRuns { n: runs.len() });
+    }
+    let mut rejected = Vec::new();
+    let mut findings = Vec::new();
+    let mut coefficients = Vec::new();
+    if wet.iter().any(|r| r.force_n.is_some()) {
+        let all = wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
+        coefficients.extend(coefficient(Method::Fsm, keep(all, Method::Fsm, &mut rejected), setup, None));
+    }
+    let k = setup.force_per_volt_n();
+    let differences = wet.iter().map(|w| match dry.iter().find(|d| d.is_partner_of(w)) {
+        Some(d) => mcd::point(w, d, k, setup.steady),
+        None => {
+            Err(Rejected::NoPartner { run: w.id.to_owned(), pair: w.pair, speed_m_s: w.target_speed_m_s * w.direction })
+        }
+    });
+    if !dry.is_empty() {
+        coefficients.extend(coefficient(Method::Mcd, keep(differences, Method::Mcd, &mut rejected), setup, None));
+    }
+    let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
+    let for_constant = if sweeps.is_empty() { &dry } else { &sweeps };
+    model_based(Method::MbdpConstant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings)
+        .into_iter()
+        .for_each(|c| coefficients.push(c));
+    let everywhere: Vec<&DragRun<'_>> = dry.iter().chain(&sweeps).copied().collect();
+    let mapped = [Method::MbdpMapped, Method::MbdpFlexible];
+    for method in mapped.into_iter().filter(|m| *m == Method::MbdpMapped || setup.flexible.is_some()) {
+        coefficients.extend(model_based(method, &wet, &everywhere, &dry, setup, &mut rejected, &mut findings));
+    }
+    let by = |method: Method| coefficients.iter().find(|c| c.method == method);
+    let current = by(Method::Mcd);
+    let detectability = predict(runs, current.map_or(1, differences_per_speed), setup);
+    let agreement = current.zip(detectability.as_ref()).and_then(|(c, d)| agreement(&c.points, d, setup));
+    let reference = by(Method::Fsm).or(current).or(coefficients.first()).map(|c| c.value);
+    let recommended = recommended(&coefficients);
+    findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agreement));
+    findings.extend(
+        rejected
+            .iter()
+            .map(|(method, why)| Finding::new(Severity::Warning, "run-left-out", format!("{}: {why}", method.name()))),
+    );
+    let estimates =
+        coefficients.iter().map(|c| record::estimate(c, setup, runs, recommended == Some(c.method))).collect();
+    Ok(DragReport {
+        drag_coefficients: coefficients
+            .iter()
+            .map(|c| setup.reference_area_m2.map(|a| c.drag_coefficient(setup.density_kg_m3, a)))
+            .collect(),
+        ratios: coefficients.iter().map(|c| c.value / reference.unwrap_or(f64::NAN)).collect(),
+        recommended,
+        detectability,
+        agreement,
+        added_mass: added_mass(runs, setup),
+        rejected,
+        findings,
+        estimates,
+        coefficients,
+    })
+}
+
+fn tows<'r, 'a>(runs: &'r [DragRun<'a>], body: BodyState) -> Vec<&'r DragRun<'a>> {
+    runs.iter().filter(|r| r.kind == RunKind::Tow && r.body == body).collect()
+}
+
+/// The points that came out; the others are noted.
+fn keep(
+    all: impl Iterator<Item = Result<Point, Rejected>>,
+    method: Method,
+    rejected: &mut Vec<(Method, Rejected)>,
+) -> Vec<Point> {
+    let mut out = Vec::new();
+    for point in all {
+        match point {
+            Ok(point) => out.push(point),
+            Err(why) => rejected.push((method, why)),
+        }
+    }
+    out
+}
+
+/// MBDP: the friction is identified anew without each pair, so that its own scatter is in the type A.
+fn model_based(
+    method: Method,
+    wet: &[&DragRun<'_>],
+    frictional: &[&DragRun<'_>],
+    dry: &[&DragRun<'_>],
+    setup: &DragSetup,
+    rejected: &mut Vec<(Method, Rejected)>,
+    findings: &mut Vec<Finding>,
+) -> Option<Coefficient> {
+    let is_mapped = method != Method::MbdpConstant;
+    let k = setup.force_per_volt_n();
+    let of_runs = |runs: &[&DragRun<'_>]| -> Vec<(u32, Vec<Cell>)> {
+        runs.iter().map(|r| (r.pair, cells(r, setup.steady))).collect()
+    };
+    let (without_drag, with_drag) = (of_runs(frictional), of_runs(wet));
+    let identify = |skip: Option<u32>| {
+        Friction::identify(without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1), is_mapped)
+    };
+    let friction = identify(None)?;
+    let model = setup.flexible.filter(|_| method == Method::MbdpFlexible);
+    let point = |run: &DragRun<'_>| match model {
+        Some(model) => mbdp::flexible_point(run, &friction, k, model, setup.steady),
+        None => mbdp::point(run, &friction, k, setup.steady),
+    };
+    let points = keep(wet.iter().map(|w| point(w)), method, rejected);
+    let groups = pairs(&points);
+    let type_a = jackknife(groups.len(), |g| {
+        let without = identify(Some(groups[g]))?;
+        let (mut xx, mut xy) = (0.0, 0.0);
+        for (_, cells) in with_drag.iter().filter(|c| c.0 != groups[g] && groups.contains(&c.0)) {
+            let x = cells.first().map_or(0.0, |c| c.speed_m_s * c.speed_m_s.abs());
+            let left = cells.iter().map(|c| c.command_v - without.command_v(c.position_m, c.speed_m_s)).sum::<f64>();
+            xx += x * x;
+            xy += x * k * left / cells.len().max(1) as f64;
+        }
+        (xx > 0.0).then(|| xy / xx)
+    });
+    let mut out = coefficient(method, points, setup, type_a)?;
+    // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
+    let of_nothing: Vec<Point> = dry.iter().filter_map(|d| point(d).ok()).collect();
+    if let Some(phantom) = slope(&of_nothing) {
+        let scatter = type_a.map_or(f64::INFINITY, |t| t.0);
+        if phantom.abs() > scatter {
+            let from = friction.range_m;
+            findings.push(Finding::new(
+                Severity::Warning,
+                "friction-elsewhere",
+                format!(
+                    "{}: the friction identified from {:.2} to {:.2} m leaves a drag of {phantom:.3} N s^2/m^2 ({:.1} % of D_d) \
+                     on the dry tows; identify it where the body is towed, or use the map",
+                    method.name(),
+                    from[0],
+                    from[1],
+                    100.0 * phantom / out.value
+                ),
+            ));
+            out.widen(Part {
+                name: "friction where it was not identified, left as it is".to_owned(),
+                shared: "campaign",
+                standard: phantom.abs(),
+                dof: f64::INFINITY,
+                shape: Shape::Bell,
+                kind: 'B',
+                in_scatter: false,
+            });
+        }
+    }
+    Some(out)
+}
+
+/// Differences at one speed: both directions and all pairs.
+fn differences_per_speed(c: &Coefficient) -> usize {
+    let fastest = c.points.iter().map(|p| p.speed_m_s.abs()).fold(0.0, f64::max);
+    c.points.iter().filter(|p| p.speed_m_s.abs() > 0.99 * fastest).count()
+}
+
+/// The narrowest interval among the methods that need no model of the friction.
+fn recommended(all: &[Coefficient]) -> Option<Method> {
+    all.iter()
+        .filter(|c| matches!(c.method, Method::Fsm | Method::Mcd))
+        .filter_map(|c| c.relative_half_width().map(|h| (c.method, h)))
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|m| m.0)
+        .or_else(|| all.first().map(|c| c.method))
+}
+
+/// Lints of the result.
+fn doubts(
+    runs: &[DragRun<'_>],
+    setup: &DragSetup,
+    all: &[Coefficient],
+    detectability: Option<&Detectability>,
+    agreement: Option<Agreement>,
+) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let mut warn = |code: &str, text: String| out.push(Finding::new(Severity::Warning, code, text));
+    if setup.calibration.is_none() && all.iter().any(|c| c.method.is_sensorless()) {
+        let text = match setup.efficiency {
+            Efficiency::Undeclared => "nothing is calibrated and no gear efficiency is declared: eq. 8 and 9 are taken as \
+                 printed, which gives F/η (25 % too much at η = 0.8); the intervals reach over efficiencies from 0.6 to 1. \
+                 Hang a known weight over a pulley"
+                .to_owned(),
+            Efficiency::Declared(e) => format!(
+                "not calibrated: no D_d from the motor's current is better than the declared efficiency ({:.1} %) and K_T \
+                 ({:.1} %) allow",
+                100.0 * e.relative(),
+                100.0 * setup.torque_constant_relative
+            ),
+        };
+        warn("not-calibrated", text);
+    }
+    if let Ballast::Unballasted { unloaded_n, rolling: None } = setup.ballast {
+        warn(
+            "dry-not-ballasted",
+            format!(
+                "the dry runs were not ballasted to the wet wheel load: buoyancy takes {unloaded_n:.0} N off the wheels, at a \
+                 rolling coefficient of 0.01 that is {:.2} N of friction that looks like less drag; the intervals reach over \
+                 coefficients from 0 to 0.02",
+                0.01 * unloaded_n
+            ),
+        );
+    } else if setup.ballast == Ballast::Matched && tows(runs, BodyState::Dry).iter().any(|r| !r.is_ballasted) {
+        warn(
+            "ballast-contradicts",
+            "the setup says that wheel loads match, but dry runs are marked as not ballasted; say how much load buoyancy \
+             takes off"
+                .to_owned(),
+        );
+    }
+    for c in all {
+        let name = c.method.name();
+        if let Some(area) = setup.reference_area_m2
+            && let Some(finding) =
+                crate::lint::drag_coefficient(&format!("D_d ({name})"), c.value, setup.density_kg_m3, area)
+        {
+            out.push(finding);
+        }
+        if c.pairs < FEW_PAIRS {
+            out.push(Finding::new(
+                Severity::Warning,
+                "few-pairs",
+                format!(
+                    "{name}: {} pairs; the scatter has {} degrees of freedom and its interval is mostly Student's t",
+                    c.pairs,
+                    c.pairs.saturating_sub(1)
+                ),
+            ));
+        }
+        if let Some(f) = c.offset_n
+            && f.value.abs() > OFFSET_TOLD * f.standard
+            && offset_share(c, f.value) > OFFSET_MATTERS
+        {
+            out.push(Finding::new(
+                Severity::Warning,
+                "constant-beside-drag",
+                format!(
+                    "{name}: a constant {:+.3} ± {:.3} N stands beside the drag, {:.1} % of D_d: friction that wet and dry do \
+                     not share (wheel load, wet strut, a drifting zero)",
+                    f.value,
+                    f.standard,
+                    100.0 * offset_share(c, f.value)
+                ),
+            ));
+        }
+        let trending: Vec<&Point> = c.points.iter().filter(|p| p.trend_n.is_some()).collect();
+        if c.method.is_sensorless() && c.method != Method::MbdpConstant && trending.len() > 1 + c.points.len() / 10 {
+            out.push(Finding::new(
+                Severity::Note,
+                "force-drifts-in-window",
+                format!(
+                    "{name}: in {} of {} windows the force changes by more than chance",
+                    trending.len(),
+                    c.points.len()
+                ),
+            ));
+        }
+    }
+    if let (Some(d), Some(c)) = (detectability, all.iter().find(|c| c.method == Method::Mcd)) {
+        let slowest = c.points.iter().map(|p| p.speed_m_s.abs()).fold(f64::INFINITY, f64::min);
+        if let Some(text) = d.advice(c.value, slowest) {
+            out.push(Finding::new(Severity::Note, "under-uncertainty", text));
+        }
+    }
+    if let Some(a) = agreement
+        && !a.is_within_band()
+    {
+        out.push(Finding::new(
+            Severity::Warning,
+            "wet-scatters-otherwise",
+            format!(
+                "wet repeats scatter by {:.3} N where dry ones promised {:.3} N (p = {:.4}): water not at rest, or a mount that \
+                 does not repeat",
+                a.observed_n, a.predicted_n, a.p
+            ),
+        ));
+    }
+    out
+}
+
+/// What a constant force makes of D_d, as part of it: F₀ Σv²/Σv⁴ / D_d.
+fn offset_share(c: &Coefficient, force_n: f64) -> f64 {
+    let (square, quartic) =
+        c.points.iter().fold((0.0, 0.0), |(s, q), p| (s + p.speed_m_s.powi(2), q + p.speed_m_s.powi(4)));
+    (force_n * square / quartic / c.value).abs()
+}
+
+fn check(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<(), DragError> {
+    for run in runs {
+        let n = run.time_s.len();
+        let columns: [(&'static str, Option<&[f64]>); 5] = [
+            ("time", Some(run.time_s)),
+            ("position", Some(run.position_m)),
+            ("reference speed", Some(run.reference_speed_m_s)),
+            ("command", Some(run.command_v)),
+            ("force", run.force_n),
+        ];
+        for (column, values) in columns {
+            let Some(values) = values else { continue };
+            if values.len() != n {
+                return Err(DragError::Length { run: run.id.to_owned(), column, found: values.len(), expected: n });
+            }
+            if let Some(index) = values.iter().position(|x| !x.is_finite()) {
+                return Err(DragError::NotFinite { run: run.id.to_owned(), column, index });
+            }
+        }
+    }
+    let positive = "positive and finite";
+    for (what, value) in [
+        ("newtons a volt", setup.force_per_volt_n()),
+        ("density", setup.density_kg_m3),
+        ("reference area", setup.reference_area_m2.unwrap_or(1.0)),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(DragError::Declared { what, value, must: positive });
+        }
+    }
+    Ok(())
+}

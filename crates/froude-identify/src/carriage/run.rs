@@ -1,0 +1,217 @@
+//! What the reduction of a carriage's runs takes: the columns of each run and what is declared about the rig.
+
+use super::calibration::ForcePerVolt;
+use super::mbdp::Flexible;
+use super::steady::SteadySettings;
+
+/// A number with its standard uncertainty.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uncertain {
+    /// The number.
+    pub value: f64,
+    /// Its standard uncertainty, same unit.
+    pub standard: f64,
+    /// Degrees of freedom of the standard uncertainty; infinite for a certificate.
+    pub dof: f64,
+}
+
+impl Uncertain {
+    /// A number whose standard uncertainty is known well.
+    #[must_use]
+    pub const fn new(value: f64, standard: f64) -> Self {
+        Self { value, standard, dof: f64::INFINITY }
+    }
+
+    /// Standard uncertainty as part of the number.
+    #[must_use]
+    pub fn relative(self) -> f64 {
+        (self.standard / self.value).abs()
+    }
+}
+
+/// What hangs on the strut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BodyState {
+    /// Nothing.
+    None,
+    /// The body, above the water.
+    Dry,
+    /// The body, in the water.
+    Wet,
+}
+
+/// What a run is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum RunKind {
+    /// A tow, wet or dry.
+    Tow,
+    /// Motion to identify the friction from, body not in the water.
+    Friction,
+    /// A known weight hangs over the pulley.
+    Calibration,
+}
+
+/// Columns of one run and what is known about it; all columns have one length and one uniform step of time.
+#[derive(Debug, Clone, Copy)]
+pub struct DragRun<'a> {
+    /// Name of the run, for messages.
+    pub id: &'a str,
+    /// Time, s.
+    pub time_s: &'a [f64],
+    /// Position along the chain, motor side, m.
+    pub position_m: &'a [f64],
+    /// Speed that was asked for, m/s, with its sign.
+    pub reference_speed_m_s: &'a [f64],
+    /// Drive command v_c, V, positive drives towards +y.
+    pub command_v: &'a [f64],
+    /// Force sensor, N, resistance to +y motion positive; its zero is not taken off.
+    pub force_n: Option<&'a [f64]>,
+    /// What it is for.
+    pub kind: RunKind,
+    /// What hangs on the strut.
+    pub body: BodyState,
+    /// Speed of the steady part, m/s, ≥ 0.
+    pub target_speed_m_s: f64,
+    /// +1 or −1.
+    pub direction: f64,
+    /// Pair that the run belongs to. Runs of one pair (all speeds, out and back) share mounts and the hour of the
+    /// day: they are one cluster of the scatter. A wet run is paired with the dry run of its pair, speed and direction.
+    pub pair: u32,
+    /// Whether the dry carriage carried ballast for the wet wheel load.
+    pub is_ballasted: bool,
+    /// Known weight over the pulley, N, pulling towards −y.
+    pub hung_weight_n: Option<f64>,
+}
+
+impl DragRun<'_> {
+    /// Step of time, s.
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        let n = self.time_s.len();
+        if n < 2 { f64::NAN } else { (self.time_s[n - 1] - self.time_s[0]) / (n - 1) as f64 }
+    }
+
+    /// Whether two runs are the same tow: pair, speed, direction.
+    #[must_use]
+    pub fn is_partner_of(&self, other: &DragRun<'_>) -> bool {
+        self.pair == other.pair && self.is_like(other)
+    }
+
+    /// Whether two runs have the same speed and direction.
+    #[must_use]
+    pub fn is_like(&self, other: &DragRun<'_>) -> bool {
+        self.direction == other.direction
+            && (self.target_speed_m_s - other.target_speed_m_s).abs() <= 1e-6 * (1.0 + self.target_speed_m_s)
+    }
+}
+
+/// What is known about the gear's efficiency, driving forward.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Efficiency {
+    /// Nothing was said: eq. 8 is taken as printed, and the truth may lie anywhere in [`UNDECLARED_EFFICIENCY`].
+    Undeclared,
+    /// A data sheet's or a guess.
+    Declared(Uncertain),
+}
+
+/// Efficiencies that gearheads of towing carriages have, driving forward: a worn two-stage planetary gear with chain and
+/// sprocket at light load has 0.6, a direct drive 1.
+pub const UNDECLARED_EFFICIENCY: [f64; 2] = [0.6, 1.0];
+
+/// Rolling coefficients of small carriages where none is declared: 0 to 0.02, ball-bearing rollers on glass or rail.
+pub const UNDECLARED_ROLLING: [f64; 2] = [0.0, 0.02];
+
+/// Whether the dry carriage rolled under the wheel load of the wet one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Ballast {
+    /// The dry runs were ballasted to the wet wheel load, or the body is neutrally buoyant.
+    Matched,
+    /// The wheels carry less in the wet runs.
+    Unballasted {
+        /// Wheel load that buoyancy takes off, N.
+        unloaded_n: f64,
+        /// Rolling coefficient. Declared, the lost friction is put back and its uncertainty kept; `None`: the value
+        /// stays as it is and the interval reaches over [`UNDECLARED_ROLLING`].
+        rolling: Option<Uncertain>,
+    },
+}
+
+/// What is declared about the force sensor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SensorBudget {
+    /// Standard uncertainty of its gain, as a part.
+    pub gain_relative: f64,
+    /// Half-width of its drift, N, used for runs without a still window on one side.
+    pub drift_half_width_n: f64,
+}
+
+/// What is declared about rig, body and water.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DragSetup {
+    /// Name of the campaign, for records and messages.
+    pub name: String,
+    /// (n/R)·K_T·K_amp, N/V, before any loss in the gear.
+    pub ideal_force_per_volt_n: f64,
+    /// Standard uncertainty of K_T·K_amp, as a part; counts only without a calibration.
+    pub torque_constant_relative: f64,
+    /// Drift of K_T from run to run, as a part. It is in the scatter; named in the budget and in the detectability.
+    pub torque_constant_drift_relative: f64,
+    /// What is known about the gear; counts only without a calibration.
+    pub efficiency: Efficiency,
+    /// Newtons a volt as calibrated.
+    pub calibration: Option<ForcePerVolt>,
+    /// The sensor, if the rig has one.
+    pub sensor: SensorBudget,
+    /// Standard uncertainty of the length that an encoder count stands for, as a part.
+    pub speed_scale_relative: f64,
+    /// Wheel load wet and dry.
+    pub ballast: Ballast,
+    /// D_d of the strut alone, N s²/m², taken off; `None`: the coefficient is that of body and strut.
+    pub strut_n_s2_m2: Option<Uncertain>,
+    /// Density of the water, kg/m³.
+    pub density_kg_m3: f64,
+    /// Area that C_D refers to, m².
+    pub reference_area_m2: Option<f64>,
+    /// Moving mass at the chain, J_eff (n/R)², kg: inertia that eq. 9 takes off where the carriage accelerates.
+    pub moving_mass_kg: f64,
+    /// The two-mass model, where it was identified.
+    pub flexible: Option<Flexible>,
+    /// How steady windows are chosen.
+    pub steady: SteadySettings,
+}
+
+impl DragSetup {
+    /// The rig of the MCD paper (Table II), nothing calibrated, water at 1000 kg/m³, no area.
+    #[must_use]
+    pub fn of_the_paper() -> Self {
+        let ratio = 34.97 / 0.055;
+        Self {
+            name: "towing carriage".to_owned(),
+            ideal_force_per_volt_n: ratio * 26.7e-3 * 0.352,
+            torque_constant_relative: 0.02,
+            torque_constant_drift_relative: 0.005,
+            efficiency: Efficiency::Undeclared,
+            calibration: None,
+            sensor: SensorBudget { gain_relative: 0.002, drift_half_width_n: 0.2 },
+            speed_scale_relative: 0.0005,
+            ballast: Ballast::Matched,
+            strut_n_s2_m2: None,
+            density_kg_m3: 1000.0,
+            reference_area_m2: None,
+            moving_mass_kg: 1.502e-5 * ratio * ratio,
+            flexible: None,
+            steady: SteadySettings::default(),
+        }
+    }
+
+    /// Newtons a volt that forces are computed with: calibrated, else ideal times the declared efficiency, else ideal
+    /// (eq. 8 as printed).
+    #[must_use]
+    pub fn force_per_volt_n(&self) -> f64 {
+        match (self.calibration, self.efficiency) {
+            (Some(c), _) => c.force_per_volt_n.value,
+            (None, Efficiency::Declared(e)) => self.ideal_force_per_volt_n * e.value,
+            (None, Efficiency::Undeclared) => self.ideal_force_per_volt_n,
+        }
+    }
+}
