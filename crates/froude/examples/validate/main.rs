@@ -7,6 +7,7 @@
 mod claims;
 mod coverage;
 mod eiv;
+mod emps;
 mod kvlcc2;
 mod rm2;
 mod snake;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         snake::residuals(claims, &root)?;
         snake::recommendation(claims, &root, if full { 2_000 } else { 40 })?;
         rm2::all(claims, &root)?;
+        emps::all(claims, &root)?;
         kvlcc2::hmri(claims, &shared)?;
         kvlcc2::fhr(claims, &shared)?;
         coverage::all(claims, &root, repetitions)?;

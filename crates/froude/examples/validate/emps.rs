@@ -1,0 +1,103 @@
+//! EMPS: a real motor-driven axis, published as a benchmark with reference parameters but white-noise intervals.
+
+use std::error::Error;
+use std::path::Path;
+
+use froude::identify::servo::{Chain, Friction, ServoLog, ServoReport, identify_servo};
+use froude::records::table::read_table;
+use froude::records::units::Dimension;
+
+use crate::claims::{Claims, Verdict};
+
+const SECTION: &str = "EMPS: a motor-driven axis from its command and encoder (Janot, Gautier & Brunot 2019)";
+
+/// Force per volt of command, N/V (data README).
+const FORCE_PER_VOLT_N_V: f64 = 35.15065188;
+
+/// `(name, value, standard deviation)` as printed, IDIM-LS, symmetric model.
+const SYMMETRIC: [(&str, f64, f64); 4] =
+    [("M", 95.1089, 0.1085), ("F_v", 203.5034, 1.1460), ("F_c", 20.3935, 0.1012), ("offset", -3.1648, 0.0444)];
+
+/// The same, asymmetric model.
+const ASYMMETRIC: [(&str, f64, f64); 5] = [
+    ("M", 95.1540, 0.0827),
+    ("F_v+", 166.7061, 1.2326),
+    ("F_v-", 240.4236, 1.2346),
+    ("F_c+", 20.1440, 0.1088),
+    ("F_c-", 20.6277, 0.1091),
+];
+
+pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
+    let log = read(root)?;
+    for (name, friction, printed, error_percent) in [
+        ("symmetric", Friction::symmetric(), &SYMMETRIC[..], 4.083),
+        ("asymmetric", Friction::asymmetric(), &ASYMMETRIC[..], 3.112),
+    ] {
+        let chain = Chain::new(FORCE_PER_VOLT_N_V, friction);
+        let report = identify_servo(&log, &chain)?;
+        parameters(claims, name, &report, printed);
+        claims.near(
+            SECTION,
+            &format!("{name}: relative force error, %"),
+            100.0 * report.relative_force_error,
+            error_percent,
+            0.05,
+            "publication; band of the issue",
+        );
+        honesty(claims, name, &report, printed);
+    }
+    Ok(())
+}
+
+fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
+    let folder = root.join("examples/emps");
+    let table = read_table(&folder.join("emps.csv"), Some(&folder.join("emps.toml")))?;
+    let of = |name: &str, dimension| table.number(name, dimension).map(<[f64]>::to_vec);
+    Ok(ServoLog {
+        time_s: of("time", Dimension::TIME)?,
+        position_m: of("position", Dimension::LENGTH)?,
+        command_v: of("command", Dimension::VOLTAGE)?,
+        reference_m: Some(of("reference_position", Dimension::LENGTH)?),
+        load_n: None,
+    })
+}
+
+/// Each coefficient against the published one, in published standard deviations.
+fn parameters(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[(&str, f64, f64)]) {
+    for &(coefficient, value, std) in printed {
+        let found = report.coefficient(coefficient).map_or(f64::NAN, |c| c.value);
+        claims.near(SECTION, &format!("{name}: {coefficient}, SI"), found, value, std, "publication, its own standard deviation");
+    }
+}
+
+/// The published intervals against those that hold for residuals which are not white.
+fn honesty(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[(&str, f64, f64)]) {
+    for &(coefficient, _, std) in printed {
+        let Some(c) = report.coefficient(coefficient) else { continue };
+        claims.add(
+            SECTION,
+            &format!("{name}: standard deviation of {coefficient}: published, classical, HAC, blocks"),
+            "blocks and HAC larger: residuals are correlated",
+            format!("{std}, {:.4}, {:.4}, {:.4} {}", c.classical_std, c.hac_std, c.block_std, c.unit),
+            if c.block_std > std { Verdict::Finding } else { Verdict::Measured },
+        );
+    }
+    if let Some(w) = &report.whiteness {
+        claims.add(
+            SECTION,
+            &format!("{name}: whiteness of the residuals"),
+            "white, if the published standard deviations were to hold",
+            format!(
+                "r1 = {:.2}, Ljung-Box({}) = {:.0} (p = {:.1e}), correlation time {}; HAC lag {:.2} s, blocks {:.2} s",
+                w.r1,
+                w.lags,
+                w.ljung_box,
+                w.p,
+                w.correlation_time_s.map_or("longer than the record can tell".to_owned(), |t| format!("{t:.2} s")),
+                report.spread.hac_lag_s,
+                report.spread.block_s
+            ),
+            if w.is_white() { Verdict::Measured } else { Verdict::Finding },
+        );
+    }
+}
