@@ -21,11 +21,17 @@
 pub mod chain;
 mod error;
 pub mod friction;
+mod gauss_newton;
+pub mod held_out;
+pub mod instrument;
 pub mod interval;
 pub mod log;
 pub mod motor;
+pub mod output_error;
+pub mod printed;
 mod regression;
 pub mod report;
+pub mod simulate;
 
 pub use chain::Chain;
 pub use error::ServoError;

@@ -19,7 +19,9 @@ pub enum ServoError {
     },
 
     /// Samples that are not equidistant.
-    #[error("the step after {time_s} s is {step_s} s where the mean is {mean_s} s; resample the record or cut it at the gap")]
+    #[error(
+        "the step after {time_s} s is {step_s} s where the mean is {mean_s} s; resample the record or cut it at the gap"
+    )]
     Uneven {
         /// Before the step.
         time_s: f64,

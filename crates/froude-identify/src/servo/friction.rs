@@ -69,7 +69,8 @@ impl Friction {
         let mut out = Vec::new();
         let mut add = |name: String, unit, values| out.push(Regressor { name, unit, values });
         if self.is_asymmetric {
-            let of = |side: f64, x: &[f64]| x.iter().zip(&sign).map(|(x, s)| if *s == side { *x } else { 0.0 }).collect();
+            let of =
+                |side: f64, x: &[f64]| x.iter().zip(&sign).map(|(x, s)| if *s == side { *x } else { 0.0 }).collect();
             add("F_v+".to_owned(), "N s/m", of(1.0, velocity_m_s));
             add("F_v-".to_owned(), "N s/m", of(-1.0, velocity_m_s));
             if self.knots_m.is_empty() {
@@ -103,7 +104,11 @@ impl Friction {
 
     fn check(&self) -> Result<(), ServoError> {
         if let Some(pair) = self.knots_m.windows(2).find(|w| w[0].is_nan() || w[0] >= w[1]) {
-            return Err(ServoError::Setting { what: "knot of friction over position (m)", found: pair[1], must: "knots rise" });
+            return Err(ServoError::Setting {
+                what: "knot of friction over position (m)",
+                found: pair[1],
+                must: "knots rise",
+            });
         }
         if self.knots_m.len() == 1 {
             let must = "two knots at least; one is friction without a map";

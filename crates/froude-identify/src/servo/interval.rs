@@ -3,7 +3,7 @@
 //! | measure   | holds when                                    | how                                                          |
 //! |-----------|-----------------------------------------------|--------------------------------------------------------------|
 //! | classical | residuals are white                           | `σ²(XᵀX)⁻¹`                                                   |
-//! | HAC       | correlation dies out within the lag           | Bartlett weights over an automatic lag                        |
+//! | HAC       | correlation dies out within the lag           | Bartlett weights over an automatic lag, five correlation times or longer |
 //! | blocks    | it dies out within a block                    | moving blocks of neighbours, 1 s or longer, drawn and refitted |
 //!
 //! The interval that is reported is that of the blocks, with Student's t for as many degrees of freedom as blocks
@@ -141,10 +141,9 @@ pub(crate) fn hac(
     rate_hz: f64,
     lag_s: Option<f64>,
 ) -> (Vec<f64>, f64) {
-    let scores: Vec<Vec<f64>> =
-        columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
+    let scores: Vec<Vec<f64>> = columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
     let scores: Vec<&[f64]> = scores.iter().map(Vec::as_slice).collect();
-    let lag = lag_s.map_or_else(|| automatic_lag(&scores), |s| (s * rate_hz).round() as usize);
+    let lag = lag_s.map_or_else(|| long_enough(&scores, residuals), |s| (s * rate_hz).round() as usize);
     let p = columns.len();
     let middle = covariance_of_sum(&scores, lag);
     let middle = Mat::from_fn(p, p, |i, j| middle[i * p + j]);
@@ -185,10 +184,21 @@ pub(crate) fn over_blocks(
         (0..options.resamples as u64).into_par_iter().filter_map(|k| refit(&blocks.resample(k))).collect();
     let n = draws.len() as f64;
     let mean: Vec<f64> = (0..p).map(|j| draws.iter().map(|d| d[j]).sum::<f64>() / n).collect();
-    let covariance = Mat::from_fn(p, p, |i, j| {
-        draws.iter().map(|d| (d[i] - mean[i]) * (d[j] - mean[j])).sum::<f64>() / (n - 1.0)
-    });
+    let covariance =
+        Mat::from_fn(p, p, |i, j| draws.iter().map(|d| (d[i] - mean[i]) * (d[j] - mean[j])).sum::<f64>() / (n - 1.0));
     Ok(OverBlocks { covariance, block_s: block as f64 / rate_hz, dof: (blocks.count() - p) as f64 })
+}
+
+/// Correlation times of the residuals that the lag of HAC holds: beyond five of them Sokal's window is closed.
+const TIMES_IN_LAG: f64 = 5.0;
+
+/// The lag of Newey and West, or five correlation times of the residuals, whichever is longer.
+///
+/// Their rule looks at a first dozen lags only, too few where a servo's residuals repeat from move to move. A lag too
+/// long costs scatter, a lag too short gives intervals too narrow.
+fn long_enough(scores: &[&[f64]], residuals: &[f64]) -> usize {
+    let times = integrated_time(residuals).map_or(0, |t| (TIMES_IN_LAG * t).ceil() as usize);
+    automatic_lag(scores).max(times).min(residuals.len() / 4)
 }
 
 pub(crate) fn diagonal_roots(m: &Mat<f64>) -> Vec<f64> {

@@ -161,7 +161,10 @@ fn findings(coefficients: &[ServoCoefficient], whiteness: Option<&Whiteness>, sp
     for c in coefficients {
         let must_resist = c.name == "M" || c.name.starts_with("F_") && c.name != "F_s";
         if must_resist && c.interval[1] < 0.0 {
-            out.push(format!("{} = {:.4} {} is negative: check the sign of position or command", c.name, c.value, c.unit));
+            out.push(format!(
+                "{} = {:.4} {} is negative: check the sign of position or command",
+                c.name, c.value, c.unit
+            ));
         }
     }
     out
