@@ -27,6 +27,7 @@ pub mod reduce;
 pub mod regression;
 pub mod select;
 pub mod selection;
+pub mod servo;
 pub mod simulate;
 pub mod source;
 mod tare;

@@ -1,1 +1,42 @@
 //! Filters, decimation, spectra and autocorrelation of uniformly sampled records.
+//!
+//! Knows no physics: columns of numbers at a constant rate go in, columns come out.
+//! Filters that are compared with `scipy` follow its conventions at the ends of a
+//! record, so that a published chain can be repeated to the last digits.
+//!
+//! | module              | what                                                              | ends of the record      |
+//! |---------------------|-------------------------------------------------------------------|-------------------------|
+//! | [`butterworth`]     | low-pass design, as second-order sections                         | –                       |
+//! | [`zero_phase`]      | forward and backward: no phase, twice the attenuation             | odd extension           |
+//! | [`gaussian`]        | smoothing by a Gaussian                                           | mirrored                |
+//! | [`savitzky_golay`]  | local polynomial: value and derivatives                           | polynomial of the end   |
+//! | [`differences`]     | central differences                                               | one-sided               |
+//! | [`decimate`]        | zero-phase FIR low-pass, every q-th sample                        | zeros                   |
+//! | [`stream`]          | the same chain a chunk at a time, in bounded memory               | as above                |
+//! | [`autocorrelation`] | autocorrelation, integrated autocorrelation time                  | –                       |
+//! | [`long_run`]        | long-run covariance of scores (Newey–West), automatic lag         | –                       |
+//! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
+//! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
+//!
+//! **Units.** A rate is in Hz, a time in s, the values are whatever they were.
+//! **Time.** Samples are equidistant; gaps and jitter are the caller's, told before they come here.
+//!
+//! Not here: high-pass and band-pass filters, resampling by fractions, the Ljung–Box test
+//! (`froude-fit::diagnostics`, where χ² is).
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod autocorrelation;
+pub mod blocks;
+pub mod butterworth;
+pub mod decimate;
+pub mod differences;
+mod error;
+pub mod gaussian;
+mod lanes;
+pub mod long_run;
+pub mod savitzky_golay;
+pub mod spectrum;
+pub mod stream;
+pub mod zero_phase;
+
+pub use error::SignalError;

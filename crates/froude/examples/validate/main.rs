@@ -8,6 +8,7 @@ mod carriage;
 mod claims;
 mod coverage;
 mod eiv;
+mod emps;
 mod kvlcc2;
 mod rm2;
 mod snake;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         snake::residuals(claims, &root)?;
         snake::recommendation(claims, &root, if full { 2_000 } else { 40 })?;
         rm2::all(claims, &root)?;
+        emps::all(claims, &root)?;
         kvlcc2::hmri(claims, &shared)?;
         kvlcc2::fhr(claims, &shared)?;
         carriage::all(claims, if full { 400 } else { 60 })?;

@@ -1,0 +1,40 @@
+//! Identification of a servo axis from its own command and encoder: inertia, friction, flexibility.
+//!
+//! **Setting.** One axis along a line, driven by a motor in current mode; the command is what the drive is told, the
+//! force at the chain is `force_per_volt_n_v` times it. No force sensor. Models of rising detail:
+//!
+//! | model                 | module           | equation                                                             |
+//! |-----------------------|------------------|----------------------------------------------------------------------|
+//! | rigid, as printed     | [`printed`]      | MCD eq. 5: OLS on Gaussian-smoothed records                          |
+//! | rigid, the chain      | [`chain`], [`friction`] | `M q̈ + F_v q̇ + F_c sgn q̇ + offset = g u`, asymmetric, Stribeck, over position, over load |
+//! | rigid, closed loop    | [`instrument`], [`output_error`] | instruments or residuals from the model in the known loop |
+//! | two masses and a chain | [`two_mass`]    | MCD eq. 2a, 2b from motor-side signals                                |
+//!
+//! Every coefficient comes with the classical standard deviation, which needs white residuals, and beside it
+//! two that do not ([`interval`]). Residuals of a servo are never white: the interval of the report is that of the blocks.
+//!
+//! **Frame.** Position along the chain, motor side. **Units.** SI; motor-side values by [`motor::MotorSide`].
+//! **Sign.** Forces on the axis; friction coefficients are positive when they resist.
+//!
+//! Not here: drag of the body ([MCD, MBDP and the sensor](crate) are another chapter), files.
+
+pub mod chain;
+mod error;
+pub mod friction;
+mod gauss_newton;
+pub mod held_out;
+pub mod instrument;
+pub mod interval;
+pub mod log;
+pub mod motor;
+pub mod output_error;
+pub mod printed;
+mod regression;
+pub mod report;
+pub mod simulate;
+
+pub use chain::Chain;
+pub use error::ServoError;
+pub use friction::Friction;
+pub use log::ServoLog;
+pub use report::{ServoCoefficient, ServoReport, identify_servo};

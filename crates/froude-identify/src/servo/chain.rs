@@ -1,0 +1,181 @@
+//! From a record to the rows of a regression.
+//!
+//! 1. Position through a zero-phase Butterworth low-pass (the command stays as it is).
+//! 2. Speed and acceleration by central differences.
+//! 3. Regressors of the friction law at the full rate, where `sgn` is sharp.
+//! 4. Force **and every regressor** through the same zero-phase FIR decimation: the parallel filter that leaves the
+//!    coefficients where they are, and takes out what lies beyond the filtered band.
+//! 5. Both ends dropped.
+//!
+//! # Source
+//!
+//! Gautier (1997), ICRA, *Dynamic identification of robots with power model*, and Janot, Vandanjon & Gautier (2014), IEEE Trans.
+//! Control Syst. Technol. 22, 132: position filter, central differences, parallel decimation.
+
+use froude_signal::{butterworth, decimate, differences, zero_phase};
+
+use crate::servo::error::ServoError;
+use crate::servo::friction::{Friction, Regressor};
+use crate::servo::interval::IntervalOptions;
+use crate::servo::log::ServoLog;
+
+/// How a record is made into rows, and what is fitted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    /// Force at the chain per volt of command, N/V.
+    pub force_per_volt_n_v: f64,
+    /// Order of the position filter (its attenuation counts twice).
+    pub filter_order: usize,
+    /// Its corner, Hz.
+    pub corner_hz: f64,
+    /// Decimation factor; 1 for none.
+    pub decimation: usize,
+    /// Dropped at each end, s.
+    pub trim_s: f64,
+    /// Friction law.
+    pub friction: Friction,
+    /// How intervals are made.
+    pub intervals: IntervalOptions,
+}
+
+impl Chain {
+    /// Order 4 at 100 Hz, decimation by 10, 0.2 s dropped: for a record at 1 kHz.
+    #[must_use]
+    pub fn new(force_per_volt_n_v: f64, friction: Friction) -> Self {
+        Self {
+            force_per_volt_n_v,
+            filter_order: 4,
+            corner_hz: 100.0,
+            decimation: 10,
+            trim_s: 0.2,
+            friction,
+            intervals: IntervalOptions::default(),
+        }
+    }
+
+    /// Filtered motion of a record at its full rate.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError`]: an uneven record, a filter that does not fit it.
+    pub fn motion(&self, position_m: &[f64], rate_hz: f64) -> Result<Motion, ServoError> {
+        let low_pass = butterworth::low_pass(self.filter_order, self.corner_hz, rate_hz)?;
+        let position_m = zero_phase::filter(&low_pass, position_m)?;
+        let velocity_m_s = differences::central(&position_m, rate_hz.recip())?;
+        let acceleration_m_s2 = differences::central(&velocity_m_s, rate_hz.recip())?;
+        Ok(Motion { position_m, velocity_m_s, acceleration_m_s2 })
+    }
+
+    /// The rows of the regression.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError`].
+    pub fn rows(&self, log: &ServoLog) -> Result<Rows, ServoError> {
+        let rate_hz = log.rate_hz()?;
+        let motion = self.motion(&log.position_m, rate_hz)?;
+        let force_n: Vec<f64> = log.command_v.iter().map(|u| self.force_per_volt_n_v * u).collect();
+        let regressors = self.regressors(&motion, log.load_n.as_deref())?;
+        self.decimated(&log.time_s, &force_n, regressors, rate_hz)
+    }
+
+    /// Columns at the full rate: inertia, then friction.
+    pub(crate) fn regressors(&self, motion: &Motion, load_n: Option<&[f64]>) -> Result<Vec<Regressor>, ServoError> {
+        let inertia = Regressor { name: "M".to_owned(), unit: "kg", values: motion.acceleration_m_s2.clone() };
+        let friction = self.friction.regressors(&motion.velocity_m_s, &motion.position_m, load_n)?;
+        Ok(std::iter::once(inertia).chain(friction).collect())
+    }
+
+    pub(crate) fn decimated(
+        &self,
+        time_s: &[f64],
+        force_n: &[f64],
+        regressors: Vec<Regressor>,
+        rate_hz: f64,
+    ) -> Result<Rows, ServoError> {
+        let rate_hz = rate_hz / self.decimation as f64;
+        let trim = (self.trim_s * rate_hz).round() as usize;
+        let total = time_s.len().div_ceil(self.decimation);
+        let needed = regressors.len() + 2;
+        let rows = total.saturating_sub(2 * trim);
+        if rows < needed {
+            return Err(ServoError::TooFewRows { rows, needed });
+        }
+        let keep = |column: &[f64]| -> Result<Vec<f64>, ServoError> {
+            Ok(decimate::decimate(column, self.decimation)?[trim..total - trim].to_vec())
+        };
+        let mut names = Vec::new();
+        let mut columns = Vec::new();
+        for regressor in regressors {
+            columns.push(keep(&regressor.values)?);
+            names.push((regressor.name, regressor.unit));
+        }
+        let time_s = time_s.iter().step_by(self.decimation).copied().collect::<Vec<f64>>();
+        Ok(Rows { rate_hz, time_s: time_s[trim..total - trim].to_vec(), force_n: keep(force_n)?, names, columns })
+    }
+}
+
+/// Filtered motion at the full rate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Position, m.
+    pub position_m: Vec<f64>,
+    /// Speed, m/s.
+    pub velocity_m_s: Vec<f64>,
+    /// Acceleration, m/s².
+    pub acceleration_m_s2: Vec<f64>,
+}
+
+/// Rows of the regression `force = Σ column · coefficient`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows {
+    /// Rate after decimation, Hz.
+    pub rate_hz: f64,
+    /// Time of each row, s.
+    pub time_s: Vec<f64>,
+    /// Force, N.
+    pub force_n: Vec<f64>,
+    /// Name and unit of each coefficient.
+    pub names: Vec<(String, &'static str)>,
+    /// A column per coefficient.
+    pub columns: Vec<Vec<f64>>,
+}
+
+impl Rows {
+    /// The rows whose time lies in one of the spans, s.
+    #[must_use]
+    pub fn within(&self, spans_s: &[[f64; 2]]) -> Self {
+        let is_in = |t: f64| spans_s.iter().any(|[from, to]| (*from..*to).contains(&t));
+        let keep: Vec<usize> = (0..self.time_s.len()).filter(|&i| is_in(self.time_s[i])).collect();
+        let of = |column: &[f64]| keep.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+        Self {
+            rate_hz: self.rate_hz,
+            time_s: of(&self.time_s),
+            force_n: of(&self.force_n),
+            names: self.names.clone(),
+            columns: self.columns.iter().map(|c| of(c)).collect(),
+        }
+    }
+
+    /// `force − Σ column · coefficient`, N.
+    #[must_use]
+    pub fn residuals_n(&self, coefficients: &[f64]) -> Vec<f64> {
+        let mut out = self.force_n.clone();
+        for (column, c) in self.columns.iter().zip(coefficients) {
+            for (r, x) in out.iter_mut().zip(column) {
+                *r -= c * x;
+            }
+        }
+        out
+    }
+
+    /// `‖force − model‖/‖force‖`.
+    #[must_use]
+    pub fn relative_error(&self, coefficients: &[f64]) -> f64 {
+        norm(&self.residuals_n(coefficients)) / norm(&self.force_n)
+    }
+}
+
+pub(crate) fn norm(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}

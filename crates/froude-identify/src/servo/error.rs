@@ -1,0 +1,77 @@
+//! Why an axis could not be identified.
+
+use froude_fit::stream::StreamError;
+use froude_signal::SignalError;
+
+/// Why an axis could not be identified; each message says what to do.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ServoError {
+    /// A column of another length than the time.
+    #[error("{column} has {found} samples, time has {expected}; give one of each per sample")]
+    Length {
+        /// The column.
+        column: &'static str,
+        /// Its length.
+        found: usize,
+        /// Length of the time.
+        expected: usize,
+    },
+
+    /// Samples that are not equidistant.
+    #[error(
+        "the step after {time_s} s is {step_s} s where the mean is {mean_s} s; resample the record or cut it at the gap"
+    )]
+    Uneven {
+        /// Before the step.
+        time_s: f64,
+        /// The step.
+        step_s: f64,
+        /// Mean step.
+        mean_s: f64,
+    },
+
+    /// Too little is left to fit.
+    #[error("{rows} rows are left after decimation and trimming, {needed} are needed; record longer or decimate less")]
+    TooFewRows {
+        /// Rows left.
+        rows: usize,
+        /// Rows needed.
+        needed: usize,
+    },
+
+    /// A setting that cannot be.
+    #[error("{what} is {found}; {must}")]
+    Setting {
+        /// Which setting.
+        what: &'static str,
+        /// What was given.
+        found: f64,
+        /// What it must be.
+        must: &'static str,
+    },
+
+    /// A column that the model needs is not in the log.
+    #[error("the model needs {column}, which the log does not have; {instead}")]
+    Missing {
+        /// The column.
+        column: &'static str,
+        /// What else can be done.
+        instead: &'static str,
+    },
+
+    /// The simulation ran away: the parameters are far off, or the loop is not the one that was recorded.
+    #[error("the simulated axis leaves every bound at {time_s} s; check the loop's gains and the starting values")]
+    RanAway {
+        /// When.
+        time_s: f64,
+    },
+
+    /// A filter refused.
+    #[error(transparent)]
+    Signal(#[from] SignalError),
+
+    /// The fit refused.
+    #[error(transparent)]
+    Fit(#[from] StreamError),
+}

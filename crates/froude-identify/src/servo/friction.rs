@@ -1,0 +1,186 @@
+//! Friction laws that are linear in their coefficients.
+//!
+//! | term          | regressor                             | coefficient                    |
+//! |---------------|---------------------------------------|--------------------------------|
+//! | viscous       | `v`, or `v` of each direction         | `F_v`; `F_v+`, `F_v-`          |
+//! | Coulomb       | `sgn v`, or one of each direction     | `F_c`; `F_c+`, `F_c-`          |
+//! | over position | `sgn v` times a hat over each knot    | `F_c(y = …)`, linear between   |
+//! | over load     | `N sgn v`                             | `mu`                           |
+//! | Stribeck      | `sgn v exp(−(v/v_s)²)`                | `F_s`, with `v_s` given or searched |
+//! | offset        | 1                                     | `offset`                       |
+//!
+//! Two Coulomb terms of different size in both directions are an offset and a mean: the offset is left out
+//! where directions are told apart.
+
+use crate::servo::error::ServoError;
+
+/// Which terms friction has.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Friction {
+    /// Viscous and Coulomb friction of each direction by itself.
+    pub is_asymmetric: bool,
+    /// A constant force (gravity on a slope, drift of the drive).
+    pub has_offset: bool,
+    /// Characteristic speed of the Stribeck term, m/s.
+    pub stribeck_speed_m_s: Option<f64>,
+    /// Knots of Coulomb friction over position, m, rising; empty for one number everywhere.
+    pub knots_m: Vec<f64>,
+    /// Coulomb friction in proportion to the load on the guides.
+    pub is_loaded: bool,
+}
+
+/// One column of the regression.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Regressor {
+    /// Coefficient it belongs to.
+    pub name: String,
+    /// Unit of the coefficient.
+    pub unit: &'static str,
+    /// A number per sample.
+    pub values: Vec<f64>,
+}
+
+impl Friction {
+    /// `F_v v + F_c sgn v + offset`.
+    #[must_use]
+    pub fn symmetric() -> Self {
+        Self { has_offset: true, ..Self::default() }
+    }
+
+    /// `F_v± v + F_c± sgn v`.
+    #[must_use]
+    pub fn asymmetric() -> Self {
+        Self { is_asymmetric: true, ..Self::default() }
+    }
+
+    /// Columns at every sample, from speed, position and (if needed) load.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError::Missing`] without the load, [`ServoError::Setting`] for knots that do not rise or a speed that is not positive.
+    pub fn regressors(
+        &self,
+        velocity_m_s: &[f64],
+        position_m: &[f64],
+        load_n: Option<&[f64]>,
+    ) -> Result<Vec<Regressor>, ServoError> {
+        self.check()?;
+        let sign: Vec<f64> = velocity_m_s.iter().map(|v| signum(*v)).collect();
+        let mut out = Vec::new();
+        let mut add = |name: String, unit, values| out.push(Regressor { name, unit, values });
+        if self.is_asymmetric {
+            let of =
+                |side: f64, x: &[f64]| x.iter().zip(&sign).map(|(x, s)| if *s == side { *x } else { 0.0 }).collect();
+            add("F_v+".to_owned(), "N s/m", of(1.0, velocity_m_s));
+            add("F_v-".to_owned(), "N s/m", of(-1.0, velocity_m_s));
+            if self.knots_m.is_empty() {
+                add("F_c+".to_owned(), "N", of(1.0, &sign));
+                add("F_c-".to_owned(), "N", of(-1.0, &sign));
+            }
+        } else {
+            add("F_v".to_owned(), "N s/m", velocity_m_s.to_vec());
+            if self.knots_m.is_empty() && !self.is_loaded {
+                add("F_c".to_owned(), "N", sign.clone());
+            }
+        }
+        for (k, &knot_m) in self.knots_m.iter().enumerate() {
+            let hats = position_m.iter().map(|y| hat(&self.knots_m, k, *y));
+            add(format!("F_c(y = {knot_m} m)"), "N", hats.zip(&sign).map(|(h, s)| h * s).collect());
+        }
+        if self.is_loaded {
+            let instead = "leave friction over load out";
+            let load = load_n.ok_or(ServoError::Missing { column: "the load on the guides", instead })?;
+            add("mu".to_owned(), "1", load.iter().zip(&sign).map(|(n, s)| n * s).collect());
+        }
+        if let Some(speed_m_s) = self.stribeck_speed_m_s {
+            let bump = |v: &f64| signum(*v) * (-(v / speed_m_s).powi(2)).exp();
+            add("F_s".to_owned(), "N", velocity_m_s.iter().map(bump).collect());
+        }
+        if self.has_offset {
+            add("offset".to_owned(), "N", vec![1.0; sign.len()]);
+        }
+        Ok(out)
+    }
+
+    fn check(&self) -> Result<(), ServoError> {
+        if let Some(pair) = self.knots_m.windows(2).find(|w| w[0].is_nan() || w[0] >= w[1]) {
+            return Err(ServoError::Setting {
+                what: "knot of friction over position (m)",
+                found: pair[1],
+                must: "knots rise",
+            });
+        }
+        if self.knots_m.len() == 1 {
+            let must = "two knots at least; one is friction without a map";
+            return Err(ServoError::Setting { what: "number of knots", found: 1.0, must });
+        }
+        match self.stribeck_speed_m_s {
+            Some(found) if !(found.is_finite() && found > 0.0) => {
+                Err(ServoError::Setting { what: "Stribeck speed (m/s)", found, must: "it must be positive" })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// −1, 0 or 1; a standing axis has no direction.
+pub(crate) fn signum(v: f64) -> f64 {
+    if v > 0.0 {
+        1.0
+    } else if v < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
+}
+
+/// The piecewise linear function that is 1 at knot `k` and 0 at the others, constant beyond the ends.
+fn hat(knots: &[f64], k: usize, y: f64) -> f64 {
+    let (low, high) = (knots[0], knots[knots.len() - 1]);
+    let y = y.clamp(low, high);
+    if k > 0 && y < knots[k] {
+        ((y - knots[k - 1]) / (knots[k] - knots[k - 1])).max(0.0)
+    } else if k + 1 < knots.len() && y > knots[k] {
+        ((knots[k + 1] - y) / (knots[k + 1] - knots[k])).max(0.0)
+    } else if y == knots[k] {
+        1.0
+    } else {
+        0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hats_add_up_to_one_everywhere() {
+        let knots = [0.0, 0.4, 1.0];
+        for i in -10..30 {
+            let y = 0.05 * f64::from(i);
+            let sum: f64 = (0..3).map(|k| hat(&knots, k, y)).sum();
+            assert!((sum - 1.0).abs() < 1e-15, "{y}: {sum}");
+        }
+    }
+
+    #[test]
+    fn the_columns_of_both_directions_add_up_to_the_symmetric_ones() {
+        let v = [0.3, -0.2, 0.0, 1.0];
+        let one = Friction::symmetric().regressors(&v, &v, None).unwrap();
+        let two = Friction::asymmetric().regressors(&v, &v, None).unwrap();
+        for i in 0..4 {
+            assert_eq!(one[0].values[i], two[0].values[i] + two[1].values[i]);
+            assert_eq!(one[1].values[i], two[2].values[i] + two[3].values[i]);
+        }
+    }
+
+    #[test]
+    fn friction_over_load_without_a_load_says_so() {
+        let friction = Friction { is_loaded: true, ..Friction::symmetric() };
+        let error = friction.regressors(&[1.0], &[0.0], None).unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "the model needs the load on the guides, which the log does not have; leave friction over load out"
+        );
+    }
+}

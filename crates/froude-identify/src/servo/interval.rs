@@ -1,0 +1,206 @@
+//! Intervals for rows whose residuals are not independent.
+//!
+//! | measure   | holds when                                    | how                                                          |
+//! |-----------|-----------------------------------------------|--------------------------------------------------------------|
+//! | classical | residuals are white                           | `σ²(XᵀX)⁻¹`                                                   |
+//! | HAC       | correlation dies out within the lag           | Bartlett weights over an automatic lag, five correlation times or longer |
+//! | blocks    | it dies out within a block                    | moving blocks of neighbours, 1 s or longer, drawn and refitted |
+//!
+//! The interval that is reported is that of the blocks, with Student's t for as many degrees of freedom as blocks
+//! lie side by side less the coefficients: twenty blocks are twenty pieces of evidence, however many rows they have. Whether
+//! residuals are white is told by their first autocorrelation and by Ljung and Box's test over 25 lags.
+//!
+//! What neither sees: a model error that is the same in every period moves the estimate and not the interval.
+
+use froude_fit::diagnostics::ljung_box;
+use froude_fit::distribution::coverage_factor;
+use froude_fit::faer::Mat;
+use froude_fit::stream::Solution;
+use froude_signal::autocorrelation::{autocorrelation, integrated_time};
+use froude_signal::blocks::MovingBlocks;
+use froude_signal::long_run::{automatic_lag, covariance_of_sum};
+use rayon::prelude::*;
+
+use crate::servo::chain::Rows;
+use crate::servo::error::ServoError;
+use crate::servo::regression::{inverse_gram, solve};
+
+/// Lags of the whiteness test.
+const LAGS: usize = 25;
+
+/// Shortest block, s.
+const SHORTEST_BLOCK_S: f64 = 1.0;
+
+/// How intervals are made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IntervalOptions {
+    /// Length of a block, s, 1 or more.
+    pub block_s: f64,
+    /// How many resamples.
+    pub resamples: usize,
+    /// Seed of the resamples.
+    pub seed: u64,
+    /// Lag of HAC, s; `None` for the automatic one.
+    pub hac_lag_s: Option<f64>,
+    /// Probability of the intervals.
+    pub confidence: f64,
+}
+
+impl Default for IntervalOptions {
+    fn default() -> Self {
+        Self { block_s: 1.0, resamples: 2000, seed: 1, hac_lag_s: None, confidence: 0.95 }
+    }
+}
+
+/// Whether residuals are white.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Whiteness {
+    /// First autocorrelation.
+    pub r1: f64,
+    /// Ljung–Box statistic over [`Whiteness::lags`] lags.
+    pub ljung_box: f64,
+    /// Its probability for white residuals.
+    pub p: f64,
+    /// Lags of the test.
+    pub lags: usize,
+    /// Integrated autocorrelation time, s; `None` where the record is too short to tell.
+    pub correlation_time_s: Option<f64>,
+}
+
+impl Whiteness {
+    /// Whether the classical standard deviations may be believed, at one in a hundred.
+    #[must_use]
+    pub fn is_white(&self) -> bool {
+        self.p > 0.01
+    }
+}
+
+/// Tests residuals at a rate; `None` for too few, or none that differ from zero.
+#[must_use]
+pub fn whiteness(residuals: &[f64], rate_hz: f64) -> Option<Whiteness> {
+    let r1 = autocorrelation(residuals, 1)?[1];
+    let (statistic, p) = ljung_box(residuals, LAGS)?;
+    let correlation_time_s = integrated_time(residuals).map(|t| t / rate_hz);
+    Some(Whiteness { r1, ljung_box: statistic, p, lags: LAGS, correlation_time_s })
+}
+
+/// Standard deviations of the coefficients, three ways.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spread {
+    /// White residuals.
+    pub classical: Vec<f64>,
+    /// HAC.
+    pub hac: Vec<f64>,
+    /// Lag of HAC, s.
+    pub hac_lag_s: f64,
+    /// Moving blocks.
+    pub blocks: Vec<f64>,
+    /// Length of a block, s.
+    pub block_s: f64,
+    /// Blocks side by side less coefficients: degrees of freedom of the interval.
+    pub dof: f64,
+    /// Half-width of the interval over the standard deviation of the blocks.
+    pub coverage_factor: f64,
+    /// Covariance over the blocks' resamples.
+    pub covariance: Mat<f64>,
+}
+
+/// Standard deviations of a least-squares solution of `rows`.
+///
+/// `columns` are those of the rows, or the instruments' projections of them: rows are then refitted the same way.
+///
+/// # Errors
+///
+/// [`ServoError::Setting`] for a block below 1 s, [`ServoError::TooFewRows`] where the record has too few blocks.
+pub fn spread(rows: &Rows, solution: &Solution, options: &IntervalOptions) -> Result<Spread, ServoError> {
+    let residuals = rows.residuals_n(&solution.coefficients);
+    let refit = |chosen: &[usize]| {
+        let pick = |column: &[f64]| chosen.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+        let columns: Vec<Vec<f64>> = rows.columns.iter().map(|c| pick(c)).collect();
+        solve(&columns, &pick(&rows.force_n)).ok().map(|s| s.coefficients)
+    };
+    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, options.hac_lag_s);
+    let over = over_blocks(residuals.len(), rows.rate_hz, solution.coefficients.len(), options, refit)?;
+    Ok(Spread {
+        classical: solution.standard.clone(),
+        hac,
+        hac_lag_s,
+        blocks: diagonal_roots(&over.covariance),
+        block_s: over.block_s,
+        dof: over.dof,
+        coverage_factor: coverage_factor(options.confidence, over.dof),
+        covariance: over.covariance,
+    })
+}
+
+/// HAC standard deviations, and the lag used, s.
+pub(crate) fn hac(
+    columns: &[Vec<f64>],
+    residuals: &[f64],
+    inverse_gram: &Mat<f64>,
+    rate_hz: f64,
+    lag_s: Option<f64>,
+) -> (Vec<f64>, f64) {
+    let scores: Vec<Vec<f64>> = columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
+    let scores: Vec<&[f64]> = scores.iter().map(Vec::as_slice).collect();
+    let lag = lag_s.map_or_else(|| long_enough(&scores, residuals), |s| (s * rate_hz).round() as usize);
+    let p = columns.len();
+    let middle = covariance_of_sum(&scores, lag);
+    let middle = Mat::from_fn(p, p, |i, j| middle[i * p + j]);
+    let n = residuals.len() as f64;
+    // As n/(n − p) for the classical one.
+    let covariance = inverse_gram * middle * inverse_gram;
+    let factor = n / (n - p as f64);
+    ((0..p).map(|j| (factor * covariance[(j, j)]).max(0.0).sqrt()).collect(), lag as f64 / rate_hz)
+}
+
+/// Covariance of an estimator over moving blocks.
+pub(crate) struct OverBlocks {
+    pub covariance: Mat<f64>,
+    pub block_s: f64,
+    pub dof: f64,
+}
+
+/// Draws blocks of rows and estimates again; `refit` gets the rows and may fail on some.
+pub(crate) fn over_blocks(
+    rows: usize,
+    rate_hz: f64,
+    p: usize,
+    options: &IntervalOptions,
+    refit: impl Fn(&[usize]) -> Option<Vec<f64>> + Sync,
+) -> Result<OverBlocks, ServoError> {
+    let is_long = options.block_s >= SHORTEST_BLOCK_S;
+    if !is_long {
+        let must = "blocks last 1 s or more, else they do not hold the correlation of a servo";
+        return Err(ServoError::Setting { what: "block (s)", found: options.block_s, must });
+    }
+    let block = (options.block_s * rate_hz).ceil() as usize;
+    let needed = block * (p + 2);
+    if rows < needed {
+        return Err(ServoError::TooFewRows { rows, needed });
+    }
+    let blocks = MovingBlocks::new(rows, block, options.seed)?;
+    let draws: Vec<Vec<f64>> =
+        (0..options.resamples as u64).into_par_iter().filter_map(|k| refit(&blocks.resample(k))).collect();
+    let n = draws.len() as f64;
+    let mean: Vec<f64> = (0..p).map(|j| draws.iter().map(|d| d[j]).sum::<f64>() / n).collect();
+    let covariance =
+        Mat::from_fn(p, p, |i, j| draws.iter().map(|d| (d[i] - mean[i]) * (d[j] - mean[j])).sum::<f64>() / (n - 1.0));
+    Ok(OverBlocks { covariance, block_s: block as f64 / rate_hz, dof: (blocks.count() - p) as f64 })
+}
+
+/// Correlation times of the residuals that the lag of HAC holds: beyond five of them Sokal's window is closed.
+const TIMES_IN_LAG: f64 = 5.0;
+
+/// The lag of Newey and West, or five correlation times of the residuals, whichever is longer.
+///
+/// Their rule looks at a first dozen lags only, too few where a servo's residuals repeat from move to move. A lag too
+/// long costs scatter, a lag too short gives intervals too narrow.
+fn long_enough(scores: &[&[f64]], residuals: &[f64]) -> usize {
+    let times = integrated_time(residuals).map_or(0, |t| (TIMES_IN_LAG * t).ceil() as usize);
+    automatic_lag(scores).max(times).min(residuals.len() / 4)
+}
+
+pub(crate) fn diagonal_roots(m: &Mat<f64>) -> Vec<f64> {
+    (0..m.nrows()).map(|j| m[(j, j)].max(0.0).sqrt()).collect()
+}

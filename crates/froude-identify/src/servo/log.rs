@@ -1,0 +1,64 @@
+//! What was recorded of an axis.
+
+use crate::servo::error::ServoError;
+
+/// A step may differ from the mean by this part: time stamps are written with few digits, filters want equal steps.
+const UNEVEN: f64 = 0.01;
+
+/// One record, columns of equal length.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ServoLog {
+    /// Time, s, equidistant.
+    pub time_s: Vec<f64>,
+    /// Measured position along the chain, m, unfiltered.
+    pub position_m: Vec<f64>,
+    /// Command to the drive, V.
+    pub command_v: Vec<f64>,
+    /// Reference position of the loop, m; needed by instruments and closed-loop simulation.
+    pub reference_m: Option<Vec<f64>>,
+    /// Load that presses on the guides (weight less buoyancy), N; needed by friction over load.
+    pub load_n: Option<Vec<f64>>,
+}
+
+impl ServoLog {
+    /// Checks lengths and steps; returns the sampling rate, Hz.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError::Length`], [`ServoError::Uneven`], [`ServoError::TooFewRows`].
+    pub fn rate_hz(&self) -> Result<f64, ServoError> {
+        let n = self.time_s.len();
+        if n < 3 {
+            return Err(ServoError::TooFewRows { rows: n, needed: 3 });
+        }
+        let optional = [("reference position", &self.reference_m), ("load", &self.load_n)];
+        let columns = [("position", &self.position_m), ("command", &self.command_v)].into_iter();
+        for (column, values) in columns.chain(optional.into_iter().filter_map(|(c, v)| v.as_ref().map(|v| (c, v)))) {
+            if values.len() != n {
+                return Err(ServoError::Length { column, found: values.len(), expected: n });
+            }
+        }
+        let mean_s = (self.time_s[n - 1] - self.time_s[0]) / (n - 1) as f64;
+        for pair in self.time_s.windows(2) {
+            let step_s = pair[1] - pair[0];
+            let is_even = (step_s - mean_s).abs() <= UNEVEN * mean_s;
+            if !is_even {
+                return Err(ServoError::Uneven { time_s: pair[0], step_s, mean_s });
+            }
+        }
+        Ok(mean_s.recip())
+    }
+
+    /// The samples of a range.
+    #[must_use]
+    pub fn part(&self, rows: std::ops::Range<usize>) -> Self {
+        let of = |column: &Vec<f64>| column[rows.clone()].to_vec();
+        Self {
+            time_s: of(&self.time_s),
+            position_m: of(&self.position_m),
+            command_v: of(&self.command_v),
+            reference_m: self.reference_m.as_ref().map(of),
+            load_n: self.load_n.as_ref().map(of),
+        }
+    }
+}

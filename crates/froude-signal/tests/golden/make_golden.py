@@ -1,0 +1,45 @@
+"""Writes scipy.txt: what scipy makes of one record. Run with numpy 2.4.6 and scipy 1.17.1:
+
+    python make_golden.py > scipy.txt
+
+A line is a name and its numbers, each with all its digits. The seed is 5.
+"""
+import numpy as np
+import scipy
+from scipy import ndimage, signal
+
+print("# numpy", np.__version__, "scipy", scipy.__version__, "seed 5")
+
+
+def line(name, values):
+    print(name, *(repr(float(v)) for v in np.ravel(values)))
+
+
+rng = np.random.default_rng(5)
+t = np.arange(700) / 1000.0
+x = np.sin(2 * np.pi * 3 * t) + 0.2 * np.sin(2 * np.pi * 140 * t + 1) + 0.05 * rng.normal(size=700) + 0.3 * t
+line("record", x)
+for order, corner in ((1, 100.0), (2, 30.0), (4, 100.0), (5, 60.0)):
+    sos = signal.butter(order, corner, fs=1000.0, output="sos")
+    line(f"sosfiltfilt_{order}", signal.sosfiltfilt(sos, x))
+b, a = signal.butter(4, 100.0, fs=1000.0)
+line("filtfilt_4", signal.filtfilt(b, a, x))
+line("gaussian_3.7", ndimage.gaussian_filter1d(x, 3.7))
+line("gaussian_200", ndimage.gaussian_filter1d(x, 200.0))
+line("savgol_21_3_0", signal.savgol_filter(x, 21, 3))
+line("savgol_41_3_1", signal.savgol_filter(x, 41, 3, deriv=1, delta=1e-3))
+line("savgol_15_4_2", signal.savgol_filter(x, 15, 4, deriv=2, delta=1e-3))
+line("gradient", np.gradient(x, 1e-3))
+line("decimate_10", signal.decimate(x, 10, ftype="fir", zero_phase=True))
+line("decimate_7", signal.decimate(x, 7, ftype="fir", zero_phase=True))
+y = signal.lfilter([0.2, 0.1], [1, -0.7], x) + 0.02 * rng.normal(size=700)
+line("output", y)
+f, pxx = signal.welch(x, fs=1000.0, nperseg=128)
+_, pyy = signal.welch(y, fs=1000.0, nperseg=128)
+_, pxy = signal.csd(x, y, fs=1000.0, nperseg=128)
+_, coherence = signal.coherence(x, y, fs=1000.0, nperseg=128)
+line("welch_x", pxx)
+line("welch_y", pyy)
+line("response_real", (pxy / pxx).real)
+line("response_imag", (pxy / pxx).imag)
+line("coherence", coherence)

@@ -1,0 +1,100 @@
+//! The same record through scipy and through this crate; `golden/make_golden.py` wrote scipy's side.
+//!
+//! Tolerances follow from rounding: ε = 2.2e-16 times the number of operations a value passes, times how much the
+//! filter amplifies them. They are relative to the largest number of a line.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use std::collections::HashMap;
+
+use froude_signal::savitzky_golay::Window;
+use froude_signal::{butterworth, decimate, differences, gaussian, savitzky_golay, spectrum, zero_phase};
+
+fn golden() -> HashMap<&'static str, Vec<f64>> {
+    include_str!("golden/scipy.txt")
+        .lines()
+        .filter(|l| !l.starts_with('#'))
+        .map(|l| {
+            let mut words = l.split(' ');
+            (words.next().unwrap(), words.map(|w| w.parse().unwrap()).collect())
+        })
+        .collect()
+}
+
+#[track_caller]
+fn same(ours: &[f64], theirs: &[f64], tolerance: f64) {
+    assert_eq!(ours.len(), theirs.len());
+    let size = theirs.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let worst = ours.iter().zip(theirs).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+    assert!(worst <= tolerance * size, "differ by {:.2e} of the largest, tolerance {tolerance:.1e}", worst / size);
+}
+
+/// A rounded denominator moves the poles by ε and the response by ε/|1 − z|², |1 − z| ≈ 2π·30/1000: 30 ε, two
+/// passes of up to three sections of five operations.
+const RECURSIVE: f64 = 30.0 * 30.0 * f64::EPSILON;
+
+#[test]
+fn zero_phase_filters_of_orders_one_to_five() {
+    let g = golden();
+    for (order, corner_hz) in [(1, 100.0), (2, 30.0), (4, 100.0), (5, 60.0)] {
+        let f = butterworth::low_pass(order, corner_hz, 1000.0).unwrap();
+        let name = format!("sosfiltfilt_{order}");
+        same(&zero_phase::filter(&f, &g["record"]).unwrap(), &g[name.as_str()], RECURSIVE);
+    }
+}
+
+/// One polynomial of order four: its roots move by ε/Π|p − p'| ≈ 100 ε, a hundred times as far as the sections'.
+#[test]
+fn sections_agree_with_the_polynomial_form_to_what_that_form_can_hold() {
+    let g = golden();
+    let f = butterworth::low_pass(4, 100.0, 1000.0).unwrap();
+    same(&zero_phase::filter(&f, &g["record"]).unwrap(), &g["filtfilt_4"], 100.0 * RECURSIVE);
+}
+
+/// Weights and sums of up to 1601 products below one.
+#[test]
+fn gaussian_smoothing_also_wider_than_the_record() {
+    let g = golden();
+    same(&gaussian::smooth(&g["record"], 3.7).unwrap(), &g["gaussian_3.7"], 50.0 * f64::EPSILON);
+    same(&gaussian::smooth(&g["record"], 200.0).unwrap(), &g["gaussian_200"], 1601.0 * f64::EPSILON);
+}
+
+/// scipy solves a Vandermonde system of condition 20³ to 20⁴ for its weights.
+#[test]
+fn savitzky_golay_with_its_ends() {
+    let g = golden();
+    for (samples, order, derivative) in [(21, 3, 0), (41, 3, 1), (15, 4, 2)] {
+        let ours = savitzky_golay::filter(&g["record"], Window { samples, order, derivative }, 1e-3).unwrap();
+        let name = format!("savgol_{samples}_{order}_{derivative}");
+        same(&ours, &g[name.as_str()], 1.6e5 * f64::EPSILON);
+    }
+}
+
+#[test]
+fn central_differences() {
+    let g = golden();
+    same(&differences::central(&g["record"], 1e-3).unwrap(), &g["gradient"], 4.0 * f64::EPSILON);
+}
+
+/// Sums of 201 products; taps are sines of up to 10π.
+#[test]
+fn decimation_with_its_ends() {
+    let g = golden();
+    for q in [7, 10] {
+        let name = format!("decimate_{q}");
+        same(&decimate::decimate(&g["record"], q).unwrap(), &g[name.as_str()], 201.0 * f64::EPSILON);
+    }
+}
+
+/// A transform of 128 points, squares, ten segments; quotients of powers that differ by 10⁴ amplify it.
+#[test]
+fn spectra_response_and_coherence() {
+    let g = golden();
+    let r = spectrum::frequency_response(&g["record"], &g["output"], 1000.0, 128).unwrap();
+    let rounding = 128.0 * f64::EPSILON;
+    same(&r.input, &g["welch_x"], rounding);
+    same(&r.output, &g["welch_y"], rounding);
+    let part = |k: usize| r.response.iter().map(|h| h[k]).collect::<Vec<f64>>();
+    same(&part(0), &g["response_real"], 1e4 * rounding);
+    same(&part(1), &g["response_imag"], 1e4 * rounding);
+    same(&r.coherence, &g["coherence"], 1e4 * rounding);
+}

@@ -1,0 +1,240 @@
+//! EMPS: a real motor-driven axis, published as a benchmark with reference parameters but white-noise intervals.
+
+use std::error::Error;
+use std::path::Path;
+
+use froude::identify::servo::held_out::halves;
+use froude::identify::servo::simulate::{Loop, Rigid, closed_loop};
+use froude::identify::servo::{
+    Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo, instrument, output_error,
+};
+use froude::records::table::read_table;
+use froude::records::units::Dimension;
+
+use crate::claims::{Claims, Verdict};
+
+const SECTION: &str = "EMPS: a motor-driven axis from its command and encoder (Janot, Gautier & Brunot 2019)";
+
+/// Force per volt of command, N/V (data README).
+const FORCE_PER_VOLT_N_V: f64 = 35.15065188;
+
+/// Period of the trajectory, s.
+const PERIOD_S: f64 = 6.16;
+
+/// The loop of the record (data README).
+const LOOP: Loop = Loop::Cascade { position_1_s: 160.18, velocity_v_s_m: 243.45, limit_v: 10.0 };
+
+/// `(name, value, standard deviation)` as printed, IDIM-LS, symmetric model.
+const SYMMETRIC: [(&str, f64, f64); 4] =
+    [("M", 95.1089, 0.1085), ("F_v", 203.5034, 1.1460), ("F_c", 20.3935, 0.1012), ("offset", -3.1648, 0.0444)];
+
+/// The same, asymmetric model.
+const ASYMMETRIC: [(&str, f64, f64); 5] = [
+    ("M", 95.1540, 0.0827),
+    ("F_v+", 166.7061, 1.2326),
+    ("F_v-", 240.4236, 1.2346),
+    ("F_c+", 20.1440, 0.1088),
+    ("F_c-", 20.6277, 0.1091),
+];
+
+pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
+    let log = read(root)?;
+    for (name, friction, printed, error_percent) in [
+        ("symmetric", Friction::symmetric(), &SYMMETRIC[..], 4.083),
+        ("asymmetric", Friction::asymmetric(), &ASYMMETRIC[..], 3.112),
+    ] {
+        let chain = Chain::new(FORCE_PER_VOLT_N_V, friction);
+        let report = identify_servo(&log, &chain)?;
+        parameters(claims, name, &report, printed);
+        claims.near(
+            SECTION,
+            &format!("{name}: relative force error, %"),
+            100.0 * report.relative_force_error,
+            error_percent,
+            0.05,
+            "publication; band of the issue",
+        );
+        honesty(claims, name, &report, printed);
+        prediction(claims, name, &report, &log, &chain)?;
+        closed_loop_methods(claims, name, &report, &log, &chain)?;
+    }
+    simulation(claims, &log)
+}
+
+fn read(root: &Path) -> Result<ServoLog, Box<dyn Error>> {
+    let folder = root.join("examples/emps");
+    let table = read_table(&folder.join("emps.csv"), Some(&folder.join("emps.toml")))?;
+    let of = |name: &str, dimension| table.number(name, dimension).map(<[f64]>::to_vec);
+    Ok(ServoLog {
+        time_s: of("time", Dimension::TIME)?,
+        position_m: of("position", Dimension::LENGTH)?,
+        command_v: of("command", Dimension::VOLTAGE)?,
+        reference_m: Some(of("reference_position", Dimension::LENGTH)?),
+        load_n: None,
+    })
+}
+
+/// Fit on two of the four periods, predict the force on the other two: the worst of the six choices.
+fn prediction(
+    claims: &mut Claims,
+    name: &str,
+    report: &ServoReport,
+    log: &ServoLog,
+    chain: &Chain,
+) -> Result<(), Box<dyn Error>> {
+    let bar_percent = if name == "symmetric" { 3.9 } else { 2.8 };
+    let worst = |rows| -> Result<f64, Box<dyn Error>> {
+        Ok(halves(rows, PERIOD_S)?.iter().map(|h| 100.0 * h.relative_error).fold(0.0, f64::max))
+    };
+    let pinned = worst(&report.rows)?;
+    // The error of the whole fit, nothing held out, is above the bar already: on this chain it cannot be met.
+    claims.add(
+        SECTION,
+        &format!("{name}: force on two periods predicted from the other two, pinned chain (by 10), worst of six, %"),
+        &format!("≤ {bar_percent} (issue); in sample {:.2}", 100.0 * report.relative_force_error),
+        format!("{pinned:.2}"),
+        if pinned <= bar_percent { Verdict::Pass } else { Verdict::Finding },
+    );
+    let by_20 = worst(&Chain { decimation: 20, ..chain.clone() }.rows(log)?)?;
+    claims.holds(
+        SECTION,
+        &format!("{name}: the same with decimation by 20, %"),
+        &format!("≤ {bar_percent} (issue)"),
+        format!("{by_20:.2}"),
+        by_20 <= bar_percent,
+    );
+    Ok(())
+}
+
+/// Instruments and output error in the known loop beside least squares.
+fn closed_loop_methods(
+    claims: &mut Claims,
+    name: &str,
+    report: &ServoReport,
+    log: &ServoLog,
+    chain: &Chain,
+) -> Result<(), Box<dyn Error>> {
+    let iv = instrument::identify(log, chain, &LOOP)?;
+    // Of the same rows, least squares and instruments should differ by less than what either is known to.
+    let apart = (iv.coefficients.iter().zip(&report.coefficients))
+        .map(|(a, b)| (a.value - b.value).abs() / b.block_std)
+        .fold(0.0, f64::max);
+    let text = |c: &[ServoCoefficient]| {
+        c.iter().map(|c| format!("{} {:.3} ± {:.3}", c.name, c.value, c.block_std)).collect::<Vec<_>>().join(", ")
+    };
+    claims.holds(
+        SECTION,
+        &format!("{name}: instruments from the simulated loop (IDIM-IV) agree with least squares"),
+        "within two standard deviations of the blocks",
+        format!("{} ({} simulations): at most {apart:.2} apart", text(&iv.coefficients), iv.iterations),
+        apart <= 2.0 && iv.was_converged,
+    );
+    let refined = output_error::refine(log, chain, &LOOP)?;
+    claims.add(
+        SECTION,
+        &format!("{name}: output error of the force in the loop"),
+        "–",
+        format!(
+            "{}; force error {:.2} %, {:?} after {} steps",
+            text(&refined.report.coefficients),
+            100.0 * refined.report.relative_force_error,
+            refined.end.end,
+            refined.end.iterations
+        ),
+        Verdict::Measured,
+    );
+    Ok(())
+}
+
+/// The published parameters in the known loop: a check of plant, loop and stepping, not of the parameters.
+fn simulation(claims: &mut Claims, log: &ServoLog) -> Result<(), Box<dyn Error>> {
+    let [m, v, c, o] = SYMMETRIC.map(|(_, value, _)| value);
+    let published = Rigid {
+        mass_kg: m,
+        viscous_n_s_m: [v; 2],
+        coulomb_n: [c; 2],
+        offset_n: o,
+        force_per_volt_n_v: FORCE_PER_VOLT_N_V,
+    };
+    let rate_hz = log.rate_hz()?;
+    let velocity_m_s = Chain::new(1.0, Friction::symmetric()).motion(&log.position_m, rate_hz)?.velocity_m_s;
+    let errors = |axis: &Rigid| -> Result<[f64; 3], Box<dyn Error>> {
+        let reference = log.reference_m.as_deref().unwrap_or_default();
+        let s = closed_loop(axis, &LOOP, reference, log.position_m[0], rate_hz.recip())?;
+        Ok([
+            error_percent(&log.position_m, &s.position_m),
+            error_percent(&velocity_m_s, &s.velocity_m_s),
+            error_percent(&log.command_v, &s.command_v),
+        ])
+    };
+    // Half a unit of the data README's print.
+    let ours = errors(&published)?;
+    for (what, found, expected, half) in
+        [("position", ours[0], 0.0012, 0.00005), ("velocity", ours[1], 0.171, 0.0005), ("force", ours[2], 5.31, 0.01)]
+    {
+        let claim = format!("published parameters in the known loop: {what} error, %");
+        claims.near(SECTION, &claim, found, expected, half, "data README");
+    }
+    let heavier = errors(&Rigid { mass_kg: 1.01 * m, viscous_n_s_m: [1.05 * v; 2], ..published })?;
+    claims.add(
+        SECTION,
+        "the same with 1 % more mass and 5 % more viscous friction: the loop hides the parameters",
+        "nearly the same",
+        format!("position {:.4} %, velocity {:.3} %, force {:.2} %", heavier[0], heavier[1], heavier[2]),
+        Verdict::Measured,
+    );
+    Ok(())
+}
+
+fn error_percent(measured: &[f64], simulated: &[f64]) -> f64 {
+    let squares = |x: &mut dyn Iterator<Item = f64>| x.map(|x| x * x).sum::<f64>();
+    let apart = squares(&mut measured.iter().zip(simulated).map(|(m, s)| m - s));
+    100.0 * (apart / squares(&mut measured.iter().copied())).sqrt()
+}
+
+/// Each coefficient against the published one, in published standard deviations.
+fn parameters(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[(&str, f64, f64)]) {
+    for &(coefficient, value, std) in printed {
+        let found = report.coefficient(coefficient).map_or(f64::NAN, |c| c.value);
+        claims.near(
+            SECTION,
+            &format!("{name}: {coefficient}, SI"),
+            found,
+            value,
+            std,
+            "publication, its own standard deviation",
+        );
+    }
+}
+
+/// The published intervals against those that hold for residuals which are not white.
+fn honesty(claims: &mut Claims, name: &str, report: &ServoReport, printed: &[(&str, f64, f64)]) {
+    for &(coefficient, _, std) in printed {
+        let Some(c) = report.coefficient(coefficient) else { continue };
+        claims.add(
+            SECTION,
+            &format!("{name}: standard deviation of {coefficient}: published, classical, HAC, blocks"),
+            "blocks and HAC larger: residuals are correlated",
+            format!("{std}, {:.4}, {:.4}, {:.4} {}", c.classical_std, c.hac_std, c.block_std, c.unit),
+            if c.block_std > std { Verdict::Finding } else { Verdict::Measured },
+        );
+    }
+    if let Some(w) = &report.whiteness {
+        claims.add(
+            SECTION,
+            &format!("{name}: whiteness of the residuals"),
+            "white, if the published standard deviations were to hold",
+            format!(
+                "r1 = {:.2}, Ljung-Box({}) = {:.0} (p = {:.1e}), correlation time {}; HAC lag {:.2} s, blocks {:.2} s",
+                w.r1,
+                w.lags,
+                w.ljung_box,
+                w.p,
+                w.correlation_time_s.map_or("longer than the record can tell".to_owned(), |t| format!("{t:.2} s")),
+                report.spread.hac_lag_s,
+                report.spread.block_s
+            ),
+            if w.is_white() { Verdict::Measured } else { Verdict::Finding },
+        );
+    }
+}
