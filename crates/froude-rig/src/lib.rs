@@ -13,6 +13,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod amplifier;
+pub mod catalogue;
 pub mod closed_loop;
 pub mod defaults;
 pub mod encoder;
@@ -25,6 +26,7 @@ pub mod plant;
 pub mod propagator;
 pub mod twin;
 
+pub use catalogue::Catalogue;
 pub use closed_loop::ClosedLoop;
 pub use injection::{Injection, Scheduled};
 pub use load::{HungWeight, Load, Mounting, Strut, TowedBody};
