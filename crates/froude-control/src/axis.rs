@@ -99,9 +99,9 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    pub(crate) fn new(config: &AxisConfig, tick_us: u32) -> Self {
+    pub(crate) fn new(config: &AxisConfig, tick_us: u32, late_us: u32) -> Self {
         Self {
-            law: Law::new(config, tick_us),
+            law: Law::new(config, tick_us, late_us),
             encoder: Unwrap::default(),
             zero_m: 0.0,
             position_m: 0.0,
@@ -140,11 +140,7 @@ impl Axis {
         (self.was_low_end, self.was_high_end) = (input.is_low_end, input.is_high_end);
         let is_enabled = self.command.is_enabled;
         let current_a = if input.current_a.is_finite() { input.current_a } else { 0.0 };
-        let applied = Applied {
-            volts: self.command.volts,
-            is_enabled,
-            error_m: (!self.is_open_loop()).then_some(self.reference.position_m - self.position_m),
-        };
+        let applied = Applied { volts: self.command.volts, is_enabled, error_m: self.error_m() };
         let measured = self.monitor.step(&self.law, moved, gap_us, &AxisInput { current_a, ..*input }, applied);
         let is_low_allowed = self.phase == Phase::Homing;
 
@@ -166,14 +162,21 @@ impl Axis {
         }
         let is_outward = libm::fabs(self.speed_m_s) > SPEED_NOISE_M_S;
         if self.is_homed && self.phase != Phase::Homing && is_outward {
-            let guard_m = 0.5 * self.law.limits.following_error_m;
+            let guard_m = 0.25 * self.law.limits.following_error_m;
             if !travel::is_stoppable(&self.law, self.position_m, self.speed_m_s, guard_m) {
                 return Some(Fault::SoftLimit);
             }
         }
-        let is_fast =
-            libm::fabs(self.speed_m_s) > over_speed_m_s(&self.law.limits, self.is_homed && self.phase != Phase::Homing);
-        is_fast.then_some(Fault::OverSpeed)
+        let is_free = self.is_homed && self.phase != Phase::Homing;
+        if libm::fabs(self.speed_m_s) <= over_speed_m_s(&self.law.limits, is_free) {
+            return None;
+        }
+        self.monitor.polarity_so_far(&self.law, self.error_m()).or(Some(Fault::OverSpeed))
+    }
+
+    /// Reference less position; `None` with the loop open.
+    fn error_m(&self) -> Option<f64> {
+        (!self.is_open_loop()).then_some(self.reference.position_m - self.position_m)
     }
 
     fn is_open_loop(&self) -> bool {
@@ -421,7 +424,7 @@ impl Axis {
             Asked::Open(volts) if libm::copysign(1.0, volts) * self.speed_m_s >= cap_m_s => Asked::Open(0.0),
             Asked::Done => {
                 if self.exciter.is_some_and(|e| e.is_jog()) {
-                    self.pending = self.pending.or(self.monitor.polarity_so_far(&self.law));
+                    self.pending = self.pending.or(self.monitor.polarity_so_far(&self.law, None));
                 }
                 self.stop(StopCategory::Two, false);
                 Asked::Added(0.0)

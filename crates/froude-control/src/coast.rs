@@ -124,7 +124,13 @@ impl StoppingWay {
         let a = acceleration_m_s2;
         let top = libm::fmin(peak_speed_m_s, self.crossover_m_s);
         let excess = libm::fmax(0.0, a - c);
-        let v = if b * top > excess { excess / b } else if excess > 0.0 { top } else { 0.0 };
+        let v = if b * top > excess {
+            excess / b
+        } else if excess > 0.0 {
+            top
+        } else {
+            0.0
+        };
         let coast_m = libm::fmax(0.0, self.coast.distance_m(v) - v * v / (2.0 * a));
         coast_m + (self.coast.bound_m(top) - self.coast.distance_m(top))
     }

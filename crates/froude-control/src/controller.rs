@@ -32,9 +32,10 @@ impl Controller {
     /// [`ConfigError`] when a number is not plausible, or when the end switch leaves no room to coast.
     pub fn new(config: Config) -> Result<Self, ConfigError> {
         config.check()?;
+        let axis = |axis| Axis::new(axis, config.tick_us, config.late_us);
         let [y, x] = &config.axes;
         Ok(Self {
-            axes: [Axis::new(y, config.tick_us), Axis::new(x, config.tick_us)],
+            axes: [axis(y), axis(x)],
             tick_us: config.tick_us,
             late_us: config.late_us,
             host_silence_us: config.host_silence_us,

@@ -102,7 +102,7 @@ impl Exciter {
         if self.left_ticks == 0 {
             return Asked::Done;
         }
-        self.left_ticks -= 1;
+        self.left_ticks = self.left_ticks.saturating_sub(1);
         match &mut self.signal {
             Signal::Pulses { volts, period, on, at, sign } => {
                 let asked = if *at < *on { *sign * *volts } else { 0.0 };

@@ -36,8 +36,12 @@ pub(crate) struct Law {
     /// The command never leaves ± this, V: the amplifier's range or the peak current, whichever is less.
     pub limit_v: f64,
     pub amplifier_a_v: f64,
-    /// Largest acceleration that the motor can give at peak current, m/s².
-    pub motor_m_s2: f64,
+    /// Longest time between ticks that is not late, µs.
+    pub late_us: f64,
+    /// How much the counts of a tick may change, per µs² of tick.
+    pub jump_counts_us2: f64,
+    /// How many counts the axis can go at all, per µs.
+    pub top_counts_us: f64,
     /// What the speed estimate may lag behind for every volt above friction, m/s.
     pub lag_m_s_v: f64,
     /// Share of the thermal model's lag in a tick.
@@ -64,6 +68,9 @@ pub(crate) struct TickCounts {
     pub saturation: u32,
 }
 
+/// How much more than J_eff and the peak current say the motor's acceleration may change in a tick: reaction of chain and load on the
+/// motor alone, and torque ripple.
+const ACCELERATION_MARGIN: f64 = 10.0;
 /// The axis is at rest when it stays within a count for this long, s.
 const REST_S: f64 = 0.1;
 /// Above the peak current for this long is over-current, s.
@@ -72,13 +79,14 @@ const OVER_CURRENT_S: f64 = 1e-3;
 const MISMATCH_S: f64 = 10e-3;
 
 impl Law {
-    pub(crate) fn new(config: &AxisConfig, tick_us: u32) -> Self {
+    pub(crate) fn new(config: &AxisConfig, tick_us: u32, late_us: u32) -> Self {
         let AxisConfig { gains, drive, limits, .. } = config;
         let tick_s = f64::from(tick_us) * 1e-6;
         let rad_per_m = drive.gear_ratio / drive.sprocket_radius_m;
         let count_rad = 2.0 * core::f64::consts::PI / drive.counts_per_revolution;
         let n_m_per_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
         let coast = Coast::of(drive);
+        let motor_m_s2 = drive.torque_constant_n_m_a * limits.current_a / (drive.inertia_kg_m2 * rad_per_m);
         let volts_inertia = drive.inertia_kg_m2 * rad_per_m / n_m_per_v;
         let ticks = |time_s: f64| ticks_in(time_s, 1.0 / tick_s);
         let share = |corner_hz: f64| 1.0 - libm::exp(-2.0 * core::f64::consts::PI * corner_hz * tick_s);
@@ -102,7 +110,9 @@ impl Law {
             volts_coulomb_lower: drive.coulomb_lower_n_m / n_m_per_v,
             limit_v: libm::fmin(limits.command_v, limits.current_a / drive.amplifier_a_v),
             amplifier_a_v: drive.amplifier_a_v,
-            motor_m_s2: drive.torque_constant_n_m_a * limits.current_a / (drive.inertia_kg_m2 * rad_per_m),
+            late_us: f64::from(late_us),
+            jump_counts_us2: ACCELERATION_MARGIN * motor_m_s2 * rad_per_m / count_rad * 1e-12,
+            top_counts_us: 2.0 * limits.speed_m_s * rad_per_m / count_rad * 1e-6,
             lag_m_s_v: tick_s / (share(SPEED_FILTER_HZ) * volts_inertia),
             heat_share: tick_s / limits.thermal_time_s,
             per_continuous_a: 1.0 / limits.continuous_current_a,

@@ -1,7 +1,8 @@
 //! What is refused before it moves, and what is still stoppable while it moves.
 //!
-//! A move is accepted only if, after the loss of torque at any moment of it, the coast ends before the hard stop with the allowed following
-//! error to spare, and if its target keeps that distance from the end switches too. While it moves, half of that is kept.
+//! A move is accepted only if, after the loss of torque at any moment of it, the coast ends before the hard stop although the axis is
+//! ahead by the allowed following error and faster by [`SPEED_MARGIN_M_S`]; its target keeps the following error's distance from the end
+//! switches too. While it moves, a quarter of the following error is kept free.
 
 use crate::axis::SPEED_NOISE_M_S;
 use crate::law::Law;
@@ -16,6 +17,8 @@ const GENTLEST_M_S2: f64 = 1e-4;
 const SOFTEST_M_S3: f64 = 1e-3;
 /// Longest single move or excitation, s.
 const LONGEST_S: f64 = 7200.0;
+/// How much faster than its reference an axis may be without leaving the way that was checked, m/s: ringing of the chain.
+const SPEED_MARGIN_M_S: f64 = 0.01;
 /// Longest jog before homing, m.
 const JOG_M: f64 = 0.1;
 
@@ -65,7 +68,9 @@ pub(crate) fn checked_move(law: &Law, start_m: f64, asked: &Move) -> Result<Shap
     if profile.duration_s() > LONGEST_S || law.volts_for(acceleration, speed, 1.0) > law.limit_v {
         return Err(Refusal::OutOfRange);
     }
-    let beyond_m = law.stopping.beyond_target_m(speed, asked.acceleration_m_s2) + limits.following_error_m;
+    // The stopping way is convex: no lower speed adds more for the margin.
+    let faster_m = law.stopping.way_m(speed + SPEED_MARGIN_M_S) - law.stopping.way_m(speed);
+    let beyond_m = law.stopping.beyond_target_m(speed, asked.acceleration_m_s2) + faster_m + limits.following_error_m;
     let is_free = if profile.direction() > 0.0 {
         asked.target_m + beyond_m <= limits.hard_high_m
     } else {

@@ -11,22 +11,26 @@ fn refused(change: impl FnOnce(&mut AxisConfig)) -> String {
 
 #[test]
 fn refusals_say_what_was_found_and_what_is_accepted() {
-    assert_eq!(
-        refused(|a| a.limits.speed_m_s = f64::NAN),
-        "axis 1: limits.speed_m_s is NaN, must be in 0.001..=100"
-    );
-    assert_eq!(
-        refused(|a| a.drive.encoder_sign = 0.5),
-        "axis 1: drive.encoder_sign squared is 0.25, must be in 1..=1"
-    );
+    assert_eq!(refused(|a| a.limits.speed_m_s = f64::NAN), "axis 1: limits.speed_m_s is NaN, must be in 0.001..=100");
+    assert_eq!(refused(|a| a.drive.encoder_sign = 0.5), "axis 1: drive.encoder_sign squared is 0.25, must be in 1..=1");
     assert_eq!(
         refused(|a| (a.drive.coulomb_lower_n_m, a.drive.viscous_n_m_s_rad) = (0.0, 0.0)),
         "axis 1: no friction is declared, so no coast distance; give coulomb_lower_n_m or viscous_n_m_s_rad"
     );
     let close = refused(|a| a.limits.low_switch_m = -0.045);
-    assert!(close.starts_with("axis 1: the low end switch is 0.00500000") && close.ends_with("lower unhomed_speed_m_s or move the switch"), "{close}");
-    let narrow = refused(|a| a.limits.high_switch_m = 0.015);
-    assert_eq!(narrow, "axis 1: soft limits 0.01 m and 0.005 m leave no travel; lower following_error_m");
+    assert!(
+        close.starts_with("axis 1: the low end switch is 0.00500000")
+            && close.ends_with("lower unhomed_speed_m_s or move the switch"),
+        "{close}"
+    );
+    let narrow = refused(|a| (a.limits.high_switch_m, a.limits.following_error_m) = (0.5, 0.5));
+    assert_eq!(narrow, "axis 1: soft limits 0.5 m and 0 m leave no travel; lower following_error_m");
+    let weak = refused(|a| a.limits.command_v = 1.0);
+    assert!(
+        weak.starts_with("axis 1: the acceleration limit takes 1.4")
+            && weak.ends_with("V and 1 V are allowed; lower acceleration_m_s2"),
+        "{weak}"
+    );
     let slow = Controller::new(Config { tick_us: 0, ..Config::PUBLISHED }).unwrap_err().to_string();
     assert_eq!(slow, "tick_us is 0, must be in 50..=10000");
 }

@@ -32,11 +32,17 @@ fn is_continuous(states: &[State], dt: f64, bounds: Bounds, scale: f64) -> Resul
         let step_m = (to.position_m - from.position_m).abs();
         prop_assert!(step_m <= bounds.speed_m_s * dt * slack + rounding(scale), "position {from:?} {to:?}");
         let step_m_s = (to.speed_m_s - from.speed_m_s).abs();
-        prop_assert!(step_m_s <= bounds.acceleration_m_s2 * dt * slack + rounding(bounds.speed_m_s), "speed {from:?} {to:?}");
+        prop_assert!(
+            step_m_s <= bounds.acceleration_m_s2 * dt * slack + rounding(bounds.speed_m_s),
+            "speed {from:?} {to:?}"
+        );
         // The way is the integral of the speed: the trapezoid rule errs by max|a| change · dt² / 8 within a kinked segment.
         let mean_m = 0.5 * (to.speed_m_s + from.speed_m_s) * dt;
         let error_m = (to.position_m - from.position_m - mean_m).abs();
-        prop_assert!(error_m <= bounds.acceleration_m_s2 * dt * dt / 4.0 * slack + rounding(scale), "integral {from:?} {to:?}");
+        prop_assert!(
+            error_m <= bounds.acceleration_m_s2 * dt * dt / 4.0 * slack + rounding(scale),
+            "integral {from:?} {to:?}"
+        );
         if bounds.jerk_m_s3 > 0.0 {
             let step = (to.acceleration_m_s2 - from.acceleration_m_s2).abs();
             let limit = bounds.jerk_m_s3 * dt * slack + rounding(bounds.acceleration_m_s2 + bounds.jerk_m_s3);

@@ -1,6 +1,5 @@
 //! A rigid carriage for the tests: J θ̈ + B θ̇ + C sgn θ̇ = K_T K_amp v_c, with stick, end switches and an encoder.
 
-
 use froude_control::Controller;
 use froude_control::config::{AxisConfig, Config, Drive};
 use froude_control::request::Request;

@@ -10,7 +10,8 @@ fn residual_m(mode_hz: f64, damping: f64, duration_s: f64, reference: impl Fn(f6
     let steps = (duration_s * mode_hz * 4000.0).ceil();
     let dt = duration_s / steps;
     // In the moving frame z = x − r: z̈ = −2ζω ż − ω² z − a.
-    let slope = |t: f64, [z, w]: [f64; 2]| [w, -2.0 * damping * omega * w - omega * omega * z - reference(t).acceleration_m_s2];
+    let slope =
+        |t: f64, [z, w]: [f64; 2]| [w, -2.0 * damping * omega * w - omega * omega * z - reference(t).acceleration_m_s2];
     let add = |a: [f64; 2], h: f64, b: [f64; 2]| [a[0] + h * b[0], a[1] + h * b[1]];
     let mut s = [0.0, 0.0];
     for i in 0..steps as u64 {
