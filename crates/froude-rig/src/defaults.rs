@@ -7,6 +7,10 @@
 //! times K_e on the long axis. The motor alone on that stiffness is damped with ratio 0.7 by K_d; T_i is 0.2 s. The paper's ratios
 //! (T_i = 1 s, K_d/K_p = 0.1 s) belong to a loop that is softer than its chain.
 //!
+//! **Limits.** Homing is slow (18 mm/s): beyond the open switch the drive is blocked towards the stop, and a stiff loop that wants to go on
+//! there looks like a drive that does not follow. The command is called saturated after 30 ms: that is how long a motor whose encoder
+//! has failed at creep runs away.
+//!
 //! **Shaper.** ZVD at the *load's* mode √(K_e/M)/2π with the body as mounted, not at the 13 Hz that the current shows.
 
 use crate::load::Load;
@@ -15,6 +19,9 @@ use froude_control::config::{AxisConfig, Config, Drive, Gains, Limits};
 
 /// Stiffness of the position loop over that of the chain.
 const LOOP_OVER_CHAIN: [f64; 2] = [10.0, 4.0];
+/// Largest command, V: 1.5 times what a loaded axis needs at full acceleration and speed. On y 3.34 A, so that noise of the current
+/// monitor on a cut command is no over-current; on x less, or a blind encoder would drive the bare platform through its travel.
+const COMMAND_V: [f64; 2] = [9.5, 4.5];
 /// Damping ratio of the motor on that stiffness.
 const LOOP_DAMPING: f64 = 0.7;
 /// T_i, s.
@@ -27,14 +34,14 @@ const SURE_FRICTION: f64 = 0.85;
 pub fn control_config(loads: &[Load; 2]) -> Config {
     let axes = [(AxisParameters::long(), 0), (AxisParameters::short(), 1)];
     Config {
-        axes: axes.map(|(parameters, i)| axis_config(&parameters, &loads[i], LOOP_OVER_CHAIN[i])),
+        axes: axes.map(|(parameters, i)| axis_config(&parameters, &loads[i], LOOP_OVER_CHAIN[i], COMMAND_V[i])),
         tick_us: crate::twin::TICK_US,
         late_us: 1_000,
         host_silence_us: 200_000,
     }
 }
 
-fn axis_config(axis: &AxisParameters, load: &Load, loop_over_chain: f64) -> AxisConfig {
+fn axis_config(axis: &AxisParameters, load: &Load, loop_over_chain: f64, command_v: f64) -> AxisConfig {
     let mass_kg = load.mass_kg(axis);
     let seen = axis.apparent(mass_kg, load.wheel_load_n(axis));
     let mode_hz = axis.load_mode_hz(mass_kg);
@@ -71,12 +78,12 @@ fn axis_config(axis: &AxisParameters, load: &Load, loop_over_chain: f64) -> Axis
             speed_m_s: 0.6,
             unhomed_speed_m_s: 0.018,
             acceleration_m_s2: 1.0,
-            command_v: 10.0,
+            command_v,
             current_a: 3.5,
             continuous_current_a: 2.0,
             thermal_time_s: 20.0,
             following_error_m: 0.01,
-            saturation_s: 0.1,
+            saturation_s: 0.03,
             encoder_errors_per_s: 10,
             polarity_m: 0.005,
             stuck_s: 0.05,

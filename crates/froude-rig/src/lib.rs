@@ -16,6 +16,7 @@
 
 pub mod amplifier;
 pub mod campaign;
+pub mod catalogue;
 pub mod closed_loop;
 pub mod defaults;
 pub mod drive;
@@ -29,6 +30,7 @@ pub mod plant;
 pub mod propagator;
 pub mod twin;
 
+pub use catalogue::Catalogue;
 pub use closed_loop::ClosedLoop;
 pub use injection::{Injection, Scheduled};
 pub use load::{HungWeight, Load, Mounting, Strut, TowedBody};

@@ -1,0 +1,252 @@
+//! The fault catalogue: what is broken, what the controller may call it, and by when it must have said so.
+//!
+//! **Setting.** A homed carriage on a random move of both axes, the body off, dry or wet; one thing breaks on a moving axis.
+//! **Time.** From the tick that the injection is scheduled for to the tick whose status names the fault.
+//!
+//! | injection | accepted | latest |
+//! | --- | --- | --- |
+//! | emergency stop, end switch, amplifier off, NaN current | its own fault | 2 ticks |
+//! | tick late (over 1 ms) | tick late | 2 ticks |
+//! | encoder jump (over 20 counts) | jump, or stuck when the jump cancels the motion | 2 ticks |
+//! | encoder silent, stuck, reversed | stuck, jump, polarity, following error, saturated, over-current, over-speed | 1.5 s (at creep; at 0.06 m/s and more, 2 ticks) |
+//! | illegal transitions (over 100 a second) | illegal, jump | 0.5 s |
+//! | current runaway | over-current, saturated, over-speed, following error | 15 ms |
+//! | host silent | host silent | 0.21 s |
+//! | jam beyond the peak force | following error, saturated, stuck (the counts cannot tell), over-current | 1.5 s |
+//! | no torque at all | following error, stuck, saturated, soft limit | 3 s |
+//! | chain break | none needed: the motor's encoder cannot see it | – |
+//!
+//! A detection that comes from somewhere else first (a following error because of the same cause) is what the set is for. In every
+//! run the loads stay off their hard stops and no command that is not finite reaches an amplifier. The chain break is the
+//! exception that the table states: a load without a chain coasts as far as its own friction lets it.
+
+use crate::closed_loop::ClosedLoop;
+use crate::defaults::control_config;
+use crate::injection::{Injection, Scheduled};
+use crate::load::{Load, Mounting};
+use crate::twin::{TICK_S, TwinConfig};
+use froude_control::config::ConfigError;
+use froude_control::fault::Fault;
+use froude_control::request::{Move, Request};
+use froude_control::status::Phase;
+use rand::{Rng, RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+impl Injection {
+    /// Faults that the controller may latch for it; empty when none can be asked for.
+    #[must_use]
+    pub fn accepted(&self) -> &'static [Fault] {
+        match self {
+            Self::EmergencyStop => &[Fault::EmergencyStop],
+            Self::LowEndSwitch | Self::HighEndSwitch => &[Fault::EndSwitch],
+            Self::AmplifierOff => &[Fault::AmplifierNotReady],
+            Self::NotFiniteCurrent => &[Fault::NotFinite],
+            Self::TickLate(_) => &[Fault::TickLate],
+            Self::HostSilent => &[Fault::HostSilent],
+            Self::EncoderJump(_) => &[Fault::EncoderJump, Fault::EncoderStuck],
+            Self::EncoderFlips(_) => &[Fault::EncoderIllegal, Fault::EncoderJump],
+            Self::EncoderSilent | Self::EncoderStuck | Self::EncoderReversed => &[
+                Fault::EncoderStuck,
+                Fault::EncoderJump,
+                Fault::Polarity,
+                Fault::FollowingError,
+                Fault::Saturated,
+                Fault::OverCurrent,
+                Fault::OverSpeed,
+            ],
+            Self::CurrentRunaway => &[Fault::OverCurrent, Fault::Saturated, Fault::OverSpeed, Fault::FollowingError],
+            Self::FrictionJam(_) => &[Fault::FollowingError, Fault::Saturated, Fault::EncoderStuck, Fault::OverCurrent],
+            Self::TorqueLoss(_) => {
+                &[Fault::FollowingError, Fault::EncoderStuck, Fault::Saturated, Fault::SoftLimit, Fault::Polarity]
+            }
+            Self::ChainBreak => &[],
+        }
+    }
+
+    /// Latest detection after it acts, s.
+    #[must_use]
+    pub fn latest_s(&self) -> f64 {
+        match self {
+            Self::EmergencyStop
+            | Self::LowEndSwitch
+            | Self::HighEndSwitch
+            | Self::AmplifierOff
+            | Self::NotFiniteCurrent
+            | Self::TickLate(_)
+            | Self::EncoderJump(_) => 2.0 * TICK_S,
+            Self::CurrentRunaway => 0.015,
+            Self::HostSilent => 0.21,
+            Self::EncoderFlips(_) => 0.5,
+            Self::EncoderSilent | Self::EncoderStuck | Self::EncoderReversed | Self::FrictionJam(_) => 1.5,
+            Self::TorqueLoss(_) => 3.0,
+            Self::ChainBreak => f64::INFINITY,
+        }
+    }
+
+    /// A random one, strong enough to matter.
+    #[must_use]
+    pub fn random(rng: &mut impl Rng) -> Self {
+        match rng.random_range(0..16) {
+            0 => Self::EncoderSilent,
+            1 => Self::EncoderStuck,
+            2 => {
+                let counts = rng.random_range(20..100_000);
+                Self::EncoderJump(if rng.random() { counts } else { -counts })
+            }
+            3 => Self::EncoderFlips(rng.random_range(100..2_000)),
+            4 => Self::EncoderReversed,
+            5 => Self::AmplifierOff,
+            6 => Self::CurrentRunaway,
+            7 => Self::EmergencyStop,
+            8 => Self::LowEndSwitch,
+            9 => Self::HighEndSwitch,
+            10 => Self::TickLate(rng.random_range(1_000..20_000)),
+            11 => Self::HostSilent,
+            12 => Self::NotFiniteCurrent,
+            13 => Self::FrictionJam(rng.random_range(150.0..400.0)),
+            14 => Self::TorqueLoss(0.0),
+            _ => Self::ChainBreak,
+        }
+    }
+}
+
+/// How a run with an injection ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// What was broken.
+    pub injection: Injection,
+    /// On which axis.
+    pub axis: usize,
+    /// How the body was mounted.
+    pub mounting: Mounting,
+    /// What the controller latched, and how long after, s.
+    pub detected: Option<(Fault, f64)>,
+    /// A load touched a hard stop.
+    pub has_left_travel: bool,
+    /// A command was not finite.
+    pub has_bad_command: bool,
+    /// Both axes were at rest without torque at the end.
+    pub is_at_rest: bool,
+}
+
+impl Outcome {
+    /// Whether the catalogue allows it.
+    #[must_use]
+    pub fn is_allowed(&self) -> bool {
+        let accepted = self.injection.accepted();
+        let is_told = match self.detected {
+            Some((fault, after_s)) => accepted.contains(&fault) && after_s <= self.injection.latest_s() + 0.5 * TICK_S,
+            None => accepted.is_empty(),
+        };
+        let is_held = !self.has_left_travel && (self.is_at_rest || accepted.is_empty());
+        let is_chain = matches!(self.injection, Injection::ChainBreak);
+        !self.has_bad_command && (is_chain || (is_told && is_held))
+    }
+}
+
+/// Longest wait for a detection, and for rest after it, ticks.
+const WAIT_TICKS: u64 = 16_000;
+const REST_TICKS: u64 = 48_000;
+
+/// Homed rigs to break, one for each mounting of the body.
+#[derive(Debug, Clone)]
+pub struct Catalogue {
+    homed: Vec<(Mounting, ClosedLoop)>,
+}
+
+impl Catalogue {
+    /// Homes the rigs and moves y to 0.5 m and x to 0.3 m.
+    ///
+    /// # Errors
+    ///
+    /// [`ConfigError`] from the controller.
+    pub fn new() -> Result<Self, ConfigError> {
+        let homed = [Mounting::None, Mounting::Dry, Mounting::Wet].map(|mounting| {
+            let load = Load::mounted(mounting);
+            let mut config = TwinConfig::loaded(load);
+            config.axes[0].start_m = 0.02;
+            config.axes[1].start_m = 0.02;
+            let mut rig = ClosedLoop::new(&config, control_config(&[load; 2]), 0)?;
+            let is_homed = rig.home();
+            let is_there = (0..2).all(|axis| {
+                let profile = Move {
+                    target_m: [0.5, 0.3][axis],
+                    speed_m_s: 0.1,
+                    acceleration_m_s2: 0.3,
+                    jerk_m_s3: 3.0,
+                    is_shaped: true,
+                };
+                rig.carry_out(Request::Move { axis, profile }, axis, 100_000)
+            });
+            debug_assert!(is_homed && is_there, "{:?}", rig.output.status);
+            Ok((mounting, rig))
+        });
+        Ok(Self { homed: homed.into_iter().collect::<Result<_, _>>()? })
+    }
+
+    /// One random move with one random injection; everything from the seed.
+    #[must_use]
+    pub fn run(&self, seed: u64) -> Outcome {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let (mounting, homed) = &self.homed[rng.random_range(0..self.homed.len())];
+        let mut rig = homed.clone();
+        rig.twin.begin_run([Load::mounted(*mounting); 2], rng.random());
+        let axis = usize::from(rng.random_bool(0.3));
+        for number in 0..2 {
+            let profile = Move {
+                target_m: rng.random_range([1.5..3.5, 0.5..0.8][number].clone()),
+                speed_m_s: rng.random_range([0.03..0.55, 0.03..0.15][number].clone()),
+                acceleration_m_s2: rng.random_range(0.2..0.8),
+                jerk_m_s3: 5.0,
+                is_shaped: rng.random(),
+            };
+            rig.request(Request::Move { axis: number, profile });
+            rig.step();
+        }
+        let injection = Injection::random(&mut rng);
+        // On the way, once the axis really moves.
+        for _ in 0..rng.random_range(800..8_000) {
+            rig.step();
+        }
+        let mut waited = 0;
+        while rig.output.status.axes[axis].reference_m_s.abs() < 0.02 && waited < WAIT_TICKS {
+            rig.step();
+            waited += 1;
+        }
+        broken(rig, Scheduled { tick: 0, axis, injection }, *mounting)
+    }
+}
+
+/// Breaks it now and watches.
+fn broken(mut rig: ClosedLoop, scheduled: Scheduled, mounting: Mounting) -> Outcome {
+    let Scheduled { axis, injection, .. } = scheduled;
+    let mut outcome = Outcome {
+        injection,
+        axis,
+        mounting,
+        detected: rig.output.status.fault.map(|(fault, _)| (fault, 0.0)),
+        has_left_travel: false,
+        has_bad_command: false,
+        is_at_rest: false,
+    };
+    rig.twin.inject(scheduled);
+    let mut left = WAIT_TICKS;
+    let mut waited = 0_u64;
+    while left > 0 && !outcome.is_at_rest {
+        left -= 1;
+        waited += 1;
+        let output = *rig.step();
+        if outcome.detected.is_none()
+            && let Some((fault, _)) = output.status.fault
+        {
+            outcome.detected = Some((fault, waited as f64 * TICK_S));
+            left = REST_TICKS;
+        }
+        outcome.has_left_travel |= !rig.twin.is_inside_travel();
+        outcome.has_bad_command |= output.command.axes.iter().any(|c| !c.volts.is_finite());
+        let is_off = output.status.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Coasting));
+        outcome.is_at_rest = is_off && (0..2).all(|i| rig.twin.truth(i).load_speed_m_s == 0.0);
+    }
+    outcome.has_bad_command |= rig.twin.refused_inputs() > 0;
+    outcome
+}
