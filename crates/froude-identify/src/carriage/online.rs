@@ -48,6 +48,12 @@ impl OnLine {
         Self { pairs: Vec::new(), shared_relative, looks: looks.max(1), target_relative }
     }
 
+    /// The same with another shared standard uncertainty, once a calibration has told it.
+    #[must_use]
+    pub fn with_shared(self, shared_relative: f64) -> Self {
+        Self { shared_relative, ..self }
+    }
+
     /// Takes one steady point.
     pub fn push(&mut self, point: &Point) {
         let x = point.speed_m_s * point.speed_m_s.abs();

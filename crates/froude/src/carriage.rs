@@ -1,0 +1,17 @@
+//! The towing carriage: driven, known, and read for drag.
+//!
+//! | module        | verb                      | what                                                       |
+//! |---------------|---------------------------|------------------------------------------------------------|
+//! | [`drive`]     | `froude run`              | pre-flight, then the campaign on the twin or the real rig      |
+//! | [`drag`]      | `froude carriage drag`    | D_d and C_D by force sensor, motor current and model            |
+//! | [`servo`]     | `froude carriage identify` | servo parameters from runs, or from anyone's servo log         |
+//! | [`calibrate`] | `froude carriage calibrate` | newtons a volt from known weights, polarity                  |
+//! | [`runs`]      |                           | runs as these take them                                        |
+//!
+//! A folder of runs holds a copy of its campaign (`campaign.toml`), so it says by itself what body and rig it belongs to.
+
+pub mod calibrate;
+pub mod drag;
+pub mod drive;
+pub mod runs;
+pub mod servo;

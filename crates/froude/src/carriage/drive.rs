@@ -1,0 +1,347 @@
+//! `froude run`: the pre-flight, then the campaign on the twin or the real rig.
+
+use std::path::{Path, PathBuf};
+
+use froude_identify::carriage::calibration::{CalibrationSetup, calibrate};
+use froude_identify::carriage::coefficient::Point;
+use froude_identify::carriage::online::OnLine;
+use froude_identify::carriage::{mcd, run as drag_run};
+use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
+use froude_records::run::{BodyState, RunKind, RunLog, read_run};
+use froude_rig::campaign::plan::{PlannedRun, Step, plan};
+use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check};
+use froude_rig::campaign::runner::{self, Operator, Progress, Setting};
+use froude_rig::campaign::stop::StopSwitch;
+use froude_rig::campaign::{setup, runner::Outcome};
+use froude_rig::drive::Rig;
+use froude_rig::drive::twin::TwinRig;
+use froude_rig::load::{Load, TowedBody};
+use indexmap::IndexMap;
+
+use super::drag::setup_of;
+use super::runs::{CAMPAIGN_COPY, density_kg_m3, for_drag};
+use crate::Error;
+
+/// What to drive and where the runs go.
+#[derive(Debug, Clone)]
+pub struct DriveJob {
+    /// The campaign.
+    pub campaign: PathBuf,
+    /// Folder of the runs; beside the campaign, named after it, unless said.
+    pub out: Option<PathBuf>,
+    /// Host's clock at the start, ns since 1970.
+    pub start_unix_ns: u64,
+    /// Date in words.
+    pub date: String,
+}
+
+/// A campaign that has passed its pre-flight, or what speaks against it.
+#[derive(Debug)]
+pub struct Prepared {
+    campaign: Campaign,
+    carriage: CarriageCampaign,
+    asked: CarriagePlan,
+    load: Load,
+    control: froude_control::config::Config,
+    /// Folder of the runs.
+    pub folder: PathBuf,
+    /// The plan.
+    pub steps: Vec<Step>,
+    /// A forecast for each run.
+    pub forecasts: Vec<Forecast>,
+    /// Everything that speaks against it; empty when it may be driven.
+    pub objections: Vec<Objection>,
+    /// Time that the campaign takes on the rig, without the operator's, s.
+    pub duration_s: f64,
+    job: DriveJob,
+}
+
+/// Relative run-to-run change of dry friction that is taken before any repeat has shown it (MCD's rig: about 2 %).
+const ASSUMED_REPEATABILITY: f64 = 0.02;
+
+impl Prepared {
+    /// Whether a simulated rig is driven.
+    #[must_use]
+    pub fn is_twin(&self) -> bool {
+        matches!(self.carriage.rig.kind, RigKind::Twin { .. })
+    }
+
+    /// Runs of the plan.
+    pub fn runs(&self) -> impl Iterator<Item = &PlannedRun> {
+        self.steps.iter().filter_map(|s| if let Step::Run(r) = s { Some(r) } else { None })
+    }
+
+    /// Smallest drag that one wet/dry pair is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
+    /// run. The dry repeats replace it when they are there.
+    #[must_use]
+    pub fn detectable_n(&self) -> f64 {
+        let drive = &self.control.axes[self.asked.axis as usize].drive;
+        let friction_n = drive.coulomb_n_m * drive.gear_ratio / drive.sprocket_radius_m;
+        1.96 * std::f64::consts::SQRT_2 * ASSUMED_REPEATABILITY * friction_n
+    }
+}
+
+/// Reads a campaign and checks every run of it. Nothing moves, nothing is written.
+///
+/// # Errors
+///
+/// See [`Error`]: a campaign without `[rig]` or `[carriage]`, a missing constant, an unknown truth of the twin.
+pub fn prepare(job: &DriveJob) -> Result<Prepared, Error> {
+    let campaign = read_campaign(&job.campaign)?;
+    let path = job.campaign.display();
+    let carriage = campaign
+        .carriage
+        .clone()
+        .ok_or_else(|| Error::Nothing(format!("{path}: nothing to drive: the campaign has no [rig]")))?;
+    let asked = carriage
+        .plan
+        .clone()
+        .ok_or_else(|| Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do")))?;
+    let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
+    let control = setup::control(&carriage, 0.0)?;
+    let axis = control.axes[asked.axis as usize];
+    let start_m = asked.start_m.unwrap_or_else(|| {
+        0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m)
+    });
+    let order_seed = match carriage.rig.kind {
+        RigKind::Twin { seed, .. } => seed,
+        RigKind::Serial { .. } => 1,
+    };
+    let steps = plan(&asked, start_m, order_seed);
+    let body = TowedBody {
+        displaced_m3: campaign.body.as_ref().and_then(|b| b.volume_m3).unwrap_or(TowedBody::CYLINDER.displaced_m3),
+        drag_n_s2_m2,
+        ..TowedBody::CYLINDER
+    };
+    let load = Load { body, density_kg_m3: density_kg_m3(Some(&campaign)), ..Load::default() };
+    let spec = if asked.axis as usize == 0 { &carriage.rig.y } else { carriage.rig.x.as_ref().unwrap_or(&carriage.rig.y) };
+    let expected = Expected {
+        drag_n_s2_m2,
+        wet_mass_kg: load.density_kg_m3 * body.displaced_m3 * 2.0,
+        efficiency: spec.constants.efficiency_forward.map_or(1.0, |e| e.value),
+    };
+    let (mut forecasts, mut objections) = (Vec::new(), Vec::new());
+    let mut duration_s = 0.0;
+    for step in &steps {
+        if let Step::Run(run) = step {
+            let (forecast, against) = check(run, asked.acceleration_m_s2, &axis, &expected);
+            duration_s += run.settle_s + 2.0 * asked.still_s + forecast.duration_s;
+            // The way back to the start.
+            duration_s += asked.distance_m / return_speed_m_s(&asked, &axis.limits);
+            forecasts.push(forecast);
+            objections.extend(against);
+        }
+    }
+    let folder = job.out.clone().unwrap_or_else(|| {
+        let stem = job.campaign.file_stem().map_or_else(|| "campaign".to_owned(), |s| s.to_string_lossy().into_owned());
+        job.campaign.with_file_name(format!("{stem}-runs"))
+    });
+    Ok(Prepared {
+        campaign,
+        carriage,
+        asked,
+        load,
+        control,
+        folder,
+        steps,
+        forecasts,
+        objections,
+        duration_s,
+        job: job.clone(),
+    })
+}
+
+fn return_speed_m_s(asked: &CarriagePlan, limits: &froude_control::config::Limits) -> f64 {
+    let fastest = asked.speed_m_s.iter().copied().fold(0.0, f64::max);
+    fastest.clamp(0.05, 0.5).min(limits.speed_m_s)
+}
+
+/// Drives what passed its pre-flight; goes on where an earlier drive into the same folder stopped.
+///
+/// # Errors
+///
+/// Objections of the pre-flight, a folder that belongs to another campaign, and whatever stops the drive.
+pub fn drive(
+    prepared: &Prepared,
+    switch: &StopSwitch,
+    operator: &mut dyn Operator,
+    progress: &mut dyn Progress,
+) -> Result<Outcome, Error> {
+    if let Some(first) = prepared.objections.first() {
+        let more = prepared.objections.len() - 1;
+        let more = if more == 0 { String::new() } else { format!(" ({more} more: froude run --check)") };
+        return Err(Error::Nothing(format!("nothing was moved: {}: {}{more}", first.id, first.text)));
+    }
+    own_folder(&prepared.folder, &prepared.job.campaign)?;
+    let (mut rig, load, twin_seed) = rig_of(prepared)?;
+    let axis = &prepared.control.axes[prepared.asked.axis as usize];
+    let mut constants = IndexMap::from([("y".to_owned(), prepared.carriage.rig.y.constants)]);
+    constants.extend(prepared.carriage.rig.x.as_ref().map(|x| ("x".to_owned(), x.constants)));
+    let decimation = (rig.rate_hz() / prepared.carriage.rig.log_rate_hz).round().max(1.0) as u64;
+    let setting = Setting {
+        campaign: prepared.campaign.name.clone(),
+        folder: prepared.folder.clone(),
+        asked: prepared.asked.clone(),
+        return_speed_m_s: return_speed_m_s(&prepared.asked, &axis.limits),
+        is_shaped: axis.mode_hz > 0.0,
+        constants,
+        load,
+        twin_seed,
+        decimation,
+        start_unix_ns: if prepared.is_twin() { 0 } else { prepared.job.start_unix_ns },
+        date: prepared.job.date.clone(),
+    };
+    let mut live = Live::new(prepared);
+    let mut enough = |path: &Path, run: &PlannedRun| live.after(path, run);
+    Ok(runner::drive(&prepared.steps, &setting, rig.as_mut(), switch, operator, progress, &mut enough)?)
+}
+
+type Driven = (Box<dyn Rig>, Load, Option<u64>);
+
+fn rig_of(prepared: &Prepared) -> Result<Driven, Error> {
+    match &prepared.carriage.rig.kind {
+        RigKind::Twin { seed, .. } => {
+            let (twin, load) = setup::twin(&prepared.carriage, prepared.load)?;
+            let rig = TwinRig::new(&twin, prepared.control, *seed).map_err(runner::RunnerError::from)?;
+            Ok((Box::new(rig), load, Some(*seed)))
+        }
+        RigKind::Serial { port, baud } => {
+            let rig = froude_rig::drive::serial::SerialRig::open(port, *baud, prepared.control)
+                .map_err(runner::RunnerError::from)?;
+            Ok((Box::new(rig), prepared.load, None))
+        }
+    }
+}
+
+/// Makes the folder and puts the campaign's copy there; a copy of another campaign is refused.
+fn own_folder(folder: &Path, campaign: &Path) -> Result<(), Error> {
+    let failed = |path: &Path| {
+        let path = path.to_owned();
+        move |source| Error::Output { path, source }
+    };
+    std::fs::create_dir_all(folder).map_err(failed(folder))?;
+    let text = std::fs::read(campaign).map_err(failed(campaign))?;
+    let copy = folder.join(CAMPAIGN_COPY);
+    match std::fs::read(&copy) {
+        Ok(there) if there == text => Ok(()),
+        Ok(_) => Err(Error::Nothing(format!(
+            "{} holds runs of another campaign, or of an earlier state of this one ({CAMPAIGN_COPY} differs): name another folder \
+             with --out",
+            folder.display()
+        ))),
+        Err(_) => Ok(froude_records::write::write_atomically(&copy, &text)?),
+    }
+}
+
+/// D_d while the campaign runs: every wet run with its dry partner gives a point.
+struct Live {
+    online: Option<OnLine>,
+    setup: drag_run::DragSetup,
+    waiting: Vec<RunLog>,
+    calibration: Vec<RunLog>,
+    is_calibrated: bool,
+    points: Vec<Point>,
+    per_pair: usize,
+    weight_relative: f64,
+}
+
+impl Live {
+    fn new(prepared: &Prepared) -> Self {
+        let asked = &prepared.asked;
+        let setup = setup_of(Some(&prepared.campaign), None, None);
+        let weight_relative = asked.calibration.as_ref().map_or(0.0, |c| {
+            let least = c.weights_n.iter().copied().fold(f64::INFINITY, f64::min);
+            c.weight_standard_n / least
+        });
+        let online = asked.stop_at_relative_half_width.map(|target| OnLine::new(target, 0.0, asked.repeats));
+        let directions = if asked.directions == froude_records::carriage::Directions::Both { 2 } else { 1 };
+        Self {
+            online,
+            setup,
+            waiting: Vec::new(),
+            calibration: Vec::new(),
+            is_calibrated: false,
+            points: Vec::new(),
+            per_pair: asked.speed_m_s.len() * directions,
+            weight_relative,
+        }
+    }
+
+    /// Reads the run again from its file and asks whether enough is known. A run that gives no point only gives none.
+    fn after(&mut self, path: &Path, run: &PlannedRun) -> Option<String> {
+        let target = self.online.as_ref()?;
+        if !matches!(run.kind, RunKind::Dry | RunKind::Wet | RunKind::Calibration) {
+            return None;
+        }
+        let log = read_run(path).ok()?;
+        if run.kind == RunKind::Calibration {
+            self.calibration.push(log);
+            return None;
+        }
+        let _ = target;
+        self.calibrate();
+        let partner = self.waiting.iter().position(|other| {
+            other.meta.pair == log.meta.pair
+                && other.meta.target_speed_m_s == log.meta.target_speed_m_s
+                && other.meta.direction == log.meta.direction
+        });
+        let Some(partner) = partner else {
+            self.waiting.push(log);
+            return None;
+        };
+        let other = self.waiting.swap_remove(partner);
+        let (wet, dry) = if log.meta.body == BodyState::Wet { (&log, &other) } else { (&other, &log) };
+        let point = match (for_drag(wet), for_drag(dry)) {
+            (Ok(Some(wet)), Ok(Some(dry))) => {
+                mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady).ok()
+            }
+            _ => None,
+        }?;
+        let online = self.online.as_mut()?;
+        online.push(&point);
+        self.points.push(point);
+        if self.points.len() % self.per_pair != 0 {
+            return None;
+        }
+        let status = online.status()?;
+        status.may_stop.then(|| {
+            format!(
+                "D_d = {:.2} ± {:.2} N s²/m² after {} pairs: its 95 % interval is as narrow as asked; the remaining pairs are left out",
+                status.value,
+                status.half_width.unwrap_or(f64::NAN),
+                status.pairs
+            )
+        })
+    }
+
+    fn calibrate(&mut self) {
+        if self.is_calibrated || self.calibration.is_empty() {
+            return;
+        }
+        self.is_calibrated = true;
+        let runs: Vec<_> = self.calibration.iter().filter_map(|log| for_drag(log).ok().flatten()).collect();
+        let setup = CalibrationSetup {
+            ideal_force_per_volt_n: self.setup.ideal_force_per_volt_n,
+            weight_relative: self.weight_relative,
+            pulley_loss: froude_identify::carriage::calibration::PULLEY_LOSS,
+            steady: self.setup.steady,
+        };
+        if let Ok(calibration) = calibrate(&runs, &setup) {
+            self.setup.calibration = Some(calibration.force_per_volt);
+        }
+        let relative = self.setup.calibration.map_or_else(
+            || {
+                let efficiency = match self.setup.efficiency {
+                    drag_run::Efficiency::Declared(e) => e.relative(),
+                    drag_run::Efficiency::Undeclared => 0.15,
+                };
+                efficiency.hypot(self.setup.torque_constant_relative)
+            },
+            |c| c.force_per_volt_n.relative(),
+        );
+        if let Some(target) = self.online.take() {
+            self.online = Some(target.with_shared(relative));
+        }
+    }
+}

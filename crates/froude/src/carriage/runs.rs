@@ -1,0 +1,162 @@
+//! Runs of a carriage, read from a folder as the reductions take them.
+
+use std::path::{Path, PathBuf};
+
+use froude_hydro::fluid::Water;
+use froude_identify::carriage::run as drag;
+use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::finding::{Finding, Severity};
+use froude_records::run::{BodyState, Direction, RunKind, RunLog, RunReader, RunStatus, read_run_meta};
+use froude_records::units::Dimension;
+
+use crate::Error;
+
+/// Name of the campaign's copy in a folder of runs.
+pub const CAMPAIGN_COPY: &str = "campaign.toml";
+
+/// Complete runs of a folder, and what was left out.
+#[derive(Debug, Clone, Default)]
+pub struct Runs {
+    /// The folder, or that of the first file.
+    pub folder: PathBuf,
+    /// Runs in the order of their names.
+    pub logs: Vec<RunLog>,
+    /// Runs left out, and gaps.
+    pub findings: Vec<Finding>,
+    /// The campaign that lies with them.
+    pub campaign: Option<Campaign>,
+}
+
+/// Reads the complete runs of these kinds below `paths` (folders, or single `.mcap` files). Truths of a twin are not read.
+///
+/// # Errors
+///
+/// A path without runs, or a run that cannot be read.
+pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Result<Runs, Error> {
+    let mut out = Runs { folder: folder_of(paths), ..Runs::default() };
+    for file in files(paths)? {
+        let sidecar = file.with_extension("toml");
+        if sidecar.exists() {
+            let meta = read_run_meta(&sidecar)?;
+            if !kinds.contains(&meta.kind) {
+                continue;
+            }
+            if meta.status != RunStatus::Complete {
+                out.findings.push(Finding::new(
+                    Severity::Note,
+                    "run-left-out",
+                    format!("{} is {} and was left out: {}", meta.id, meta.status.name(), meta.note),
+                ));
+                continue;
+            }
+        }
+        let reader = RunReader::open(&file)?;
+        let wanted: Vec<String> =
+            reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
+        let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
+        if !kinds.contains(&log.meta.kind) {
+            continue;
+        }
+        for gap in &log.lost {
+            out.findings.push(Finding::new(Severity::Warning, "run-gap", format!("{}: {}", log.meta.id, gap.text)));
+        }
+        out.logs.push(log);
+    }
+    let copy = out.folder.join(CAMPAIGN_COPY);
+    let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
+    out.campaign = path.as_deref().map(read_campaign).transpose()?;
+    if out.logs.is_empty() {
+        let names: Vec<&str> = kinds.iter().map(|k| k.name()).collect();
+        return Err(Error::Nothing(format!(
+            "{}: no complete run of the kinds {}; drive a campaign first: froude run CAMPAIGN.toml",
+            out.folder.display(),
+            names.join(", ")
+        )));
+    }
+    Ok(out)
+}
+
+fn folder_of(paths: &[PathBuf]) -> PathBuf {
+    let first = paths.first().cloned().unwrap_or_default();
+    if first.is_dir() { first } else { first.parent().map_or_else(PathBuf::new, Path::to_owned) }
+}
+
+/// The `.mcap` files, sorted by name.
+fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
+    let mut out = Vec::new();
+    for path in paths {
+        if path.is_dir() {
+            let entries =
+                std::fs::read_dir(path).map_err(|source| Error::Output { path: path.clone(), source })?;
+            out.extend(
+                entries.filter_map(Result::ok).map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "mcap")),
+            );
+        } else if path.exists() {
+            out.push(path.clone());
+        } else {
+            return Err(Error::Nothing(format!("{}: there is no such folder or run", path.display())));
+        }
+    }
+    out.sort();
+    Ok(out)
+}
+
+/// A run as the reductions of drag and calibration take it; `None` for runs that are neither.
+///
+/// # Errors
+///
+/// A channel that is missing or of another dimension.
+pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, Error> {
+    let meta = &log.meta;
+    let kind = match meta.kind {
+        RunKind::Dry | RunKind::Wet => drag::RunKind::Tow,
+        RunKind::Friction => drag::RunKind::Friction,
+        RunKind::Calibration => drag::RunKind::Calibration,
+        _ => return Ok(None),
+    };
+    let (Some(target_speed_m_s), Some(direction)) = (meta.target_speed_m_s, meta.direction) else { return Ok(None) };
+    let axis = meta.axis.name();
+    let column = |name: &str, dimension| log.channel(&format!("{axis}/{name}"), dimension);
+    let force_n = if log.channels.contains_key("force") && axis == "y" {
+        Some(log.channel("force", Dimension::FORCE)?)
+    } else {
+        None
+    };
+    Ok(Some(drag::DragRun {
+        id: &meta.id,
+        time_s: &log.time_s,
+        position_m: column("position", Dimension::LENGTH)?,
+        reference_speed_m_s: column("reference_velocity", Dimension::SPEED)?,
+        command_v: column("command", Dimension::VOLTAGE)?,
+        force_n,
+        kind,
+        body: match meta.body {
+            BodyState::None => drag::BodyState::None,
+            BodyState::Dry => drag::BodyState::Dry,
+            BodyState::Wet => drag::BodyState::Wet,
+        },
+        target_speed_m_s,
+        direction: direction.sign(),
+        pair: meta.pair.unwrap_or(0),
+        is_ballasted: meta.is_ballasted,
+        hung_weight_n: meta.hung_weight_n,
+    }))
+}
+
+/// Density of the campaign's water, kg/m³; fresh water at 20 °C where none is declared.
+#[must_use]
+pub fn density_kg_m3(campaign: Option<&Campaign>) -> f64 {
+    let fluid = campaign.map(|c| &c.fluid);
+    let stated = fluid.and_then(|f| f.density_kg_m3);
+    stated.unwrap_or_else(|| {
+        let temperature = fluid.and_then(|f| f.temperature_degc).unwrap_or(20.0);
+        let salinity = fluid.and_then(|f| f.salinity_g_kg).unwrap_or(0.0);
+        Water::at(temperature, salinity).map_or(998.2, |w| w.density_kg_m3)
+    })
+}
+
+/// Which way, in words.
+#[must_use]
+pub fn way(direction: Option<Direction>) -> &'static str {
+    direction.map_or("–", Direction::name)
+}
