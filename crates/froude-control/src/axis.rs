@@ -99,9 +99,9 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    pub(crate) fn new(config: &AxisConfig, tick_us: u32) -> Self {
+    pub(crate) fn new(config: &AxisConfig, tick_us: u32, late_us: u32) -> Self {
         Self {
-            law: Law::new(config, tick_us),
+            law: Law::new(config, tick_us, late_us),
             encoder: Unwrap::default(),
             zero_m: 0.0,
             position_m: 0.0,
@@ -140,11 +140,7 @@ impl Axis {
         (self.was_low_end, self.was_high_end) = (input.is_low_end, input.is_high_end);
         let is_enabled = self.command.is_enabled;
         let current_a = if input.current_a.is_finite() { input.current_a } else { 0.0 };
-        let applied = Applied {
-            volts: self.command.volts,
-            is_enabled,
-            error_m: (!self.is_open_loop()).then_some(self.reference.position_m - self.position_m),
-        };
+        let applied = Applied { volts: self.command.volts, is_enabled, error_m: self.error_m() };
         let measured = self.monitor.step(&self.law, moved, gap_us, &AxisInput { current_a, ..*input }, applied);
         let is_low_allowed = self.phase == Phase::Homing;
 
@@ -171,9 +167,16 @@ impl Axis {
                 return Some(Fault::SoftLimit);
             }
         }
-        let is_fast =
-            libm::fabs(self.speed_m_s) > over_speed_m_s(&self.law.limits, self.is_homed && self.phase != Phase::Homing);
-        is_fast.then_some(Fault::OverSpeed)
+        let is_free = self.is_homed && self.phase != Phase::Homing;
+        if libm::fabs(self.speed_m_s) <= over_speed_m_s(&self.law.limits, is_free) {
+            return None;
+        }
+        self.monitor.polarity_so_far(&self.law, self.error_m()).or(Some(Fault::OverSpeed))
+    }
+
+    /// Reference less position; `None` with the loop open.
+    fn error_m(&self) -> Option<f64> {
+        (!self.is_open_loop()).then_some(self.reference.position_m - self.position_m)
     }
 
     fn is_open_loop(&self) -> bool {
@@ -188,7 +191,9 @@ impl Axis {
             Phase::Disabled => {
                 self.hold(self.position_m);
                 self.reference = State::at_rest(self.position_m);
+                self.pending = None;
                 self.restart_loop();
+                self.monitor.watch_polarity();
                 Ok(())
             }
             Phase::Holding => Ok(()),
@@ -212,7 +217,7 @@ impl Axis {
         self.is_homed = false;
         let (homing, speed_m_s) = Homing::start(&self.law, self.reference.position_m, input.is_low_end);
         self.homing = homing;
-        self.begin(Phase::Homing);
+        self.begin_from_rest(Phase::Homing);
         self.ramp_to(speed_m_s, self.law.limits.acceleration_m_s2, 0.0);
         Ok(())
     }
@@ -223,7 +228,7 @@ impl Axis {
             return Err(Refusal::NotHomed);
         }
         let profile = travel::checked_move(&self.law, self.reference.position_m, asked)?;
-        self.begin(Phase::Moving);
+        self.begin_from_rest(Phase::Moving);
         self.smooth = (asked.acceleration_m_s2, asked.jerk_m_s3);
         self.plan = Plan::Move(profile);
         Ok(())
@@ -242,9 +247,8 @@ impl Axis {
         {
             return Err(Refusal::BeyondTravel);
         }
-        self.begin(Phase::Exciting);
+        self.begin_from_rest(Phase::Exciting);
         self.exciter = Some(Exciter::new(asked, &self.law, self.position_m));
-        self.smooth = (self.law.limits.acceleration_m_s2, 0.0);
         self.ramp_to(speed_m_s, self.law.limits.acceleration_m_s2, 0.0);
         Ok(())
     }
@@ -261,18 +265,16 @@ impl Axis {
 
     /// Brings the axis to rest. With `is_astray` the reference no longer says where the axis is: the stop begins from what is measured.
     pub(crate) fn stop(&mut self, category: StopCategory, is_astray: bool) {
-        let is_stopping = self.phase == Phase::Stopping;
         match (self.phase, category) {
             (Phase::Disabled | Phase::Coasting, _) => {}
             (_, StopCategory::Zero) => self.torque_off(),
             (Phase::Stopping, StopCategory::One) if self.is_final_stop => {}
             (Phase::Stopping | Phase::Holding, StopCategory::Two) => {}
             _ => {
-                let is_hard = category == StopCategory::One || is_stopping;
-                let (acceleration_m_s2, jerk_m_s3) =
-                    if is_hard { (self.law.limits.acceleration_m_s2, 0.0) } else { self.smooth };
+                let is_hard = category == StopCategory::One;
+                let (acceleration_m_s2, jerk_m_s3) = if is_hard { self.hardest() } else { self.smooth };
                 if is_astray || self.is_open_loop() {
-                    self.from_measured();
+                    self.restart_from_measured();
                 }
                 self.begin(Phase::Stopping);
                 self.is_final_stop = category == StopCategory::One;
@@ -293,10 +295,11 @@ impl Axis {
 
     fn torque_off(&mut self) {
         self.begin(Phase::Coasting);
+        self.pending = None;
         self.command = AxisCommand::default();
     }
 
-    fn from_measured(&mut self) {
+    fn restart_from_measured(&mut self) {
         self.reference = State { position_m: self.position_m, speed_m_s: self.speed_m_s, acceleration_m_s2: 0.0 };
         self.restart_loop();
     }
@@ -312,6 +315,17 @@ impl Axis {
         self.elapsed_ticks = 0;
         self.exciter = None;
         self.is_final_stop = false;
+        self.smooth = self.hardest();
+    }
+
+    /// Acceleration and jerk (none) of a controlled stop.
+    fn hardest(&self) -> (f64, f64) {
+        (self.law.limits.acceleration_m_s2, 0.0)
+    }
+
+    /// Begins what only begins at rest: from here on polarity is judged.
+    fn begin_from_rest(&mut self, phase: Phase) {
+        self.begin(phase);
         self.monitor.watch_polarity();
     }
 
@@ -388,7 +402,7 @@ impl Axis {
     fn give(&mut self, cut: Cut) {
         self.is_saturated = cut.is_saturated;
         self.saturated_ticks = if cut.is_saturated { self.saturated_ticks.saturating_add(1) } else { 0 };
-        if self.saturated_ticks > self.law.ticks(self.law.limits.saturation_s) {
+        if self.saturated_ticks > self.law.ticks.saturation {
             self.pending = self.pending.or(Some(Fault::Saturated));
         }
         let is_valid = libm::fabs(cut.volts) <= self.law.limit_v; // false for NaN
@@ -400,7 +414,7 @@ impl Axis {
 
     fn excitation(&mut self) -> Asked {
         let is_at_speed = f64::from(self.elapsed_ticks) * self.law.tick_s >= self.plan.duration_s();
-        let is_inside = !self.is_homed || travel::is_inside_soft(&self.law, self.position_m, self.speed_m_s);
+        let is_inside = !self.is_homed || travel::is_inside_soft(&self.law, self.position_m, self.speed_ahead_m_s());
         let asked = match &mut self.exciter {
             Some(exciter) if is_inside => exciter.step(self.position_m, is_at_speed),
             _ => Asked::Done,
@@ -410,13 +424,19 @@ impl Axis {
             Asked::Open(volts) if libm::copysign(1.0, volts) * self.speed_m_s >= cap_m_s => Asked::Open(0.0),
             Asked::Done => {
                 if self.exciter.is_some_and(|e| e.is_jog()) {
-                    self.pending = self.pending.or(self.monitor.polarity_so_far(&self.law));
+                    self.pending = self.pending.or(self.monitor.polarity_so_far(&self.law, None));
                 }
                 self.stop(StopCategory::Two, false);
                 Asked::Added(0.0)
             }
             other => other,
         }
+    }
+
+    /// The speed, and what the estimate may lag behind under the command.
+    fn speed_ahead_m_s(&self) -> f64 {
+        let push_v = libm::fmax(0.0, libm::fabs(self.command.volts) - self.law.volts_coulomb_lower);
+        self.speed_m_s + libm::copysign(push_v * self.law.lag_m_s_v, self.command.volts)
     }
 
     fn find_home(&mut self, input: &AxisInput) {

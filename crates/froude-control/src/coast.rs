@@ -3,8 +3,9 @@
 //! **Setting.** One axis with inertia J, viscous friction B and Coulomb friction C, no other force: J dω/dt = −(C + Bω). A drag
 //! in water only shortens the way and is left out. **Frame.** At the chain: v = Rω/n. **Units.** SI.
 //!
-//! With c = (C/J)(R/n) and b = B/J the way from speed v is (1/b)(v − (c/b) ln(1 + bv/c)), and v²/2c as b → 0. Since
-//! ln(1 + u) ≥ 2u/(2 + u) it is never more than v²/(2c + bv): one division, no logarithm, for every tick.
+//! With c = (C/J)(R/n) and b = B/J the way from speed v is (1/b)(v − (c/b) ln(1 + u)), u = bv/c, and v²/2c as b → 0. Since
+//! ln(1 + u) ≥ 3u(2 + u)/(6 + 6u + u²) it is never more than v²(3c + bv)/(6c² + 6c bv + (bv)²): one division and no logarithm, for
+//! every tick.
 
 use crate::config::Drive;
 
@@ -40,27 +41,38 @@ impl Coast {
     pub fn distance_m(&self, speed_m_s: f64) -> f64 {
         let v = libm::fabs(speed_m_s);
         let Self { coulomb_m_s2: c, viscous_1_s: b } = *self;
+        if c <= 0.0 {
+            return v / b;
+        }
         let u = b * v / c;
         if u < SMALL {
             return v * v / c * (0.5 - u * (1.0 / 3.0 - u * (0.25 - u * (0.2 - u * (1.0 / 6.0)))));
         }
-        if c <= 0.0 {
-            return v / b;
-        }
         (v - c / b * libm::log1p(u)) / b
     }
 
-    /// An upper bound of [`Self::distance_m`], m: v²/(2c + bv). Above it by u²/12 at most, u = bv/c (1.5 % at u = 0.42, the
-    /// paper's carriage at 0.55 m/s).
+    /// An upper bound of [`Self::distance_m`], m. Above it by a part of u³/90 at most, u = bv/c (0.1 % at 0.55 m/s on the
+    /// paper's carriage, u = 0.42).
+    ///
+    /// # Source
+    ///
+    /// The diagonal Padé approximants of ln(1 + u) lie below it for u > 0; this is the one of order 2.
     #[must_use]
     pub fn bound_m(&self, speed_m_s: f64) -> f64 {
         let v = libm::fabs(speed_m_s);
-        if v < 1e-9 {
+        if v < NO_SPEED_M_S {
             return 0.0;
         }
-        v * v / (2.0 * self.coulomb_m_s2 + self.viscous_1_s * v)
+        let Self { coulomb_m_s2: c, viscous_1_s: b } = *self;
+        let bv = b * v;
+        v * v * (3.0 * c + bv) / (6.0 * c * (c + bv) + bv * bv)
     }
 }
+
+/// Faster than any carriage.
+const FASTEST_M_S: f64 = 1e3;
+/// A count in a day.
+const NO_SPEED_M_S: f64 = 1e-11;
 
 /// The way that must stay free ahead of an axis: it can then still be stopped by torque, and if the torque fails at any moment of that
 /// stop it coasts to rest inside. That is ∫ v dv / min(A, c + bv), with A the acceleration of a controlled stop.
@@ -80,12 +92,12 @@ impl StoppingWay {
         let excess = acceleration_m_s2 - coast.coulomb_m_s2;
         let crossover_m_s = if excess <= 0.0 {
             0.0
-        } else if coast.viscous_1_s > 0.0 {
+        } else if coast.viscous_1_s * FASTEST_M_S > excess {
             excess / coast.viscous_1_s
         } else {
-            f64::MAX
+            FASTEST_M_S
         };
-        let crossover_way_m = if crossover_m_s < 1e6 { coast.bound_m(crossover_m_s) } else { 0.0 };
+        let crossover_way_m = coast.bound_m(crossover_m_s);
         Self { coast, half_per_acceleration: 0.5 / acceleration_m_s2, crossover_m_s, crossover_way_m }
     }
 
@@ -104,17 +116,22 @@ impl StoppingWay {
     ///
     /// # Source
     ///
-    /// The move still has v²/2a or more to go. The largest v²/(2c + bv) − v²/2a lies where w = 2c + bv = (a + √(a² + 8ca))/2.
+    /// The move still has v²/2a or more to go. The largest coast less that lies where friction brakes as hard as the move, at
+    /// c + bv = a. What [`Coast::bound_m`] is above the coast is added where it is largest, at the top.
     #[must_use]
     pub fn beyond_target_m(&self, peak_speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
         let Coast { coulomb_m_s2: c, viscous_1_s: b } = self.coast;
         let a = acceleration_m_s2;
-        let above = 0.5 * (a + libm::sqrt(a * a + 8.0 * c * a)) - 2.0 * c;
-        if above <= 0.0 {
-            return 0.0;
-        }
-        let limit = libm::fmin(peak_speed_m_s, self.crossover_m_s);
-        let v = if b * limit > above { above / b } else { limit };
-        libm::fmax(0.0, self.way_m(v) - v * v / (2.0 * a))
+        let top = libm::fmin(peak_speed_m_s, self.crossover_m_s);
+        let excess = libm::fmax(0.0, a - c);
+        let v = if b * top > excess {
+            excess / b
+        } else if excess > 0.0 {
+            top
+        } else {
+            0.0
+        };
+        let coast_m = libm::fmax(0.0, self.coast.distance_m(v) - v * v / (2.0 * a));
+        coast_m + (self.coast.bound_m(top) - self.coast.distance_m(top))
     }
 }

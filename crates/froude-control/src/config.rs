@@ -187,6 +187,15 @@ pub enum ConfigError {
         /// Coast from the speed at which homing is cut, m.
         needed_m: f64,
     },
+    /// The command's range, or the peak current, cannot give the acceleration limit.
+    TooWeak {
+        /// Axis.
+        axis: usize,
+        /// Command for the acceleration limit against friction, V.
+        needed_v: f64,
+        /// Command that range and peak current allow, V.
+        available_v: f64,
+    },
     /// Nothing is left between the soft limits.
     NoTravel {
         /// Axis.
@@ -218,6 +227,10 @@ impl fmt::Display for ConfigError {
                 "axis {axis}: the {end} end switch is {room_m} m before its hard stop and the axis needs {needed_m} m to coast; \
                  lower unhomed_speed_m_s or move the switch"
             ),
+            Self::TooWeak { axis, needed_v, available_v } => write!(
+                f,
+                "axis {axis}: the acceleration limit takes {needed_v} V and {available_v} V are allowed; lower acceleration_m_s2"
+            ),
             Self::NoTravel { axis, low_m, high_m } => {
                 write!(f, "axis {axis}: soft limits {low_m} m and {high_m} m leave no travel; lower following_error_m")
             }
@@ -238,7 +251,7 @@ impl Config {
         in_range(AXES, "tick_us", tick, 50.0, 10_000.0)?;
         in_range(AXES, "late_us", f64::from(self.late_us), tick, 1e6)?;
         in_range(AXES, "host_silence_us", f64::from(self.host_silence_us), tick, 60e6)?;
-        self.axes.iter().enumerate().try_for_each(|(axis, config)| config.check(axis, self.tick_us))
+        self.axes.iter().enumerate().try_for_each(|(axis, config)| config.check(axis, self.tick_us, self.late_us))
     }
 }
 
@@ -251,7 +264,7 @@ fn in_range(axis: usize, quantity: &'static str, found: f64, low: f64, high: f64
 }
 
 impl AxisConfig {
-    fn check(&self, axis: usize, tick_us: u32) -> Result<(), ConfigError> {
+    fn check(&self, axis: usize, tick_us: u32, late_us: u32) -> Result<(), ConfigError> {
         let Self { gains, drive, limits, .. } = self;
         let nyquist_hz = 0.5e6 / f64::from(tick_us);
         let ranges = [
@@ -297,7 +310,11 @@ impl AxisConfig {
         if drive.coulomb_lower_n_m <= 0.0 && drive.viscous_n_m_s_rad <= 0.0 {
             return Err(ConfigError::NoFriction { axis });
         }
-        let law = Law::new(self, tick_us);
+        let law = Law::new(self, tick_us, late_us);
+        let needed_v = law.volts_for(limits.acceleration_m_s2, limits.unhomed_speed_m_s, 1.0);
+        if needed_v > law.limit_v {
+            return Err(ConfigError::TooWeak { axis, needed_v, available_v: law.limit_v });
+        }
         let needed_m = law.stopping.way_m(over_speed_m_s(limits, false));
         let rooms =
             [("low", limits.low_switch_m - limits.hard_low_m), ("high", limits.hard_high_m - limits.high_switch_m)];

@@ -13,11 +13,14 @@ use crate::tick::{AXES, AxisInput, Command, Tick};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Controller {
     axes: [Axis; AXES],
+    tick_us: u32,
     late_us: u32,
     host_silence_us: u32,
     tick: u64,
     last_us: Option<u32>,
     silent_us: u32,
+    /// How long the latch's time has stood still while ticks came.
+    stale_us: u32,
     fault: Option<(Fault, u8)>,
 }
 
@@ -29,14 +32,17 @@ impl Controller {
     /// [`ConfigError`] when a number is not plausible, or when the end switch leaves no room to coast.
     pub fn new(config: Config) -> Result<Self, ConfigError> {
         config.check()?;
+        let axis = |axis| Axis::new(axis, config.tick_us, config.late_us);
         let [y, x] = &config.axes;
         Ok(Self {
-            axes: [Axis::new(y, config.tick_us), Axis::new(x, config.tick_us)],
+            axes: [axis(y), axis(x)],
+            tick_us: config.tick_us,
             late_us: config.late_us,
             host_silence_us: config.host_silence_us,
             tick: 0,
             last_us: None,
             silent_us: 0,
+            stale_us: 0,
             fault: None,
         })
     }
@@ -56,9 +62,11 @@ impl Controller {
     pub fn step(&mut self, tick: &Tick) -> Output {
         let gap_us = tick.latched_us.wrapping_sub(self.last_us.unwrap_or(tick.latched_us));
         self.last_us = Some(tick.latched_us);
-        self.silent_us = if tick.is_host_heard { 0 } else { self.silent_us.saturating_add(gap_us) };
+        self.stale_us = if gap_us == 0 { self.stale_us.saturating_add(self.tick_us) } else { 0 };
+        let passed_us = if gap_us == 0 { self.tick_us } else { gap_us };
+        self.silent_us = if tick.is_host_heard { 0 } else { self.silent_us.saturating_add(passed_us) };
 
-        self.sense(tick, gap_us);
+        self.sense(tick, passed_us);
         let refusal = tick.request.as_ref().and_then(|request| self.carry_out(request, tick).err());
 
         let mut command = Command::default();
@@ -75,7 +83,7 @@ impl Controller {
     /// Takes the inputs and stops for what is wrong with them. The first fault is latched; a later one still stops.
     fn sense(&mut self, tick: &Tick, gap_us: u32) {
         let is_enabled = self.axes.iter().any(|a| !matches!(a.phase(), Phase::Disabled | Phase::Coasting));
-        let axis_gap_us = f64::from(if gap_us == 0 { 1 } else { gap_us });
+        let axis_gap_us = f64::from(gap_us);
         let mut found = [None; AXES];
         for ((axis, input), found) in self.axes.iter_mut().zip(&tick.axes).zip(found.iter_mut()) {
             *found = axis.sense(input, axis_gap_us);
@@ -84,14 +92,16 @@ impl Controller {
             self.latch(Fault::EmergencyStop, AXES as u8);
         }
         for (found, axis) in found.iter().zip(self.axes.iter_mut()) {
-            found.iter().for_each(|fault| axis.distrust(*fault));
+            if let Some(fault) = found {
+                axis.distrust(*fault);
+            }
         }
         for (number, found) in (0..).zip(found) {
             if let Some(fault) = found {
                 self.latch(fault, number);
             }
         }
-        if is_enabled && gap_us > self.late_us {
+        if is_enabled && (gap_us > self.late_us || self.stale_us > self.late_us) {
             self.latch(Fault::TickLate, AXES as u8);
         }
         if is_enabled && self.silent_us > self.host_silence_us {

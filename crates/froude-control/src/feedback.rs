@@ -8,7 +8,7 @@
 //!
 //! **Source.** eq. 6 of the motor-current paper; gains in its controller counts: see [`crate::config::CountGains`].
 
-use crate::law::{Law, settled};
+use crate::law::{Law, held_within, settled};
 use crate::profile::State;
 
 /// Reference speed at which the friction feed-forward is whole, m/s.
@@ -37,17 +37,17 @@ impl Feedback {
         self.last_error_rad = settled(error);
         self.derivative_rad_s = settled(self.derivative_rad_s + law.derivative_share * (slope - self.derivative_rad_s));
 
-        let direction = libm::fmax(-1.0, libm::fmin(1.0, reference.speed_m_s * PER_FULL_FRICTION));
+        let direction = held_within(reference.speed_m_s * PER_FULL_FRICTION, 1.0);
         let forward = law.volts_for(reference.acceleration_m_s2, reference.speed_m_s, direction);
         let is_standing = reference.speed_m_s == 0.0;
         let step_v =
             if is_standing && libm::fabs(error) <= 1.5 * law.count_rad { 0.0 } else { law.integral_per_tick * error };
         let integral = self.integral_v + step_v;
         let wanted = law.proportional * error + law.derivative * self.derivative_rad_s + integral + forward + added_v;
-        let volts = libm::fmax(-law.limit_v, libm::fmin(law.limit_v, wanted));
+        let volts = held_within(wanted, law.limit_v);
         let is_saturated = volts != wanted;
         if !is_saturated || step_v * wanted < 0.0 {
-            self.integral_v = settled(libm::fmax(-law.limit_v, libm::fmin(law.limit_v, integral)));
+            self.integral_v = settled(held_within(integral, law.limit_v));
         }
         Cut { volts, is_saturated }
     }

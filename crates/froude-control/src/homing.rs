@@ -4,8 +4,8 @@
 //! 2. *Approach*: go down at the capped speed until it opens. There the coordinate is set, good to the way of one tick.
 //! 3. *Brake*, then *retreat* to just inside the soft limit.
 //!
-//! The switch blocks the drive towards its end only. A switch that never opens or never closes is a fault after the way on which it
-//! had to.
+//! The switch blocks the drive towards its end only. A switch that does not open or close on the way on which it had to
+//! is a fault.
 
 use crate::law::Law;
 use crate::profile::Bounds;
@@ -80,7 +80,12 @@ impl Homing {
                 *self = Self { stage: Stage::Approach, since_m: reference_m };
                 Next::Speed(-limits.unhomed_speed_m_s)
             }
-            Stage::Approach if is_low_end && is_over => {
+            Stage::Approach if is_low_end && !is_over => {
+                // So near that the speed is not reached: go back and come again.
+                *self = Self { stage: Stage::Leave, since_m: reference_m };
+                Next::Speed(limits.unhomed_speed_m_s)
+            }
+            Stage::Approach if is_low_end => {
                 self.stage = Stage::Brake;
                 Next::Mark
             }
@@ -89,6 +94,7 @@ impl Homing {
                 self.stage = Stage::Retreat;
                 Next::Retreat(law.soft_low_m + INSIDE_M)
             }
+            Stage::Retreat if is_over && is_low_end => Next::Failed,
             Stage::Retreat if is_over => Next::Homed,
             _ => Next::Carry,
         }

@@ -36,8 +36,19 @@ pub(crate) struct Law {
     /// The command never leaves ± this, V: the amplifier's range or the peak current, whichever is less.
     pub limit_v: f64,
     pub amplifier_a_v: f64,
-    /// Largest acceleration that the motor can give at peak current, m/s².
-    pub motor_m_s2: f64,
+    /// Longest time between ticks that is not late, µs.
+    pub late_us: f64,
+    /// How much the counts of a tick may change, per µs² of tick.
+    pub jump_counts_us2: f64,
+    /// How many counts the axis can go at all, per µs.
+    pub top_counts_us: f64,
+    /// What the speed estimate may lag behind for every volt above friction, m/s.
+    pub lag_m_s_v: f64,
+    /// Share of the thermal model's lag in a tick.
+    pub heat_share: f64,
+    pub per_continuous_a: f64,
+    /// The limits' and the monitor's times in ticks.
+    pub ticks: TickCounts,
     pub stopping: StoppingWay,
     pub coast: Coast,
     pub shaper: Shaper,
@@ -46,14 +57,38 @@ pub(crate) struct Law {
     pub soft_high_m: f64,
 }
 
+/// Times of an axis in ticks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TickCounts {
+    pub second: u32,
+    pub rest: u32,
+    pub over_current: u32,
+    pub mismatch: u32,
+    pub stuck: u32,
+    pub saturation: u32,
+}
+
+/// How much more than J_eff and the peak current say the motor's acceleration may change in a tick: reaction of chain and load on the
+/// motor alone, and torque ripple.
+const ACCELERATION_MARGIN: f64 = 10.0;
+/// The axis is at rest when it stays within a count for this long, s.
+const REST_S: f64 = 0.1;
+/// Above the peak current for this long is over-current, s.
+const OVER_CURRENT_S: f64 = 1e-3;
+/// Off the commanded current for this long is over-current, s.
+const MISMATCH_S: f64 = 10e-3;
+
 impl Law {
-    pub(crate) fn new(config: &AxisConfig, tick_us: u32) -> Self {
+    pub(crate) fn new(config: &AxisConfig, tick_us: u32, late_us: u32) -> Self {
         let AxisConfig { gains, drive, limits, .. } = config;
         let tick_s = f64::from(tick_us) * 1e-6;
         let rad_per_m = drive.gear_ratio / drive.sprocket_radius_m;
         let count_rad = 2.0 * core::f64::consts::PI / drive.counts_per_revolution;
         let n_m_per_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
         let coast = Coast::of(drive);
+        let motor_m_s2 = drive.torque_constant_n_m_a * limits.current_a / (drive.inertia_kg_m2 * rad_per_m);
+        let volts_inertia = drive.inertia_kg_m2 * rad_per_m / n_m_per_v;
+        let ticks = |time_s: f64| ticks_in(time_s, 1.0 / tick_s);
         let share = |corner_hz: f64| 1.0 - libm::exp(-2.0 * core::f64::consts::PI * corner_hz * tick_s);
         Self {
             limits: *limits,
@@ -68,14 +103,27 @@ impl Law {
             derivative_share: share(gains.derivative_filter_hz),
             speed_share: share(SPEED_FILTER_HZ),
             per_tick_s: 1.0 / tick_s,
-            volts_inertia: drive.inertia_kg_m2 * rad_per_m / n_m_per_v,
+            volts_inertia,
             volts_viscous: drive.viscous_n_m_s_rad * rad_per_m / n_m_per_v,
             volts_coulomb: drive.coulomb_n_m / n_m_per_v,
             volts_drag: drive.drag_n_s2_m2 / (rad_per_m * n_m_per_v),
             volts_coulomb_lower: drive.coulomb_lower_n_m / n_m_per_v,
             limit_v: libm::fmin(limits.command_v, limits.current_a / drive.amplifier_a_v),
             amplifier_a_v: drive.amplifier_a_v,
-            motor_m_s2: drive.torque_constant_n_m_a * limits.current_a / (drive.inertia_kg_m2 * rad_per_m),
+            late_us: f64::from(late_us),
+            jump_counts_us2: ACCELERATION_MARGIN * motor_m_s2 * rad_per_m / count_rad * 1e-12,
+            top_counts_us: 2.0 * limits.speed_m_s * rad_per_m / count_rad * 1e-6,
+            lag_m_s_v: tick_s / (share(SPEED_FILTER_HZ) * volts_inertia),
+            heat_share: tick_s / limits.thermal_time_s,
+            per_continuous_a: 1.0 / limits.continuous_current_a,
+            ticks: TickCounts {
+                second: ticks(1.0),
+                rest: ticks(REST_S),
+                over_current: ticks(OVER_CURRENT_S),
+                mismatch: ticks(MISMATCH_S),
+                stuck: ticks(limits.stuck_s),
+                saturation: ticks(limits.saturation_s),
+            },
             stopping: StoppingWay::new(coast, limits.acceleration_m_s2),
             coast,
             shaper: if config.mode_hz <= 0.0 {
@@ -100,8 +148,23 @@ impl Law {
 
     /// Ticks in `time_s`, at least one.
     pub(crate) fn ticks(&self, time_s: f64) -> u32 {
-        let ticks = (time_s * self.per_tick_s + 0.5) as u32; // saturating
-        if ticks < 1 { 1 } else { ticks }
+        ticks_in(time_s, self.per_tick_s)
+    }
+}
+
+fn ticks_in(time_s: f64, per_tick_s: f64) -> u32 {
+    let ticks = (time_s * per_tick_s + 0.5) as u32; // saturating
+    if ticks < 1 { 1 } else { ticks }
+}
+
+/// The value within ± `limit`; NaN stays NaN.
+pub(crate) fn held_within(value: f64, limit: f64) -> f64 {
+    if value > limit {
+        limit
+    } else if value < -limit {
+        -limit
+    } else {
+        value
     }
 }
 

@@ -3,33 +3,29 @@
 //! | fault | evidence |
 //! | --- | --- |
 //! | encoder jump | counts a tick change more than ten times what peak current can do, plus four counts |
-//! | encoder stuck | that change, to no count at all; or torque twice above breakaway, an error, and no count for the set time |
+//! | encoder stuck | that change, to no count at all; or no count for the set time although the torque must have moved the axis |
 //! | encoder illegal | more illegal transitions within a second than allowed |
 //! | polarity | from rest, the motor has taken in work over 4/5 of the set way, and in closed loop the axis is not where it was asked to be |
 //! | over-current | above the peak for 1 ms, or off the command by a quarter of the peak for 10 ms |
 //! | overload | (I/I_c)² through a first-order lag of the winding's time constant passes 1 |
 //!
 //! A motor cannot stop within a tick; its encoder can. That is why a count that stands still at speed is a fault at once.
+//! Torque must move the axis when it changed by more than friction's whole band 2C since the last count, whatever load it
+//! holds against; with the loop open, when it is above breakaway.
 
 use crate::fault::Fault;
-use crate::law::{Law, settled};
+use crate::law::{Law, held_within, settled};
 use crate::tick::AxisInput;
 
-/// Reaction of chain and load on the motor alone, and torque ripple: what J_eff does not know, as a factor.
-const ACCELERATION_MARGIN: f64 = 10.0;
 /// Quantisation of two differences, and one count for the latch's jitter, counts.
 const COUNT_MARGIN: f64 = 4.0;
 /// An error that a loop at rest may leave, counts.
 const STUCK_ERROR_COUNTS: f64 = 8.0;
 /// Breakaway is up to this much above C_eff (position, stiction).
-const STUCK_TORQUE_FACTOR: f64 = 2.0;
+const BREAKAWAY_FACTOR: f64 = 1.5;
 /// Part of the configured way at which polarity is judged, so that the axis is at rest or cut within the whole.
 const POLARITY_PART: f64 = 0.8;
-const OVER_CURRENT_S: f64 = 1e-3;
-const MISMATCH_S: f64 = 10e-3;
 const MISMATCH_PART: f64 = 0.25;
-/// The axis is at rest when it stays within a count for this long.
-const REST_S: f64 = 0.1;
 /// Above this part of its limit the winding is too warm to clear an overload.
 const COOL: f64 = 0.9;
 
@@ -51,6 +47,8 @@ pub(crate) struct Monitor {
     errors: u32,
     errors_ticks: u32,
     stuck_ticks: u32,
+    /// Least and largest command since the last count.
+    volts_since_count: (f64, f64),
     /// Work of the command since rest, V counts; `None` once judged.
     work_v_counts: Option<f64>,
     way_counts: i64,
@@ -84,21 +82,42 @@ impl Monitor {
         self.errors = self.errors.saturating_add(errors);
         self.errors_ticks = self.errors_ticks.saturating_add(1);
         let is_illegal = self.errors > law.limits.encoder_errors_per_s;
-        if self.errors_ticks >= law.ticks(1.0) {
+        if self.errors_ticks >= law.ticks.second {
             (self.errors, self.errors_ticks) = (0, 0);
         }
 
         // Counts that the last tick's speed would give in this tick's time.
-        let expected = if self.last_gap_us > 0.0 { self.last_moved * gap_us / self.last_gap_us } else { moved };
+        let expected = if gap_us == self.last_gap_us {
+            self.last_moved
+        } else if self.last_gap_us > 0.0 {
+            self.last_moved * gap_us / self.last_gap_us
+        } else {
+            moved
+        };
         (self.last_moved, self.last_gap_us) = (moved, gap_us);
-        let possible = ACCELERATION_MARGIN * law.motor_m_s2 * law.counts_per_m * 1e-12 * gap_us * gap_us + COUNT_MARGIN;
-        let is_jump = libm::fabs(moved - expected) > possible;
+        let is_jump = if gap_us <= law.late_us {
+            libm::fabs(moved - expected) > law.jump_counts_us2 * gap_us * gap_us + COUNT_MARGIN
+        } else {
+            // Too late to say at what speed it was: only what the axis cannot go at all.
+            libm::fabs(moved) > law.top_counts_us * gap_us + COUNT_MARGIN
+        };
 
-        let is_driven = applied.is_enabled
-            && libm::fabs(applied.volts) > STUCK_TORQUE_FACTOR * law.volts_coulomb
-            && applied.error_m.is_none_or(|e| libm::fabs(e) * law.counts_per_m > STUCK_ERROR_COUNTS);
-        self.stuck_ticks = if is_driven && moved == 0.0 { self.stuck_ticks.saturating_add(1) } else { 0 };
-        let is_stuck = self.stuck_ticks > law.ticks(law.limits.stuck_s);
+        if moved != 0.0 || !applied.is_enabled {
+            self.volts_since_count = (applied.volts, applied.volts);
+        }
+        let (low_v, high_v) = self.volts_since_count;
+        let (low_v, high_v) = (libm::fmin(low_v, applied.volts), libm::fmax(high_v, applied.volts));
+        self.volts_since_count = (low_v, high_v);
+        let breakaway_v = BREAKAWAY_FACTOR * law.volts_coulomb;
+        let is_driven = match applied.error_m {
+            None => libm::fabs(applied.volts) > breakaway_v,
+            Some(error_m) => {
+                high_v - low_v > 2.0 * breakaway_v && libm::fabs(error_m) * law.counts_per_m > STUCK_ERROR_COUNTS
+            }
+        };
+        let is_driven = applied.is_enabled && is_driven && moved == 0.0;
+        self.stuck_ticks = if is_driven { self.stuck_ticks.saturating_add(1) } else { 0 };
+        let is_stuck = self.stuck_ticks > law.ticks.stuck;
 
         if is_stuck || (is_jump && moved == 0.0) {
             Some(Fault::EncoderStuck)
@@ -125,7 +144,7 @@ impl Monitor {
 
     /// Within a count for a tenth of a second.
     pub(crate) fn is_at_rest(&self, law: &Law) -> bool {
-        self.rest_ticks >= law.ticks(REST_S)
+        self.rest_ticks >= law.ticks.rest
     }
 
     fn polarity(&mut self, law: &Law, moved: i32, applied: Applied) -> Option<Fault> {
@@ -142,18 +161,24 @@ impl Monitor {
             return None;
         }
         self.work_v_counts = None;
-        let is_astray = applied.error_m.is_none_or(|e| libm::fabs(e) > 0.5 * way_m);
-        (self.is_work_negative(law, work) && is_astray).then_some(Fault::Polarity)
+        (self.is_work_negative(law, work) && self.is_astray(law, applied.error_m)).then_some(Fault::Polarity)
     }
 
     fn is_work_negative(&self, law: &Law, work_v_counts: f64) -> bool {
         work_v_counts < -0.5 * law.volts_coulomb_lower * libm::fabs(self.way_counts as f64)
     }
 
-    /// Judges polarity on the way so far, when an open-loop excitation ends before the configured way. A way below twenty counts says nothing.
-    pub(crate) fn polarity_so_far(&self, law: &Law) -> Option<Fault> {
-        let work = self.work_v_counts?;
-        (self.way_counts.unsigned_abs() > 20 && self.is_work_negative(law, work)).then_some(Fault::Polarity)
+    /// Judges polarity on the way so far, when something else ends it before the configured way: a jog's end, or over-speed.
+    /// A way below twenty counts says nothing.
+    pub(crate) fn polarity_so_far(&self, law: &Law, error_m: Option<f64>) -> Option<Fault> {
+        let is_negative = self.is_work_negative(law, self.work_v_counts?);
+        (self.way_counts.unsigned_abs() > 20 && is_negative && self.is_astray(law, error_m)).then_some(Fault::Polarity)
+    }
+
+    /// In closed loop: further from the reference than half its way since rest.
+    fn is_astray(&self, law: &Law, error_m: Option<f64>) -> bool {
+        let way_m = libm::fabs(self.way_counts as f64 * law.m_per_count);
+        error_m.is_none_or(|e| libm::fabs(e) > 0.5 * way_m)
     }
 
     /// A new excitation or move is judged from here.
@@ -163,14 +188,14 @@ impl Monitor {
 
     fn current(&mut self, law: &Law, current_a: f64, applied: Applied) -> Option<Fault> {
         let limits = &law.limits;
-        let ratio = libm::fmin(libm::fabs(current_a) / limits.continuous_current_a, 1e3);
-        self.heat = settled(self.heat + law.tick_s / limits.thermal_time_s * (ratio * ratio - self.heat));
+        let ratio = held_within(current_a * law.per_continuous_a, 1e3);
+        self.heat = settled(self.heat + law.heat_share * (ratio * ratio - self.heat));
         let is_over = libm::fabs(current_a) > limits.current_a;
         self.over_current_ticks = if is_over { self.over_current_ticks.saturating_add(1) } else { 0 };
         let wanted_a = law.amplifier_a_v * applied.volts;
         let is_off = applied.is_enabled && libm::fabs(current_a - wanted_a) > MISMATCH_PART * limits.current_a;
         self.mismatch_ticks = if is_off { self.mismatch_ticks.saturating_add(1) } else { 0 };
-        if self.over_current_ticks >= law.ticks(OVER_CURRENT_S) || self.mismatch_ticks >= law.ticks(MISMATCH_S) {
+        if self.over_current_ticks >= law.ticks.over_current || self.mismatch_ticks >= law.ticks.mismatch {
             Some(Fault::OverCurrent)
         } else if self.heat > 1.0 {
             Some(Fault::Overload)

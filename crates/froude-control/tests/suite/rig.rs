@@ -1,10 +1,9 @@
 //! A rigid carriage for the tests: J θ̈ + B θ̇ + C sgn θ̇ = K_T K_amp v_c, with stick, end switches and an encoder.
-#![allow(dead_code, missing_docs, clippy::missing_panics_doc, clippy::must_use_candidate)]
 
 use froude_control::Controller;
 use froude_control::config::{AxisConfig, Config, Drive};
 use froude_control::request::Request;
-use froude_control::status::Output;
+use froude_control::status::{Output, Phase};
 use froude_control::tick::{AXES, AxisCommand, AxisInput, Tick};
 
 /// Steps of the plant in a tick.
@@ -92,13 +91,13 @@ pub struct Rig {
 }
 
 impl Rig {
-    pub fn new(config: Config, start_m: f64) -> Self {
+    pub fn new(config: &Config, start_m: f64) -> Self {
         let plants = config.axes.map(|axis| Plant::new(&axis, start_m));
         let mut tick = Tick { is_host_heard: true, ..Tick::default() };
         for (input, plant) in tick.axes.iter_mut().zip(&plants) {
             *input = plant.input();
         }
-        Self { config, controller: Controller::new(config).unwrap(), plants, tick, output: Output::default() }
+        Self { config: *config, controller: Controller::new(*config).unwrap(), plants, tick, output: Output::default() }
     }
 
     /// One tick; `change` may spoil its inputs.
@@ -134,4 +133,17 @@ impl Rig {
         }
         panic!("not reached in {seconds} s: {:?}", output.status);
     }
+}
+
+/// A rig whose long axis is enabled and homed; it stands where homing leaves it.
+pub fn homed_at(start_m: f64) -> Rig {
+    homed(&Config::PUBLISHED, start_m)
+}
+
+/// The same with another configuration.
+pub fn homed(config: &Config, start_m: f64) -> Rig {
+    let mut rig = Rig::new(config, start_m);
+    rig.until(Some(Request::Enable { axis: 0 }), 0.1, |o| o.status.axes[0].phase == Phase::Holding);
+    rig.until(Some(Request::Home { axis: 0 }), 120.0, |o| o.status.axes[0].phase == Phase::Holding);
+    rig
 }
