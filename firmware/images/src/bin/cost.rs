@@ -10,6 +10,7 @@
 
 use core::cell::UnsafeCell;
 use core::fmt::Write as _;
+use core::hint::black_box;
 
 use froude_board::realview::{COUNTER, GIC_DISTRIBUTOR, Realview, SYSTEM, TIMER_INTERRUPT, on_interrupt};
 use froude_board::registers::{Memory, Registers};
@@ -29,9 +30,9 @@ static LATCH: TickLatch = TickLatch::new();
 /// Costs up to this many instructions are told apart.
 const CLASSES: usize = 65_536;
 /// Costliest steps that are followed.
-const WORST: usize = 16;
+const WORST: usize = 8;
 /// Every so many steps one is followed, too.
-const SAMPLE: u32 = 6_250;
+const SAMPLE: u32 = 12_500;
 
 struct Counts(UnsafeCell<[u32; CLASSES]>);
 // SAFETY: one processor, and the interrupt does not touch it.
@@ -123,7 +124,7 @@ pub extern "C" fn carriage_main() -> ! {
 fn others(system: &Memory, output: &Output) {
     let mut console = Console;
     let mut wire = [0; MAX_WIRE];
-    let (cost, telemetry) = instructions(system, || Telemetry::of(&Tick::default(), output, [1, 2], [3, 4]));
+    let (cost, telemetry) = instructions(system, || black_box(Telemetry::of(black_box(&Tick::default()), output, [1, 2], [3, 4])));
     let _ = writeln!(console, "telemetry_filled {cost}");
     let mut writer = FrameWriter::starting_at(77);
     let (cost, len) = instructions(system, || writer.write(&FromBoard::Telemetry(telemetry), &mut wire).len());
