@@ -190,7 +190,7 @@ wire_code!(Fault {
     NotFinite,
     HomingFailed,
 });
-wire_code!(Refusal { Faulted, Disabled, NotHomed, Busy, OutOfRange, BeyondTravel, NoSuchAxis, NotCleared });
+wire_code!(Refusal { Faulted, Disabled, NotHomed, Busy, OutOfRange, BeyondTravel, NoSuchAxis, NotCleared, NotReady });
 wire_code!(Phase { Disabled, Holding, Moving, Homing, Exciting, Stopping, Coasting });
 wire_code!(StopCategory { Zero, One, Two });
 
@@ -212,6 +212,8 @@ wire_struct!(Drive {
 wire_struct!(Limits {
     hard_low_m,
     hard_high_m,
+    low_switch_m,
+    high_switch_m,
     speed_m_s,
     unhomed_speed_m_s,
     acceleration_m_s2,

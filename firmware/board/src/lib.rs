@@ -19,6 +19,7 @@ pub mod demand;
 pub mod realview;
 pub mod registers;
 pub mod rig;
+pub mod scenario;
 pub mod tick;
 
 pub use application::Application;

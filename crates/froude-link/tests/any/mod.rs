@@ -74,7 +74,7 @@ fn any_phase() -> impl Strategy<Value = Phase> {
 
 fn any_refusal() -> impl Strategy<Value = Refusal> {
     use Refusal::*;
-    select(vec![Faulted, Disabled, NotHomed, Busy, OutOfRange, BeyondTravel, NoSuchAxis, NotCleared])
+    select(vec![Faulted, Disabled, NotHomed, Busy, OutOfRange, BeyondTravel, NoSuchAxis, NotCleared, NotReady])
 }
 
 fn any_excitation() -> impl Strategy<Value = Excitation> {
@@ -133,6 +133,8 @@ fn axis_config(d: &mut Draw) -> AxisConfig {
         limits: Limits {
             hard_low_m: d.f(),
             hard_high_m: d.f(),
+            low_switch_m: d.f(),
+            high_switch_m: d.f(),
             speed_m_s: d.f(),
             unhomed_speed_m_s: d.f(),
             acceleration_m_s2: d.f(),

@@ -129,7 +129,7 @@ impl Board for Realview {
         let tick = self.latch.read();
         let ticks = tick.number.wrapping_sub(self.taken);
         self.taken = tick.number;
-        (0..ticks.min(4000)).for_each(|_| self.rig.step(&self.command, 250e-6));
+        (0..ticks.min(4000)).for_each(|_| self.rig.step(&self.command));
         let axes = self.rig.axes.map(|axis| {
             let input = axis.input();
             AxisLatched {
