@@ -314,8 +314,8 @@ fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
     })?;
     let mut speeds = positive_series(s, key, value, Dimension::SPEED)?;
     speeds.sort_by(f64::total_cmp);
-    if let Some(twice) = speeds.windows(2).find(|w| w[0] == w[1]) {
-        return Err(s.wrong(key, value, format!("names {} m/s twice; say how often in repeats", twice[0])));
+    if let Some([twice, _]) = speeds.windows(2).find(|w| w[0] == w[1]) {
+        return Err(s.wrong(key, value, format!("names {twice} m/s twice; say how often in repeats")));
     }
     Ok(speeds)
 }

@@ -1,0 +1,365 @@
+//! `froude carriage drag`: D_d and C_D by force sensor, motor current and model, from the runs of a campaign.
+
+use std::path::PathBuf;
+
+use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, calibrate};
+use froude_identify::carriage::coefficient::{Coefficient, Method};
+use froude_identify::carriage::mbdp::Flexible;
+use froude_identify::carriage::report::{DragReport, drag_report};
+use froude_identify::carriage::run::{Ballast, DragRun, DragSetup, Efficiency, SensorBudget, Uncertain};
+use froude_records::campaign::Campaign;
+use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
+use froude_records::finding::{Finding, Severity};
+use froude_records::hash::sha256_of_file;
+use froude_records::run::{AxisConstants, RunKind};
+use froude_report::chart::{Chart, ChartPanel, Mark, Series};
+use froude_report::document::{Document, DocumentSection, TextTable};
+use froude_report::number;
+use indexmap::IndexMap;
+
+use super::runs::{Runs, density_kg_m3, for_drag, read};
+use crate::Error;
+
+/// What to reduce.
+#[derive(Debug, Clone)]
+pub struct DragJob {
+    /// Folders of runs, or runs.
+    pub runs: Vec<PathBuf>,
+    /// A campaign other than the copy that lies with the runs.
+    pub campaign: Option<PathBuf>,
+    /// Folder of the results; beside the runs, unless said.
+    pub out: Option<PathBuf>,
+    /// Two-mass model, where it was identified.
+    pub flexible: Option<Flexible>,
+    /// Date for the report.
+    pub date: Option<String>,
+}
+
+/// What came out.
+#[derive(Debug, Clone)]
+pub struct DragOutcome {
+    /// All methods side by side.
+    pub report: DragReport,
+    /// Calibration with known weights, where the runs have one.
+    pub calibration: Option<Calibration>,
+    /// The record.
+    pub file: EstimateFile,
+    /// Where it lies.
+    pub estimate: PathBuf,
+    /// Where the page lies.
+    pub page: PathBuf,
+}
+
+/// Kinds of run that tell drag.
+const KINDS: [RunKind; 4] = [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration];
+
+/// Reads, calibrates where known weights were hung, reduces by every method, writes `estimate.json` and `report.html`.
+///
+/// # Errors
+///
+/// See [`Error`].
+pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
+    let runs = read(&job.runs, &KINDS, job.campaign.as_deref())?;
+    let reduced: Vec<DragRun<'_>> =
+        runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
+    let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
+    let mut setup = setup_of(runs.campaign.as_ref(), constants, job.flexible);
+    let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
+    setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
+    let mut report = drag_report(&reduced, &setup)?;
+    report.findings.extend(runs.findings.iter().cloned());
+    report.findings.extend(why_not);
+    report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    let file = EstimateFile {
+        schema: ESTIMATE_SCHEMA.to_owned(),
+        data: data_of(&runs)?,
+        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
+        estimates: report.estimates.clone(),
+        findings: report.findings.clone(),
+    };
+    let page = document(&report, &setup, calibration.as_ref(), &runs, job.date.clone()).html()?;
+    let out = job.out.clone().unwrap_or_else(|| {
+        let name = runs.folder.file_name().map_or_else(|| "runs".to_owned(), |n| n.to_string_lossy().into_owned());
+        runs.folder.with_file_name(format!("{name}-drag"))
+    });
+    let written = crate::results::write(&out, &file, &[], &[], &page)?;
+    Ok(DragOutcome { report, calibration, file, estimate: written.estimate, page: written.report })
+}
+
+/// What is declared, from the campaign where there is one, else from what the runs say of their rig.
+#[must_use]
+pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>, flexible: Option<Flexible>) -> DragSetup {
+    let mut setup = DragSetup::of_the_paper();
+    setup.efficiency = Efficiency::Undeclared;
+    setup.flexible = flexible;
+    setup.density_kg_m3 = density_kg_m3(campaign);
+    let carriage = campaign.and_then(|c| c.carriage.as_ref());
+    if let Some(campaign) = campaign {
+        setup.name.clone_from(&campaign.name);
+        setup.reference_area_m2 = campaign.body.as_ref().and_then(|b| b.reference_area_m2);
+    }
+    let spec = carriage.map(|c| &c.rig.y);
+    if let Some(c) = spec.map(|s| &s.constants).or(axis) {
+        let ratio = c.gear_ratio.value / c.sprocket_radius_m.value;
+        setup.ideal_force_per_volt_n = ratio * c.torque_constant_n_m_a.value * c.amplifier_a_v.value;
+        let relative = |d: &froude_records::run::Declared| d.standard_uncertainty / d.value;
+        setup.torque_constant_relative = relative(&c.torque_constant_n_m_a).hypot(relative(&c.amplifier_a_v));
+        setup.speed_scale_relative = relative(&c.sprocket_radius_m);
+        if let Some(e) = &c.efficiency_forward {
+            setup.efficiency = Efficiency::Declared(Uncertain::new(e.value, e.standard_uncertainty));
+        }
+        if let Some(inertia) = spec.and_then(|s| s.inertia_kg_m2) {
+            setup.moving_mass_kg = inertia.value * ratio * ratio;
+        }
+    }
+    if let Some(drift_n) = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.drift_n) {
+        setup.sensor = SensorBudget { drift_half_width_n: drift_n, ..setup.sensor };
+    }
+    let is_ballasted = carriage.and_then(|c| c.plan.as_ref()).is_none_or(|p| p.is_ballasted);
+    if !is_ballasted {
+        let volume_m3 = campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3).unwrap_or(0.0);
+        setup.ballast = Ballast::Unballasted { unloaded_n: setup.density_kg_m3 * 9.80665 * volume_m3, rolling: None };
+    }
+    setup
+}
+
+/// Calibration from the runs with weights; a finding where there are such runs and they do not calibrate.
+pub(crate) fn calibration_of(
+    runs: &[DragRun<'_>],
+    campaign: Option<&Campaign>,
+    setup: &DragSetup,
+) -> (Option<Calibration>, Option<Finding>) {
+    use froude_identify::carriage::run::RunKind::Calibration as Hung;
+    if !runs.iter().any(|r| r.kind == Hung) {
+        return (None, None);
+    }
+    let declared = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref()).and_then(|p| p.calibration.as_ref());
+    let weight_relative = declared.map_or(1e-3, |c| {
+        // The heaviest weights tell the most; the uncertainty is that of each weight.
+        let heaviest = c.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+        c.weight_standard_n / heaviest
+    });
+    let asked = CalibrationSetup {
+        ideal_force_per_volt_n: setup.ideal_force_per_volt_n,
+        weight_relative,
+        pulley_loss: PULLEY_LOSS,
+        steady: setup.steady,
+    };
+    match calibrate(runs, &asked) {
+        Ok(calibration) => (Some(calibration), None),
+        Err(error) => (None, Some(Finding::new(Severity::Warning, "not-calibrated", error.to_string()))),
+    }
+}
+
+pub(crate) fn data_of(runs: &Runs) -> Result<Vec<DataFile>, Error> {
+    runs.logs
+        .iter()
+        .map(|log| {
+            let path = log.path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+            Ok(DataFile { path, sha256: sha256_of_file(&log.path)? })
+        })
+        .collect()
+}
+
+/// The page: the paper's Table IV with what it lacked.
+fn document(
+    report: &DragReport,
+    setup: &DragSetup,
+    calibration: Option<&Calibration>,
+    runs: &Runs,
+    date: Option<String>,
+) -> Document {
+    let mut sections = vec![DocumentSection {
+        title: "Drag".to_owned(),
+        paragraphs: summary(report, setup),
+        tables: vec![methods_table(report)],
+        charts: vec![force_chart(report)],
+    }];
+    sections.push(DocumentSection {
+        title: "Uncertainty budget".to_owned(),
+        paragraphs: vec![
+            "Standard uncertainty of D_d from each input alone. Errors that all runs share do not average down.".to_owned(),
+        ],
+        tables: report.coefficients.iter().map(budget_table).collect(),
+        charts: Vec::new(),
+    });
+    if let Some(c) = calibration {
+        let mut paragraphs = vec![format!(
+            "{} N/V with its interval {} N/V, from {} driving runs; the gear's efficiency is {}.",
+            number::short_form(c.force_per_volt.force_per_volt_n.value, c.force_per_volt.force_per_volt_n.standard),
+            number::interval(c.interval_95),
+            c.used,
+            number::short_form(c.efficiency.value, c.efficiency.standard),
+        )];
+        paragraphs.extend(c.notes.iter().cloned());
+        sections.push(DocumentSection { title: "Calibration".to_owned(), paragraphs, ..DocumentSection::default() });
+    }
+    let rows = runs
+        .logs
+        .iter()
+        .map(|log| {
+            let m = &log.meta;
+            vec![
+                m.id.clone(),
+                m.kind.name().to_owned(),
+                m.pair.map_or_else(|| "–".to_owned(), |p| p.to_string()),
+                m.target_speed_m_s.map_or_else(|| "–".to_owned(), |v| number::plain(v, 3)),
+                super::runs::way(m.direction).to_owned(),
+                number::plain(log.duration_s(), 3),
+            ]
+        })
+        .collect();
+    sections.push(DocumentSection {
+        title: "Runs".to_owned(),
+        tables: vec![TextTable {
+            caption: "Complete runs that were read.".to_owned(),
+            head: ["run", "kind", "pair", "speed [m/s]", "way", "length [s]"].map(str::to_owned).to_vec(),
+            rows,
+        }],
+        ..DocumentSection::default()
+    });
+    Document {
+        sort: "Carriage · drag from motor current".to_owned(),
+        title: setup.name.clone(),
+        subtitle: String::new(),
+        date,
+        sections,
+        findings: report.findings.clone(),
+    }
+}
+
+/// What the runs say, in sentences.
+#[must_use]
+pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
+    let mut out = Vec::new();
+    if let Some(c) = report.coefficients.iter().find(|c| Some(c.method) == report.recommended) {
+        let half = c.interval_95.map(|[l, h]| 0.5 * (h - l));
+        let value = half.map_or_else(|| number::plain(c.value, 4), |h| number::plus_minus(c.value, h));
+        out.push(format!("Recommended: {}, D_d = {value} N s²/m² (95 %).", c.method.words()));
+    }
+    if setup.calibration.is_none() {
+        out.push(
+            "Newtons a volt were not calibrated with known weights: no D_d from motor currents is stated better than the declared \
+             efficiency of the gear and K_T allow."
+                .to_owned(),
+        );
+    }
+    if let Some(d) = &report.detectability {
+        out.push(format!(
+            "One wet-less-dry difference scatters by {} N (dry repeats, {} degrees of freedom); {} differences at a speed show a drag \
+             above {} N.",
+            number::significant(d.difference_n, 2),
+            number::dof(d.dof),
+            d.differences,
+            number::significant(d.expanded_n, 2),
+        ));
+        let speeds = report.coefficients.iter().flat_map(|c| c.points.iter().map(|p| p.speed_m_s.abs()));
+        let slowest = speeds.fold(f64::INFINITY, f64::min);
+        if let Some(c) = report.coefficients.iter().find(|c| c.method == Method::Mcd) {
+            out.extend(d.advice(c.value, slowest));
+        }
+    }
+    if let Some(a) = &report.agreement {
+        out.push(format!(
+            "The wet repeats scatter by {} N where {} N were predicted (p = {}).",
+            number::significant(a.observed_n, 2),
+            number::significant(a.predicted_n, 2),
+            number::p_value(a.p),
+        ));
+    }
+    if let Some(m) = &report.added_mass {
+        out.push(format!(
+            "From the ramps: added mass and water inside {} kg, interval {} kg, {} pairs.",
+            number::short_form(m.mass_kg.value, m.mass_kg.standard),
+            number::interval(m.interval_95),
+            m.runs
+        ));
+    }
+    out
+}
+
+/// The methods side by side: the paper's Table IV.
+#[must_use]
+pub fn methods_table(report: &DragReport) -> TextTable {
+    let rows = report
+        .coefficients
+        .iter()
+        .zip(&report.drag_coefficients)
+        .zip(&report.ratios)
+        .map(|((c, drag), ratio)| {
+            let missing = || number::MISSING.to_owned();
+            vec![
+                c.method.words().to_owned(),
+                number::plain(c.value, 5),
+                c.interval_95.map_or_else(missing, number::interval),
+                c.relative_half_width().map_or_else(missing, number::percent),
+                drag.map_or_else(missing, |(value, _)| number::plain(value, 4)),
+                drag.and_then(|(_, i)| i).map_or_else(missing, number::interval),
+                number::plain(*ratio, 4),
+                c.pairs.to_string(),
+            ]
+        })
+        .collect();
+    TextTable {
+        caption: "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none.".to_owned(),
+        head: ["method", "D_d [N s²/m²]", "95 % interval", "half-width", "C_D [1]", "95 % interval", "ratio", "pairs"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+    }
+}
+
+fn budget_table(c: &Coefficient) -> TextTable {
+    let total: f64 = c.budget.iter().map(|p| p.standard * p.standard).sum();
+    TextTable {
+        caption: format!("{}.", c.method.words()),
+        head: ["input", "standard uncertainty [N s²/m²]", "of the variance"].map(str::to_owned).to_vec(),
+        rows: c
+            .budget
+            .iter()
+            .map(|p| {
+                let share = if total > 0.0 { p.standard * p.standard / total } else { 0.0 };
+                vec![p.name.to_string(), number::significant(p.standard, 2), number::percent(share)]
+            })
+            .collect(),
+    }
+}
+
+/// Force over speed by method, with the recommended curve: the paper's Figure 2.
+fn force_chart(report: &DragReport) -> Chart {
+    let mut series: Vec<Series> = report
+        .coefficients
+        .iter()
+        .map(|c| Series {
+            name: c.method.name().to_owned(),
+            mark: Mark::Points,
+            x: c.points.iter().map(|p| p.speed_m_s).collect(),
+            y: c.points.iter().map(|p| p.force_n).collect(),
+            ..Series::default()
+        })
+        .collect();
+    if let Some(c) = report.coefficients.iter().find(|c| Some(c.method) == report.recommended) {
+        let fastest = c.points.iter().map(|p| p.speed_m_s).fold(0.0, f64::max);
+        let slowest = c.points.iter().map(|p| p.speed_m_s).fold(0.0, f64::min);
+        let x: Vec<f64> = (0..=100).map(|i| slowest + (fastest - slowest) * f64::from(i) / 100.0).collect();
+        let [low, high] = c.interval_95.unwrap_or([c.value; 2]);
+        let curve = |d: f64| x.iter().map(|v| d * v * v.abs()).collect::<Vec<f64>>();
+        series.push(Series {
+            name: format!("D_d v|v|, {}", c.method.name()),
+            mark: Mark::Line,
+            y: curve(c.value),
+            low: x.iter().map(|v| (low * v * v.abs()).min(high * v * v.abs())).collect(),
+            high: x.iter().map(|v| (low * v * v.abs()).max(high * v * v.abs())).collect(),
+            x,
+        });
+    }
+    Chart {
+        name: "drag".to_owned(),
+        title: "Drag over speed".to_owned(),
+        caption: "Drag of each steady window by method; the line is D_d v|v| of the recommended one with its 95 % band.".to_owned(),
+        x_label: "speed [m/s]".to_owned(),
+        panels: vec![ChartPanel { y_label: "drag [N]".to_owned(), series, ..ChartPanel::default() }],
+        ..Chart::default()
+    }
+}
+
