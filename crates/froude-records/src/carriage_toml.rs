@@ -314,10 +314,10 @@ fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
     })?;
     let mut speeds = positive_series(s, key, value, Dimension::SPEED)?;
     speeds.sort_by(f64::total_cmp);
-    if let Some([twice, _]) = speeds.windows(2).find(|w| w[0] == w[1]) {
-        return Err(s.wrong(key, value, format!("names {twice} m/s twice; say how often in repeats")));
+    match speeds.array_windows().find(|[a, b]| a == b) {
+        Some([twice, _]) => Err(s.wrong(key, value, format!("names {twice} m/s twice; say how often in repeats"))),
+        None => Ok(speeds),
     }
-    Ok(speeds)
 }
 
 fn positive_series<'a>(

@@ -15,7 +15,8 @@
 //! | another program's log     | [`import_run`] |
 //!
 //! **On disk.** `ID.mcap`: topics `/axis/y`, `/axis/x`, `/force`, `/truth/…`, one message a tick (ROS 2 definitions, CDR bytes),
-//! `/events` (`rcl_interfaces/msg/Log`), and a metadata record `froude_run` with the entries of the sidecar `ID.toml`. Foxglove,
+//! `/events` (`rcl_interfaces/msg/Log`), and metadata records `froude_run` (at the beginning) and
+//! `froude_run_end` with the entries of the sidecar `ID.toml`. Foxglove,
 //! PlotJuggler and the MCAP tools open it as it is. Log time is the board's: start of the run plus tick over log rate; the
 //! sequence number of a message is its tick.
 //!

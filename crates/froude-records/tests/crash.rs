@@ -3,6 +3,7 @@
 //! The recorder under test is this test program itself, started again with [`FOLDER`] in its environment: it records two
 //! axes at real 4 kHz and, before it hands over a tick, writes that tick's number where its parent finds it. What the
 //! parent finds is therefore never behind what the recorder was given, whatever else the machine is doing.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 #![cfg(unix)]
 
 mod common;

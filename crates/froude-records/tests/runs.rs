@@ -1,4 +1,5 @@
 //! Runs on disk: what was recorded is read back, whatever became of the file.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod common;
 

@@ -16,7 +16,7 @@ use crate::run::file::{End, Message, Step, Walk, records, unpack};
 use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
 use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 use crate::run::meta::{RunMeta, RunStatus};
-use crate::run::sidecar::{RECORD_NAME, of_record, read_run_meta};
+use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, of_record, read_run_meta};
 
 /// Most channels of one run.
 const MOST_CHANNELS: usize = 10_000;
@@ -346,7 +346,7 @@ impl<R: Read + Seek> RunReader<R> {
     fn take_metadata(&mut self, offset: u64, body: &[u8]) -> Result<(), RecordError> {
         let refuse = |problem: String| RecordError::Syntax { place: Place::byte(&self.path, offset), problem };
         let record = match mcap::parse_record(op::METADATA, body) {
-            Ok(Record::Metadata(record)) if record.name == RECORD_NAME => record,
+            Ok(Record::Metadata(record)) if [RECORD_NAME, END_RECORD_NAME].contains(&record.name.as_str()) => record,
             Ok(_) => return Ok(()),
             Err(error) => {
                 let problem = format!("the metadata there cannot be read ({error})");

@@ -10,6 +10,9 @@
 //! Run time is what the caller's ticks say, simulated or real. A caller whose ticks stop coming calls
 //! [`Recorder::advance`], so that the last of them are not kept back.
 //!
+//! **Time.** A tick costs some microseconds. Now and then one waits for the disk: tens of milliseconds while the system
+//! writes back. A caller that must not wait (a serial port without a ring behind it) records in a thread of its own.
+//!
 //! **Memory.** One chunk (at most 40 ms, or 1 MiB), and the index that viewers want at the end of the file: about 0.3 kB a
 //! chunk, 27 MB for an hour.
 //!
@@ -27,7 +30,7 @@ use crate::error::{RecordError, reason};
 use crate::run::layout::{Layout, text};
 use crate::run::log::EventKind;
 use crate::run::meta::{RunMeta, RunStatus};
-use crate::run::sidecar::{RECORD_NAME, to_record, write_run_meta};
+use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, to_record, write_run_meta};
 use crate::run::sync::Syncer;
 
 type Writer = mcap::Writer<NoSeek<BufWriter<File>>>;
@@ -271,7 +274,7 @@ impl Recorder {
     fn end(&mut self) -> Result<(), RecordError> {
         self.flush()?;
         let Some(writer) = &mut self.writer else { return Err(self.failed_before()) };
-        let metadata = Metadata { name: RECORD_NAME.to_owned(), metadata: to_record(&self.meta) };
+        let metadata = Metadata { name: END_RECORD_NAME.to_owned(), metadata: to_record(&self.meta) };
         let ended = writer.write_metadata(&metadata).and_then(|()| writer.finish()).map_err(in_words);
         ended.and_then(|_| self.file.sync_all()).map_err(|e| self.fail(e))?;
         self.writer = None;

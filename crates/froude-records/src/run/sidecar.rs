@@ -19,8 +19,10 @@ use crate::write::write_atomically;
 /// The largest sidecar that is read.
 const LARGEST_BYTES: u64 = 1 << 20;
 
-/// Name of the metadata record inside `RUN.mcap`.
+/// Name of the metadata record at the beginning of `RUN.mcap`, status `running`.
 pub(crate) const RECORD_NAME: &str = "froude_run";
+/// Name of the one at its end, with how the run ended.
+pub(crate) const END_RECORD_NAME: &str = "froude_run_end";
 
 /// N m/A, of the torque constant.
 pub(crate) const TORQUE_CONSTANT: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
@@ -135,15 +137,23 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     put("date", meta.date.clone());
     put("start_unix_ns", meta.start_unix_ns.to_string());
     put("log_rate", format!("{} Hz", meta.log_rate_hz));
-    let numbers = [("set", meta.set), ("pair", meta.pair), ("repeat", meta.repeat)];
-    numbers.iter().for_each(|(key, number)| number.iter().for_each(|n| put(key, n.to_string())));
     put("axis", meta.axis.name().to_owned());
-    meta.target_speed_m_s.iter().for_each(|v| put("target_speed", format!("{v} m/s")));
-    meta.direction.iter().for_each(|d| put("direction", d.name().to_owned()));
     put("body", meta.body.name().to_owned());
     put("ballasted", meta.is_ballasted.to_string());
-    meta.hung_weight_n.iter().for_each(|w| put("hung_weight", format!("{w} N")));
-    meta.twin_seed.iter().for_each(|seed| put("twin_seed", seed.to_string()));
+    let known = [
+        ("set", meta.set.map(|n| n.to_string())),
+        ("pair", meta.pair.map(|n| n.to_string())),
+        ("repeat", meta.repeat.map(|n| n.to_string())),
+        ("target_speed", meta.target_speed_m_s.map(|v| format!("{v} m/s"))),
+        ("direction", meta.direction.map(|d| d.name().to_owned())),
+        ("hung_weight", meta.hung_weight_n.map(|w| format!("{w} N"))),
+        ("twin_seed", meta.twin_seed.map(|seed| seed.to_string())),
+    ];
+    for (key, value) in known {
+        if let Some(value) = value {
+            put(key, value);
+        }
+    }
     put("note", meta.note.clone());
     if let Some(clock) = &meta.clock {
         put("clock.host_at_zero", format!("{} s", clock.host_at_zero_s));
