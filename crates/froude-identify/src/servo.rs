@@ -20,6 +20,7 @@
 
 pub mod chain;
 mod error;
+pub mod flexible;
 pub mod friction;
 mod gauss_newton;
 pub mod held_out;
@@ -32,9 +33,13 @@ pub mod printed;
 mod regression;
 pub mod report;
 pub mod simulate;
+pub mod synthetic;
+pub mod two_mass;
 
 pub use chain::Chain;
 pub use error::ServoError;
 pub use friction::Friction;
 pub use log::ServoLog;
+pub use motor::MotorSide;
 pub use report::{ServoCoefficient, ServoReport, identify_servo};
+pub use two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};

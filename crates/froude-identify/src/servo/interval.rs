@@ -141,17 +141,27 @@ pub(crate) fn hac(
     rate_hz: f64,
     lag_s: Option<f64>,
 ) -> (Vec<f64>, f64) {
-    let scores: Vec<Vec<f64>> = columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
+    let (covariance, lag_s) = hac_covariance(columns, residuals, inverse_gram, rate_hz, lag_s);
+    (diagonal_roots(&covariance), lag_s)
+}
+
+/// HAC covariance `n/(n − p) (XᵀX)⁻¹ S (XᵀX)⁻¹`, and the lag used, s.
+pub(crate) fn hac_covariance(
+    columns: &[Vec<f64>],
+    residuals: &[f64],
+    inverse_gram: &Mat<f64>,
+    rate_hz: f64,
+    lag_s: Option<f64>,
+) -> (Mat<f64>, f64) {
+    let scores: Vec<Vec<f64>> =
+        columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
     let scores: Vec<&[f64]> = scores.iter().map(Vec::as_slice).collect();
     let lag = lag_s.map_or_else(|| long_enough(&scores, residuals), |s| (s * rate_hz).round() as usize);
     let p = columns.len();
-    let middle = covariance_of_sum(&scores, lag);
-    let middle = Mat::from_fn(p, p, |i, j| middle[i * p + j]);
     let n = residuals.len() as f64;
-    // As n/(n − p) for the classical one.
-    let covariance = inverse_gram * middle * inverse_gram;
-    let factor = n / (n - p as f64);
-    ((0..p).map(|j| (factor * covariance[(j, j)]).max(0.0).sqrt()).collect(), lag as f64 / rate_hz)
+    let middle = covariance_of_sum(&scores, lag);
+    let middle = Mat::from_fn(p, p, |i, j| n / (n - p as f64) * middle[i * p + j]);
+    (inverse_gram * middle * inverse_gram, lag as f64 / rate_hz)
 }
 
 /// Covariance of an estimator over moving blocks.

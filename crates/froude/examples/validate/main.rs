@@ -9,6 +9,7 @@ mod claims;
 mod coverage;
 mod eiv;
 mod emps;
+mod flexible;
 mod kvlcc2;
 mod rm2;
 mod snake;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         snake::recommendation(claims, &root, if full { 2_000 } else { 40 })?;
         rm2::all(claims, &root)?;
         emps::all(claims, &root)?;
+        flexible::coverage(claims, if full { 400 } else { 100 })?;
         kvlcc2::hmri(claims, &shared)?;
         kvlcc2::fhr(claims, &shared)?;
         carriage::all(claims, if full { 400 } else { 60 })?;
