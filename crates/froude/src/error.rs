@@ -14,6 +14,26 @@ pub enum Error {
     #[error(transparent)]
     Identify(#[from] froude_identify::IdentifyError),
 
+    /// Runs of a carriage give no drag.
+    #[error(transparent)]
+    Drag(#[from] froude_identify::carriage::DragError),
+
+    /// A record of a servo gives no parameters.
+    #[error(transparent)]
+    Servo(#[from] froude_identify::servo::ServoError),
+
+    /// An experiment on the loop gives no answer.
+    #[error(transparent)]
+    Tuning(#[from] froude_identify::tuning::TuningError),
+
+    /// The rig cannot be set up as the campaign declares it.
+    #[error(transparent)]
+    Setup(#[from] froude_rig::campaign::setup::SetupError),
+
+    /// A campaign stopped before its end.
+    #[error(transparent)]
+    Runner(#[from] froude_rig::campaign::runner::RunnerError),
+
     /// The report could not be drawn.
     #[error(transparent)]
     Report(#[from] froude_report::ReportError),
@@ -46,8 +66,14 @@ impl Error {
         match self {
             Self::Record(e) => !e.is_output(),
             Self::Identify(froude_identify::IdentifyError::Record(e)) => !e.is_output(),
-            Self::Identify(_) | Self::NotEmpty { .. } | Self::Nothing(_) => true,
-            Self::Report(_) | Self::Output { .. } => false,
+            Self::Identify(_)
+            | Self::NotEmpty { .. }
+            | Self::Nothing(_)
+            | Self::Drag(_)
+            | Self::Servo(_)
+            | Self::Tuning(_)
+            | Self::Setup(_) => true,
+            Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
         }
     }
 }

@@ -16,7 +16,10 @@ pub use froude_hydro as hydro;
 pub use froude_identify as identify;
 pub use froude_records as records;
 pub use froude_report as report;
+pub use froude_rig as rig;
+pub use froude_control as control;
 
+pub mod carriage;
 pub mod demo;
 mod error;
 pub mod inspect;

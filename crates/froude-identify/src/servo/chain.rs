@@ -142,6 +142,13 @@ pub struct Rows {
 }
 
 impl Rows {
+    /// Rows of another record of the same model behind these; intervals then treat the seam as any other place.
+    pub fn append(&mut self, mut other: Self) {
+        self.time_s.append(&mut other.time_s);
+        self.force_n.append(&mut other.force_n);
+        self.columns.iter_mut().zip(&mut other.columns).for_each(|(all, more)| all.append(more));
+    }
+
     /// The rows whose time lies in one of the spans, s.
     #[must_use]
     pub fn within(&self, spans_s: &[[f64; 2]]) -> Self {

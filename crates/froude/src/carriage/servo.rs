@@ -1,0 +1,434 @@
+//! `froude carriage identify`: servo parameters with intervals, from runs of a carriage or from anyone's servo log.
+//!
+//! A carriage's friction sweep and dry runs tell inertia and friction (rigid, over position); its pulses tell the two masses. A log
+//! of another program (CSV with a sidecar) tells the rigid model, symmetric and asymmetric.
+
+use std::path::{Path, PathBuf};
+
+use froude_identify::carriage::steady::{SteadySettings, mean, window};
+use froude_identify::servo::chain::Rows;
+use froude_identify::servo::motor::MotorSide;
+use froude_identify::servo::report::of_rows;
+use froude_identify::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
+use froude_identify::servo::{Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo};
+use froude_records::finding::{Finding, Severity};
+use froude_records::run::{RunKind, RunLog, import_run};
+use froude_records::units::Dimension;
+use froude_report::chart::{Chart, ChartPanel, Mark, Series};
+use froude_report::document::{Document, DocumentSection, TextTable};
+use froude_report::number;
+
+use super::runs::{for_drag, read};
+use crate::Error;
+
+/// What to identify.
+#[derive(Debug, Clone)]
+pub struct ServoJob {
+    /// Folders of runs, runs, or one CSV log.
+    pub input: Vec<PathBuf>,
+    /// Sidecar of a CSV log that is not beside it.
+    pub sidecar: Option<PathBuf>,
+    /// Folder of the results; beside the input, unless said.
+    pub out: Option<PathBuf>,
+    /// Date for the report.
+    pub date: Option<String>,
+}
+
+/// One fitted model with its title.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// `symmetric`, `asymmetric`, `over position`.
+    pub name: String,
+    /// Its fit.
+    pub report: ServoReport,
+}
+
+/// Repeats at one speed and direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Repeatability {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// +1 or −1.
+    pub direction: f64,
+    /// Mean drive force against the motion, ideal gear, N.
+    pub force_n: f64,
+    /// Its standard deviation from run to run, N; `None` for a single run.
+    pub std_n: Option<f64>,
+    /// Runs.
+    pub runs: usize,
+}
+
+/// What came out.
+#[derive(Debug, Clone)]
+pub struct ServoOutcome {
+    /// Rigid models.
+    pub models: Vec<Model>,
+    /// Two masses, where there are pulses.
+    pub flexible: Option<FlexibleReport>,
+    /// How well runs repeat.
+    pub repeatability: Vec<Repeatability>,
+    /// The drive, where it is declared.
+    pub motor: Option<MotorSide>,
+    /// What is doubtful.
+    pub findings: Vec<Finding>,
+    /// Where the page lies.
+    pub page: PathBuf,
+}
+
+/// Identifies whatever the input allows and writes `report.html`.
+///
+/// # Errors
+///
+/// See [`Error`].
+pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
+    let first = job.input.first().cloned().unwrap_or_default();
+    let is_table = first.extension().is_some_and(|e| e == "csv" || e == "parquet");
+    let mut outcome = if is_table { of_table(&first, job.sidecar.as_deref())? } else { of_runs(&job.input)? };
+    let out = job.out.clone().unwrap_or_else(|| {
+        let stem = first.file_stem().map_or_else(|| "servo".to_owned(), |n| n.to_string_lossy().into_owned());
+        first.with_file_name(format!("{stem}-servo"))
+    });
+    std::fs::create_dir_all(&out).map_err(|source| Error::Output { path: out.clone(), source })?;
+    outcome.page = out.join("report.html");
+    let html = document(&outcome, &first, job.date.clone()).html()?;
+    froude_records::write::write_atomically(&outcome.page, html.as_bytes())?;
+    Ok(outcome)
+}
+
+/// Columns of a run for the servo's identification.
+fn servo_log(log: &RunLog) -> Result<ServoLog, Error> {
+    let axis = log.meta.axis.name();
+    let column = |name: &str, dimension| log.channel(&format!("{axis}/{name}"), dimension).map(<[f64]>::to_vec);
+    let reference = format!("{axis}/reference_position");
+    Ok(ServoLog {
+        time_s: log.time_s.clone(),
+        position_m: column("position", Dimension::LENGTH)?,
+        command_v: column("command", Dimension::VOLTAGE)?,
+        reference_m: log.channels.contains_key(&reference).then(|| column("reference_position", Dimension::LENGTH)).transpose()?,
+        load_n: None,
+    })
+}
+
+fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<ServoOutcome, Error> {
+    let imported = import_run(path, sidecar)?;
+    let log = &imported.log;
+    let gain = log.meta.constants.get("drive_gain").ok_or_else(|| {
+        Error::Nothing(format!(
+            "{}: the sidecar must say what force a volt of the command is: [constants] drive_gain = \"35.15 N/V\"",
+            path.display()
+        ))
+    })?;
+    let gain_n_v = gain.value;
+    let servo = servo_log(log)?;
+    let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
+    let chain = |friction| Chain {
+        // The pinned chain of a record at 1 kHz, scaled with the record's rate.
+        corner_hz: 0.1 * rate_hz,
+        ..Chain::new(gain_n_v, friction)
+    };
+    let models = [("symmetric", Friction::symmetric()), ("asymmetric", Friction::asymmetric())]
+        .into_iter()
+        .map(|(name, friction)| {
+            Ok(Model { name: name.to_owned(), report: identify_servo(&servo, &chain(friction))? })
+        })
+        .collect::<Result<Vec<_>, Error>>()?;
+    let findings = told(&models, imported.findings);
+    Ok(ServoOutcome { models, flexible: None, repeatability: Vec::new(), motor: None, findings, page: PathBuf::new() })
+}
+
+fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
+    for model in models {
+        for text in &model.report.findings {
+            findings.push(Finding::new(Severity::Warning, "servo", format!("{}: {text}", model.name)));
+        }
+    }
+    findings
+}
+
+/// Kinds of run that tell the servo.
+const KINDS: [RunKind; 3] = [RunKind::Friction, RunKind::Dry, RunKind::Excitation];
+/// Rate at which rows of slow runs are compared, Hz: below the load's mode, so that the rigid model is what moves.
+const ROW_RATE_HZ: f64 = 20.0;
+/// Corner of the position's filter for the rigid model, Hz: the chain's modes lie above it.
+const RIGID_CORNER_HZ: f64 = 3.0;
+/// Distance of the friction map's knots, m.
+const KNOT_M: f64 = 0.25;
+
+fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
+    let runs = read(paths, &KINDS, None)?;
+    let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis()).ok_or_else(|| {
+        Error::Nothing("the runs do not say what rig they come from (their .toml has no [rig])".to_owned())
+    })?;
+    let motor = MotorSide {
+        torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
+        amplifier_a_v: constants.amplifier_a_v.value,
+        gear_ratio: constants.gear_ratio.value,
+        sprocket_radius_m: constants.sprocket_radius_m.value,
+    };
+    let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.kind == RunKind::Friction).collect();
+    let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.kind == RunKind::Dry).collect() } else { slow };
+    let mut models = Vec::new();
+    if !slow.is_empty() {
+        let map = Friction { knots_m: knots(&slow)?, ..Friction::default() };
+        for (name, friction) in
+            [("symmetric", Friction::default()), ("asymmetric", Friction::asymmetric()), ("over position", map)]
+        {
+            let report = of_slow(&slow, &motor, friction)?;
+            models.push(Model { name: name.to_owned(), report });
+        }
+    }
+    let mut findings = told(&models, runs.findings.clone());
+    let flexible = match runs.logs.iter().find(|l| l.meta.kind == RunKind::Excitation) {
+        Some(log) => {
+            let rate_hz = log.sample_rate_hz().unwrap_or(1_000.0);
+            let options = FlexibleOptions {
+                decimation: (rate_hz / 100.0).round().max(1.0) as usize,
+                ..FlexibleOptions::new(motor)
+            };
+            match identify_flexible(&servo_log(log)?, &options) {
+                Ok(report) => Some(report),
+                Err(error) => {
+                    findings.push(Finding::new(Severity::Warning, "two-mass", format!("{}: {error}", log.meta.id)));
+                    None
+                }
+            }
+        }
+        None => None,
+    };
+    if let Some(report) = &flexible {
+        findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
+    }
+    let repeatability = repeatability(&slow, &motor)?;
+    Ok(ServoOutcome { models, flexible, repeatability, motor: Some(motor), findings, page: PathBuf::new() })
+}
+
+/// Knots over the travel that the runs cover.
+fn knots(logs: &[&RunLog]) -> Result<Vec<f64>, Error> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for log in logs {
+        for &y in log.channel(&format!("{}/position", log.meta.axis.name()), Dimension::LENGTH)? {
+            (low, high) = (low.min(y), high.max(y));
+        }
+    }
+    let n = ((high - low) / KNOT_M).round().max(1.0) as usize;
+    Ok((0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect())
+}
+
+/// All slow runs as rows of one regression.
+fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<ServoReport, Error> {
+    let mut all: Option<Rows> = None;
+    let mut chain = Chain::new(motor.force_per_volt_n_v(), friction);
+    let mut record_rate_hz = 0.0;
+    for log in logs {
+        let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
+        record_rate_hz = rate_hz;
+        chain = Chain { corner_hz: RIGID_CORNER_HZ, decimation: (rate_hz / ROW_RATE_HZ).round().max(1.0) as usize, ..chain };
+        let rows = chain.rows(&servo_log(log)?)?;
+        match &mut all {
+            None => all = Some(rows),
+            Some(all) => all.append(rows),
+        }
+    }
+    let rows = all.ok_or_else(|| Error::Nothing("no run with steady motion".to_owned()))?;
+    let mut report = of_rows(rows, &chain)?;
+    report.record_rate_hz = record_rate_hz;
+    Ok(report)
+}
+
+/// Mean force of the steady windows by speed and direction, with the standard deviation over runs.
+fn repeatability(logs: &[&RunLog], motor: &MotorSide) -> Result<Vec<Repeatability>, Error> {
+    let mut cells: Vec<(f64, f64, Vec<f64>)> = Vec::new();
+    for log in logs {
+        let Some(run) = for_drag(log)? else { continue };
+        let Ok(w) = window(&run, SteadySettings::default()) else { continue };
+        let force_n = run.direction * motor.force_per_volt_n_v() * mean(w.of(run.command_v), run.step_s()).value;
+        match cells.iter_mut().find(|c| (c.0 - run.target_speed_m_s).abs() < 1e-9 && c.1 == run.direction) {
+            Some(cell) => cell.2.push(force_n),
+            None => cells.push((run.target_speed_m_s, run.direction, vec![force_n])),
+        }
+    }
+    cells.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    Ok(cells
+        .into_iter()
+        .map(|(speed_m_s, direction, forces)| {
+            let n = forces.len() as f64;
+            let force_n = forces.iter().sum::<f64>() / n;
+            let square: f64 = forces.iter().map(|f| (f - force_n).powi(2)).sum();
+            let std_n = (forces.len() > 1).then(|| (square / (n - 1.0)).sqrt());
+            Repeatability { speed_m_s, direction, force_n, std_n, runs: forces.len() }
+        })
+        .collect())
+}
+
+/// Coefficients with the published-style standard deviation beside the honest interval.
+#[must_use]
+pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> TextTable {
+    TextTable {
+        caption,
+        head: ["coefficient", "unit", "value", "95 % interval (blocks)", "std (white noise)", "std (HAC)", "std (blocks)"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: coefficients
+            .iter()
+            .map(|c| {
+                let digits = |x: f64| number::significant(x, 2);
+                vec![
+                    c.name.clone(),
+                    c.unit.to_owned(),
+                    number::short_form(c.value, c.block_std),
+                    number::interval(c.interval),
+                    digits(c.classical_std),
+                    digits(c.hac_std),
+                    digits(c.block_std),
+                ]
+            })
+            .collect(),
+    }
+}
+
+/// Sums at the motor's shaft (MCD Table II) of a rigid model: J_eff, B_eff, C_eff.
+#[must_use]
+pub fn effective(report: &ServoReport, motor: &MotorSide) -> Vec<ServoCoefficient> {
+    let scale = motor.m_rad();
+    let moved = |from: &str, to: &str, unit: &'static str, factor: f64| {
+        report.coefficient(from).map(|c| ServoCoefficient {
+            name: to.to_owned(),
+            unit,
+            value: factor * c.value,
+            classical_std: factor * c.classical_std,
+            hac_std: factor * c.hac_std,
+            block_std: factor * c.block_std,
+            interval: c.interval.map(|x| factor * x),
+        })
+    };
+    [
+        moved("M", "J_eff", "kg m^2", scale * scale),
+        moved("F_v", "B_eff", "N m s/rad", scale * scale),
+        moved("F_c", "C_eff", "N m", scale),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Document {
+    let mut sections = Vec::new();
+    for model in &outcome.models {
+        let r = &model.report;
+        let mut paragraphs = vec![format!(
+            "{} rows at {} Hz; relative force error {}.",
+            number::count(r.n_rows),
+            number::plain(r.rate_hz, 4),
+            number::percent(r.relative_force_error)
+        )];
+        if let Some(w) = &r.whiteness {
+            paragraphs.push(format!(
+                "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of white-noise least squares are no honest \
+                 intervals unless that p is large; the intervals are those of whole blocks of {} s.",
+                w.r1,
+                w.lags,
+                w.ljung_box,
+                number::p_value(w.p),
+                number::plain(r.spread.block_s, 2)
+            ));
+        }
+        let mut tables = vec![coefficient_table(format!("Rigid model, friction {}.", model.name), &r.coefficients)];
+        if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == "symmetric") {
+            tables.push(coefficient_table(
+                "The same at the motor's shaft (MCD Table II). A gear that loses part of the torque is in these numbers.".to_owned(),
+                &effective(r, motor),
+            ));
+        }
+        sections.push(DocumentSection {
+            title: format!("Rigid, friction {}", model.name),
+            paragraphs,
+            tables,
+            charts: vec![force_chart(model)],
+        });
+    }
+    if let Some(f) = &outcome.flexible {
+        let splits = f.splits.iter().map(|s| {
+            format!(
+                "Split {}: {}.",
+                s.name,
+                if s.is_identified {
+                    format!("{:.2}, interval {}", s.share_of_motor, number::interval(s.interval))
+                } else {
+                    "not identifiable from the motor's side".to_owned()
+                }
+            )
+        });
+        sections.push(DocumentSection {
+            title: "Two masses".to_owned(),
+            paragraphs: splits.collect(),
+            tables: vec![coefficient_table("Motor, chain and load from motor-side signals.".to_owned(), &f.coefficients)],
+            charts: Vec::new(),
+        });
+    }
+    if !outcome.repeatability.is_empty() {
+        sections.push(DocumentSection {
+            title: "Repeatability".to_owned(),
+            tables: vec![repeatability_table(&outcome.repeatability)],
+            ..DocumentSection::default()
+        });
+    }
+    Document {
+        sort: "Carriage · servo parameters".to_owned(),
+        title: format!("Servo identification of {}", input.display()),
+        date,
+        sections,
+        findings: outcome.findings.clone(),
+        ..Document::default()
+    }
+}
+
+/// Repeats by speed and direction.
+#[must_use]
+pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
+    TextTable {
+        caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run.".to_owned(),
+        head: ["speed [m/s]", "way", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
+        rows: cells
+            .iter()
+            .map(|c| {
+                let missing = || number::MISSING.to_owned();
+                vec![
+                    number::plain(c.speed_m_s, 3),
+                    if c.direction > 0.0 { "forward" } else { "backward" }.to_owned(),
+                    number::plain(c.force_n, 4),
+                    c.std_n.map_or_else(missing, |s| number::significant(s, 2)),
+                    c.std_n.map_or_else(missing, |s| number::percent(s / c.force_n.abs())),
+                    c.runs.to_string(),
+                ]
+            })
+            .collect(),
+    }
+}
+
+fn force_chart(model: &Model) -> Chart {
+    let r = &model.report;
+    let predicted: Vec<f64> = r.rows.force_n.iter().zip(&r.residuals_n).map(|(f, e)| f - e).collect();
+    let series = |name: &str, y: Vec<f64>, mark| Series { name: name.to_owned(), mark, x: r.rows.time_s.clone(), y, ..Series::default() };
+    Chart {
+        name: format!("force-{}", model.name),
+        title: format!("Drive force and model, friction {}", model.name),
+        caption: "Drive force of the command and of the model (rows of several runs follow each other in their own times), and what is left.".to_owned(),
+        x_label: "time [s]".to_owned(),
+        panels: vec![
+            ChartPanel {
+                y_label: "force [N]".to_owned(),
+                series: vec![
+                    series("command", r.rows.force_n.clone(), Mark::Line),
+                    series("model", predicted, Mark::Dashed),
+                ],
+                ..ChartPanel::default()
+            },
+            ChartPanel {
+                y_label: "residual [N]".to_owned(),
+                series: vec![series("residual", r.residuals_n.clone(), Mark::Line)],
+                ..ChartPanel::default()
+            },
+        ],
+        ..Chart::default()
+    }
+}
