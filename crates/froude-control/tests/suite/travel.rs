@@ -1,9 +1,11 @@
 //! Whatever is accepted stays inside the hard stops, also when the torque is lost at any moment.
 
+use froude_control::coast::Coast;
 use froude_control::config::{AxisConfig, Config};
 use froude_control::fault::StopCategory;
 use froude_control::request::{Move, Request};
 use froude_control::status::{Phase, Refusal};
+use froude_control::travel::preflight;
 use proptest::prelude::*;
 
 use crate::rig::{Rig, homed};
@@ -183,6 +185,31 @@ fn a_move_that_could_coast_into_the_stop_is_refused_and_a_slower_one_is_not() {
     // Braking at 1 m/s² from 0.6 m/s takes 0.18 m, coasting 0.39 m: 0.21 m more than are left behind the target.
     assert_eq!(ask(&mut rig, 1.38, 0.6, 1.0, 0.0), Some(Refusal::BeyondTravel));
     assert_eq!(ask(&mut rig, 1.38, 0.2, 0.3, 0.0), None);
+}
+
+/// The numbers behind a refusal, by the rules that refuse.
+#[test]
+fn preflight_says_what_the_controller_will_say_with_the_numbers() {
+    let config = short_tank();
+    let foresee = |target_m, speed_m_s| {
+        let asked = Move { target_m, speed_m_s, acceleration_m_s2: 1.0, jerk_m_s3: 0.0, is_shaped: false };
+        preflight(&config, &config.axes[0], 0.02, &asked)
+    };
+    let fast = foresee(1.38, 0.6);
+    assert_eq!(fast.refusal, Some(Refusal::BeyondTravel));
+    // Coast 0.37 m and its margins less 0.18 m of braking; 0.07 m are left.
+    let coast_m = Coast::of(&config.axes[0].drive).distance_m(0.6);
+    assert!(
+        (fast.needed_m - (coast_m - 0.18)).abs() < 0.03 && (fast.free_m - 0.07).abs() < 1e-12,
+        "{fast:?} {coast_m}"
+    );
+    assert!((fast.duration_s - (1.36 / 0.6 + 0.6)).abs() < 1e-12);
+    // J a + B ω + C over K_T K_amp.
+    let ratio = 34.97 / 0.055;
+    let volts = (1.502e-5 * ratio + 4.657e-6 * 0.6 * ratio + 3.9e-3) / (26.7e-3 * 0.352);
+    assert!((fast.command_v - volts).abs() < 1e-12 && fast.available_v == 10.0);
+    assert_eq!(foresee(1.0, 0.6).refusal, None);
+    assert_eq!(foresee(1.0, 0.7).refusal, Some(Refusal::OutOfRange));
 }
 
 #[test]
