@@ -1,7 +1,7 @@
 //! What is refused before it moves, and what is still stoppable while it moves.
 //!
 //! A move is accepted only if, after the loss of torque at any moment of it, the coast ends before the hard stop although the axis is
-//! ahead by the allowed following error and faster by [`SPEED_MARGIN_M_S`]; its target keeps the following error's distance from the end
+//! ahead by the allowed following error and 10 mm/s faster than asked; its target keeps the following error's distance from the end
 //! switches too. While it moves, a quarter of the following error is kept free.
 
 use crate::axis::SPEED_NOISE_M_S;
