@@ -5,6 +5,7 @@ use froude_control::config::{AxisConfig, Config};
 use froude_control::fault::StopCategory;
 use froude_control::request::{Move, Request};
 use froude_control::status::{Phase, Refusal};
+use froude_control::tick::Tick;
 use froude_control::travel::preflight;
 use proptest::prelude::*;
 
@@ -226,6 +227,19 @@ fn targets_outside_the_soft_limits_and_numbers_out_of_range_are_refused() {
     assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, f64::INFINITY), Some(Refusal::OutOfRange));
     assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, 0.0), None);
     assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, 0.0), Some(Refusal::Busy));
+}
+
+#[test]
+fn a_switch_that_opened_without_torque_must_be_closed_before_a_move() {
+    let mut rig = slippery(&short_tank());
+    rig.until(Some(Request::Disable { axis: 0 }), 1.0, |o| o.status.axes[0].phase == Phase::Disabled);
+    let broken = |t: &mut Tick| t.axes[0].is_high_end = true;
+    rig.step_with(None, broken);
+    assert_eq!(rig.step_with(Some(Request::Enable { axis: 0 }), broken).status.refusal, None);
+    let profile = Move { target_m: 0.5, speed_m_s: 0.1, acceleration_m_s2: 1.0, jerk_m_s3: 0.0, is_shaped: false };
+    let output = rig.step_with(Some(Request::Move { axis: 0, profile }), broken);
+    assert_eq!((output.status.refusal, output.status.fault), (Some(Refusal::EndSwitchOpen), None));
+    assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, 0.0), None);
 }
 
 #[test]
