@@ -43,7 +43,7 @@ fn a_servo_log_becomes_a_run_of_axis_y_in_si() {
     let gain = &log.meta.constants["drive_gain"];
     assert_eq!(
         (gain.value, gain.unit.as_str()),
-        (35.15065188, "A s/m"),
+        (35.15065188, "s A/m"),
         "a newton per volt is an ampere second per metre"
     );
     assert!((log.meta.log_rate_hz - 1000.0).abs() < 0.1);

@@ -356,3 +356,53 @@ fn what_is_no_run_is_refused_in_words() {
     );
     assert!(read_run(folder.path()).unwrap_err().to_string().ends_with("it is a folder"));
 }
+
+/// The next of a sequence that is the same in every test run (splitmix64).
+fn next(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+#[test]
+fn bytes_changed_anywhere_give_a_run_or_an_error_and_never_a_panic() {
+    // The long validation sets more; libFuzzer goes further, from the same seeds.
+    let n: u64 = std::env::var("FROUDE_TEST_CHANGES").ok().and_then(|n| n.parse().ok()).unwrap_or(10_000);
+    let seeds = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fuzz/seeds/run_mcap");
+    let mut seeds: Vec<_> = std::fs::read_dir(seeds).unwrap().map(|e| e.unwrap().path()).collect();
+    seeds.sort();
+    let seeds: Vec<_> = seeds.iter().map(|path| std::fs::read(path).unwrap()).collect();
+    assert_eq!(seeds.len(), 6);
+    let (mut state, mut n_read) = (1, 0);
+    for k in 0..n {
+        let mut bytes = seeds[(k % 6) as usize].clone();
+        for _ in 0..=next(&mut state) % 4 {
+            let at = (next(&mut state) % bytes.len() as u64) as usize;
+            match next(&mut state) % 4 {
+                0 => bytes[at] ^= 1 << (next(&mut state) % 8),
+                1 => bytes[at] = [0, 1, 0x7f, 0x80, 0xff, 5, 6, 12][(next(&mut state) % 8) as usize],
+                2 => bytes.truncate(at.max(9)),
+                _ => {
+                    // A hostile length.
+                    let value = (next(&mut state) >> (next(&mut state) % 64)).to_le_bytes();
+                    let end = (at + 8).min(bytes.len());
+                    bytes[at..end].copy_from_slice(&value[..end - at]);
+                }
+            }
+        }
+        let open = || RunReader::new(Path::new("run.mcap"), std::io::Cursor::new(&bytes), None);
+        match open().and_then(RunReader::read_all) {
+            Ok(log) => {
+                n_read += 1;
+                assert!(log.time_s.windows(2).all(|w| w[0] < w[1]));
+                assert!(log.channels.values().all(|c| c.values.len() == log.len()));
+                assert!(log.channels.values().flat_map(|c| &c.values).all(|v| v.is_finite()));
+            }
+            Err(error) => assert!(error.to_string().starts_with("run.mcap"), "{error}"),
+        }
+        let _ = open().map(RunReader::refuse_damage).and_then(RunReader::read_all);
+    }
+    assert!(n_read > n / 2, "most damage leaves something to read: {n_read} of {n}");
+}
