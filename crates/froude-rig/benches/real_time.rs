@@ -50,9 +50,8 @@ fn twin_and_controller(bencher: Bencher<'_, '_>) {
     }
     let mut homed = ClosedLoop::new(&config, control_config(&[load, load]), 1).unwrap();
     assert!(homed.home());
-    let profile = |target_m, speed_m_s| {
-        Move { target_m, speed_m_s, acceleration_m_s2: 0.5, jerk_m_s3: 5.0, is_shaped: true }
-    };
+    let profile =
+        |target_m, speed_m_s| Move { target_m, speed_m_s, acceleration_m_s2: 0.5, jerk_m_s3: 5.0, is_shaped: true };
     bencher.counter(ItemsCount::new(TICKS)).with_inputs(|| homed.clone()).bench_local_refs(|rig| {
         let (far_m, speed_m_s) = ([2.5, 0.7], [0.3, 0.15]);
         for _ in 0..TICKS {

@@ -7,7 +7,9 @@
 //! | [`plant`] | two masses, chain and friction, on an exact linear step ([`propagator`]) |
 //! | [`amplifier`], [`encoder`], [`force_sensor`], [`noise`] | what stands between plant and controller |
 //! | [`twin`] | all of it, tick by tick, from one seed |
-//! | [`injection`] | what can be broken |
+//! | [`closed_loop`], [`defaults`] | the controller on the twin, and its configuration for this rig |
+//! | [`injection`], [`catalogue`] | what can be broken, and what the controller must say then |
+//! | [`planar`] | motion in the plane with rotation |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
@@ -22,6 +24,7 @@ pub mod injection;
 pub mod load;
 pub mod noise;
 pub mod parameters;
+pub mod planar;
 pub mod plant;
 pub mod propagator;
 pub mod twin;
