@@ -10,10 +10,10 @@
 //! | encoder jump (over 20 counts) | jump, or stuck when the jump cancels the motion | 2 ticks |
 //! | encoder silent, stuck, reversed | stuck, jump, polarity, following error, saturated, over-current, over-speed | 1.5 s (at creep; at 0.06 m/s and more, 2 ticks) |
 //! | illegal transitions (over 100 a second) | illegal, jump | 0.5 s |
-//! | current runaway | over-current, saturated, over-speed, following error | 15 ms |
+//! | current runaway | over-current, saturated, over-speed, following error, jump (a light motor outruns its load) | 15 ms |
 //! | host silent | host silent | 0.21 s |
-//! | jam beyond the peak force | following error, saturated, stuck (the counts cannot tell), over-current | 1.5 s |
-//! | no torque at all | following error, stuck, saturated, soft limit; or none when friction has just stopped it on its target | 3 s |
+//! | jam beyond the peak force | following error, saturated, stuck (the counts cannot tell), over-current; or none on its target | 1.5 s |
+//! | no torque at all | following error, stuck, saturated, soft limit; or none on its target | 3 s |
 //! | chain break | none needed: the motor's encoder cannot see it | – |
 //!
 //! A detection that comes from somewhere else first (a following error because of the same cause) is what the set is for. In every
@@ -55,7 +55,9 @@ impl Injection {
                 Fault::OverCurrent,
                 Fault::OverSpeed,
             ],
-            Self::CurrentRunaway => &[Fault::OverCurrent, Fault::Saturated, Fault::OverSpeed, Fault::FollowingError],
+            Self::CurrentRunaway => {
+                &[Fault::OverCurrent, Fault::Saturated, Fault::OverSpeed, Fault::FollowingError, Fault::EncoderJump]
+            }
             Self::FrictionJam(_) => &[Fault::FollowingError, Fault::Saturated, Fault::EncoderStuck, Fault::OverCurrent],
             Self::TorqueLoss(_) => {
                 &[Fault::FollowingError, Fault::EncoderStuck, Fault::Saturated, Fault::SoftLimit, Fault::Polarity]
@@ -160,7 +162,8 @@ impl Outcome {
     #[must_use]
     pub fn is_allowed(&self) -> bool {
         let accepted = self.injection.accepted();
-        let is_unseen = matches!(self.injection, Injection::TorqueLoss(_)) && self.has_arrived;
+        let is_unseen =
+            matches!(self.injection, Injection::TorqueLoss(_) | Injection::FrictionJam(_)) && self.has_arrived;
         let is_told = match self.detected {
             Some((fault, after_s)) => accepted.contains(&fault) && after_s <= self.injection.latest_s() + 0.5 * TICK_S,
             None => accepted.is_empty() || is_unseen,
