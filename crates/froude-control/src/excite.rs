@@ -1,7 +1,7 @@
 //! Excitations, tick by tick.
 //!
-//! Pulses, relay and jog open the loop; a sweep adds a sine to it. Torque in the direction of motion is taken off at the speed limit, and the
-//! axis module ends an excitation while the stopping way still lies inside the soft limits.
+//! Pulses, relay and jog open the loop; a sweep adds a sine to it. Torque in the direction of motion is taken off at the speed limit,
+//! and the axis module ends an excitation while the stopping way still lies inside the soft limits.
 
 use crate::law::Law;
 use crate::request::Excitation;

@@ -14,7 +14,7 @@
 //! | --- | --- |
 //! | moves as closed forms of time, shaped for a mode | [`profile`], [`ramp`], [`shaper`] |
 //! | counts | [`encoder`] |
-//! | how far it goes without torque, and which moves are therefore refused | [`coast`] |
+//! | how far it goes without torque, and which moves are therefore refused | [`coast`], [`travel`] |
 //! | rig, gains, limits | [`config`] |
 //! | tick in, command out | [`tick`], [`request`], [`status`], [`Controller`] |
 //!
@@ -61,6 +61,6 @@ pub mod request;
 pub mod shaper;
 pub mod status;
 pub mod tick;
-mod travel;
+pub mod travel;
 
 pub use controller::Controller;

@@ -1,9 +1,12 @@
 //! Whatever is accepted stays inside the hard stops, also when the torque is lost at any moment.
 
+use froude_control::coast::Coast;
 use froude_control::config::{AxisConfig, Config};
 use froude_control::fault::StopCategory;
 use froude_control::request::{Move, Request};
 use froude_control::status::{Phase, Refusal};
+use froude_control::tick::Tick;
+use froude_control::travel::preflight;
 use proptest::prelude::*;
 
 use crate::rig::{Rig, homed};
@@ -185,6 +188,31 @@ fn a_move_that_could_coast_into_the_stop_is_refused_and_a_slower_one_is_not() {
     assert_eq!(ask(&mut rig, 1.38, 0.2, 0.3, 0.0), None);
 }
 
+/// The numbers behind a refusal, by the rules that refuse.
+#[test]
+fn preflight_says_what_the_controller_will_say_with_the_numbers() {
+    let config = short_tank();
+    let foresee = |target_m, speed_m_s| {
+        let asked = Move { target_m, speed_m_s, acceleration_m_s2: 1.0, jerk_m_s3: 0.0, is_shaped: false };
+        preflight(&config, &config.axes[0], 0.02, &asked)
+    };
+    let fast = foresee(1.38, 0.6);
+    assert_eq!(fast.refusal, Some(Refusal::BeyondTravel));
+    // Coast 0.37 m and its margins less 0.18 m of braking; 0.07 m are left.
+    let coast_m = Coast::of(&config.axes[0].drive).distance_m(0.6);
+    assert!(
+        (fast.needed_m - (coast_m - 0.18)).abs() < 0.03 && (fast.free_m - 0.07).abs() < 1e-12,
+        "{fast:?} {coast_m}"
+    );
+    assert!((fast.duration_s - (1.36 / 0.6 + 0.6)).abs() < 1e-12);
+    // J a + B ω + C over K_T K_amp.
+    let ratio = 34.97 / 0.055;
+    let volts = (1.502e-5 * ratio + 4.657e-6 * 0.6 * ratio + 3.9e-3) / (26.7e-3 * 0.352);
+    assert!((fast.command_v - volts).abs() < 1e-12 && fast.available_v == 10.0);
+    assert_eq!(foresee(1.0, 0.6).refusal, None);
+    assert_eq!(foresee(1.0, 0.7).refusal, Some(Refusal::OutOfRange));
+}
+
 #[test]
 fn targets_outside_the_soft_limits_and_numbers_out_of_range_are_refused() {
     let mut rig = slippery(&short_tank());
@@ -199,6 +227,19 @@ fn targets_outside_the_soft_limits_and_numbers_out_of_range_are_refused() {
     assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, f64::INFINITY), Some(Refusal::OutOfRange));
     assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, 0.0), None);
     assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, 0.0), Some(Refusal::Busy));
+}
+
+#[test]
+fn a_switch_that_opened_without_torque_must_be_closed_before_a_move() {
+    let mut rig = slippery(&short_tank());
+    rig.until(Some(Request::Disable { axis: 0 }), 1.0, |o| o.status.axes[0].phase == Phase::Disabled);
+    let broken = |t: &mut Tick| t.axes[0].is_high_end = true;
+    rig.step_with(None, broken);
+    assert_eq!(rig.step_with(Some(Request::Enable { axis: 0 }), broken).status.refusal, None);
+    let profile = Move { target_m: 0.5, speed_m_s: 0.1, acceleration_m_s2: 1.0, jerk_m_s3: 0.0, is_shaped: false };
+    let output = rig.step_with(Some(Request::Move { axis: 0, profile }), broken);
+    assert_eq!((output.status.refusal, output.status.fault), (Some(Refusal::EndSwitchOpen), None));
+    assert_eq!(ask(&mut rig, 0.5, 0.1, 1.0, 0.0), None);
 }
 
 #[test]
