@@ -40,9 +40,9 @@ fn twin_alone(bencher: Bencher<'_, '_>, is_x_moving: bool) {
     });
 }
 
-/// Twin and controller: homed, then to and fro on both axes.
-#[divan::bench]
-fn twin_and_controller(bencher: Bencher<'_, '_>) {
+/// Twin and controller: homed, then to and fro on y while x holds (the paper's campaign), or on both axes.
+#[divan::bench(args = [false, true])]
+fn twin_and_controller(bencher: Bencher<'_, '_>, is_x_moving: bool) {
     let load = Load::mounted(Mounting::Wet);
     let mut config = TwinConfig::loaded(load);
     for axis in &mut config.axes {
@@ -50,13 +50,12 @@ fn twin_and_controller(bencher: Bencher<'_, '_>) {
     }
     let mut homed = ClosedLoop::new(&config, control_config(&[load, load]), 1).unwrap();
     assert!(homed.home());
-    let profile = |target_m, speed_m_s| {
-        Move { target_m, speed_m_s, acceleration_m_s2: 0.5, jerk_m_s3: 5.0, is_shaped: true }
-    };
+    let profile =
+        |target_m, speed_m_s| Move { target_m, speed_m_s, acceleration_m_s2: 0.5, jerk_m_s3: 5.0, is_shaped: true };
     bencher.counter(ItemsCount::new(TICKS)).with_inputs(|| homed.clone()).bench_local_refs(|rig| {
         let (far_m, speed_m_s) = ([2.5, 0.7], [0.3, 0.15]);
         for _ in 0..TICKS {
-            for axis in 0..2 {
+            for axis in 0..=usize::from(is_x_moving) {
                 let status = &rig.output.status.axes[axis];
                 if status.phase == Phase::Holding {
                     let target_m = if status.reference_m > 0.5 * far_m[axis] { 0.3 } else { far_m[axis] };

@@ -10,6 +10,9 @@
 //! | [`injection`] | what can be broken |
 //! | [`drive`] | twin and real rig behind the same few calls |
 //! | [`campaign`] | a whole campaign: planned, checked, driven, recorded, resumed |
+//! | [`closed_loop`], [`defaults`] | the controller on the twin, and its configuration for this rig |
+//! | [`injection`], [`catalogue`] | what can be broken, and what the controller must say then |
+//! | [`planar`] | motion in the plane with rotation |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
@@ -26,6 +29,7 @@ pub mod injection;
 pub mod load;
 pub mod noise;
 pub mod parameters;
+pub mod planar;
 pub mod plant;
 pub mod propagator;
 pub mod twin;

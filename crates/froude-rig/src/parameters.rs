@@ -363,7 +363,14 @@ pub fn declared() -> Vec<Declared> {
         row("yx", "bump", y.bump, "1", Chosen, "friction grows mid-tank (seen, not modelled, in MCD)"),
         row("yx", "eta", y.efficiency_forward, "1", Chosen, "two-stage planetary gearbox; MCD leaves it out"),
         row("yx", "eta_b", y.efficiency_backward, "1", Chosen, "back-driven it loses more"),
-        row("y", "travel", y.hard_high_m - y.hard_low_m, "m", Chosen, "between hard stops; end switches 50 mm before them"),
+        row(
+            "y",
+            "travel",
+            y.hard_high_m - y.hard_low_m,
+            "m",
+            Chosen,
+            "between hard stops; end switches 50 mm before them",
+        ),
         row("x", "travel", x.hard_high_m - x.hard_low_m, "m", Chosen, "the tank's width less the platform"),
         row("yx", "strut", y.strut_drag_n_s2_m2, "N s^2/m^2", Chosen, "tare of the strut when the body is wet"),
     ]

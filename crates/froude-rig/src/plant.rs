@@ -181,11 +181,30 @@ impl Plant {
         let mut done = 0;
         while done < COUNT {
             done += self.slide(&motor_n[done..]);
+            done += self.rest(&motor_n[done..]);
             if let Some(&motor_n) = motor_n.get(done) {
                 self.step(motor_n);
                 done += 1;
             }
         }
+    }
+
+    /// As many of the steps as both masses stay at rest: nothing changes meanwhile but the motor's force.
+    #[inline]
+    fn rest(&mut self, motor_n: &[f64]) -> usize {
+        if self.motor.direction != 0.0 || self.load.direction != 0.0 {
+            return 0;
+        }
+        let (spring_n, outer_n) = (self.spring_n(), self.outer_n());
+        let load_friction_n = self.load_friction_at(spring_n + outer_n);
+        if (spring_n + outer_n).abs() > load_friction_n {
+            return 0;
+        }
+        self.friction_n = load_friction_n;
+        let [drive, driven] = self.reactions;
+        let mean_n = 0.5 * (drive + driven) * spring_n;
+        let friction_n = self.motor_friction_n + 0.5 * (drive - driven) * spring_n.abs();
+        motor_n.iter().take_while(|&motor_n| (motor_n - mean_n).abs() <= friction_n).count()
     }
 
     /// As many of the steps as both masses slide through without an event.

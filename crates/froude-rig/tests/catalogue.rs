@@ -1,30 +1,31 @@
-//! Random faults on random moves. The pipeline runs more of them, the validation 10⁵.
+//! Random faults on random moves; the validation runs 10⁵.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use froude_rig::catalogue::Catalogue;
-use std::collections::BTreeMap;
+use froude_rig::catalogue::{Catalogue, Sweep};
 
-/// Runs in a test.
+/// Runs in the pipeline.
 const RUNS: u64 = 5_000;
 
 #[test]
 fn every_injected_fault_is_told_in_time_and_the_carriage_stays_inside() {
     let catalogue = Catalogue::new().unwrap();
-    let mut told: BTreeMap<String, (u32, f64)> = BTreeMap::new();
-    let mut refused = Vec::new();
-    for seed in 0..RUNS {
-        let outcome = catalogue.run(seed);
-        let name = format!("{:?}", outcome.injection).split('(').next().unwrap_or_default().to_owned();
-        let fault = outcome.detected.map_or_else(|| "nothing".to_owned(), |(fault, _)| format!("{fault:?}"));
-        let row = told.entry(format!("{name}: {fault}")).or_default();
-        *row = (row.0 + 1, row.1.max(outcome.detected.map_or(0.0, |(_, after_s)| after_s)));
-        if !outcome.is_allowed() {
-            refused.push((seed, outcome));
-        }
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    let sweep = std::thread::scope(|scope| {
+        let parts: Vec<_> = (0..workers)
+            .map(|first| {
+                let catalogue = &catalogue;
+                scope.spawn(move || catalogue.sweep((first as u64..RUNS).step_by(workers)))
+            })
+            .collect();
+        parts.into_iter().map(|p| p.join().unwrap()).fold(Sweep::default(), |mut sum, part| {
+            sum.join(part);
+            sum
+        })
+    });
+    for ((injection, called), (n, latest_s)) in &sweep.told {
+        println!("{n:6}  {latest_s:.5} s  {injection}: {called}");
     }
-    for (what, (n, latest_s)) in &told {
-        println!("{n:5}  {latest_s:.5} s  {what}");
-    }
-    let first: Vec<String> = refused.iter().take(12).map(|r| format!("{r:?}")).collect();
-    assert!(refused.is_empty(), "{} of {RUNS}:\n{}", refused.len(), first.join("\n"));
+    assert_eq!(sweep.told.values().map(|(n, _)| n).sum::<u64>(), RUNS);
+    let first: Vec<String> = sweep.refused.iter().take(12).map(|r| format!("{r:?}")).collect();
+    assert!(sweep.refused.is_empty(), "{} of {RUNS}:\n{}", sweep.refused.len(), first.join("\n"));
 }

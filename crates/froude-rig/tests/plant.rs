@@ -295,7 +295,9 @@ fn several_steps_at_once_are_the_single_steps_bit_for_bit() {
     for i in 0..200_000_u32 {
         let motor_n = if i < 120_000 { 18.0 } else { -12.0 } * f64::from(i % 30_000 / 10_000);
         let forces = [motor_n, motor_n + 0.1, motor_n - 0.1, motor_n];
-        forces.iter().for_each(|&f| single.step(f));
+        for force_n in forces {
+            single.step(force_n);
+        }
         several.steps(forces);
         assert_eq!(single.state_bits(), several.state_bits(), "{i}");
     }

@@ -14,7 +14,7 @@ fn volts(y: f64, x: f64) -> Command {
 fn wander(twin: &Twin, amplitude_v: f64) -> Command {
     let drive = |axis: usize, mid_m: f64, period_s: f64| {
         let t = twin.truth(axis);
-        let push = if (twin.time_s() / period_s) as u64 % 2 == 0 { amplitude_v } else { -amplitude_v };
+        let push = if ((twin.time_s() / period_s) as u64).is_multiple_of(2) { amplitude_v } else { -amplitude_v };
         if (t.load_position_m - mid_m).abs() > 0.25 { amplitude_v.copysign(mid_m - t.load_position_m) } else { push }
     };
     volts(drive(0, 2.3, 1.7), drive(1, 0.6, 1.1))
