@@ -76,9 +76,8 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     }
     let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
     let for_constant = if sweeps.is_empty() { &dry } else { &sweeps };
-    model_based(Method::MbdpConstant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings)
-        .into_iter()
-        .for_each(|c| coefficients.push(c));
+    let constant = Method::MbdpConstant;
+    coefficients.extend(model_based(constant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings));
     let everywhere: Vec<&DragRun<'_>> = dry.iter().chain(&sweeps).copied().collect();
     let mapped = [Method::MbdpMapped, Method::MbdpFlexible];
     for method in mapped.into_iter().filter(|m| *m == Method::MbdpMapped || setup.flexible.is_some()) {
