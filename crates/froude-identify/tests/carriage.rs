@@ -186,3 +186,24 @@ fn the_ramps_give_the_water_that_moves_along() {
     assert!((mass.mass_kg.value - 6.0).abs() < 0.15, "{mass:?}");
     assert!(mass.interval_95[0] < 6.0 && 6.0 < mass.interval_95[1], "{mass:?}");
 }
+
+/// README of the data set: a constant 0.2 N moves D_d by 0.94 N s²/m² over the paper's six speeds, one way. Out and back
+/// the same drift cancels.
+#[test]
+fn without_still_windows_the_sensors_drift_stays_in_the_interval() {
+    let still_s = 0.2;
+    let paper = Scenario { speeds_m_s: Scenario::pinned(20.0).speeds_m_s, still_s, ..scenario() };
+    let one_way = Scenario { out_and_back: false, sensor_drift_n: 0.0, ..paper.clone() };
+    let settings = |s: &Scenario| {
+        let mut out = setup(s);
+        out.steady.shortest_s = 0.2;
+        out
+    };
+    let found = report(&one_way, &settings(&one_way), |_| true).unwrap();
+    let line = of(&found, Method::Fsm).budget.iter().find(|p| p.name.starts_with("drift of the sensor")).unwrap();
+    assert!((line.standard * 3.0_f64.sqrt() - 0.94).abs() < 0.005, "{}", line.standard);
+    assert!(message(&found, "zero-on-one-side").contains("± 0.20 N moves D_d by up to 0.94 N s^2/m^2"));
+    let both = report(&paper, &settings(&paper), |_| true).unwrap();
+    let line = of(&both, Method::Fsm).budget.iter().find(|p| p.name.starts_with("drift of the sensor"));
+    assert!(line.is_none_or(|p| p.standard < 1e-3));
+}

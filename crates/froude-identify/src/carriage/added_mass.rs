@@ -51,7 +51,7 @@ impl Normal {
     /// The mass, by Cramer's rule on columns scaled to one; `None` where the rows do not determine it.
     fn mass(&self) -> Option<f64> {
         let scale = [0, 1, 2].map(|i| self.matrix[i][i].sqrt());
-        if scale.iter().any(|&s| s == 0.0) {
+        if scale.contains(&0.0) {
             return None;
         }
         let m = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.matrix[i][j] / (scale[i] * scale[j])));

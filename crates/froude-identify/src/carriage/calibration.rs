@@ -226,7 +226,7 @@ pub fn encoder_scale(logged_m: &[f64], known_m: Uncertain) -> Result<Uncertain, 
             logged_m.len()
         )));
     }
-    if !(known_m.value > 0.0) {
+    if known_m.value.is_nan() || known_m.value <= 0.0 {
         return Err(DragError::Calibration(format!("the distance between the marks is {} m", known_m.value)));
     }
     let n = logged_m.len() as f64;

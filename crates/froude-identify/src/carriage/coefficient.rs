@@ -187,7 +187,7 @@ pub fn slope<'a>(points: impl IntoIterator<Item = &'a Point>) -> Option<f64> {
 }
 
 /// Change of the slope for a unit of a force that each point has in part: Σ x f / Σ x².
-fn slope_of(points: &[Point], force: impl Fn(&Point) -> f64) -> f64 {
+pub(super) fn slope_of(points: &[Point], force: impl Fn(&Point) -> f64) -> f64 {
     let (mut xx, mut xy) = (0.0, 0.0);
     for p in points {
         let x = p.speed_m_s * p.speed_m_s.abs();

@@ -89,3 +89,49 @@ pub fn difference(wet: &DragRun<'_>, in_wet: Window, dry: &DragRun<'_>, in_dry: 
     }
     (out, Window { first, end })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::carriage::run::BodyState;
+    use crate::carriage::simulate::{Logged, Scenario};
+
+    /// A bump of the whole friction, and a dry run that started 0.2 m earlier: paired by time, half the bump would stay.
+    ///
+    /// Interpolation between samples 2.5 mm apart leaves less than 2.5 N·(2.5 mm/0.35 m)²/8, a part in 10⁵ of a newton.
+    #[test]
+    fn friction_over_position_cancels_also_when_the_runs_start_elsewhere() {
+        let mut scenario = Scenario::pinned(20.0);
+        (scenario.run_to_run, scenario.torque_drift, scenario.noise_n, scenario.bump) = (0.0, 0.0, 0.0, 1.0);
+        scenario.pairs = 1;
+        scenario.speeds_m_s = vec![0.5];
+        let wet = scenario.runs(1);
+        scenario.tow_m = [1.2, 3.7];
+        let dry = scenario.runs(1);
+        let pick = |all: &'_ [Logged], body: BodyState, direction: f64| {
+            all.iter().position(|r| r.body == body && r.direction == direction).unwrap()
+        };
+        for direction in [1.0, -1.0] {
+            let wet = wet[pick(&wet, BodyState::Wet, direction)].view();
+            let dry = dry[pick(&dry, BodyState::Dry, direction)].view();
+            let p = point(&wet, &dry, scenario.force_per_volt_n(), SteadySettings::default()).unwrap();
+            assert!((p.force_n - direction * 20.0 * 0.25).abs() < 1e-4, "{direction}: {}", p.force_n);
+            assert!((p.speed_m_s - direction * 0.5).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn windows_in_different_parts_of_the_tank_are_refused_with_what_they_share() {
+        let mut scenario = Scenario::pinned(20.0);
+        (scenario.pairs, scenario.speeds_m_s, scenario.out_and_back) = (1, vec![0.5], false);
+        let wet = scenario.runs(1);
+        scenario.tow_m = [2.6, 4.8];
+        let dry = scenario.runs(1);
+        let why = point(&wet[1].view(), &dry[0].view(), 5.0, SteadySettings::default()).unwrap_err().to_string();
+        // 3.45 m where the wet window ends, less 2.98 m where the dry one begins.
+        assert_eq!(
+            why,
+            "runs \"wet 1 +0.50 m/s\" and \"dry 1 +0.50 m/s\": the steady windows share 0.47 m, 0.84 m are needed"
+        );
+    }
+}

