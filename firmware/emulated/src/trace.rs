@@ -159,7 +159,8 @@ pub fn follow(image_name: &str, symbol: &str) -> io::Result<(Vec<Followed>, Stri
         let mut followed = Followed::default();
         let mut at = debugger.register(15)?;
         while at != back {
-            let &(class, cycles) = instructions.get(&at).ok_or_else(|| io::Error::other(format!("no instruction at {at:#x}")))?;
+            let &(class, cycles) =
+                instructions.get(&at).ok_or_else(|| io::Error::other(format!("no instruction at {at:#x}")))?;
             followed.count[class] += 1;
             followed.cycles += cycles;
             debugger.ask("s")?;
@@ -202,6 +203,8 @@ impl Debugger {
 
     fn register(&mut self, number: u32) -> io::Result<u32> {
         let answer = self.ask(&format!("p{number:x}"))?;
-        u32::from_str_radix(&answer, 16).map(u32::swap_bytes).map_err(|_| io::Error::other(format!("register {number}: {answer:?}")))
+        u32::from_str_radix(&answer, 16)
+            .map(u32::swap_bytes)
+            .map_err(|_| io::Error::other(format!("register {number}: {answer:?}")))
     }
 }

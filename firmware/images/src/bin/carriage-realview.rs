@@ -4,9 +4,9 @@
 
 use core::cell::UnsafeCell;
 
+use froude_board::Application;
 use froude_board::realview::{Realview, on_interrupt};
 use froude_board::tick::TickLatch;
-use froude_board::Application;
 use froude_images::boot::enable_interrupts;
 
 static LATCH: TickLatch = TickLatch::new();
