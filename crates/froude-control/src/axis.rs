@@ -53,7 +53,7 @@ impl Plan {
 const OVER_SPEED_FACTOR: f64 = 1.1;
 /// Before homing the cap is low and friction may let go suddenly.
 const UNHOMED_OVER_SPEED_FACTOR: f64 = 1.5;
-/// Three times the estimate's noise of one count.
+/// Four counts of the speed estimate at 4 kHz, m/s.
 pub(crate) const SPEED_NOISE_M_S: f64 = 5e-3;
 
 /// Speed at which the over-speed fault comes, m/s.
@@ -162,7 +162,7 @@ impl Axis {
         }
         let is_outward = libm::fabs(self.speed_m_s) > SPEED_NOISE_M_S;
         if self.is_homed && self.phase != Phase::Homing && is_outward {
-            let guard_m = 0.5 * self.law.limits.following_error_m;
+            let guard_m = 0.25 * self.law.limits.following_error_m;
             if !travel::is_stoppable(&self.law, self.position_m, self.speed_m_s, guard_m) {
                 return Some(Fault::SoftLimit);
             }
@@ -222,11 +222,9 @@ impl Axis {
         Ok(())
     }
 
-    pub(crate) fn start_move(&mut self, asked: &Move) -> Result<(), Refusal> {
+    pub(crate) fn start_move(&mut self, asked: &Move, input: &AxisInput) -> Result<(), Refusal> {
         self.standing()?;
-        if !self.is_homed {
-            return Err(Refusal::NotHomed);
-        }
+        self.free_to_move(input)?;
         let profile = travel::checked_move(&self.law, self.reference.position_m, asked)?;
         self.begin_from_rest(Phase::Moving);
         self.smooth = (asked.acceleration_m_s2, asked.jerk_m_s3);
@@ -236,9 +234,8 @@ impl Axis {
 
     pub(crate) fn excite(&mut self, asked: &Excitation, input: &AxisInput) -> Result<(), Refusal> {
         self.standing()?;
-        let is_jog = matches!(asked, Excitation::Jog { .. });
-        if !self.is_homed && !is_jog {
-            return Err(Refusal::NotHomed);
+        if self.is_homed || !matches!(asked, Excitation::Jog { .. }) {
+            self.free_to_move(input)?;
         }
         let is_towards_switch = |v: f64| (input.is_low_end && v <= 0.0) || (input.is_high_end && v >= 0.0);
         let speed_m_s = travel::checked_excitation(&self.law, self.reference.position_m, self.is_homed, asked)?;
@@ -251,6 +248,17 @@ impl Axis {
         self.exciter = Some(Exciter::new(asked, &self.law, self.position_m));
         self.ramp_to(speed_m_s, self.law.limits.acceleration_m_s2, 0.0);
         Ok(())
+    }
+
+    /// Homed, and both end switches closed.
+    fn free_to_move(&self, input: &AxisInput) -> Result<(), Refusal> {
+        if !self.is_homed {
+            Err(Refusal::NotHomed)
+        } else if input.is_low_end || input.is_high_end {
+            Err(Refusal::EndSwitchOpen)
+        } else {
+            Ok(())
+        }
     }
 
     fn standing(&self) -> Result<(), Refusal> {

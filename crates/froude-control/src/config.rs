@@ -53,7 +53,8 @@ pub struct Limits {
     pub hard_low_m: f64,
     /// Hard stop at the far end, m.
     pub hard_high_m: f64,
-    /// Where the low end switch opens, m: homing gives the axis this coordinate there. The switch must block the drive towards its end only.
+    /// Where the low end switch opens, m: homing gives the axis this coordinate there. The switch must block the drive towards
+    /// its end only: homing has to leave it.
     pub low_switch_m: f64,
     /// Where the high end switch opens, m.
     pub high_switch_m: f64,

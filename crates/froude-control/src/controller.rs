@@ -136,7 +136,7 @@ impl Controller {
             _ if self.fault.is_some() => Err(Refusal::Faulted),
             Request::Enable { axis } => self.ask(axis, tick, Axis::enable),
             Request::Home { axis } => self.ask(axis, tick, Axis::home),
-            Request::Move { axis, profile } => self.ask(axis, tick, |a, _| a.start_move(&profile)),
+            Request::Move { axis, profile } => self.ask(axis, tick, |a, input| a.start_move(&profile, input)),
             Request::Excite { axis, excitation } => self.ask(axis, tick, |a, input| a.excite(&excitation, input)),
         }
     }

@@ -1,7 +1,7 @@
 //! Excitations, tick by tick.
 //!
-//! Pulses, relay and jog open the loop; a sweep adds a sine to it. Torque in the direction of motion is taken off at the speed limit, and the
-//! axis module ends an excitation while the stopping way still lies inside the soft limits.
+//! Pulses, relay and jog open the loop; a sweep adds a sine to it. Torque in the direction of motion is taken off at the speed limit,
+//! and the axis module ends an excitation while the stopping way still lies inside the soft limits.
 
 use crate::law::Law;
 use crate::request::Excitation;
@@ -102,7 +102,7 @@ impl Exciter {
         if self.left_ticks == 0 {
             return Asked::Done;
         }
-        self.left_ticks -= 1;
+        self.left_ticks = self.left_ticks.saturating_sub(1);
         match &mut self.signal {
             Signal::Pulses { volts, period, on, at, sign } => {
                 let asked = if *at < *on { *sign * *volts } else { 0.0 };

@@ -8,6 +8,9 @@
 //! | 0 | torque off at once, the axis coasts | encoder or amplifier fault: closed-loop braking is impossible; e-stop, end switch |
 //! | 1 | controlled stop, then torque off | host silence, following error, soft limit, overload, disk full |
 //! | 2 | controlled stop, then hold | operator's stop (Ctrl-C), pause |
+//!
+//! A fault of one axis stops both, by its category. A controlled stop that cannot be followed becomes one of category 0.
+//! After a fault of an encoder its axis must be homed again.
 
 /// How an axis is brought to rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

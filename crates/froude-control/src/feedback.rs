@@ -1,8 +1,8 @@
 //! The loop of eq. 6 with feed-forward.
 //!
-//! v_c = K_p e + K_d ė + K_i ∫e dt + feed-forward, e the motor angle's error \[rad\]. ė is filtered (first order). Anti-windup is conditional:
-//! while the command is cut, the integral takes nothing that would push it further. At a standing reference it also leaves an error of
-//! one count alone: it would only hunt in the friction.
+//! v_c = K_p e + K_d ė + K_i ∫e dt + feed-forward, e the motor angle's error \[rad\]. ė is filtered (first order). Anti-windup is
+//! conditional: while the command is cut, the integral takes nothing that would push it further. At a standing reference
+//! it also leaves an error of one count alone: it would only hunt in the friction.
 //! Feed-forward is inertia, viscous friction, drag and Coulomb friction with the sign of the *reference* speed, smoothed: the measured
 //! speed's sign would chatter.
 //!

@@ -9,8 +9,40 @@
 //!
 //! This is **not a safety function** (no performance level, no SIL): emergency stop and end switches cut the drive in hardware;
 //! this code only reads them. See [`fault`] for the stop categories.
+//!
+//! | what | where |
+//! | --- | --- |
+//! | moves as closed forms of time, shaped for a mode | [`profile`], [`ramp`], [`shaper`] |
+//! | counts | [`encoder`] |
+//! | how far it goes without torque, and which moves are therefore refused | [`coast`], [`travel`] |
+//! | rig, gains, limits | [`config`] |
+//! | tick in, command out | [`tick`], [`request`], [`status`], [`Controller`] |
+//!
+//! # Example
+//!
+//! ```
+//! use froude_control::Controller;
+//! use froude_control::config::Config;
+//! use froude_control::request::Request;
+//! use froude_control::status::{Phase, Refusal};
+//! use froude_control::tick::Tick;
+//!
+//! let mut controller = Controller::new(Config::PUBLISHED)?;
+//! let mut tick = Tick { is_host_heard: true, ..Tick::default() };
+//! tick.axes[0].is_amplifier_ready = true;
+//! tick.request = Some(Request::Enable { axis: 0 });
+//! let output = controller.step(&tick);
+//! assert_eq!(output.status.axes[0].phase, Phase::Holding);
+//!
+//! tick.latched_us = 250;
+//! tick.request = Some(Request::Enable { axis: 1 });
+//! assert_eq!(controller.step(&tick).status.refusal, Some(Refusal::NotReady));
+//! # Ok::<(), froude_control::config::ConfigError>(())
+//! ```
+//!
+//! Not here: communication ([`tick`] says what must come in), and a reference that the host streams: moves are planned here.
 #![no_std]
-#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+#![deny(clippy::indexing_slicing, clippy::arithmetic_side_effects)]
 
 mod axis;
 pub mod coast;
@@ -29,6 +61,6 @@ pub mod request;
 pub mod shaper;
 pub mod status;
 pub mod tick;
-mod travel;
+pub mod travel;
 
 pub use controller::Controller;

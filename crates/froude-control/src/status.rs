@@ -47,6 +47,8 @@ pub enum Refusal {
     NotCleared = 8,
     /// The amplifier is not ready.
     NotReady = 9,
+    /// An end switch is open although the axis is homed: its wire is broken, or the axis stands on it and must be homed.
+    EndSwitchOpen = 10,
 }
 
 /// State of one axis.

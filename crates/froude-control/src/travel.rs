@@ -1,9 +1,11 @@
 //! What is refused before it moves, and what is still stoppable while it moves.
 //!
-//! A move is accepted only if, after the loss of torque at any moment of it, the coast ends before the hard stop with the allowed following
-//! error to spare, and if its target keeps that distance from the end switches too. While it moves, half of that is kept.
+//! A move is accepted only if, after the loss of torque at any moment of it, the coast ends before the hard stop although the axis is
+//! ahead by the allowed following error and 10 mm/s faster than asked; its target keeps the following error's distance from the end
+//! switches too. While it moves, a quarter of the following error is kept free.
 
 use crate::axis::SPEED_NOISE_M_S;
+use crate::config::{AxisConfig, Config};
 use crate::law::Law;
 use crate::profile::{Bounds, Profile};
 use crate::request::{Excitation, Move};
@@ -16,6 +18,8 @@ const GENTLEST_M_S2: f64 = 1e-4;
 const SOFTEST_M_S3: f64 = 1e-3;
 /// Longest single move or excitation, s.
 const LONGEST_S: f64 = 7200.0;
+/// How much faster than its reference an axis may be without leaving the way that was checked, m/s: ringing of the chain.
+const SPEED_MARGIN_M_S: f64 = 0.01;
 /// Longest jog before homing, m.
 const JOG_M: f64 = 0.1;
 
@@ -45,36 +49,82 @@ fn is_within(value: f64, low: f64, high: f64) -> bool {
     value >= low && value <= high // false for NaN
 }
 
+/// What a move would take, before anything moves. [`preflight`] gives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Preflight {
+    /// Why the controller would refuse the move from there, if it would. What follows then stands for the move all the same, as far as its
+    /// numbers are in range.
+    pub refusal: Option<Refusal>,
+    /// Duration with shaping, s.
+    pub duration_s: f64,
+    /// Largest speed reached, m/s.
+    pub peak_speed_m_s: f64,
+    /// Largest drive command that the model foresees, V.
+    pub command_v: f64,
+    /// Drive command that range and peak current allow, V.
+    pub available_v: f64,
+    /// Where targets may lie: lower end, m.
+    pub soft_low_m: f64,
+    /// Upper end, m.
+    pub soft_high_m: f64,
+    /// Way that must be free behind the target, coast and margins included, m.
+    pub needed_m: f64,
+    /// Way from the target to the hard stop behind it, m.
+    pub free_m: f64,
+}
+
+/// What `asked` would take from rest at `start_m`, by the same rules as the controller's.
+#[must_use]
+pub fn preflight(config: &Config, axis: &AxisConfig, start_m: f64, asked: &Move) -> Preflight {
+    let law = Law::new(axis, config.tick_us, config.late_us);
+    foresee(&law, start_m, asked).0
+}
+
 /// Checks a move from rest at `start_m` and plans it.
 pub(crate) fn checked_move(law: &Law, start_m: f64, asked: &Move) -> Result<ShapedProfile, Refusal> {
+    let (preflight, shaped) = foresee(law, start_m, asked);
+    preflight.refusal.map_or(Ok(shaped), Err)
+}
+
+fn foresee(law: &Law, start_m: f64, asked: &Move) -> (Preflight, ShapedProfile) {
     let limits = &law.limits;
     let is_in_range = is_within(asked.target_m, -1e6, 1e6)
         && is_within(asked.speed_m_s, SLOWEST_M_S, limits.speed_m_s)
         && is_within(asked.acceleration_m_s2, GENTLEST_M_S2, limits.acceleration_m_s2)
         && (asked.jerk_m_s3 == 0.0 || is_within(asked.jerk_m_s3, SOFTEST_M_S3, 1e9));
-    if !is_in_range {
-        return Err(Refusal::OutOfRange);
-    }
-    if !is_within(asked.target_m, law.soft_low_m, law.soft_high_m) {
-        return Err(Refusal::BeyondTravel);
-    }
     let bounds =
         Bounds { speed_m_s: asked.speed_m_s, acceleration_m_s2: asked.acceleration_m_s2, jerk_m_s3: asked.jerk_m_s3 };
-    let profile = Profile::plan(start_m, asked.target_m, bounds);
+    let profile = if is_in_range { Profile::plan(start_m, asked.target_m, bounds) } else { Profile::none(start_m) };
+    let shaped = ShapedProfile::new(profile, if asked.is_shaped { law.shaper } else { Shaper::NONE });
     let (speed, acceleration) = (profile.peak_speed_m_s(), profile.peak_acceleration_m_s2());
-    if profile.duration_s() > LONGEST_S || law.volts_for(acceleration, speed, 1.0) > law.limit_v {
-        return Err(Refusal::OutOfRange);
-    }
-    let beyond_m = law.stopping.beyond_target_m(speed, asked.acceleration_m_s2) + limits.following_error_m;
-    let is_free = if profile.direction() > 0.0 {
-        asked.target_m + beyond_m <= limits.hard_high_m
-    } else {
-        asked.target_m - beyond_m >= limits.hard_low_m
+    // The stopping way is convex: no lower speed adds more for the margin.
+    let faster_m = law.stopping.way_m(speed + SPEED_MARGIN_M_S) - law.stopping.way_m(speed);
+    let way_m = if is_in_range { law.stopping.beyond_target_m(speed, asked.acceleration_m_s2) } else { 0.0 };
+    let is_up = profile.direction() > 0.0;
+    let target_m = profile.target_m();
+    let foreseen = Preflight {
+        refusal: None,
+        duration_s: shaped.duration_s(),
+        peak_speed_m_s: speed,
+        command_v: law.volts_for(acceleration, speed, 1.0),
+        available_v: law.limit_v,
+        soft_low_m: law.soft_low_m,
+        soft_high_m: law.soft_high_m,
+        needed_m: way_m + faster_m + limits.following_error_m,
+        free_m: if is_up { limits.hard_high_m - target_m } else { target_m - limits.hard_low_m },
     };
-    if !is_free {
-        return Err(Refusal::BeyondTravel);
-    }
-    Ok(ShapedProfile::new(profile, if asked.is_shaped { law.shaper } else { Shaper::NONE }))
+    let is_possible = foreseen.duration_s <= LONGEST_S && foreseen.command_v <= law.limit_v;
+    let is_inside = is_within(target_m, law.soft_low_m, law.soft_high_m) && foreseen.needed_m <= foreseen.free_m;
+    let refusal = if !is_in_range {
+        Some(Refusal::OutOfRange)
+    } else if !is_inside {
+        Some(Refusal::BeyondTravel)
+    } else if !is_possible {
+        Some(Refusal::OutOfRange)
+    } else {
+        None
+    };
+    (Preflight { refusal, ..foreseen }, shaped)
 }
 
 /// Checks an excitation at rest at `start_m`; gives the speed that the reference is to have below it, m/s.
