@@ -85,12 +85,15 @@ fn count_registers(list: &str) -> u32 {
     list.split(',').map(|part| part.split_once('-').map_or(1, |(from, to)| number(to) - number(from) + 1)).sum()
 }
 
+/// Class and cost of the instruction at each address.
+pub type Listing = HashMap<u32, (usize, u32)>;
+
 /// The disassembly: what stands at each address, and where `symbol` is.
 ///
 /// # Errors
 ///
 /// When the disassembler cannot be run.
-pub fn disassemble(image: &Path, symbol: &str) -> io::Result<(HashMap<u32, (usize, u32)>, u32)> {
+pub fn disassemble(image: &Path, symbol: &str) -> io::Result<(Listing, u32)> {
     let output = Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn"]).arg(image).output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     let mut instructions = HashMap::new();

@@ -287,9 +287,9 @@ impl Registers for Block {
                     }
                 }
                 (At::Adc, 0x54) => {
-                    for k in 0..2 {
+                    for (k, step) in steps.iter().enumerate() {
                         if value & (2 << k) != 0 {
-                            let input = (steps[k] >> 19 & 0xf) as usize;
+                            let input = (step >> 19 & 0xf) as usize;
                             s.samples.push_back((k as u32) << 16 | s.currents[input]);
                         }
                     }
