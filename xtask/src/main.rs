@@ -1,8 +1,10 @@
 //! Project tasks: one command runs what the pipeline runs, its parts run alone.
 //!
-//! `cargo xtask test` is the whole of `.ci/run`: format, lints, tests, documentation, the demo and the short
-//! validation. It needs nothing but Rust. What takes longer or needs more programs has its own task, which
-//! installs what it needs.
+//! `cargo xtask test` is the whole of `.ci/run`: format, lints, tests, documentation, the firmware in its emulator, the demo and the
+//! short validation. The firmware needs a cross linker and an emulator, which its task installs when they are absent. What takes
+//! longer or needs more programs has its own task, which installs what it needs.
+
+mod firmware;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -19,7 +21,7 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Everything that the pipeline runs: format, lints, tests, docs, demo, short validation.
+    /// Everything that the pipeline runs: format, lints, tests, docs, firmware, demo, short validation.
     Test,
     /// The validation, full length: coverage with 20,000 repetitions, real data, licences, book.
     Validate {
@@ -37,6 +39,12 @@ enum Task {
     Bench,
     /// Licences and advisories of the dependencies (needs cargo-deny; installs it).
     Deny,
+    /// The carriage's firmware: images built, drivers and emulated board tested (installs compiler, linker and emulator).
+    Firmware {
+        /// The lock step over 20 simulated seconds.
+        #[arg(long)]
+        full: bool,
+    },
     /// The book as HTML (needs mdbook; installs it).
     Book,
 }
@@ -50,6 +58,7 @@ fn main() -> ExitCode {
         Task::Fuzz { runs } => fuzz(&root, runs),
         Task::Bench => run(&root, "sh", &["bench/peers/run.sh"]),
         Task::Deny => deny(&root),
+        Task::Firmware { full } => firmware::firmware(&root, full),
         Task::Book => book(&root),
     };
     println!("xtask: {:.0} s", started.elapsed().as_secs_f64());
@@ -80,6 +89,7 @@ fn test(root: &Path) -> Result<(), String> {
     cargo(root, "clippy --workspace --all-targets --locked -- -D warnings")?;
     cargo(root, "test --workspace --locked")?;
     run_env(root, "cargo", &["doc", "--workspace", "--no-deps", "--locked"], "RUSTDOCFLAGS", "-D warnings")?;
+    firmware::firmware(root, false)?;
     demo(root)?;
     validate(root, true)
 }

@@ -272,7 +272,7 @@ impl Application {
                 if let Some(ack) = self.requests.answered.filter(|ack| ack.id == id) {
                     return self.link.say(FromBoard::Ack(ack));
                 }
-                let verdict = self.configure(config);
+                let verdict = self.configure(&config);
                 self.answer(id, verdict);
             }
             ToBoard::LockStep { number, tick } => self.lock_step(number, &tick),
@@ -314,12 +314,12 @@ impl Application {
         self.requests.waiting = Some((id, request));
     }
 
-    fn configure(&mut self, config: froude_control::config::Config) -> Verdict {
+    fn configure(&mut self, config: &froude_control::config::Config) -> Verdict {
         let is_at_rest = self.output.status.axes.iter().all(|axis| axis.phase == Phase::Disabled);
         if !is_at_rest {
             return Verdict::NotNow;
         }
-        match Controller::new(config) {
+        match Controller::new(*config) {
             Ok(controller) => {
                 self.controller = Some(controller);
                 self.output = NOTHING;

@@ -38,15 +38,15 @@ pub struct Rig {
 
 impl Default for Rig {
     fn default() -> Self {
-        let [y, x] = CONFIG.axes;
+        let [y, x] = &CONFIG.axes;
         Self { axes: [RigAxis::at(y, 0.03), RigAxis::at(x, 0.02)] }
     }
 }
 
 impl RigAxis {
-    fn at(config: AxisConfig, position_m: f64) -> Self {
+    fn at(config: &AxisConfig, position_m: f64) -> Self {
         let angle_rad = position_m * config.drive.gear_ratio / config.drive.sprocket_radius_m;
-        Self { config, angle_rad, speed_rad_s: 0.0, current_a: 0.0 }
+        Self { config: *config, angle_rad, speed_rad_s: 0.0, current_a: 0.0 }
     }
 
     /// Moves on by one tick.

@@ -33,7 +33,13 @@ pub struct Scenario {
 impl Default for Scenario {
     fn default() -> Self {
         // The clock wraps within the first second, the encoder's jump is still to come.
-        Self { rig: Rig::default(), number: 0, latched_us: 0_u32.wrapping_sub(500_000), slip: 0, hash: 0xcbf2_9ce4_8422_2325 }
+        Self {
+            rig: Rig::default(),
+            number: 0,
+            latched_us: 0_u32.wrapping_sub(500_000),
+            slip: 0,
+            hash: 0xcbf2_9ce4_8422_2325,
+        }
     }
 }
 

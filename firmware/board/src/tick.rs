@@ -57,8 +57,11 @@ impl TickLatch {
         loop {
             let number = self.number();
             let [y, x] = &self.encoders;
-            let latched =
-                LatchedTick { number, counter: self.counter.load(Relaxed), encoders: [y.load(Relaxed), x.load(Relaxed)] };
+            let latched = LatchedTick {
+                number,
+                counter: self.counter.load(Relaxed),
+                encoders: [y.load(Relaxed), x.load(Relaxed)],
+            };
             if self.number() == number {
                 return latched;
             }

@@ -31,7 +31,17 @@ pub fn image(name: &str) -> PathBuf {
 #[must_use]
 pub fn emulator(image_name: &str) -> Command {
     let mut command = Command::new("qemu-system-arm");
-    command.args(["-M", "realview-pb-a8", "-display", "none", "-audiodev", "none,id=n", "-monitor", "none", "-semihosting"]);
+    command.args([
+        "-M",
+        "realview-pb-a8",
+        "-display",
+        "none",
+        "-audiodev",
+        "none,id=n",
+        "-monitor",
+        "none",
+        "-semihosting",
+    ]);
     command.arg("-kernel").arg(image(image_name)).stdin(Stdio::null());
     command
 }

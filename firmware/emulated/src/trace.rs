@@ -85,12 +85,15 @@ fn count_registers(list: &str) -> u32 {
     list.split(',').map(|part| part.split_once('-').map_or(1, |(from, to)| number(to) - number(from) + 1)).sum()
 }
 
+/// Class and cost of the instruction at each address.
+pub type Listing = HashMap<u32, (usize, u32)>;
+
 /// The disassembly: what stands at each address, and where `symbol` is.
 ///
 /// # Errors
 ///
 /// When the disassembler cannot be run.
-pub fn disassemble(image: &Path, symbol: &str) -> io::Result<(HashMap<u32, (usize, u32)>, u32)> {
+pub fn disassemble(image: &Path, symbol: &str) -> io::Result<(Listing, u32)> {
     let output = Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn"]).arg(image).output()?;
     let text = String::from_utf8_lossy(&output.stdout);
     let mut instructions = HashMap::new();
@@ -159,7 +162,8 @@ pub fn follow(image_name: &str, symbol: &str) -> io::Result<(Vec<Followed>, Stri
         let mut followed = Followed::default();
         let mut at = debugger.register(15)?;
         while at != back {
-            let &(class, cycles) = instructions.get(&at).ok_or_else(|| io::Error::other(format!("no instruction at {at:#x}")))?;
+            let &(class, cycles) =
+                instructions.get(&at).ok_or_else(|| io::Error::other(format!("no instruction at {at:#x}")))?;
             followed.count[class] += 1;
             followed.cycles += cycles;
             debugger.ask("s")?;
@@ -202,6 +206,8 @@ impl Debugger {
 
     fn register(&mut self, number: u32) -> io::Result<u32> {
         let answer = self.ask(&format!("p{number:x}"))?;
-        u32::from_str_radix(&answer, 16).map(u32::swap_bytes).map_err(|_| io::Error::other(format!("register {number}: {answer:?}")))
+        u32::from_str_radix(&answer, 16)
+            .map(u32::swap_bytes)
+            .map_err(|_| io::Error::other(format!("register {number}: {answer:?}")))
     }
 }

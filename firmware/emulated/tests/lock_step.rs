@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use froude_board::rig::{CONFIG, Rig};
+use froude_control::Controller;
 use froude_control::fault::StopCategory;
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::tick::{AXES, Tick};
-use froude_control::Controller;
 use froude_emulated::{Board, noise::Line};
 use froude_link::status::{Health, LockStepReply, Verdict};
 use froude_link::{FromBoard, ToBoard};
@@ -91,7 +91,12 @@ fn commands_are_bit_equal_over_a_line_that_drops_repeats_damages_and_delays() {
         moved += u32::from(expected.command.axes.iter().any(|axis| axis.volts != 0.0));
         rig.step(&expected.command);
     }
-    println!("{} ticks, {:.1} s of them, in {:.1} s", ticks(), f64::from(ticks()) * 250e-6, started.elapsed().as_secs_f64());
+    println!(
+        "{} ticks, {:.1} s of them, in {:.1} s",
+        ticks(),
+        f64::from(ticks()) * 250e-6,
+        started.elapsed().as_secs_f64()
+    );
     println!("states {seen:?}, fault {:?}", host.step(&Tick::default()).status.fault);
     println!("to the board {:?}, to the host {:?}", board.outward.damage, board.inward.damage);
     assert!(moved > ticks() / 4, "only {moved} ticks commanded anything: the comparison would be empty");

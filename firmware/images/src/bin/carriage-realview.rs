@@ -4,9 +4,9 @@
 
 use core::cell::UnsafeCell;
 
+use froude_board::Application;
 use froude_board::realview::{Realview, on_interrupt};
 use froude_board::tick::TickLatch;
-use froude_board::Application;
 use froude_images::boot::enable_interrupts;
 
 static LATCH: TickLatch = TickLatch::new();
@@ -23,6 +23,8 @@ pub extern "C" fn carriage_main() -> ! {
     // SAFETY: this board, once.
     let (application, mut board) = unsafe { (&mut *APPLICATION.0.get(), Realview::start(&LATCH)) };
     enable_interrupts();
+    #[cfg(feature = "reachable-panic")]
+    assert!(board.counter() != 7, "this must not link");
     application.announce(&mut board);
     loop {
         application.turn(&mut board);

@@ -124,7 +124,8 @@ pub extern "C" fn carriage_main() -> ! {
 fn others(system: &Memory, output: &Output) {
     let mut console = Console;
     let mut wire = [0; MAX_WIRE];
-    let (cost, telemetry) = instructions(system, || black_box(Telemetry::of(black_box(&Tick::default()), output, [1, 2], [3, 4])));
+    let (cost, telemetry) =
+        instructions(system, || black_box(Telemetry::of(black_box(&Tick::default()), output, [1, 2], [3, 4])));
     let _ = writeln!(console, "telemetry_filled {cost}");
     let mut writer = FrameWriter::starting_at(77);
     let (cost, len) = instructions(system, || writer.write(&FromBoard::Telemetry(telemetry), &mut wire).len());

@@ -13,7 +13,10 @@ use core::fmt::Write as _;
 use froude_board::realview::{Realview, on_interrupt};
 use froude_board::rig::CONFIG;
 use froude_board::tick::TickLatch;
-use froude_board::{Application, Board, board::{Latched, Scales}};
+use froude_board::{
+    Application, Board,
+    board::{Latched, Scales},
+};
 use froude_control::fault::Fault;
 use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
