@@ -64,6 +64,90 @@ pub enum Verb {
         #[arg(long)]
         replace: bool,
     },
+    /// Drive a towing carriage, or its twin, through a campaign: pre-flight, runs, records; goes on where it stopped.
+    Run {
+        /// The campaign, with its `rig` and `carriage` sections.
+        campaign: PathBuf,
+        /// Folder of the runs [default: CAMPAIGN-runs beside the campaign].
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Only the pre-flight: nothing moves, nothing is written.
+        #[arg(long)]
+        check: bool,
+        /// Take the operator's steps as done; on the twin only.
+        #[arg(long)]
+        yes: bool,
+    },
+    /// Know a carriage and read drag from its motor current.
+    Carriage {
+        /// What to do.
+        #[command(subcommand)]
+        job: CarriageJob,
+    },
     /// Print the JSON Schema of estimate.json.
     Schema,
+}
+
+/// What `froude carriage` does.
+#[derive(Debug, Subcommand)]
+pub enum CarriageJob {
+    /// Inertia, friction, flexibility and repeatability, from runs or from anyone's servo log (CSV with a sidecar).
+    Identify {
+        /// Folders of runs, runs (.mcap), or one log (.csv).
+        #[arg(required = true)]
+        input: Vec<PathBuf>,
+        /// Sidecar of a log [default: the .toml of the same name beside it].
+        #[arg(long)]
+        sidecar: Option<PathBuf>,
+        /// Folder of the results [default: INPUT-servo beside the input].
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// D_d and C_D by force sensor, motor current difference and model, side by side.
+    Drag {
+        /// Folders of runs, or runs (.mcap).
+        #[arg(required = true)]
+        runs: Vec<PathBuf>,
+        /// A campaign other than the copy that lies with the runs.
+        #[arg(long)]
+        campaign: Option<PathBuf>,
+        /// Folder of the results [default: RUNS-drag beside the runs].
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
+    /// Newtons a volt from known weights over a pulley, polarity from the jogs.
+    Calibrate {
+        /// Folders of runs, or runs (.mcap).
+        #[arg(required = true)]
+        runs: Vec<PathBuf>,
+        /// A campaign other than the copy that lies with the runs.
+        #[arg(long)]
+        campaign: Option<PathBuf>,
+        /// A distance that was measured on the carriage; needs --counted.
+        #[arg(long, requires = "counted", value_name = "QUANTITY")]
+        measured: Option<String>,
+        /// Standard uncertainty of the measured distance.
+        #[arg(long, default_value = "0.5 mm", value_name = "QUANTITY")]
+        measured_standard: String,
+        /// The same distance as the counts give it.
+        #[arg(long, requires = "measured", value_name = "QUANTITY")]
+        counted: Option<String>,
+    },
+    /// Relay and sweep on the loop: margins on the measured response, proposed gains.
+    Tune(Experiment),
+    /// Sweep bare, dry and wet: the load's mode, a shaper proposed.
+    Resonance(Experiment),
+}
+
+/// An experiment on the rig of a campaign.
+#[derive(Debug, clap::Args)]
+pub struct Experiment {
+    /// The campaign, with its `rig` and `carriage` sections.
+    pub campaign: PathBuf,
+    /// Folder of the runs and the report.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Take the operator's steps as done; on the twin only.
+    #[arg(long)]
+    pub yes: bool,
 }

@@ -4,6 +4,7 @@
 //! standard output as one JSON document; progress and messages go to standard error.
 
 mod args;
+mod carriage;
 mod out;
 mod print;
 
@@ -77,6 +78,8 @@ fn run(cli: Cli) -> Result<(), Error> {
                 out::say!("{}: {} observations in {}", w.source, w.rows, w.path.display());
             }
         }
+        Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,
+        Verb::Carriage { job } => carriage::job(job, cli.json)?,
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
     Ok(())

@@ -481,3 +481,15 @@ pub fn comparison_json(c: &Comparison) -> serde_json::Value {
         "findings": c.findings,
     })
 }
+
+/// A table whose cells are written already; numbers to the right.
+pub fn text_table(text: &froude::report::document::TextTable) {
+    let head: Vec<&str> = text.head.iter().map(String::as_str).collect();
+    let mut out = table(&head);
+    for row in &text.rows {
+        out.add_row(row.iter().enumerate().map(|(i, cell)| {
+            Cell::new(cell).set_alignment(if i == 0 { CellAlignment::Left } else { CellAlignment::Right })
+        }));
+    }
+    say!("{out}");
+}

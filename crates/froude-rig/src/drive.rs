@@ -98,8 +98,13 @@ pub trait Rig {
     /// [`RigError`] when the rig can no longer be talked to.
     fn tick(&mut self, request: Option<Request>) -> Result<Sample, RigError>;
 
-    /// Ticks per second.
+    /// Samples per second: those of the controller's ticks that the line carries.
     fn rate_hz(&self) -> f64;
+
+    /// Ticks of the controller from one sample to the next; more than one where the line is too slow for all.
+    fn ticks_per_sample(&self) -> u64 {
+        1
+    }
 
     /// Begins a run with what the operator has mounted. Nothing to do on a real rig.
     fn begin_run(&mut self, load: &Load, run_number: u64);
@@ -108,4 +113,5 @@ pub trait Rig {
     fn version(&self) -> String;
 }
 
+pub mod serial;
 pub mod twin;

@@ -6,6 +6,7 @@
 //! | [`drag`]      | `froude carriage drag`    | D_d and C_D by force sensor, motor current and model            |
 //! | [`servo`]     | `froude carriage identify` | servo parameters from runs, or from anyone's servo log         |
 //! | [`calibrate`] | `froude carriage calibrate` | newtons a volt from known weights, polarity                  |
+//! | [`tune`]      | `froude carriage tune`, `resonance` | experiments on the loop: gains, margins, modes, shaper |
 //! | [`runs`]      |                           | runs as these take them                                        |
 //!
 //! A folder of runs holds a copy of its campaign (`campaign.toml`), so it says by itself what body and rig it belongs to.
@@ -15,3 +16,4 @@ pub mod drag;
 pub mod drive;
 pub mod runs;
 pub mod servo;
+pub mod tune;

@@ -42,6 +42,32 @@ pub enum Drive {
         /// Length, s.
         duration_s: f64,
     },
+    /// Relay feedback about `from_m`.
+    Relay {
+        /// Start, m.
+        from_m: f64,
+        /// Height, V.
+        volts: f64,
+        /// Half width of the hysteresis, m.
+        hysteresis_m: f64,
+        /// Length, s.
+        duration_s: f64,
+    },
+    /// A sine of rising frequency on top of a slow tow.
+    Sweep {
+        /// Start, m.
+        from_m: f64,
+        /// Speed of the tow, m/s.
+        speed_m_s: f64,
+        /// Amplitude, V.
+        volts: f64,
+        /// First frequency, Hz.
+        from_hz: f64,
+        /// Last frequency, Hz.
+        to_hz: f64,
+        /// Length, s.
+        duration_s: f64,
+    },
     /// A short open-loop jog from where it stands.
     Jog {
         /// Command, V.
@@ -84,7 +110,8 @@ impl PlannedRun {
             Drive::Profile { from_m, to_m, .. } => {
                 Some(if to_m > from_m { Direction::Forward } else { Direction::Backward })
             }
-            Drive::Pulses { .. } => None,
+            Drive::Pulses { .. } | Drive::Relay { .. } => None,
+            Drive::Sweep { .. } => Some(Direction::Forward),
             Drive::Jog { volts, .. } => Some(if volts > 0.0 { Direction::Forward } else { Direction::Backward }),
         }
     }
@@ -93,7 +120,7 @@ impl PlannedRun {
     #[must_use]
     pub fn speed_m_s(&self) -> Option<f64> {
         match self.drive {
-            Drive::Profile { speed_m_s, .. } => Some(speed_m_s),
+            Drive::Profile { speed_m_s, .. } | Drive::Sweep { speed_m_s, .. } => Some(speed_m_s),
             _ => None,
         }
     }
@@ -145,7 +172,73 @@ pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
     planner.steps
 }
 
+/// Experiments on the loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Experiments {
+    /// Relay's height, V.
+    pub relay_v: f64,
+    /// Its hysteresis, m.
+    pub hysteresis_m: f64,
+    /// Its length, s.
+    pub relay_s: f64,
+    /// Sweep's amplitude, V.
+    pub sweep_v: f64,
+    /// First and last frequency, Hz.
+    pub sweep_hz: [f64; 2],
+    /// Its length, s.
+    pub sweep_s: f64,
+    /// Speed below it, m/s.
+    pub sweep_m_s: f64,
+}
+
+impl Default for Experiments {
+    /// For a carriage like the paper's: the relay at two and a half times breakaway, the sweep beside 50 mm/s from 2 to 40 Hz.
+    fn default() -> Self {
+        Self {
+            relay_v: 1.0,
+            hysteresis_m: 2e-5,
+            relay_s: 6.0,
+            sweep_v: 0.5,
+            sweep_hz: [2.0, 40.0],
+            sweep_s: 36.0,
+            sweep_m_s: 0.05,
+        }
+    }
+}
+
+/// Relay and sweep on the bare carriage.
+#[must_use]
+pub fn tuning(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> Vec<Step> {
+    let mut planner =
+        Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
+    let &Experiments { relay_v: volts, hysteresis_m, relay_s: duration_s, .. } = experiments;
+    let from_m = start_m + 0.5 * asked.distance_m;
+    planner.run("relay", RunKind::Relay, Drive::Relay { from_m, volts, hysteresis_m, duration_s }, None);
+    planner.sweep("sweep", experiments);
+    planner.steps
+}
+
+/// The same sweep bare, with the body dry, and wet: the load's mode in each state.
+#[must_use]
+pub fn resonance(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> Vec<Step> {
+    let mut planner =
+        Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
+    planner.sweep("sweep-bare", experiments);
+    planner.mount(BodyState::Dry, 0.0);
+    planner.sweep("sweep-dry", experiments);
+    planner.mount(BodyState::Wet, 0.0);
+    planner.sweep("sweep-wet", experiments);
+    planner.steps
+}
+
 impl Planner<'_> {
+    fn sweep(&mut self, name: &str, experiments: &Experiments) {
+        let &Experiments { sweep_v: volts, sweep_hz: [from_hz, to_hz], sweep_s: duration_s, sweep_m_s: speed_m_s, .. } =
+            experiments;
+        let from_m = self.start_m;
+        self.run(name, RunKind::Sweep, Drive::Sweep { from_m, speed_m_s, volts, from_hz, to_hz, duration_s }, None);
+    }
+
     fn run(&mut self, name: &str, kind: RunKind, drive: Drive, pair: Option<(u32, u32)>) {
         self.number += 1;
         let is_wet = self.body == BodyState::Wet;

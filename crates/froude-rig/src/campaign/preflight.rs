@@ -151,6 +151,7 @@ pub fn check(run: &PlannedRun, acceleration_m_s2: f64, axis: &AxisConfig, expect
 fn pulse_forecast(run: &PlannedRun, axis: &AxisConfig) -> Forecast {
     let (volts, duration_s) = match run.drive {
         Drive::Pulses { volts, duration_s, .. } => (volts.abs(), duration_s),
+        Drive::Relay { volts, duration_s, .. } | Drive::Sweep { volts, duration_s, .. } => (volts.abs(), duration_s),
         Drive::Jog { volts, .. } => (volts.abs(), 1.0),
         Drive::Profile { .. } => (0.0, 0.0),
     };

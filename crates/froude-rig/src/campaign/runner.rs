@@ -302,7 +302,10 @@ impl Session<'_> {
 
     fn to_start(&mut self) -> Result<(), RunnerError> {
         let target_m = match self.run.drive {
-            Drive::Profile { from_m, .. } | Drive::Pulses { from_m, .. } => from_m,
+            Drive::Profile { from_m, .. }
+            | Drive::Pulses { from_m, .. }
+            | Drive::Relay { from_m, .. }
+            | Drive::Sweep { from_m, .. } => from_m,
             Drive::Jog { .. } => return Ok(()),
         };
         self.go(target_m, self.setting.return_speed_m_s)
@@ -333,18 +336,27 @@ impl Session<'_> {
         match self.run.drive {
             Drive::Profile { to_m, speed_m_s, .. } => self.go(to_m, speed_m_s)?,
             Drive::Pulses { volts, period_s, duty, duration_s, .. } => {
-                let excitation = Excitation::Pulses { volts, period_s, duty, duration_s };
-                self.ask("excite", Request::Excite { axis, excitation })?;
-                self.until("the pulses", duration_s + 30.0, |s| s.axes[axis].phase == Phase::Holding)?;
+                self.excite("the pulses", Excitation::Pulses { volts, period_s, duty, duration_s }, duration_s)?;
+            }
+            Drive::Relay { volts, hysteresis_m, duration_s, .. } => {
+                self.excite("the relay", Excitation::Relay { volts, hysteresis_m, duration_s }, duration_s)?;
+            }
+            Drive::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s, .. } => {
+                let sweep = Excitation::Sweep { volts, from_hz, to_hz, duration_s, speed_m_s };
+                self.excite("the sweep", sweep, duration_s)?;
             }
             Drive::Jog { volts, distance_m } => {
-                let excitation = Excitation::Jog { volts, distance_m, duration_s: 1.0 };
-                self.ask("jog", Request::Excite { axis, excitation })?;
-                self.until("the jog", 31.0, |s| s.axes[axis].phase == Phase::Holding)?;
+                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: 1.0 }, 1.0)?;
             }
         }
         self.event(EventKind::Phase, "the motion has ended")?;
         self.wait(still_s)
+    }
+
+    fn excite(&mut self, what: &'static str, excitation: Excitation, duration_s: f64) -> Result<(), RunnerError> {
+        let axis = self.axis();
+        self.ask("excite", Request::Excite { axis, excitation })?;
+        self.until(what, duration_s + 30.0, |s| s.axes[axis].phase == Phase::Holding)
     }
 
     fn wait(&mut self, seconds: f64) -> Result<(), RunnerError> {
@@ -470,7 +482,7 @@ impl Session<'_> {
         let probe = self.tick(None)?;
         let run = self.run;
         let setting = self.setting;
-        let rate_hz = self.rig.rate_hz() / setting.decimation as f64;
+        let rate_hz = self.rig.rate_hz() * self.rig.ticks_per_sample() as f64 / setting.decimation as f64;
         let meta = RunMeta {
             campaign: setting.campaign.clone(),
             id: run.id.clone(),
@@ -517,7 +529,7 @@ impl Session<'_> {
         let first = *self.tick.get_or_insert(sample.tick);
         let number = sample.tick - first;
         if number % TOLD_EVERY == 0 {
-            self.progress.sample(self.run, sample, number as f64 / self.rig.rate_hz());
+            self.progress.sample(self.run, sample, number as f64 / (self.rig.rate_hz() * self.rig.ticks_per_sample() as f64));
         }
         let Some(recorder) = &mut self.recorder else { return Ok(()) };
         if number % self.setting.decimation != 0 {

@@ -67,6 +67,24 @@ impl Prepared {
         matches!(self.carriage.rig.kind, RigKind::Twin { .. })
     }
 
+    /// The campaign's name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.campaign.name
+    }
+
+    /// Configuration of the axis that tows.
+    #[must_use]
+    pub fn axis(&self) -> &froude_control::config::AxisConfig {
+        &self.control.axes[self.asked.axis as usize]
+    }
+
+    /// The controller's tick, µs.
+    #[must_use]
+    pub fn tick_us(&self) -> u32 {
+        self.control.tick_us
+    }
+
     /// Runs of the plan.
     pub fn runs(&self) -> impl Iterator<Item = &PlannedRun> {
         self.steps.iter().filter_map(|s| if let Step::Run(r) = s { Some(r) } else { None })
@@ -88,6 +106,15 @@ impl Prepared {
 ///
 /// See [`Error`]: a campaign without `[rig]` or `[carriage]`, a missing constant, an unknown truth of the twin.
 pub fn prepare(job: &DriveJob) -> Result<Prepared, Error> {
+    prepare_with(job, &plan)
+}
+
+/// The same with another plan: what is asked for, where forward runs begin, a seed of the order.
+///
+/// # Errors
+///
+/// As [`prepare`].
+pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Vec<Step>) -> Result<Prepared, Error> {
     let campaign = read_campaign(&job.campaign)?;
     let path = job.campaign.display();
     let carriage = campaign
@@ -178,7 +205,9 @@ pub fn drive(
     let axis = &prepared.control.axes[prepared.asked.axis as usize];
     let mut constants = IndexMap::from([("y".to_owned(), prepared.carriage.rig.y.constants)]);
     constants.extend(prepared.carriage.rig.x.as_ref().map(|x| ("x".to_owned(), x.constants)));
-    let decimation = (rig.rate_hz() / prepared.carriage.rig.log_rate_hz).round().max(1.0) as u64;
+    let every = rig.ticks_per_sample();
+    let wanted = rig.rate_hz() * every as f64 / prepared.carriage.rig.log_rate_hz;
+    let decimation = ((wanted / every as f64).round().max(1.0) as u64) * every;
     let setting = Setting {
         campaign: prepared.campaign.name.clone(),
         folder: prepared.folder.clone(),

@@ -1,0 +1,444 @@
+//! `froude run` and `froude carriage …`: call, show progress, print.
+
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::PathBuf;
+
+use froude::Error;
+use froude::carriage::drag::{DragJob, drag, methods_table, summary, setup_of};
+use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
+use froude::carriage::servo::{ServoJob, coefficient_table, effective, identify, repeatability_table};
+use froude::carriage::tune::{candidates_table, find_resonance, modes_table, resonance_sentences, tune};
+use froude::carriage::{calibrate, runs};
+use froude::records::units::{Dimension, parse_quantity};
+use froude::report::document::TextTable;
+use froude::rig::campaign::plan::{PlannedRun, Step};
+use froude::rig::campaign::runner::{Operator, Progress};
+use froude::rig::campaign::stop::StopSwitch;
+use froude::rig::drive::Sample;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::json;
+
+use crate::args::{CarriageJob, Experiment};
+use crate::out::say;
+use crate::print;
+
+/// `froude run`.
+pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_json: bool) -> Result<(), Error> {
+    let prepared = prepare(&drive_job(campaign, out))?;
+    if !is_json {
+        preflight(&prepared);
+    }
+    if check {
+        return if is_json { print::json(&preflight_json(&prepared)) } else { refused(&prepared) };
+    }
+    let (switch, mut operator, mut progress) = stage(&prepared, yes)?;
+    let outcome = drive(&prepared, &switch, &mut operator, &mut progress);
+    progress.end();
+    let outcome = outcome?;
+    if is_json {
+        return print::json(&json!({
+            "folder": prepared.folder, "driven": outcome.driven, "resumed": outcome.resumed, "spared": outcome.spared,
+            "enough": outcome.enough,
+        }));
+    }
+    say!(
+        "\n{} runs driven, {} were there already, {} left out. Runs in {}",
+        outcome.driven,
+        outcome.resumed,
+        outcome.spared,
+        prepared.folder.display()
+    );
+    if let Some(why) = &outcome.enough {
+        say!("{why}");
+    }
+    say!("\nNext: froude carriage drag {0}\n      froude carriage identify {0}", prepared.folder.display());
+    Ok(())
+}
+
+fn drive_job(campaign: PathBuf, out: Option<PathBuf>) -> DriveJob {
+    let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
+    DriveJob { campaign, out, start_unix_ns: since.as_nanos() as u64, date: crate::today() }
+}
+
+/// Ctrl-C, who confirms, and who is told.
+fn stage(prepared: &Prepared, yes: bool) -> Result<(StopSwitch, Person, Bar), Error> {
+    if yes && !prepared.is_twin() {
+        return Err(Error::Nothing(
+            "--yes is for the twin: on a real rig somebody must stand there and confirm each step".to_owned(),
+        ));
+    }
+    let switch = StopSwitch::default();
+    let pressed = switch.clone();
+    ctrlc::set_handler(move || {
+        pressed.press();
+        eprintln!("\nstopping the carriage under control; Ctrl-C again cuts the torque");
+    })
+    .map_err(|e| Error::Nothing(format!("Ctrl-C cannot be watched: {e}; nothing was moved")))?;
+    Ok((switch, Person { is_yes: yes }, Bar::new(prepared.steps.len())))
+}
+
+fn preflight(prepared: &Prepared) {
+    say!("{}: {} runs, about {} on the rig\n", prepared.name(), prepared.forecasts.len(), minutes(prepared.duration_s));
+    let detectable_n = prepared.detectable_n();
+    let mut rows: Vec<(Vec<String>, usize)> = Vec::new();
+    for (run, f) in prepared.runs().zip(&prepared.forecasts) {
+        let drag = f.drag_n.map_or_else(|| "–".to_owned(), |d| format!("{d:.3}"));
+        // Repeats until the drag exceeds what one pair shows.
+        let pairs = f.drag_n.filter(|d| *d > 0.0).map_or_else(
+            || "–".to_owned(),
+            |d| format!("{:.0}", (detectable_n / d).powi(2).ceil().max(1.0)),
+        );
+        let cells = vec![
+            run.kind.name().to_owned(),
+            run.speed_m_s().map_or_else(|| "–".to_owned(), |v| format!("{v:.3}")),
+            runs::way(run.direction()).to_owned(),
+            format!("{:.1}", f.duration_s),
+            format!("{:.1}", f.steady_s),
+            format!("{:.2}", f.command_v),
+            format!("{:.2}", f.rms_current_a),
+            format!("{:.3}", f.coast_m),
+            if f.margin_m.is_finite() { format!("{:.3}", f.margin_m) } else { "held".to_owned() },
+            drag,
+            pairs,
+        ];
+        match rows.iter_mut().find(|(other, _)| *other == cells) {
+            Some((_, n)) => *n += 1,
+            None => rows.push((cells, 1)),
+        }
+    }
+    let table = TextTable {
+        caption: String::new(),
+        head: [
+            "kind", "speed [m/s]", "way", "length [s]", "steady [s]", "command [V]", "rms current [A]", "coast [m]", "margin [m]",
+            "drag [N]", "pairs to see it", "runs",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows
+            .into_iter()
+            .map(|(mut cells, n)| {
+                cells.push(n.to_string());
+                cells
+            })
+            .collect(),
+    };
+    print::text_table(&table);
+    say!(
+        "\nOne wet/dry pair is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
+    );
+}
+
+fn refused(prepared: &Prepared) -> Result<(), Error> {
+    if prepared.objections.is_empty() {
+        say!("\nPre-flight passed. Nothing was moved.");
+        return Ok(());
+    }
+    let lines: Vec<String> = prepared.objections.iter().map(|o| format!("  {}: {}", o.id, o.text)).collect();
+    Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
+}
+
+fn preflight_json(prepared: &Prepared) -> serde_json::Value {
+    let rows: Vec<_> = prepared
+        .forecasts
+        .iter()
+        .map(|f| {
+            json!({"run": f.id, "duration_s": f.duration_s, "steady_s": f.steady_s, "command_v": f.command_v,
+                   "rms_current_a": f.rms_current_a, "coast_m": f.coast_m,
+                   "margin_m": f.margin_m.is_finite().then_some(f.margin_m), "drag_n": f.drag_n})
+        })
+        .collect();
+    let objections: Vec<_> = prepared.objections.iter().map(|o| json!({"run": o.id, "text": o.text})).collect();
+    json!({"name": prepared.name(), "duration_s": prepared.duration_s, "runs": rows, "objections": objections,
+           "detectable_n": prepared.detectable_n()})
+}
+
+fn minutes(seconds: f64) -> String {
+    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
+}
+
+/// The operator at the terminal.
+struct Person {
+    is_yes: bool,
+}
+
+impl Operator for Person {
+    fn confirm(&mut self, prompt: &str) -> bool {
+        if self.is_yes {
+            return true;
+        }
+        eprint!("\n>>> {prompt}; confirm with y and Enter (anything else stops): ");
+        let _ = std::io::stderr().flush();
+        let mut answer = String::new();
+        std::io::stdin().lock().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "yes")
+    }
+}
+
+/// Live progress on standard error.
+struct Bar {
+    bar: ProgressBar,
+    is_seen: bool,
+}
+
+impl Bar {
+    fn new(steps: usize) -> Self {
+        let bar = ProgressBar::new(steps as u64);
+        if let Ok(style) = ProgressStyle::with_template("{elapsed_precise} [{bar:24}] {pos}/{len} {msg}") {
+            bar.set_style(style);
+        }
+        Self { bar, is_seen: std::io::stderr().is_terminal() }
+    }
+
+    fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Progress for Bar {
+    fn run_begins(&mut self, run: &PlannedRun, number: usize, total: usize) {
+        self.bar.set_length(total as u64);
+        self.bar.set_position(number as u64 - 1);
+        if !self.is_seen {
+            eprintln!("{number}/{total} {}", run.id);
+        }
+    }
+
+    fn sample(&mut self, run: &PlannedRun, sample: &Sample, time_s: f64) {
+        if self.is_seen {
+            let y = &sample.axes[run.axis as usize];
+            let force = sample.force_n.map_or_else(String::new, |f| format!(", sensor {f:.2} N"));
+            self.bar.set_message(format!(
+                "{} {time_s:.1} s: {:.3} m, {:.3} m/s, {:.2} V, {:.2} A{force}",
+                run.id, y.position_m, y.reference_m_s, y.command_v, y.current_a
+            ));
+        }
+    }
+
+    fn say(&mut self, line: &str) {
+        self.bar.suspend(|| eprintln!("{line}"));
+    }
+}
+
+/// `froude carriage …`.
+pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
+    match job {
+        CarriageJob::Identify { input, sidecar, out } => servo(input, sidecar, out, is_json),
+        CarriageJob::Drag { runs, campaign, out } => drag_verb(runs, campaign, out, is_json),
+        CarriageJob::Calibrate { runs, campaign, measured, measured_standard, counted } => {
+            if let (Some(measured), Some(counted)) = (measured, counted) {
+                encoder_scale(&runs, &measured, &measured_standard, &counted)?;
+            }
+            calibration(&runs, campaign, is_json)
+        }
+        CarriageJob::Tune(e) => tuning(e, is_json),
+        CarriageJob::Resonance(e) => modes(e, is_json),
+    }
+}
+
+fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
+    let bar = crate::spinner();
+    bar.set_message("identifying");
+    let outcome = identify(&ServoJob { input, sidecar, out, date: Some(crate::today()) })?;
+    bar.finish_and_clear();
+    let coefficients = |c: &[froude::identify::servo::ServoCoefficient]| -> Vec<serde_json::Value> {
+        c.iter()
+            .map(|c| json!({"name": c.name, "unit": c.unit, "value": c.value, "interval_95": c.interval,
+                            "std_white": c.classical_std, "std_hac": c.hac_std, "std_blocks": c.block_std}))
+            .collect()
+    };
+    if is_json {
+        let models: Vec<_> = outcome
+            .models
+            .iter()
+            .map(|m| {
+                json!({"friction": m.name, "relative_force_error": m.report.relative_force_error,
+                       "coefficients": coefficients(&m.report.coefficients),
+                       "effective": outcome.motor.as_ref().map(|motor| coefficients(&effective(&m.report, motor)))})
+            })
+            .collect();
+        let flexible = outcome.flexible.as_ref().map(|f| {
+            json!({"coefficients": coefficients(&f.coefficients), "relative_speed_error": f.relative_speed_error,
+                   "splits": f.splits.iter().map(|s| json!({"name": s.name, "is_identified": s.is_identified,
+                       "share_of_motor": s.is_identified.then_some(s.share_of_motor), "interval_95": s.interval})).collect::<Vec<_>>()})
+        });
+        return print::json(&json!({"models": models, "two_mass": flexible, "findings": outcome.findings, "report": outcome.page}));
+    }
+    for model in &outcome.models {
+        let error = froude::report::number::percent(model.report.relative_force_error);
+        say!("\nRigid, friction {} (relative force error {error})", model.name);
+        print::text_table(&coefficient_table(String::new(), &model.report.coefficients));
+        if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == "symmetric") {
+            say!("\nAt the motor's shaft");
+            print::text_table(&coefficient_table(String::new(), &effective(&model.report, motor)));
+        }
+    }
+    if let Some(f) = &outcome.flexible {
+        say!("\nTwo masses, from the motor's side");
+        print::text_table(&coefficient_table(String::new(), &f.coefficients));
+        for s in &f.splits {
+            let told = if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };
+            say!("  {}: {told}", s.name);
+        }
+    }
+    if !outcome.repeatability.is_empty() {
+        say!("\nRepeatability");
+        print::text_table(&repeatability_table(&outcome.repeatability));
+    }
+    print::findings(&outcome.findings);
+    say!("\nReport: {}", outcome.page.display());
+    Ok(())
+}
+
+fn drag_verb(runs: Vec<PathBuf>, campaign: Option<PathBuf>, out: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
+    let bar = crate::spinner();
+    bar.set_message("reducing the runs");
+    let job = DragJob { runs, campaign: campaign.clone(), out, flexible: None, date: Some(crate::today()) };
+    let outcome = drag(&job)?;
+    bar.finish_and_clear();
+    if is_json {
+        return print::json(&outcome.file);
+    }
+    print::text_table(&methods_table(&outcome.report));
+    let mut setup = setup_of(None, None, None);
+    setup.calibration = outcome.calibration.as_ref().map(|c| c.force_per_volt);
+    say!("");
+    for sentence in summary(&outcome.report, &setup) {
+        say!("{sentence}");
+    }
+    print::findings(&outcome.report.findings);
+    say!("\nRecord: {}\nReport: {}", outcome.estimate.display(), outcome.page.display());
+    Ok(())
+}
+
+fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
+    let outcome = calibrate::calibrate(paths, campaign)?;
+    if is_json {
+        let calibration = outcome.calibration.as_ref().map(|c| {
+            json!({"force_per_volt_n": c.force_per_volt.force_per_volt_n.value,
+                   "standard_uncertainty_n": c.force_per_volt.force_per_volt_n.standard, "interval_95": c.interval_95,
+                   "efficiency": c.efficiency.value, "friction_n": c.friction_n, "driving_runs": c.used,
+                   "overhauled_runs": c.overhauled})
+        });
+        let jogs: Vec<_> = outcome
+            .jogs
+            .iter()
+            .map(|j| json!({"run": j.id, "command_v": j.command_v, "way_m": j.way_m, "is_right": j.is_right}))
+            .collect();
+        return print::json(&json!({"calibration": calibration, "jogs": jogs, "findings": outcome.findings}));
+    }
+    for j in &outcome.jogs {
+        let told = if j.is_right { "right" } else { "REVERSED" };
+        say!("{}: {:.2} V moved {:.2} mm: polarity {told}", j.id, j.command_v, 1e3 * j.way_m);
+    }
+    if let Some(c) = &outcome.calibration {
+        use froude::report::number::{interval, short_form};
+        let k = c.force_per_volt.force_per_volt_n;
+        say!(
+            "{} N/V, 95 % interval {} N/V, from {} driving runs ({} overhauled left out)",
+            short_form(k.value, k.standard),
+            interval(c.interval_95),
+            c.used,
+            c.overhauled
+        );
+        say!(
+            "gear efficiency {} against the ideal {:.4} N/V; carriage friction {:.3} N",
+            short_form(c.efficiency.value, c.efficiency.standard),
+            outcome.ideal_force_per_volt_n,
+            c.friction_n
+        );
+        for note in &c.notes {
+            say!("{note}");
+        }
+    }
+    print::findings(&outcome.findings);
+    Ok(())
+}
+
+fn encoder_scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &str) -> Result<(), Error> {
+    let length = |what: &str, text: &str| {
+        parse_quantity(text)
+            .and_then(|q| q.expect(Dimension::LENGTH))
+            .map_err(|e| Error::Nothing(format!("{what} {text:?}: {e}; write a length, \"2.000 m\"")))
+    };
+    let (measured_m, standard_m, counted_m) =
+        (length("--measured", measured)?, length("--measured-standard", standard)?, length("--counted", counted)?);
+    if !(measured_m > 0.0 && counted_m > 0.0 && standard_m >= 0.0) {
+        return Err(Error::Nothing("--measured and --counted must be longer than nothing".to_owned()));
+    }
+    let read = runs::read(paths, &[froude::records::run::RunKind::Calibration, froude::records::run::RunKind::Jog], None)?;
+    let Some(axis) = read.logs.iter().find_map(|log| log.meta.moving_axis()) else {
+        return Err(Error::Nothing("the runs do not say what rig they come from".to_owned()));
+    };
+    let radius_m = axis.sprocket_radius_m.value;
+    let count_m = std::f64::consts::TAU * radius_m / axis.gear_ratio.value / axis.counts_per_revolution.abs();
+    let (radius, std) = calibrate::encoder_scale(radius_m, measured_m, standard_m, counted_m, count_m);
+    say!(
+        "encoder scale: sprocket_radius = {{ value = \"{:.4} mm\", standard = \"{:.4} mm\" }}  (declared {:.4} mm)",
+        1e3 * radius,
+        1e3 * std,
+        1e3 * radius_m
+    );
+    Ok(())
+}
+
+fn experiment(e: &Experiment) -> Result<(DriveJob, StopSwitch, Person, Bar), Error> {
+    let job = drive_job(e.campaign.clone(), e.out.clone());
+    let prepared = prepare(&job)?;
+    let steps = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
+    let (switch, person, _) = stage(&prepared, e.yes)?;
+    Ok((job, switch, person, Bar::new(steps.min(3))))
+}
+
+fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
+    let (job, switch, mut person, mut bar) = experiment(&e)?;
+    let outcome = tune(&job, &switch, &mut person, &mut bar);
+    bar.end();
+    let outcome = outcome?;
+    if is_json {
+        let rows: Vec<_> = outcome
+            .candidates
+            .iter()
+            .map(|c| {
+                json!({"name": c.name, "proportional_v_rad": c.gains.proportional_v_rad,
+                       "derivative_v_s_rad": c.gains.derivative_v_s_rad, "integral_v_rad_s": c.gains.integral_v_rad_s,
+                       "derivative_filter_hz": c.gains.derivative_filter_hz, "crossover_hz": c.margins.crossover_hz,
+                       "phase_margin_rad": c.margins.phase_rad, "gain_margin": c.margins.gain,
+                       "largest_sensitivity": c.margins.largest_sensitivity})
+            })
+            .collect();
+        return print::json(&json!({"gains": rows, "report": outcome.page}));
+    }
+    match &outcome.cycle {
+        Ok(c) => say!("relay: period {:.4} s, amplitude {:.3} rad, K_u = {:.3} V/rad", c.period_s, c.amplitude_rad, c.ultimate_gain_v_rad),
+        Err(error) => say!("relay: {error}"),
+    }
+    print::text_table(&candidates_table(&outcome.candidates));
+    say!("\nReport with the Bode plot: {}", outcome.page.display());
+    Ok(())
+}
+
+fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
+    let (job, switch, mut person, mut bar) = experiment(&e)?;
+    let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
+    bar.end();
+    let outcome = outcome?;
+    if is_json {
+        let rows: Vec<_> = outcome
+            .states
+            .iter()
+            .map(|s| {
+                let modes = s.modes.as_ref().ok();
+                json!({"body": s.body, "load_hz": modes.map(|m| m.load.frequency_hz), "load_damping": modes.map(|m| m.load.damping),
+                       "free_hz": modes.map(|m| m.free.frequency_hz)})
+            })
+            .collect();
+        return print::json(&json!({"states": rows, "shaped_mode_hz": outcome.proposed.map(|p| p.0),
+                                   "shaped_damping": outcome.proposed.map(|p| p.1), "report": outcome.page}));
+    }
+    print::text_table(&modes_table(&outcome.states));
+    say!("");
+    for sentence in resonance_sentences(&outcome) {
+        say!("{sentence}");
+    }
+    say!("\nReport: {}", outcome.page.display());
+    Ok(())
+}

@@ -1,0 +1,326 @@
+//! The real rig: a board at a serial port.
+//!
+//! The board runs the loop; the host hands over requests, listens, and says every 20 ms that it is there: silent for longer than the
+//! configured time, the board stops the carriage by itself (category 1). A request is repeated with its number until the board
+//! has answered it, so a lost frame costs time and nothing else; a lost telemetry frame is a gap in the record.
+//!
+//! **Position.** Telemetry carries raw counts. Where they begin is learnt while the axis holds after homing: the mean of reference less
+//! counts over half a second, good to less than a count (2.5 µm).
+//!
+//! Not here: the force sensor, which has a box of its own; its log is joined by time afterwards.
+
+use std::collections::VecDeque;
+use std::io::{Read, Write};
+use std::time::{Duration, Instant};
+
+use froude_control::config::Config;
+use froude_control::fault::{Fault, StopCategory};
+use froude_control::request::Request;
+use froude_control::status::{Phase, Refusal};
+use froude_control::tick::AXES;
+use froude_link::clock::Unwrapped;
+use froude_link::message::{FromBoard, ToBoard};
+use froude_link::status::{BoardHello, Verdict};
+use froude_link::{FrameReader, FrameWriter, Telemetry, VERSION};
+
+use super::{AxisSample, Rig, RigError, Sample};
+use crate::load::Load;
+
+/// A sign of life at least this often.
+const HEARTBEAT: Duration = Duration::from_millis(20);
+/// A request that was not answered is repeated after this time.
+const REPEAT: Duration = Duration::from_millis(50);
+/// Without a valid frame for this long the board is given up.
+const SILENCE: Duration = Duration::from_millis(1_000);
+/// How long the greeting and the configuration may take.
+const GREETING: Duration = Duration::from_secs(5);
+/// Holding samples after homing over which the beginning of the counts is averaged.
+const LEARNING: u32 = 2_000;
+/// Longest frame on the line.
+const LONGEST_FRAME: usize = 1_024;
+
+/// Any line: a serial port, or whatever a test puts in its place. Reads must return after a few milliseconds at the latest.
+pub trait Line: Read + Write + Send {}
+impl<T: Read + Write + Send> Line for T {}
+
+/// Where the counts of an axis begin.
+#[derive(Debug, Clone, Copy, Default)]
+struct Origin {
+    /// Sum of reference less counted position, m, over the samples so far.
+    sum_m: f64,
+    samples: u32,
+    count: Option<i64>,
+    last: u32,
+}
+
+/// A board at a port.
+pub struct SerialRig {
+    port: String,
+    line: Box<dyn Line>,
+    reader: FrameReader<FromBoard>,
+    writer: FrameWriter,
+    config: Config,
+    hello: Option<BoardHello>,
+    heard: VecDeque<Telemetry>,
+    ticks: Unwrapped,
+    origins: [Origin; AXES],
+    /// The request that has no answer yet, its number, and when it was last sent.
+    asked: Option<(u16, Request, Instant)>,
+    id: u16,
+    answer: Option<Verdict>,
+    refusal: Option<Refusal>,
+    last_sent: Instant,
+    last_heard: Instant,
+}
+
+impl SerialRig {
+    /// Opens a port, greets the board and configures it.
+    ///
+    /// # Errors
+    ///
+    /// [`RigError`]: no such port, no answer, another version, a configuration that the board does not take.
+    pub fn open(port: &str, baud: u32, config: Config) -> Result<Self, RigError> {
+        let failed = |e: std::io::Error| RigError::Port { port: port.to_owned(), reason: e.to_string() };
+        let mut line = serial2::SerialPort::open(port, baud).map_err(failed)?;
+        line.set_read_timeout(Duration::from_millis(2)).map_err(failed)?;
+        line.discard_buffers().map_err(failed)?;
+        Self::on(port, Box::new(line), config)
+    }
+
+    /// The same on any line; `port` is its name in messages.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::open`].
+    pub fn on(port: &str, line: Box<dyn Line>, config: Config) -> Result<Self, RigError> {
+        let now = Instant::now();
+        let mut rig = Self {
+            port: port.to_owned(),
+            line,
+            reader: FrameReader::new(),
+            writer: FrameWriter::default(),
+            config,
+            hello: None,
+            heard: VecDeque::new(),
+            ticks: Unwrapped::default(),
+            origins: [Origin::default(); AXES],
+            asked: None,
+            id: 0,
+            answer: None,
+            refusal: None,
+            last_sent: now,
+            last_heard: now,
+        };
+        rig.greet()?;
+        rig.configure()?;
+        Ok(rig)
+    }
+
+    fn greet(&mut self) -> Result<(), RigError> {
+        let begun = Instant::now();
+        let mut sent: Option<Instant> = None;
+        while self.hello.is_none() {
+            if begun.elapsed() > GREETING {
+                return Err(self.silent(begun.elapsed()));
+            }
+            if sent.is_none_or(|at| at.elapsed() > REPEAT) {
+                self.writer = FrameWriter::default();
+                self.send(&ToBoard::Hello)?;
+                sent = Some(Instant::now());
+            }
+            self.listen()?;
+        }
+        Ok(())
+    }
+
+    /// A board that still drives is stopped first; a fault that only says that the host was away is cleared by its name.
+    fn configure(&mut self) -> Result<(), RigError> {
+        let begun = Instant::now();
+        loop {
+            self.id = self.id.wrapping_add(1).max(1);
+            self.answer = None;
+            self.send(&ToBoard::Configure { id: self.id, config: self.config })?;
+            let sent = Instant::now();
+            while self.answer.is_none() && sent.elapsed() < 4 * REPEAT {
+                self.listen()?;
+            }
+            match self.answer {
+                Some(Verdict::Accepted) => break,
+                Some(Verdict::BadConfiguration) => {
+                    return Err(RigError::Port {
+                        port: self.port.clone(),
+                        reason: "the board does not take the configuration; check [rig] against its limits".to_owned(),
+                    });
+                }
+                Some(Verdict::NotNow) => self.quieten()?,
+                _ => {}
+            }
+            if begun.elapsed() > GREETING {
+                return Err(self.silent(begun.elapsed()));
+            }
+        }
+        if let Some((fault @ (Fault::HostSilent | Fault::RecorderFailed), _)) = self.next(None)?.fault {
+            self.tick(Some(Request::Clear(fault)))?;
+        }
+        Ok(())
+    }
+
+    fn quieten(&mut self) -> Result<(), RigError> {
+        self.tick(Some(Request::Stop(StopCategory::One)))?;
+        for axis in 0..AXES {
+            self.tick(Some(Request::Disable { axis }))?;
+        }
+        Ok(())
+    }
+
+    fn silent(&self, silent: Duration) -> RigError {
+        RigError::Silent { port: self.port.clone(), silent_s: silent.as_secs_f64() }
+    }
+
+    fn send(&mut self, message: &ToBoard) -> Result<(), RigError> {
+        let mut wire = [0_u8; LONGEST_FRAME];
+        let frame = self.writer.write(message, &mut wire);
+        self.last_sent = Instant::now();
+        self.line.write_all(frame).map_err(|e| RigError::Port { port: self.port.clone(), reason: e.to_string() })
+    }
+
+    /// Takes what has come; returns after a few milliseconds when nothing has.
+    fn listen(&mut self) -> Result<(), RigError> {
+        let mut bytes = [0_u8; 4_096];
+        let n = match self.line.read(&mut bytes) {
+            Ok(n) => n,
+            Err(e) if matches!(e.kind(), std::io::ErrorKind::TimedOut | std::io::ErrorKind::WouldBlock) => 0,
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => 0,
+            Err(e) => return Err(RigError::Port { port: self.port.clone(), reason: e.to_string() }),
+        };
+        for &byte in &bytes[..n] {
+            if let Some(received) = self.reader.feed(byte) {
+                self.last_heard = Instant::now();
+                self.take(received.message)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, message: FromBoard) -> Result<(), RigError> {
+        match message {
+            FromBoard::Hello(hello) => self.hello = Some(hello),
+            FromBoard::ForeignHello { version } => {
+                return Err(RigError::Version {
+                    port: self.port.clone(),
+                    board: version.to_string(),
+                    ours: VERSION.to_string(),
+                });
+            }
+            FromBoard::Telemetry(telemetry) => self.heard.push_back(telemetry),
+            FromBoard::Ack(ack) => {
+                if ack.id == self.id {
+                    self.answer = Some(ack.verdict);
+                }
+                if self.asked.is_some_and(|(id, _, _)| id == ack.id) {
+                    self.asked = None;
+                    self.refusal = match ack.verdict {
+                        Verdict::Refused(refusal) => Some(refusal),
+                        Verdict::Accepted => None,
+                        _ => Some(Refusal::NotReady),
+                    };
+                }
+            }
+            // Faults and phases are in the telemetry as well; health and time are asked for by nobody here.
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Waits for the next telemetry frame.
+    fn next(&mut self, request: Option<Request>) -> Result<Sample, RigError> {
+        if let Some(request) = request {
+            self.id = self.id.wrapping_add(1).max(1);
+            self.send(&ToBoard::Request { id: self.id, request })?;
+            self.asked = Some((self.id, request, Instant::now()));
+        }
+        loop {
+            if let Some(telemetry) = self.heard.pop_front() {
+                return Ok(self.sample(&telemetry));
+            }
+            if self.last_heard.elapsed() > SILENCE {
+                return Err(self.silent(self.last_heard.elapsed()));
+            }
+            if let Some((id, request, at)) = self.asked
+                && at.elapsed() > REPEAT
+            {
+                self.send(&ToBoard::Request { id, request })?;
+                self.asked = Some((id, request, Instant::now()));
+            }
+            if self.last_sent.elapsed() > HEARTBEAT {
+                self.send(&ToBoard::Heartbeat)?;
+            }
+            self.listen()?;
+        }
+    }
+
+    fn sample(&mut self, telemetry: &Telemetry) -> Sample {
+        let (volts, amperes) =
+            self.hello.map_or(([0.0; AXES], [0.0; AXES]), |h| (h.command_v_per_count, h.current_a_per_count));
+        let mut axes = [AxisSample::default(); AXES];
+        for (i, (sample, t)) in axes.iter_mut().zip(&telemetry.axes).enumerate() {
+            let drive = &self.config.axes[i].drive;
+            let m_per_count = std::f64::consts::TAU / drive.counts_per_revolution * drive.sprocket_radius_m
+                / drive.gear_ratio
+                * drive.encoder_sign;
+            let origin = &mut self.origins[i];
+            let count = match origin.count {
+                None => i64::from(t.encoder_count),
+                Some(count) => count + i64::from(t.encoder_count.wrapping_sub(origin.last) as i32),
+            };
+            (origin.count, origin.last) = (Some(count), t.encoder_count);
+            let counted_m = count as f64 * m_per_count;
+            if !t.is_homed {
+                (origin.sum_m, origin.samples) = (0.0, 0);
+            } else if t.phase == Phase::Holding && origin.samples < LEARNING {
+                origin.sum_m += t.reference_position_m() - counted_m;
+                origin.samples += 1;
+            }
+            let origin_m = if origin.samples > 0 { origin.sum_m / f64::from(origin.samples) } else { 0.0 };
+            *sample = AxisSample {
+                count,
+                position_m: counted_m + origin_m,
+                reference_m: t.reference_position_m(),
+                reference_m_s: t.reference_velocity_m_s(),
+                reference_m_s2: t.reference_acceleration_m_s2(),
+                command_v: f64::from(t.command_counts) * volts[i],
+                current_a: f64::from(t.current_counts) * amperes[i],
+                phase: t.phase,
+                is_homed: t.is_homed,
+            };
+        }
+        Sample {
+            tick: self.ticks.unwrap(telemetry.tick),
+            axes,
+            force_n: None,
+            fault: telemetry.fault,
+            refusal: self.refusal.take(),
+            truth: None,
+        }
+    }
+}
+
+impl Rig for SerialRig {
+    fn tick(&mut self, request: Option<Request>) -> Result<Sample, RigError> {
+        self.next(request)
+    }
+
+    fn rate_hz(&self) -> f64 {
+        self.hello.map_or(4_000.0, |h| 1e6 / f64::from(h.tick_us) / f64::from(h.telemetry_every.max(1)))
+    }
+
+    fn ticks_per_sample(&self) -> u64 {
+        self.hello.map_or(1, |h| u64::from(h.telemetry_every.max(1)))
+    }
+
+    fn begin_run(&mut self, _: &Load, _: u64) {}
+
+    fn version(&self) -> String {
+        self.hello.map_or_else(|| "board".to_owned(), |h| format!("{:?}, protocol {VERSION}", h.board))
+    }
+}
