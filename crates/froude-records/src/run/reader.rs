@@ -237,7 +237,7 @@ impl<R: Read + Seek> RunReader<R> {
             .zip(columns)
             .map(|((name, unit), values)| (name, Channel { unit, values }))
             .collect();
-        // Events come with their chunk; a fault's chunk is handed over before its time is.
+        // An event may be recorded behind ticks that are later than it.
         log.events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         log.meta = self.meta;
         Ok(log)
