@@ -64,7 +64,7 @@ impl Mass {
 
 /// What acted on the sliding load in the steps before, N, for the extrapolation to mid-step.
 ///
-/// Friction is taken from the two steps before this one: its division then has a step's time, which is worth a third of the run time.
+/// Friction is taken from the two steps before this one, so that no step waits for its division.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Memory {
     /// Direction of sliding that it belongs to; 0 when there is none.
