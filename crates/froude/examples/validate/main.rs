@@ -38,7 +38,7 @@ fn main() -> ExitCode {
         rm2::all(claims, &root)?;
         kvlcc2::hmri(claims, &shared)?;
         kvlcc2::fhr(claims, &shared)?;
-        carriage::all(claims, if full { 400 } else { 60 })?;
+        carriage::all(claims, if full { 400 } else { 60 });
         coverage::all(claims, &root, repetitions)?;
         Ok(())
     };
