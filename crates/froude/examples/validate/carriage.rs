@@ -1,14 +1,13 @@
 //! Drag read from a carriage: the pinned scenario observation by observation, and what the paper prints.
 
-use std::error::Error;
-
 use froude::fit::coverage::Count;
 use froude::identify::carriage::calibration::{CalibrationSetup, ForcePerVolt, PULLEY_LOSS, calibrate};
-use froude::identify::carriage::coefficient::{Coefficient, Method};
+use froude::identify::carriage::coefficient::{Coefficient, Method, coefficient};
 use froude::identify::carriage::online::OnLine;
 use froude::identify::carriage::run::Ballast;
 use froude::identify::carriage::simulate::Scenario;
-use froude::identify::carriage::{DragReport, DragRun, DragSetup, Uncertain, drag_report, mcd};
+use froude::identify::carriage::steady::SteadySettings;
+use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, Uncertain, drag_report, mcd};
 use froude::identify::lint;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -29,7 +28,7 @@ const NEAR_ONE_END_M: [f64; 2] = [0.2, 1.4];
 const UNLOADED_N: f64 = 62.0;
 const ROLLING: f64 = 0.01;
 
-pub fn all(claims: &mut Claims, seeds: usize) -> Result<(), Box<dyn Error>> {
+pub fn all(claims: &mut Claims, seeds: usize) {
     for d in [20.0, 10.0] {
         pinned(claims, d, seeds);
         variants(claims, d, seeds / 2);
@@ -39,7 +38,6 @@ pub fn all(claims: &mut Claims, seeds: usize) -> Result<(), Box<dyn Error>> {
     weights(claims, seeds);
     early_stop(claims, seeds / 2);
     published(claims);
-    Ok(())
 }
 
 /// Errors of one method over the campaigns.
@@ -290,7 +288,7 @@ fn weights(claims: &mut Claims, seeds: usize) {
         ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
         weight_relative: 0.0005,
         pulley_loss: PULLEY_LOSS,
-        steady: froude::identify::carriage::steady::SteadySettings::default(),
+        steady: SteadySettings::default(),
     };
     for (name, weights) in [("0 and 20 N", [0.0, 20.0].as_slice()), ("0, 2 and 20 N", [0.0, 2.0, 20.0].as_slice())] {
         let results: Vec<_> = (0..seeds)
@@ -339,12 +337,8 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
             let mut live = OnLine::new(0.018, CALIBRATED_TO, 8);
             let mut all = Vec::new();
             for pair in 1..=scenario.pairs {
-                for wet in
-                    runs.iter().filter(|r| r.pair == pair && r.body == froude::identify::carriage::BodyState::Wet)
-                {
-                    let dry = runs
-                        .iter()
-                        .find(|r| r.body == froude::identify::carriage::BodyState::Dry && r.is_partner_of(wet))?;
+                for wet in runs.iter().filter(|r| r.pair == pair && r.body == BodyState::Wet) {
+                    let dry = runs.iter().find(|r| r.body == BodyState::Dry && r.is_partner_of(wet))?;
                     let point = mcd::point(wet, dry, k, setup.steady).ok()?;
                     live.push(&point);
                     all.push(point);
@@ -355,7 +349,7 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
                     let mut setup = setup.clone();
                     setup.speed_scale_relative = 0.0;
                     setup.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
-                    let plain = froude::identify::carriage::coefficient::coefficient(Method::Mcd, all, &setup, None)?;
+                    let plain = coefficient(Method::Mcd, all, &setup, None)?;
                     let [low, high] = plain.interval_95?;
                     return Some((pair, shown, (low..=high).contains(&d)));
                 }
