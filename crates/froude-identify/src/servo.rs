@@ -16,7 +16,7 @@
 //! **Frame.** Position along the chain, motor side. **Units.** SI; motor-side values by [`motor::MotorSide`].
 //! **Sign.** Forces on the axis; friction coefficients are positive when they resist.
 //!
-//! Not here: drag of the body ([MCD, MBDP and the sensor](crate) are another chapter), files.
+//! Not here: drag of the body (sensor, current difference and model based), files.
 
 pub mod chain;
 mod error;

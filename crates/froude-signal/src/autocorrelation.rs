@@ -15,6 +15,34 @@ pub fn autocorrelation(record: &[f64], lags: usize) -> Option<Vec<f64>> {
     Some((0..=lags).map(at).collect())
 }
 
+/// Filter `1, a₁ … a_order` that leaves of a record what its past does not predict (autoregressive whitening).
+///
+/// From the autocorrelations by Levinson's recursion, so that its inverse is stable. `None` as [`autocorrelation`].
+///
+/// # Source
+///
+/// Box, Jenkins, Reinsel & Ljung (2016), *Time Series Analysis*, 5th ed., 3.2.5 and A3.2 (Yule–Walker, Durbin–Levinson).
+#[must_use]
+pub fn whitening_filter(record: &[f64], order: usize) -> Option<Vec<f64>> {
+    let rho = autocorrelation(record, order)?;
+    let mut filter = vec![1.0];
+    let mut error = 1.0;
+    for k in 1..=order {
+        let reflection = -filter.iter().enumerate().map(|(i, a)| a * rho[k - i]).sum::<f64>() / error;
+        filter.push(0.0);
+        let turned: Vec<f64> = filter.iter().rev().copied().collect();
+        filter.iter_mut().zip(&turned).for_each(|(a, b)| *a += reflection * b);
+        error *= 1.0 - reflection * reflection;
+    }
+    Some(filter)
+}
+
+/// `y_i = Σ filter_k x_{i−k}` where all of them exist: shorter than the record by the filter's length less one.
+#[must_use]
+pub fn whitened(record: &[f64], filter: &[f64]) -> Vec<f64> {
+    record.windows(filter.len()).map(|w| filter.iter().zip(w.iter().rev()).map(|(a, x)| a * x).sum()).collect()
+}
+
 /// Lags of the window per correlation time: Sokal's `c`.
 const WINDOW: f64 = 5.0;
 
@@ -71,6 +99,17 @@ mod tests {
         }
         // τ = (1 + φ)/(1 − φ) = 9; relative standard error √(2(2m + 1)/n) = 0.03 with m = 45; the window cuts e^{−45/4.5}.
         assert!((integrated_time(&x).unwrap() / 9.0 - 1.0).abs() < 0.12);
+    }
+
+    #[test]
+    fn whitening_a_first_order_process_finds_its_coefficient_and_leaves_nothing_to_predict() {
+        let x = first_order(0.8, 50_000);
+        let filter = whitening_filter(&x, 3).unwrap();
+        // Standard error of an autoregressive coefficient is below 1/√n = 0.0045; four of them.
+        for (a, truth) in filter.iter().zip([1.0, -0.8, 0.0, 0.0]) {
+            assert!((a - truth).abs() < 0.018, "{filter:?}");
+        }
+        assert!(autocorrelation(&whitened(&x, &filter), 1).unwrap()[1].abs() < 0.018);
     }
 
     #[test]

@@ -30,7 +30,7 @@ pub struct Window {
 impl Window {
     fn check(self, n: usize) -> Result<(), SignalError> {
         in_range("window of the Savitzky-Golay filter", self.samples, 1, WIDEST)?;
-        if self.samples % 2 == 0 {
+        if self.samples.is_multiple_of(2) {
             let (low, high) = (self.samples - 1, self.samples + 1);
             return Err(SignalError::OutOfRange {
                 what: "even window (it must be odd)",

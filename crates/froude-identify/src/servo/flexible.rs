@@ -110,7 +110,7 @@ impl Stepper {
             [0.0; 6],
         ];
         let over = |step_s: f64| {
-            let whole = exponential(generator.map(|row| row.map(|x| x * step_s)));
+            let whole = exponential(&generator.map(|row| row.map(|x| x * step_s)));
             Linear {
                 transition: std::array::from_fn(|i| std::array::from_fn(|j| whole[i][j])),
                 response: std::array::from_fn(|f| std::array::from_fn(|i| whole[i][STATES + f])),
@@ -158,7 +158,9 @@ impl Stepper {
 
     /// Which way each friction stands at its limit; 0 within it.
     fn side(&self, friction_n: [f64; 2]) -> [i8; 2] {
-        std::array::from_fn(|i| i8::from(friction_n[i] >= self.limit_n[i]) - i8::from(friction_n[i] <= -self.limit_n[i]))
+        std::array::from_fn(|i| {
+            i8::from(friction_n[i] >= self.limit_n[i]) - i8::from(friction_n[i] <= -self.limit_n[i])
+        })
     }
 
     /// State and friction after one step under a constant force on the motor.
@@ -191,7 +193,7 @@ impl Stepper {
 type Square = [[f64; 6]; 6];
 
 /// `e^A` of a matrix: Taylor's series on a 2⁻ˢ-th of it, squared s times.
-fn exponential(a: Square) -> Square {
+fn exponential(a: &Square) -> Square {
     let size = a.iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max);
     let halvings = if size > 0.25 { (size / 0.25).log2().ceil() as i32 } else { 0 };
     let a = a.map(|row| row.map(|x| x * 0.5_f64.powi(halvings)));

@@ -6,7 +6,7 @@
 //! | Coulomb       | `sgn v`, or one of each direction     | `F_c`; `F_c+`, `F_c-`          |
 //! | over position | `sgn v` times a hat over each knot    | `F_c(y = …)`, linear between   |
 //! | over load     | `N sgn v`                             | `mu`                           |
-//! | Stribeck      | `sgn v exp(−(v/v_s)²)`                | `F_s`, with `v_s` given or searched |
+//! | Stribeck      | `sgn v exp(−(v/v_s)²)`                | `F_s`, with `v_s` given         |
 //! | offset        | 1                                     | `offset`                       |
 //!
 //! Two Coulomb terms of different size in both directions are an offset and a mean: the offset is left out

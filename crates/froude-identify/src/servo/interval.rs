@@ -153,8 +153,7 @@ pub(crate) fn hac_covariance(
     rate_hz: f64,
     lag_s: Option<f64>,
 ) -> (Mat<f64>, f64) {
-    let scores: Vec<Vec<f64>> =
-        columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
+    let scores: Vec<Vec<f64>> = columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
     let scores: Vec<&[f64]> = scores.iter().map(Vec::as_slice).collect();
     let lag = lag_s.map_or_else(|| long_enough(&scores, residuals), |s| (s * rate_hz).round() as usize);
     let p = columns.len();

@@ -50,8 +50,10 @@ pub fn coverage(claims: &mut Claims, seeds: u64) -> Result<(), Box<dyn Error>> {
     claims.add(SECTION, "searches that converged", "all", format!("{converged} of {n}"), Verdict::Measured);
     for (k, truth) in [(0, 0.4), (1, 0.35)] {
         let identified = reports.iter().filter(|r| r.splits[k].is_identified).count();
-        let inside = reports.iter().filter(|r| r.splits[k].interval[0] <= truth && truth <= r.splits[k].interval[1]).count();
-        let width: f64 = reports.iter().map(|r| r.splits[k].interval[1] - r.splits[k].interval[0]).sum::<f64>() / n as f64;
+        let inside =
+            reports.iter().filter(|r| r.splits[k].interval[0] <= truth && truth <= r.splits[k].interval[1]).count();
+        let width: f64 =
+            reports.iter().map(|r| r.splits[k].interval[1] - r.splits[k].interval[0]).sum::<f64>() / n as f64;
         claims.add(
             SECTION,
             &format!("split {} between motor and load", reports[0].splits[k].name),
