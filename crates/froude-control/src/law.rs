@@ -65,6 +65,7 @@ pub(crate) struct TickCounts {
     pub over_current: u32,
     pub mismatch: u32,
     pub stuck: u32,
+    pub quiet: u32,
     pub saturation: u32,
 }
 
@@ -73,6 +74,8 @@ pub(crate) struct TickCounts {
 const ACCELERATION_MARGIN: f64 = 10.0;
 /// The axis is at rest when it stays within a count for this long, s.
 const REST_S: f64 = 0.1;
+/// Without a count for this long it stands, or passes zero speed, s: at 1 m/s² a count either side of a reversal takes 4.5 ms.
+const QUIET_S: f64 = 10e-3;
 /// Above the peak current for this long is over-current, s.
 const OVER_CURRENT_S: f64 = 1e-3;
 /// Off the commanded current for this long is over-current, s.
@@ -122,6 +125,7 @@ impl Law {
                 over_current: ticks(OVER_CURRENT_S),
                 mismatch: ticks(MISMATCH_S),
                 stuck: ticks(limits.stuck_s),
+                quiet: ticks(QUIET_S),
                 saturation: ticks(limits.saturation_s),
             },
             stopping: StoppingWay::new(coast, limits.acceleration_m_s2),

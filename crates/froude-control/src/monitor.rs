@@ -10,8 +10,8 @@
 //! | overload | (I/I_c)² through a first-order lag of the winding's time constant passes 1 |
 //!
 //! A motor cannot stop within a tick; its encoder can. That is why a count that stands still at speed is a fault at once.
-//! Torque must move the axis when it changed by more than friction's whole band 2C since the last count, whatever load it
-//! holds against; with the loop open, when it is above breakaway.
+//! Torque must move an axis that stands (no count for 10 ms) when it changes by more than friction's whole band 2C, whatever load
+//! it holds against; with the loop open, when it is above breakaway.
 
 use crate::fault::Fault;
 use crate::law::{Law, held_within, settled};
@@ -47,7 +47,8 @@ pub(crate) struct Monitor {
     errors: u32,
     errors_ticks: u32,
     stuck_ticks: u32,
-    /// Least and largest command since the last count.
+    /// Ticks since the last count; least and largest command once the axis must be standing.
+    quiet_ticks: u32,
     volts_since_count: (f64, f64),
     /// Work of the command since rest, V counts; `None` once judged.
     work_v_counts: Option<f64>,
@@ -102,7 +103,8 @@ impl Monitor {
             libm::fabs(moved) > law.top_counts_us * gap_us + COUNT_MARGIN
         };
 
-        if moved != 0.0 || !applied.is_enabled {
+        self.quiet_ticks = if moved == 0.0 { self.quiet_ticks.saturating_add(1) } else { 0 };
+        if self.quiet_ticks <= law.ticks.quiet || !applied.is_enabled {
             self.volts_since_count = (applied.volts, applied.volts);
         }
         let (low_v, high_v) = self.volts_since_count;

@@ -2,6 +2,7 @@
 
 use crate::rig::{Rig, homed, homed_at};
 use froude_control::config::Config;
+use froude_control::fault::StopCategory;
 use froude_control::request::{Move, Request};
 use froude_control::status::Phase;
 
@@ -136,5 +137,21 @@ fn a_held_axis_does_not_hunt() {
     for _ in 0..40_000 {
         let status = rig.step(None).status.axes[0];
         assert!((status.count - from).abs() <= 2, "{status:?}");
+    }
+}
+
+/// A stop in the first tenth of a gentle move: the reference makes 70 µm and the axis may stay where friction holds it.
+#[test]
+fn an_axis_that_friction_holds_is_not_called_stuck() {
+    let mut config = Config::PUBLISHED;
+    (config.axes[0].mode_hz, config.axes[0].mode_damping) = (3.0, 0.05);
+    for ticks in [50, 223, 400] {
+        let mut rig = homed(&config, 0.02);
+        let profile = Move { target_m: 2.0, speed_m_s: 0.05, acceleration_m_s2: 0.1, jerk_m_s3: 2.0, is_shaped: true };
+        rig.step(Some(Request::Move { axis: 0, profile }));
+        for i in 0..8000 {
+            let request = (i == ticks).then_some(Request::Stop(StopCategory::Two));
+            assert_eq!(rig.step(request).status.fault, None, "stop at {ticks}, tick {i}");
+        }
     }
 }
