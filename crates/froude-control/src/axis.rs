@@ -140,7 +140,14 @@ impl Axis {
         (self.was_low_end, self.was_high_end) = (input.is_low_end, input.is_high_end);
         let is_enabled = self.command.is_enabled;
         let current_a = if input.current_a.is_finite() { input.current_a } else { 0.0 };
-        let applied = Applied { volts: self.command.volts, is_enabled, error_m: self.error_m() };
+        let applied = Applied {
+            volts: self.command.volts,
+            is_enabled,
+            error_m: self.error_m(),
+            reference_m_s: self.reference.speed_m_s,
+            speed_m_s: self.speed_m_s,
+            feedback_v: self.feedback.last_v(),
+        };
         let measured = self.monitor.step(&self.law, moved, gap_us, &AxisInput { current_a, ..*input }, applied);
         let is_low_allowed = self.phase == Phase::Homing;
 

@@ -21,6 +21,7 @@ pub(crate) struct Feedback {
     integral_v: f64,
     derivative_rad_s: f64,
     last_error_rad: f64,
+    last_v: f64,
 }
 
 /// A command and whether the range cut it.
@@ -31,6 +32,11 @@ pub(crate) struct Cut {
 }
 
 impl Feedback {
+    /// The last command without feed-forward, V.
+    pub(crate) fn last_v(&self) -> f64 {
+        self.last_v
+    }
+
     pub(crate) fn step(&mut self, law: &Law, reference: State, position_m: f64, added_v: f64) -> Cut {
         let error = (reference.position_m - position_m) * law.rad_per_m;
         let slope = (error - self.last_error_rad) * law.per_tick_s;
@@ -43,7 +49,8 @@ impl Feedback {
         let step_v =
             if is_standing && libm::fabs(error) <= 1.5 * law.count_rad { 0.0 } else { law.integral_per_tick * error };
         let integral = self.integral_v + step_v;
-        let wanted = law.proportional * error + law.derivative * self.derivative_rad_s + integral + forward + added_v;
+        self.last_v = law.proportional * error + law.derivative * self.derivative_rad_s + integral;
+        let wanted = self.last_v + forward + added_v;
         let volts = held_within(wanted, law.limit_v);
         let is_saturated = volts != wanted;
         if !is_saturated || step_v * wanted < 0.0 {

@@ -44,6 +44,8 @@ pub(crate) struct Law {
     pub top_counts_us: f64,
     /// What the speed estimate may lag behind for every volt above friction, m/s.
     pub lag_m_s_v: f64,
+    /// Speed that a volt gives the whole inertia in a tick, m/s.
+    pub m_s_per_v_tick: f64,
     /// Share of the thermal model's lag in a tick.
     pub heat_share: f64,
     pub per_continuous_a: f64,
@@ -66,6 +68,7 @@ pub(crate) struct TickCounts {
     pub mismatch: u32,
     pub stuck: u32,
     pub quiet: u32,
+    pub astray: u32,
     pub saturation: u32,
 }
 
@@ -76,6 +79,8 @@ const ACCELERATION_MARGIN: f64 = 10.0;
 const REST_S: f64 = 0.1;
 /// Without a count for this long it stands, or passes zero speed, s: at 1 m/s² a count either side of a reversal takes 4.5 ms.
 const QUIET_S: f64 = 10e-3;
+/// Running from the reference against the torque for this long is reversed polarity, s.
+const ASTRAY_S: f64 = 5e-3;
 /// Above the peak current for this long is over-current, s.
 const OVER_CURRENT_S: f64 = 1e-3;
 /// Off the commanded current for this long is over-current, s.
@@ -117,6 +122,7 @@ impl Law {
             jump_counts_us2: ACCELERATION_MARGIN * motor_m_s2 * rad_per_m / count_rad * 1e-12,
             top_counts_us: 2.0 * limits.speed_m_s * rad_per_m / count_rad * 1e-6,
             lag_m_s_v: tick_s / (share(SPEED_FILTER_HZ) * volts_inertia),
+            m_s_per_v_tick: tick_s / volts_inertia,
             heat_share: tick_s / limits.thermal_time_s,
             per_continuous_a: 1.0 / limits.continuous_current_a,
             ticks: TickCounts {
@@ -126,6 +132,7 @@ impl Law {
                 mismatch: ticks(MISMATCH_S),
                 stuck: ticks(limits.stuck_s),
                 quiet: ticks(QUIET_S),
+                astray: ticks(ASTRAY_S),
                 saturation: ticks(limits.saturation_s),
             },
             stopping: StoppingWay::new(coast, limits.acceleration_m_s2),

@@ -6,12 +6,15 @@
 //! | encoder stuck | that change, to no count at all; or no count for the set time although the torque must have moved the axis |
 //! | encoder illegal | more illegal transitions within a second than allowed |
 //! | polarity | from rest, the motor has taken in work over 4/5 of the set way, and in closed loop the axis is not where it was asked to be |
+//! | polarity | under way, the axis runs from its reference against torque above breakaway for 5 ms, a fifth of the following error away |
 //! | over-current | above the peak for 1 ms, or off the command by a quarter of the peak for 10 ms |
 //! | overload | (I/I_c)² through a first-order lag of the winding's time constant passes 1 |
 //!
 //! A motor cannot stop within a tick; its encoder can. That is why a count that stands still at speed is a fault at once.
 //! Torque must move an axis that stands (no count for 10 ms) when it changes by more than friction's whole band 2C, whatever load
-//! it holds against; with the loop open, when it is above breakaway.
+//! it holds against; with the loop open, when it is above breakaway. An axis that has just moved with its reference must go on when
+//! the feedback adds more than stiction: it is stuck as soon as that addition would have carried it twenty counts. That finds a dead
+//! encoder at 5 mm/s within 50 ms, before the loop has run away from it.
 
 use crate::fault::Fault;
 use crate::law::{Law, held_within, settled};
@@ -25,6 +28,16 @@ const STUCK_ERROR_COUNTS: f64 = 8.0;
 const BREAKAWAY_FACTOR: f64 = 1.5;
 /// Part of the configured way at which polarity is judged, so that the axis is at rest or cut within the whole.
 const POLARITY_PART: f64 = 0.8;
+/// What feedback may have to add before an axis that stopped goes on in its direction: stiction above C_eff, and the derivative's answer
+/// to the last count, as a factor of C_eff.
+const STICTION_FACTOR: f64 = 1.25;
+/// Way that such an addition must have carried the axis, counts.
+const STUCK_COUNTS: f64 = 20.0;
+/// Below this speed of the reference its friction feed-forward is not whole, m/s.
+const STEADY_M_S: f64 = 2e-3;
+/// Running away: part of the following error, and speed, m/s.
+const ASTRAY_PART: f64 = 0.2;
+const ASTRAY_M_S: f64 = 0.03;
 const MISMATCH_PART: f64 = 0.25;
 /// Above this part of its limit the winding is too warm to clear an overload.
 const COOL: f64 = 0.9;
@@ -36,12 +49,22 @@ pub(crate) struct Applied {
     pub is_enabled: bool,
     /// Reference less position, m; `None` with the loop open.
     pub error_m: Option<f64>,
+    pub reference_m_s: f64,
+    /// Estimate of the speed, m/s.
+    pub speed_m_s: f64,
+    /// Feedback's part of the command, V.
+    pub feedback_v: f64,
 }
 
 /// Detectors of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Monitor {
     last_moved: f64,
+    /// Feedback's part of the command at the last count under way; the speed and way that more of it would have given since.
+    carried_v: Option<f64>,
+    unseen_m_s: f64,
+    unseen_m: f64,
+    astray_ticks: u32,
     last_gap_us: f64,
     last_errors: Option<u32>,
     errors: u32,
@@ -74,7 +97,40 @@ impl Monitor {
         self.rest(law, moved);
         let polarity = self.polarity(law, moved, applied);
         let current = self.current(law, input.current_a, applied);
-        encoder.or(polarity).or(current)
+        let is_carried_on = self.has_unseen_way(law, moved, applied);
+        let astray = self.runs_away(law, applied);
+        encoder.or(is_carried_on.then_some(Fault::EncoderStuck)).or(polarity).or(astray).or(current)
+    }
+
+    /// Feedback has added what must have carried on an axis that was under way, and no count came.
+    fn has_unseen_way(&mut self, law: &Law, moved: i32, applied: Applied) -> bool {
+        let direction = libm::copysign(1.0, applied.reference_m_s);
+        let is_steady =
+            applied.is_enabled && applied.error_m.is_some() && applied.reference_m_s * direction > STEADY_M_S;
+        let is_with_it = f64::from(moved) * law.m_per_count * direction > 0.0;
+        if !is_steady || moved != 0 {
+            self.carried_v = (is_steady && is_with_it).then_some(applied.feedback_v);
+            (self.unseen_m_s, self.unseen_m) = (0.0, 0.0);
+            return false;
+        }
+        let Some(carried_v) = self.carried_v else { return false };
+        let added_v = (applied.feedback_v - carried_v) * direction - STICTION_FACTOR * law.volts_coulomb;
+        self.unseen_m_s = settled(libm::fmax(0.0, self.unseen_m_s + added_v * law.m_s_per_v_tick));
+        self.unseen_m = settled(self.unseen_m + self.unseen_m_s * law.tick_s);
+        self.unseen_m * law.counts_per_m > STUCK_COUNTS
+    }
+
+    /// The axis goes away from its reference although the torque is against it.
+    fn runs_away(&mut self, law: &Law, applied: Applied) -> Option<Fault> {
+        let error_m = applied.error_m.unwrap_or(0.0);
+        let is_astray = applied.is_enabled
+            && libm::fabs(error_m) > ASTRAY_PART * law.limits.following_error_m
+            && libm::fabs(applied.speed_m_s) > ASTRAY_M_S
+            && error_m * applied.speed_m_s < 0.0
+            && error_m * applied.volts > 0.0
+            && libm::fabs(applied.volts) > BREAKAWAY_FACTOR * law.volts_coulomb;
+        self.astray_ticks = if is_astray { self.astray_ticks.saturating_add(1) } else { 0 };
+        (self.astray_ticks >= law.ticks.astray).then_some(Fault::Polarity)
     }
 
     fn encoder(&mut self, law: &Law, moved: f64, gap_us: f64, input: &AxisInput, applied: Applied) -> Option<Fault> {

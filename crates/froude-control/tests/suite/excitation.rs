@@ -11,7 +11,7 @@ use crate::rig::{Rig, homed_at};
 fn standing_at(position_m: f64) -> Rig {
     let mut rig = homed_at(0.02);
     let profile =
-        Move { target_m: position_m, speed_m_s: 0.5, acceleration_m_s2: 1.0, jerk_m_s3: 0.0, is_shaped: false };
+        Move { target_m: position_m, speed_m_s: 0.3, acceleration_m_s2: 1.0, jerk_m_s3: 0.0, is_shaped: false };
     rig.until(Some(Request::Move { axis: 0, profile }), 30.0, |o| o.status.axes[0].phase == Phase::Holding);
     for _ in 0..4000 {
         rig.step(None);
