@@ -190,7 +190,18 @@ wire_code!(Fault {
     NotFinite,
     HomingFailed,
 });
-wire_code!(Refusal { Faulted, Disabled, NotHomed, Busy, OutOfRange, BeyondTravel, NoSuchAxis, NotCleared, NotReady });
+wire_code!(Refusal {
+    Faulted,
+    Disabled,
+    NotHomed,
+    Busy,
+    OutOfRange,
+    BeyondTravel,
+    NoSuchAxis,
+    NotCleared,
+    NotReady,
+    EndSwitchOpen
+});
 wire_code!(Phase { Disabled, Holding, Moving, Homing, Exciting, Stopping, Coasting });
 wire_code!(StopCategory { Zero, One, Two });
 
@@ -327,5 +338,37 @@ impl Wire for Request {
             8 => Self::Clear(Wire::take(from)?),
             _ => return None,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::{Fault, Phase, Reader, Refusal, Wire};
+    use std::format;
+    use std::vec::Vec;
+
+    /// `Name = code,` of an enumeration, out of its source: it may grow there without the compiler telling us here.
+    fn codes(source: &str, enumeration: &str) -> Vec<(std::string::String, u8)> {
+        let body = source.split(&format!("pub enum {enumeration} {{")).nth(1).unwrap().split("\n}").next().unwrap();
+        let lines = body.lines().filter_map(|line| line.trim().trim_end_matches(',').split_once(" = "));
+        lines.map(|(name, code)| (name.into(), code.parse().unwrap())).collect()
+    }
+
+    #[test]
+    fn every_code_of_control_has_its_place_on_the_wire() {
+        let faults = codes(include_str!("../../froude-control/src/fault.rs"), "Fault");
+        let status = include_str!("../../froude-control/src/status.rs");
+        let (refusals, phases) = (codes(status, "Refusal"), codes(status, "Phase"));
+        assert!(faults.len() >= 18 && refusals.len() >= 10 && phases.len() >= 7);
+        for (name, code) in faults {
+            assert_eq!(format!("{:?}", Fault::take(&mut Reader::new(&[code])).unwrap()), name);
+        }
+        for (name, code) in refusals {
+            assert_eq!(format!("{:?}", Refusal::take(&mut Reader::new(&[code])).unwrap()), name);
+        }
+        for (name, code) in phases {
+            assert_eq!(format!("{:?}", Phase::take(&mut Reader::new(&[code])).unwrap()), name);
+        }
     }
 }

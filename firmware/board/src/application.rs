@@ -44,8 +44,8 @@ pub struct Application {
 #[derive(Default)]
 struct Requests {
     is_host_heard: bool,
-    /// To be carried out at the next tick.
-    waiting: Option<(u16, Request)>,
+    /// To be carried out, one a tick; a stop goes first.
+    waiting: Deque<(u16, Request), 8>,
     /// The last answer, for a host that did not get it.
     answered: Option<Ack>,
 }
@@ -82,7 +82,7 @@ impl Application {
             controller: None,
             output: NOTHING,
             tick: 0,
-            requests: Requests { is_host_heard: false, waiting: None, answered: None },
+            requests: Requests { is_host_heard: false, waiting: Deque::new(), answered: None },
             lock_step: None,
             link: Link {
                 is_greeted: false,
@@ -163,7 +163,7 @@ impl Application {
                 is_amplifier_ready: axis.is_amplifier_ready,
             }
         };
-        let waiting = self.requests.waiting.take();
+        let waiting = self.requests.waiting.pop_front();
         let tick = Tick {
             latched_us: latched.latched_us,
             axes: [input(0), input(1)],
@@ -258,7 +258,7 @@ impl Application {
             _ => {}
         }
         self.requests.is_host_heard = true;
-        let is_stale = matches!(received.arrival, Arrival::Late);
+        let is_stale = matches!(received.arrival, Arrival::Late | Arrival::Duplicate);
         match received.message {
             ToBoard::Hello | ToBoard::ForeignHello { .. } | ToBoard::Heartbeat => {}
             ToBoard::TimeRequest { host_sent_us } => {
@@ -307,11 +307,20 @@ impl Application {
         if let Some(ack) = self.requests.answered.filter(|ack| ack.id == id) {
             return self.link.say(FromBoard::Ack(ack));
         }
-        // A late frame is older than one that was carried out: its sender has moved on, except for a stop.
+        // A late or repeated frame is older than one that was carried out: its sender has moved on, except for a stop.
         if is_stale && !matches!(request, Request::Stop(_)) {
             return;
         }
-        self.requests.waiting = Some((id, request));
+        let waiting = &mut self.requests.waiting;
+        if waiting.iter().any(|(other, _)| *other == id) {
+            return;
+        }
+        // Full: nobody answers, and the host asks again.
+        let _ = if matches!(request, Request::Stop(_)) {
+            waiting.push_front((id, request))
+        } else {
+            waiting.push_back((id, request))
+        };
     }
 
     fn configure(&mut self, config: &froude_control::config::Config) -> Verdict {

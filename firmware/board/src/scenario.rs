@@ -17,7 +17,7 @@ pub const CHAPTER: u32 = 24_000;
 pub const TICKS: u32 = 5 * CHAPTER;
 
 /// The tick of a chapter at which something breaks.
-const BREAK: u32 = 16_000;
+const BREAK: u32 = 16_500;
 
 /// The story so far.
 #[derive(Debug, Clone, Copy)]
@@ -100,14 +100,14 @@ fn request(chapter: u32, at: u32) -> Option<Request> {
         12 => Some(Request::Enable { axis: 1 }),
         20 => Some(Request::Home { axis: 0 }),
         22 => Some(Request::Home { axis: 1 }),
-        6_000 => go(0, 0.25, 0.0),
-        6_004 => go(1, 0.2, 8.0),
-        7_000 => go(0, 0.1, 0.0), // at the wrong moment
-        7_400 => Some(Request::Stop(StopCategory::Two)),
-        10_000 => Some(Request::Excite { axis: 0, excitation: excitation(chapter) }),
-        10_400 => go(1, 0.03, 0.0),
-        13_000 => go(0, 0.03, 20.0),
-        15_600 => go(1, 0.06, 8.0), // under way when something breaks
+        6_800 => go(0, 0.25, 0.0),
+        6_804 => go(1, 0.2, 8.0),
+        7_800 => go(0, 0.1, 0.0), // at the wrong moment
+        8_200 => Some(Request::Stop(StopCategory::Two)),
+        10_800 => Some(Request::Excite { axis: 0, excitation: excitation(chapter) }),
+        11_200 => go(1, 0.05, 0.0),
+        13_800 => go(0, 0.03, 20.0),
+        16_200 => go(1, 0.09, 8.0), // under way when something breaks
         _ => None,
     }
 }

@@ -74,7 +74,18 @@ fn any_phase() -> impl Strategy<Value = Phase> {
 
 fn any_refusal() -> impl Strategy<Value = Refusal> {
     use Refusal::*;
-    select(vec![Faulted, Disabled, NotHomed, Busy, OutOfRange, BeyondTravel, NoSuchAxis, NotCleared, NotReady])
+    select(vec![
+        Faulted,
+        Disabled,
+        NotHomed,
+        Busy,
+        OutOfRange,
+        BeyondTravel,
+        NoSuchAxis,
+        NotCleared,
+        NotReady,
+        EndSwitchOpen,
+    ])
 }
 
 fn any_excitation() -> impl Strategy<Value = Excitation> {

@@ -1,4 +1,4 @@
-//! Pin multiplexer (TRM SPRUH73, §9.3: control module, conf_<pin> registers at 0x44E1_0800 and up).
+//! Pin multiplexer (TRM SPRUH73, §9.3: control module, registers `conf_…` at 0x44E1_0800 and up).
 //!
 //! Every line is on the BeagleBone Black's headers and used by neither eMMC nor the boot pins. Inputs are pulled up, and a switch
 //! that opens (or a wire that breaks) reads as pressed.

@@ -35,6 +35,8 @@ pub const GIC_CPU: usize = 0x1e00_0000;
 pub const GIC_DISTRIBUTOR: usize = 0x1e00_1000;
 /// Interrupt of timers 0 and 1: the fifth shared one.
 pub const TIMER_INTERRUPT: u32 = 36;
+/// Interrupt of UART 0: the thirteenth.
+pub const UART_INTERRUPT: u32 = 44;
 
 /// Amperes of a count of the current.
 const A_PER_COUNT: f64 = 1e-3;
@@ -65,6 +67,10 @@ pub unsafe fn on_interrupt(latch: &TickLatch) {
     if interrupt == TIMER_INTERRUPT {
         timer.clear();
         latch.latch(system.read(COUNTER), [0; 2]);
+    } else if interrupt == UART_INTERRUPT {
+        // It only wakes the main loop, which reads; the next sleep lets it in again.
+        // SAFETY: as above.
+        Pl011::new(unsafe { Memory::at(UART) }).interrupt_on_byte(false);
     }
     gic.complete(interrupt);
 }
@@ -90,9 +96,17 @@ impl Realview {
             unsafe { (Pl011::new(Memory::at(UART)), Sp804::new(Memory::at(TIMER)), Memory::at(SYSTEM), gic()) };
         uart.start();
         gic.enable(TIMER_INTERRUPT);
+        gic.enable(UART_INTERRUPT);
         timer.start(250); // of its 1 MHz
         let time = Microseconds::starting_at(system.read(COUNTER));
         Self { uart, system, latch, taken: 0, time, rig: Rig::default(), command: Command::default(), fed: 0 }
+    }
+
+    /// Nothing waits to be done, and whatever comes next will interrupt: the processor may sleep. To be asked, and slept on, with
+    /// interrupts held back. (The emulator has more time for the line while the processor sleeps; the BeagleBone never does.)
+    pub fn may_sleep(&self) -> bool {
+        self.uart.interrupt_on_byte(true);
+        self.uart.is_quiet() && self.latch.number() == self.taken
     }
 
     /// The 24 MHz counter.

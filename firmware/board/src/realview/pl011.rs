@@ -8,9 +8,12 @@ const DATA: usize = 0x00;
 const FLAGS: usize = 0x18;
 const LINE_CONTROL: usize = 0x2c;
 const CONTROL: usize = 0x30;
+const INTERRUPT_MASK: usize = 0x38;
 
 const RECEIVE_EMPTY: u32 = 1 << 4;
 const TRANSMIT_FULL: u32 = 1 << 5;
+/// A byte has come, or has waited for its successor.
+const RECEIVE_INTERRUPTS: u32 = 1 << 4 | 1 << 6;
 /// In the data register, beside the byte: the one before it was overwritten.
 const OVERRUN: u32 = 1 << 11;
 
@@ -31,6 +34,16 @@ impl<R: Registers> Pl011<R> {
         self.registers.write(CONTROL, 0);
         self.registers.write(LINE_CONTROL, 0b111 << 4);
         self.registers.write(CONTROL, 0b11 << 8 | 1);
+    }
+
+    /// No byte is waiting.
+    pub fn is_quiet(&self) -> bool {
+        self.registers.read(FLAGS) & RECEIVE_EMPTY != 0
+    }
+
+    /// Whether the next byte shall interrupt.
+    pub fn interrupt_on_byte(&self, shall: bool) {
+        self.registers.write(INTERRUPT_MASK, if shall { RECEIVE_INTERRUPTS } else { 0 });
     }
 
     /// The next byte, if one has come.

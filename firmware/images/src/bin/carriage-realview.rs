@@ -7,7 +7,7 @@ use core::cell::UnsafeCell;
 use froude_board::Application;
 use froude_board::realview::{Realview, on_interrupt};
 use froude_board::tick::TickLatch;
-use froude_images::boot::enable_interrupts;
+use froude_images::boot::{enable_interrupts, wait_for_interrupt, without_interrupts};
 
 static LATCH: TickLatch = TickLatch::new();
 
@@ -27,7 +27,13 @@ pub extern "C" fn carriage_main() -> ! {
     assert!(board.counter() != 7, "this must not link");
     application.announce(&mut board);
     loop {
-        application.turn(&mut board);
+        if !application.turn(&mut board) {
+            without_interrupts(|| {
+                if board.may_sleep() {
+                    wait_for_interrupt();
+                }
+            });
+        }
     }
 }
 
