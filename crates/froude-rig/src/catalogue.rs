@@ -14,7 +14,7 @@
 //! | host silent | host silent | 0.21 s |
 //! | jam beyond the peak force | following error, saturated, stuck (the counts cannot tell), over-current | 1.5 s |
 //! | no torque at all | following error, stuck, saturated, soft limit | 3 s |
-//! | a dead encoder, a jam or no torque within the last counts of a move | or none: the axis stands on its target | – |
+//! | a dead encoder, a jam or no torque within the last counts of a move | the above, or none: the axis stands on its target | as above |
 //! | chain break | none needed: the motor's encoder cannot see it | – |
 //!
 //! A detection that comes from somewhere else first (a following error because of the same cause) is what the set is for. In every
@@ -163,8 +163,16 @@ impl Outcome {
     #[must_use]
     pub fn is_allowed(&self) -> bool {
         let accepted = self.injection.accepted();
-        let is_unseen =
-            matches!(self.injection, Injection::TorqueLoss(_) | Injection::FrictionJam(_)) && self.has_arrived;
+        // Broken within the last counts of its move, these show nothing until the axis is asked to move again.
+        let is_unseen = self.has_arrived
+            && matches!(
+                self.injection,
+                Injection::TorqueLoss(_)
+                    | Injection::FrictionJam(_)
+                    | Injection::EncoderSilent
+                    | Injection::EncoderStuck
+                    | Injection::EncoderReversed
+            );
         let is_told = match self.detected {
             Some((fault, after_s)) => accepted.contains(&fault) && after_s <= self.injection.latest_s() + 0.5 * TICK_S,
             None => accepted.is_empty() || is_unseen,
