@@ -9,11 +9,12 @@
 //! | tick late (over 1 ms) | tick late | 2 ticks |
 //! | encoder jump (over 20 counts) | jump, or stuck when the jump cancels the motion | 2 ticks |
 //! | encoder silent, stuck, reversed | stuck, jump, polarity, following error, saturated, over-current, over-speed | 1.5 s (at creep; at 0.06 m/s and more, 2 ticks) |
-//! | illegal transitions (over 100 a second) | illegal, jump | 0.5 s |
+//! | illegal transitions (over 100 a second) | illegal, jump, stuck (lost counts cancel the motion) | 0.5 s |
 //! | current runaway | over-current, saturated, over-speed, following error, jump (a light motor outruns its load) | 15 ms |
 //! | host silent | host silent | 0.21 s |
-//! | jam beyond the peak force | following error, saturated, stuck (the counts cannot tell), over-current; or none on its target | 1.5 s |
-//! | no torque at all | following error, stuck, saturated, soft limit; or none on its target | 3 s |
+//! | jam beyond the peak force | following error, saturated, stuck (the counts cannot tell), over-current | 1.5 s |
+//! | no torque at all | following error, stuck, saturated, soft limit | 3 s |
+//! | a dead encoder, a jam or no torque within the last counts of a move | the above, or none: the axis stands on its target | as above |
 //! | chain break | none needed: the motor's encoder cannot see it | – |
 //!
 //! A detection that comes from somewhere else first (a following error because of the same cause) is what the set is for. In every
@@ -45,7 +46,7 @@ impl Injection {
             Self::TickLate(_) => &[Fault::TickLate],
             Self::HostSilent => &[Fault::HostSilent],
             Self::EncoderJump(_) => &[Fault::EncoderJump, Fault::EncoderStuck],
-            Self::EncoderFlips(_) => &[Fault::EncoderIllegal, Fault::EncoderJump],
+            Self::EncoderFlips(_) => &[Fault::EncoderIllegal, Fault::EncoderJump, Fault::EncoderStuck],
             Self::EncoderSilent | Self::EncoderStuck | Self::EncoderReversed => &[
                 Fault::EncoderStuck,
                 Fault::EncoderJump,
@@ -162,8 +163,16 @@ impl Outcome {
     #[must_use]
     pub fn is_allowed(&self) -> bool {
         let accepted = self.injection.accepted();
-        let is_unseen =
-            matches!(self.injection, Injection::TorqueLoss(_) | Injection::FrictionJam(_)) && self.has_arrived;
+        // Broken within the last counts of its move, these show nothing until the axis is asked to move again.
+        let is_unseen = self.has_arrived
+            && matches!(
+                self.injection,
+                Injection::TorqueLoss(_)
+                    | Injection::FrictionJam(_)
+                    | Injection::EncoderSilent
+                    | Injection::EncoderStuck
+                    | Injection::EncoderReversed
+            );
         let is_told = match self.detected {
             Some((fault, after_s)) => accepted.contains(&fault) && after_s <= self.injection.latest_s() + 0.5 * TICK_S,
             None => accepted.is_empty() || is_unseen,
