@@ -238,7 +238,7 @@ mod tests {
 
     #[test]
     fn without_friction_the_centre_of_mass_obeys_newton() {
-        let p = Stepper::new(&axis(), 1e-3, 1e-3).unwrap().run(&[1.0; 2001], 0.0).unwrap();
+        let p = Stepper::new(&axis(), 1e-3, 1e-3).unwrap().run(&vec![1.0; 2001], 0.0).unwrap();
         // 6 N on 6 kg: 1 m/s² for 2 s; the motor leads by the chain's stretch of the load, M/(m + M) · F_chain/K, and swings about it.
         let lead = 4.0 / 2e4 * 4.0 / 6.0;
         assert!((p[2000] - 2.0 - lead).abs() < lead);
@@ -247,8 +247,8 @@ mod tests {
     #[test]
     fn steps_of_any_length_agree_where_friction_does_not_reverse() {
         let axis = TwoMass { motor_coulomb_n: 1.0, load_coulomb_n: 1.5, load_viscous_n_s_m: 2.0, ..axis() };
-        let coarse = Stepper::new(&axis, 1e-3, 1e-3).unwrap().run(&[2.0; 3000], 0.0).unwrap();
-        let fine = Stepper::new(&axis, 1e-3, 1e-5).unwrap().run(&[2.0; 3000], 0.0).unwrap();
+        let coarse = Stepper::new(&axis, 1e-3, 1e-3).unwrap().run(&vec![2.0; 3000], 0.0).unwrap();
+        let fine = Stepper::new(&axis, 1e-3, 1e-5).unwrap().run(&vec![2.0; 3000], 0.0).unwrap();
         // Only the piece in which the load breaks away is rounded: 1.5 N over 1/32 ms on 6 kg, coasting for 3 s.
         let worst = coarse.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(worst < 1.5 * 1e-3 / 32.0 / 6.0 * 3.0, "{worst}");

@@ -15,7 +15,8 @@
 //!
 //! **What the motor cannot tell.** How viscous and Coulomb friction are split between motor and load shows only in the vibration
 //! and in the moments of sticking. The sums are coefficients; the splits are fractions in 0…1 with a prior that knows
-//! nothing (mean ½, standard deviation of a uniform one), and count as identified only when their interval lies inside 0…1.
+//! nothing (mean ½, standard deviation of a uniform one), and count as identified only when their interval lies inside 0…1 and is
+//! shorter than half of it.
 //!
 //! # Source
 //!
@@ -88,7 +89,7 @@ pub struct Split {
     pub share_of_motor: f64,
     /// Its interval.
     pub interval: [f64; 2],
-    /// Whether the interval lies inside 0…1.
+    /// Whether the interval lies inside 0…1 and is shorter than half of it.
     pub is_identified: bool,
 }
 
@@ -281,12 +282,12 @@ impl<'a> Record<'a> {
         let splits = [(6, "B_m/B"), (7, "C_m/C")].map(|(j, name)| {
             let half = covariance.factor * covariance.blocks[(j, j)].sqrt();
             let interval = [theta[j] - half, theta[j] + half];
-            Split { name, share_of_motor: theta[j], interval, is_identified: interval[0] > 0.0 && interval[1] < 1.0 }
+            Split { name, share_of_motor: theta[j], interval, is_identified: is_told(interval) }
         });
         let mut findings = Vec::new();
         for s in splits.iter().filter(|s| !s.is_identified) {
             findings.push(format!(
-                "{} is not identifiable from the motor's side: its interval [{:.2}, {:.2}] is not inside 0 to 1",
+                "{} is not identifiable from the motor's side: its interval [{:.2}, {:.2}] does not lie inside 0 to 1 or covers half of it",
                 s.name, s.interval[0], s.interval[1]
             ));
         }
@@ -394,6 +395,11 @@ impl<'a> Record<'a> {
     }
 }
 
+/// Whether an interval of a share says something: inside 0…1, and shorter than half of it.
+fn is_told([low, high]: [f64; 2]) -> bool {
+    low > 0.0 && high < 1.0 && high - low < 0.5
+}
+
 struct Covariance {
     classical: Mat<f64>,
     hac: Mat<f64>,
@@ -447,12 +453,11 @@ mod tests {
         }
     }
 
-    /// A slow square wave alone hardly swings the chain: the shares of viscous friction cannot be told, and that is said.
+    /// Under a disturbing force a third of friction the share of viscous friction drowns (at 0.05 N it is known to 0.05): that is said.
     #[test]
     fn a_split_that_the_record_does_not_show_is_not_reported_as_identified() {
-        let axis = TwoMass { stiffness_n_m: 2e6, damping_n_s_m: 2000.0, ..carriage() };
-        let noise = Noise { force_std_n: 0.2, ..Noise::encoder_only() };
-        let log = record(&axis, 1000.0, 10.0, &noise, 1).unwrap();
+        let noise = Noise { force_std_n: 0.8, ..Noise::encoder_only() };
+        let log = record(&carriage(), 1000.0, 10.0, &noise, 1).unwrap();
         let report = identify_flexible(&log, &FlexibleOptions::new(MotorSide::MCD)).unwrap();
         let split = &report.splits[0];
         assert!(!split.is_identified, "{split:?}");
