@@ -27,8 +27,8 @@ impl Coast {
     pub fn of(drive: &Drive) -> Self {
         let per_motor = drive.sprocket_radius_m / drive.gear_ratio;
         Self {
-            coulomb_m_s2: drive.coulomb_lower_n_m / drive.inertia_kg_m2 * per_motor,
-            viscous_1_s: drive.viscous_n_m_s_rad / drive.inertia_kg_m2,
+            coulomb_m_s2: drive.coulomb_lower_n_m / drive.coast_inertia_kg_m2 * per_motor,
+            viscous_1_s: drive.viscous_n_m_s_rad / drive.coast_inertia_kg_m2,
         }
     }
 

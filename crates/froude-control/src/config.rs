@@ -22,8 +22,10 @@ pub struct Gains {
 /// Friction and inertia, referred to the motor, for feed-forward and for the coast distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
-    /// J_eff, kg m².
+    /// J_eff, kg m²: for the feed-forward.
     pub inertia_kg_m2: f64,
+    /// The largest J_eff that any body gives the axis, kg m², its water and added mass included: for the coast distance.
+    pub coast_inertia_kg_m2: f64,
     /// B_eff, N m s/rad.
     pub viscous_n_m_s_rad: f64,
     /// C_eff, N m.
@@ -274,6 +276,7 @@ impl AxisConfig {
             ("gains.integral_v_rad_s", gains.integral_v_rad_s, 0.0, 1e6),
             ("gains.derivative_filter_hz", gains.derivative_filter_hz, 0.1, nyquist_hz),
             ("drive.inertia_kg_m2", drive.inertia_kg_m2, 1e-9, 1e3),
+            ("drive.coast_inertia_kg_m2", drive.coast_inertia_kg_m2, drive.inertia_kg_m2, 1e3),
             ("drive.viscous_n_m_s_rad", drive.viscous_n_m_s_rad, 0.0, 1e3),
             ("drive.coulomb_n_m", drive.coulomb_n_m, 0.0, 1e3),
             ("drive.coulomb_lower_n_m", drive.coulomb_lower_n_m, 0.0, drive.coulomb_n_m),
@@ -345,6 +348,7 @@ impl AxisConfig {
         },
         drive: Drive {
             inertia_kg_m2: 1.502e-5,
+            coast_inertia_kg_m2: 1.502e-5,
             viscous_n_m_s_rad: 4.657e-6,
             coulomb_n_m: 3.9e-3,
             coulomb_lower_n_m: 3.5e-3,

@@ -209,6 +209,7 @@ wire_struct!(Move { target_m, speed_m_s, acceleration_m_s2, jerk_m_s3, is_shaped
 wire_struct!(Gains { proportional_v_rad, derivative_v_s_rad, integral_v_rad_s, derivative_filter_hz });
 wire_struct!(Drive {
     inertia_kg_m2,
+    coast_inertia_kg_m2,
     viscous_n_m_s_rad,
     coulomb_n_m,
     coulomb_lower_n_m,

@@ -130,6 +130,7 @@ fn axis_config(d: &mut Draw) -> AxisConfig {
         },
         drive: Drive {
             inertia_kg_m2: d.f(),
+            coast_inertia_kg_m2: d.f(),
             viscous_n_m_s_rad: d.f(),
             coulomb_n_m: d.f(),
             coulomb_lower_n_m: d.f(),

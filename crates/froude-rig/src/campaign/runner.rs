@@ -329,7 +329,6 @@ impl Session<'_> {
 
     /// Still, motion, still.
     fn motion(&mut self) -> Result<(), RunnerError> {
-        let axis = self.axis();
         let still_s = self.setting.asked.still_s;
         self.wait(still_s)?;
         self.event(EventKind::Phase, "the motion begins")?;

@@ -17,7 +17,7 @@ use crate::parameters::AxisParameters;
 use crate::twin::{TwinConfig, TICK_US};
 
 /// End switches open this far before the hard stops, m.
-const SWITCH_MARGIN_M: f64 = 0.02;
+const SWITCH_MARGIN_M: f64 = 0.05;
 /// The part of declared friction that a coast distance may count on, where no standard uncertainty is declared.
 const SURE_FRICTION: f64 = 0.85;
 
@@ -40,20 +40,21 @@ pub enum SetupError {
     },
 }
 
-/// The controller's configuration from the campaign's declarations. `drag_n_s2_m2` is the declared drag of the body (0 when dry).
+/// The controller's configuration from the campaign's declarations. `towed_kg` is the most that a body, its water and its added
+/// mass may weigh: it lengthens the coast. No drag is fed forward, since the body is dry or wet from run to run.
 ///
 /// # Errors
 ///
 /// [`SetupError::Missing`]: inertia and Coulomb friction must be declared, the coast distance hangs on them.
-pub fn control(campaign: &CarriageCampaign, drag_n_s2_m2: f64) -> Result<Config, SetupError> {
+pub fn control(campaign: &CarriageCampaign, towed_kg: f64) -> Result<Config, SetupError> {
     let standard = control_config(&[Load::default(); 2]);
     let [_, short] = standard.axes;
-    let y = axis(&campaign.rig.y, drag_n_s2_m2)?;
-    let x = campaign.rig.x.as_ref().map_or(Ok(short), |x| axis(x, drag_n_s2_m2))?;
+    let y = axis(&campaign.rig.y, towed_kg)?;
+    let x = campaign.rig.x.as_ref().map_or(Ok(short), |x| axis(x, towed_kg))?;
     Ok(Config { axes: [y, x], tick_us: TICK_US, ..standard })
 }
 
-fn axis(spec: &AxisSpec, drag_n_s2_m2: f64) -> Result<AxisConfig, SetupError> {
+fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
     let missing = |key, why| SetupError::Missing { place: spec.place.to_string(), key, why };
     let coast = "the coast distance, and with it what may move, hangs on it; take it from `froude carriage identify`, or declare a \
                  lower bound with a large `standard`";
@@ -66,6 +67,8 @@ fn axis(spec: &AxisSpec, drag_n_s2_m2: f64) -> Result<AxisConfig, SetupError> {
     } else {
         SURE_FRICTION * coulomb.value
     };
+    let chain_m = constants.sprocket_radius_m.value / constants.gear_ratio.value;
+    let efficiency = constants.efficiency_forward.map_or(1.0, |e| e.value);
     Ok(AxisConfig {
         gains: Gains {
             proportional_v_rad: gains.proportional_v_rad,
@@ -75,10 +78,13 @@ fn axis(spec: &AxisSpec, drag_n_s2_m2: f64) -> Result<AxisConfig, SetupError> {
         },
         drive: Drive {
             inertia_kg_m2: inertia.value,
+            coast_inertia_kg_m2: inertia.value
+                + 1.96 * inertia.standard_uncertainty
+                + towed_kg * chain_m * chain_m / efficiency,
             viscous_n_m_s_rad: spec.viscous_n_m_s_rad.map_or(0.0, |b| b.value),
             coulomb_n_m: coulomb.value,
             coulomb_lower_n_m: sure,
-            drag_n_s2_m2,
+            drag_n_s2_m2: 0.0,
             torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
             amplifier_a_v: constants.amplifier_a_v.value,
             gear_ratio: constants.gear_ratio.value,
@@ -99,7 +105,7 @@ fn axis(spec: &AxisSpec, drag_n_s2_m2: f64) -> Result<AxisConfig, SetupError> {
             continuous_current_a: limits.continuous_current_a.unwrap_or(0.5 * limits.current_a),
             thermal_time_s: limits.thermal_time_s.unwrap_or(20.0),
             following_error_m: limits.following_error_m.unwrap_or(0.01),
-            saturation_s: 0.1,
+            saturation_s: 0.03,
             encoder_errors_per_s: 10,
             polarity_m: 0.005,
             stuck_s: 0.05,

@@ -126,7 +126,11 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         .clone()
         .ok_or_else(|| Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do")))?;
     let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
-    let control = setup::control(&carriage, 0.0)?;
+    let density_kg_m3 = density_kg_m3(Some(&campaign));
+    // The body with its water and added mass: twice what it displaces, where nothing else is known.
+    let displaced_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3).unwrap_or(TowedBody::CYLINDER.displaced_m3);
+    let towed_kg = 2.0 * density_kg_m3 * displaced_m3;
+    let control = setup::control(&carriage, towed_kg)?;
     let axis = control.axes[asked.axis as usize];
     let start_m = asked.start_m.unwrap_or_else(|| {
         0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m)
@@ -137,15 +141,15 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     };
     let steps = plan(&asked, start_m, order_seed);
     let body = TowedBody {
-        displaced_m3: campaign.body.as_ref().and_then(|b| b.volume_m3).unwrap_or(TowedBody::CYLINDER.displaced_m3),
+        displaced_m3,
         drag_n_s2_m2,
         ..TowedBody::CYLINDER
     };
-    let load = Load { body, density_kg_m3: density_kg_m3(Some(&campaign)), ..Load::default() };
+    let load = Load { body, density_kg_m3, ..Load::default() };
     let spec = if asked.axis as usize == 0 { &carriage.rig.y } else { carriage.rig.x.as_ref().unwrap_or(&carriage.rig.y) };
     let expected = Expected {
         drag_n_s2_m2,
-        wet_mass_kg: load.density_kg_m3 * body.displaced_m3 * 2.0,
+        wet_mass_kg: towed_kg,
         efficiency: spec.constants.efficiency_forward.map_or(1.0, |e| e.value),
     };
     let (mut forecasts, mut objections) = (Vec::new(), Vec::new());

@@ -375,7 +375,7 @@ pub fn resonance_sentences(outcome: &ResonanceOutcome) -> Vec<String> {
         .collect();
     if let (Some((hz, damping)), Some(shaper)) = (outcome.proposed, outcome.shaper) {
         out.push(format!(
-            "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = {damping:.3}, robust_shaper = true. It adds {:.0} ms \
+            "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{damping:.3} 1\", robust_shaper = true. It adds {:.0} ms \
              to a move and leaves at most {} of the swing with the mode 10 % off.",
             1e3 * shaper.added_s,
             number::percent(shaper.residual_10_percent_low.max(shaper.residual_10_percent_high))
