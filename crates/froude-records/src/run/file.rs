@@ -5,10 +5,11 @@
 //!
 //! Format: the MCAP specification, version 0 (mcap.dev/spec).
 
+use std::collections::BTreeMap;
 use std::io::{self, Read, Seek, SeekFrom};
 
 use mcap::MAGIC;
-use mcap::records::{ChunkHeader, Record, op};
+use mcap::records::op;
 
 /// Largest chunk, packed and unpacked. Froude writes at most 1 MiB, other programs usually 1 to 8.
 const LARGEST_CHUNK: u64 = 64 << 20;
@@ -153,15 +154,15 @@ fn is_needed(opcode: u8) -> bool {
 
 /// The records of a chunk, unpacked and checked; `unpacked` is memory that is used again.
 pub(crate) fn unpack<'a>(body: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a [u8], String> {
-    let (header, packed) = split_chunk(body)?;
-    if header.uncompressed_size > LARGEST_CHUNK {
-        let size = header.uncompressed_size;
+    let chunk = Chunk::parse(body).ok_or_else(|| "its head does not fit into it".to_owned())?;
+    let Chunk { size, sum, packing, packed } = chunk;
+    if size > LARGEST_CHUNK {
         return Err(format!("it unpacks to {size} bytes; at most {LARGEST_CHUNK} are read"));
     }
     unpacked.clear();
-    let limit = header.uncompressed_size + 1;
+    let limit = size + 1;
     let in_words = |e: io::Error| format!("it cannot be unpacked ({e})");
-    let content = match header.compression.as_str() {
+    let content = match packing {
         "" => packed,
         "lz4" => {
             let decoder = lz4::Decoder::new(packed).map_err(in_words)?;
@@ -180,28 +181,15 @@ pub(crate) fn unpack<'a>(body: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'
             ));
         }
     };
-    if content.len() as u64 != header.uncompressed_size {
-        return Err(format!("it unpacks to {} bytes and not to {}", content.len(), header.uncompressed_size));
+    if content.len() as u64 != size {
+        return Err(format!("it unpacks to {} bytes and not to {size}", content.len()));
     }
-    let sum = crc32fast::hash(content);
+    let found = crc32fast::hash(content);
     // Zero stands for a sum that was not computed.
-    if header.uncompressed_crc != 0 && sum != header.uncompressed_crc {
-        return Err(format!("its checksum is {sum:08x} and not {:08x}", header.uncompressed_crc));
+    if sum != 0 && found != sum {
+        return Err(format!("its checksum is {found:08x} and not {sum:08x}"));
     }
     Ok(content)
-}
-
-fn split_chunk(body: &[u8]) -> Result<(ChunkHeader, &[u8]), String> {
-    match mcap::parse_record(op::CHUNK, body) {
-        Ok(Record::Chunk { header, .. }) => {
-            // start, end, size, crc, length of the name, name, packed size
-            let head = 8 + 8 + 8 + 4 + 4 + header.compression.len() + 8;
-            let packed = body.get(head..).and_then(|rest| rest.get(..usize::try_from(header.compressed_size).ok()?));
-            packed.map(|packed| (header, packed)).ok_or_else(|| "its length is not that of its content".to_owned())
-        }
-        Ok(_) => Err("it is no chunk".to_owned()),
-        Err(error) => Err(format!("its head cannot be read ({error})")),
-    }
 }
 
 /// The records inside a chunk: opcode and bytes, or an error where they do not fit.
@@ -222,6 +210,107 @@ pub(crate) fn records(mut content: &[u8]) -> impl Iterator<Item = Result<(u8, &[
     })
 }
 
+/// The parts of a record, taken one after the other; `None` where they are not there.
+///
+/// Not the library's own parser: it reserves as much memory as a length asks for, whatever the record's size.
+#[derive(Debug, Clone, Copy)]
+struct Parts<'a>(&'a [u8]);
+
+impl<'a> Parts<'a> {
+    fn array<const N: usize>(&mut self) -> Option<[u8; N]> {
+        let (head, rest) = self.0.split_first_chunk()?;
+        self.0 = rest;
+        Some(*head)
+    }
+
+    fn u16(&mut self) -> Option<u16> {
+        self.array().map(u16::from_le_bytes)
+    }
+
+    fn u32(&mut self) -> Option<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    fn u64(&mut self) -> Option<u64> {
+        self.array().map(u64::from_le_bytes)
+    }
+
+    fn bytes(&mut self, length: u64) -> Option<&'a [u8]> {
+        let (head, rest) = self.0.split_at_checked(usize::try_from(length).ok()?)?;
+        self.0 = rest;
+        Some(head)
+    }
+
+    fn text(&mut self) -> Option<&'a str> {
+        let length = self.u32()?;
+        std::str::from_utf8(self.bytes(u64::from(length))?).ok()
+    }
+
+    fn map(&mut self) -> Option<BTreeMap<String, String>> {
+        let length = self.u32()?;
+        let mut entries = Parts(self.bytes(u64::from(length))?);
+        let mut map = BTreeMap::new();
+        while !entries.0.is_empty() {
+            map.insert(entries.text()?.to_owned(), entries.text()?.to_owned());
+        }
+        Some(map)
+    }
+}
+
+/// A packed chunk.
+struct Chunk<'a> {
+    size: u64,
+    sum: u32,
+    packing: &'a str,
+    packed: &'a [u8],
+}
+
+impl<'a> Chunk<'a> {
+    fn parse(body: &'a [u8]) -> Option<Self> {
+        let mut parts = Parts(body);
+        let _times = (parts.u64()?, parts.u64()?);
+        let (size, sum, packing) = (parts.u64()?, parts.u32()?, parts.text()?);
+        let length = parts.u64()?;
+        Some(Self { size, sum, packing, packed: parts.bytes(length)? })
+    }
+}
+
+/// A schema: its number, encoding and text.
+pub(crate) fn schema(body: &[u8]) -> Option<(u16, &str, &[u8])> {
+    let mut parts = Parts(body);
+    let (id, _name, encoding) = (parts.u16()?, parts.text()?, parts.text()?);
+    let length = parts.u32()?;
+    Some((id, encoding, parts.bytes(u64::from(length))?))
+}
+
+/// A channel of the file.
+pub(crate) struct FileChannel<'a> {
+    pub id: u16,
+    pub schema: u16,
+    pub topic: &'a str,
+    pub encoding: &'a str,
+    pub metadata: BTreeMap<String, String>,
+}
+
+impl<'a> FileChannel<'a> {
+    pub fn parse(body: &'a [u8]) -> Option<Self> {
+        let mut parts = Parts(body);
+        Some(Self {
+            id: parts.u16()?,
+            schema: parts.u16()?,
+            topic: parts.text()?,
+            encoding: parts.text()?,
+            metadata: parts.map()?,
+        })
+    }
+}
+
+/// A metadata record: its name and entries.
+pub(crate) fn metadata(body: &[u8]) -> Option<(&str, BTreeMap<String, String>)> {
+    let mut parts = Parts(body);
+    Some((parts.text()?, parts.map()?))
+}
+
 /// The head of a message, and the message.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Message<'a> {
@@ -233,15 +322,9 @@ pub(crate) struct Message<'a> {
 
 impl<'a> Message<'a> {
     pub fn parse(body: &'a [u8]) -> Option<Self> {
-        let (channel, rest) = body.split_first_chunk()?;
-        let (sequence, rest) = rest.split_first_chunk()?;
-        let (log_time, rest) = rest.split_first_chunk()?;
-        let (_publish_time, data) = rest.split_first_chunk::<8>()?;
-        Some(Self {
-            channel: u16::from_le_bytes(*channel),
-            sequence: u32::from_le_bytes(*sequence),
-            log_time: u64::from_le_bytes(*log_time),
-            data,
-        })
+        let mut parts = Parts(body);
+        let (channel, sequence, log_time) = (parts.u16()?, parts.u32()?, parts.u64()?);
+        let _publish_time = parts.u64()?;
+        Some(Self { channel, sequence, log_time, data: parts.0 })
     }
 }

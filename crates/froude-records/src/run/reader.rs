@@ -9,10 +9,10 @@ use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
-use mcap::records::{Record, op};
+use mcap::records::op;
 
 use crate::error::{Place, RecordError, reason};
-use crate::run::file::{End, Message, Step, Walk, records, unpack};
+use crate::run::file::{End, FileChannel, Message, Step, Walk, metadata, records, schema, unpack};
 use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
 use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 use crate::run::meta::{RunMeta, RunStatus};
@@ -292,39 +292,44 @@ impl<R: Read + Seek> RunReader<R> {
 
     /// Takes a schema or a channel; what is not a flat message of numbers, or no log of events, is left alone.
     fn declare(&mut self, opcode: u8, body: &[u8]) {
-        if !matches!(opcode, op::SCHEMA | op::CHANNEL) {
-            return;
-        }
-        match mcap::parse_record(opcode, body) {
-            Ok(Record::Schema { header, data }) if header.encoding == "ros2msg" => {
-                self.schemas.insert(header.id, String::from_utf8_lossy(&data).into_owned());
+        match opcode {
+            op::SCHEMA => {
+                if let Some((id, "ros2msg", text)) = schema(body) {
+                    self.schemas.insert(id, String::from_utf8_lossy(text).into_owned());
+                }
             }
-            Ok(Record::Channel(channel)) if channel.message_encoding == "cdr" => {
-                let Some(schema) = self.schemas.get(&channel.schema_id) else { return };
-                if channel.topic == text::TOPIC && schema == text::SCHEMA {
-                    self.events_channel = Some(channel.id);
-                    return;
-                }
-                let is_known = self.topics.iter().any(|topic| topic.channel == channel.id);
-                let Some(decoder) = Decoder::parse(schema).filter(|_| !is_known) else { return };
-                let prefix = channel.metadata.get(PREFIX_KEY).cloned();
-                let prefix = prefix.unwrap_or_else(|| format!("{}/", channel.topic.trim_matches('/')));
-                let mut fields = Vec::new();
-                for (field, kind, offset) in decoder.fields {
-                    let name = format!("{prefix}{field}");
-                    let is_taken = self.channels.iter().any(|(own, _)| *own == name);
-                    if is_taken || self.channels.len() == MOST_CHANNELS {
-                        continue;
-                    }
-                    let unit = channel.metadata.get(&field).cloned().unwrap_or_else(|| "1".to_owned());
-                    fields.push((kind, offset, self.channels.len()));
-                    self.channels.push((name, unit));
-                }
-                if !fields.is_empty() {
-                    self.topics.push(ReadTopic { channel: channel.id, fields, is_filled: false });
+            op::CHANNEL => {
+                if let Some(channel) = FileChannel::parse(body).filter(|channel| channel.encoding == "cdr") {
+                    self.declare_channel(&channel);
                 }
             }
             _ => {}
+        }
+    }
+
+    fn declare_channel(&mut self, channel: &FileChannel<'_>) {
+        let Some(schema) = self.schemas.get(&channel.schema) else { return };
+        if channel.topic == text::TOPIC && schema == text::SCHEMA {
+            self.events_channel = Some(channel.id);
+            return;
+        }
+        let is_known = self.topics.iter().any(|topic| topic.channel == channel.id);
+        let Some(decoder) = Decoder::parse(schema).filter(|_| !is_known) else { return };
+        let prefix = channel.metadata.get(PREFIX_KEY).cloned();
+        let prefix = prefix.unwrap_or_else(|| format!("{}/", channel.topic.trim_matches('/')));
+        let mut fields = Vec::new();
+        for (field, kind, offset) in decoder.fields {
+            let name = format!("{prefix}{field}");
+            let is_taken = self.channels.iter().any(|(own, _)| *own == name);
+            if is_taken || self.channels.len() == MOST_CHANNELS {
+                continue;
+            }
+            let unit = channel.metadata.get(&field).cloned().unwrap_or_else(|| "1".to_owned());
+            fields.push((kind, offset, self.channels.len()));
+            self.channels.push((name, unit));
+        }
+        if !fields.is_empty() {
+            self.topics.push(ReadTopic { channel: channel.id, fields, is_filled: false });
         }
     }
 
@@ -345,15 +350,13 @@ impl<R: Read + Seek> RunReader<R> {
 
     fn take_metadata(&mut self, offset: u64, body: &[u8]) -> Result<(), RecordError> {
         let refuse = |problem: String| RecordError::Syntax { place: Place::byte(&self.path, offset), problem };
-        let record = match mcap::parse_record(op::METADATA, body) {
-            Ok(Record::Metadata(record)) if [RECORD_NAME, END_RECORD_NAME].contains(&record.name.as_str()) => record,
-            Ok(_) => return Ok(()),
-            Err(error) => {
-                let problem = format!("the metadata there cannot be read ({error})");
-                return self.damaged(offset, problem);
-            }
+        let Some((name, entries)) = metadata(body) else {
+            return self.damaged(offset, "the metadata there does not fit into its record".to_owned());
         };
-        let own = of_record(&self.path, &record.metadata)
+        if ![RECORD_NAME, END_RECORD_NAME].contains(&name) {
+            return Ok(());
+        }
+        let own = of_record(&self.path, &entries)
             .map_err(|e| refuse(format!("what is said of the run cannot be read: {e}")))?;
         if !self.has_sidecar {
             self.meta = own;
