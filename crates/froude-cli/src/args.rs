@@ -129,9 +129,9 @@ pub enum CarriageJob {
         /// Standard uncertainty of the measured distance.
         #[arg(long, default_value = "0.5 mm", value_name = "QUANTITY")]
         measured_standard: String,
-        /// The same distance as the counts give it.
-        #[arg(long, requires = "measured", value_name = "QUANTITY")]
-        counted: Option<String>,
+        /// The same distance as the counts give it, once for each traverse (two at least), separated by commas.
+        #[arg(long, requires = "measured", value_name = "QUANTITY", value_delimiter = ',')]
+        counted: Vec<String>,
     },
     /// Relay and sweep on the loop: margins on the measured response, proposed gains.
     Tune(Experiment),

@@ -9,6 +9,9 @@ use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, identify, repeatability_table};
 use froude::carriage::tune::{candidates_table, find_resonance, modes_table, resonance_sentences, tune};
 use froude::carriage::{calibrate, runs};
+use froude::identify::carriage::Uncertain;
+use froude::identify::carriage::calibration::{Jog, encoder_scale};
+use froude::records::run::RunKind;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::report::document::TextTable;
 use froude::rig::campaign::plan::{PlannedRun, Step};
@@ -224,8 +227,8 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
         CarriageJob::Identify { input, sidecar, out } => servo(input, sidecar, out, is_json),
         CarriageJob::Drag { runs, campaign, out } => drag_verb(runs, campaign, out, is_json),
         CarriageJob::Calibrate { runs, campaign, measured, measured_standard, counted } => {
-            if let (Some(measured), Some(counted)) = (measured, counted) {
-                encoder_scale(&runs, &measured, &measured_standard, &counted)?;
+            if let Some(measured) = measured {
+                scale(&runs, &measured, &measured_standard, &counted)?;
             }
             calibration(&runs, campaign, is_json)
         }
@@ -321,12 +324,16 @@ fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> R
         let jogs: Vec<_> = outcome
             .jogs
             .iter()
-            .map(|j| json!({"run": j.id, "command_v": j.command_v, "way_m": j.way_m, "is_right": j.is_right}))
+            .map(|j| json!({"run": j.id, "command_v": j.command_v, "way_m": j.way_m, "is_right": j.verdict == Jog::Right}))
             .collect();
         return print::json(&json!({"calibration": calibration, "jogs": jogs, "findings": outcome.findings}));
     }
     for j in &outcome.jogs {
-        let told = if j.is_right { "right" } else { "REVERSED" };
+        let told = match j.verdict {
+            Jog::Right => "right".to_owned(),
+            Jog::Reversed { after_m } => format!("REVERSED, seen after {:.2} mm", 1e3 * after_m),
+            Jog::NoMotion { .. } => "not told: it did not move".to_owned(),
+        };
         say!("{}: {:.2} V moved {:.2} mm: polarity {told}", j.id, j.command_v, 1e3 * j.way_m);
     }
     if let Some(c) = &outcome.calibration {
@@ -353,29 +360,27 @@ fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> R
     Ok(())
 }
 
-fn encoder_scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &str) -> Result<(), Error> {
+/// Sprocket radius that makes the counted distances the measured one.
+fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) -> Result<(), Error> {
     let length = |what: &str, text: &str| {
         parse_quantity(text)
             .and_then(|q| q.expect(Dimension::LENGTH))
             .map_err(|e| Error::Nothing(format!("{what} {text:?}: {e}; write a length, \"2.000 m\"")))
     };
-    let (measured_m, standard_m, counted_m) =
-        (length("--measured", measured)?, length("--measured-standard", standard)?, length("--counted", counted)?);
-    if !(measured_m > 0.0 && counted_m > 0.0 && standard_m >= 0.0) {
-        return Err(Error::Nothing("--measured and --counted must be longer than nothing".to_owned()));
-    }
-    let read = runs::read(paths, &[froude::records::run::RunKind::Calibration, froude::records::run::RunKind::Jog], None)?;
+    let known = Uncertain::new(length("--measured", measured)?, length("--measured-standard", standard)?);
+    let counted_m = counted.iter().map(|text| length("--counted", text)).collect::<Result<Vec<_>, _>>()?;
+    let factor = encoder_scale(&counted_m, known)?;
+    let kinds = [RunKind::Calibration, RunKind::Jog];
+    let read = runs::read(paths, &kinds, None)?;
     let Some(axis) = read.logs.iter().find_map(|log| log.meta.moving_axis()) else {
         return Err(Error::Nothing("the runs do not say what rig they come from".to_owned()));
     };
-    let radius_m = axis.sprocket_radius_m.value;
-    let count_m = std::f64::consts::TAU * radius_m / axis.gear_ratio.value / axis.counts_per_revolution.abs();
-    let (radius, std) = calibrate::encoder_scale(radius_m, measured_m, standard_m, counted_m, count_m);
+    let radius_mm = 1e3 * axis.sprocket_radius_m.value;
     say!(
-        "encoder scale: sprocket_radius = {{ value = \"{:.4} mm\", standard = \"{:.4} mm\" }}  (declared {:.4} mm)",
-        1e3 * radius,
-        1e3 * std,
-        1e3 * radius_m
+        "encoder scale {}: sprocket_radius = {{ value = \"{:.4} mm\", standard = \"{:.4} mm\" }} (declared {radius_mm:.4} mm)",
+        froude::report::number::short_form(factor.value, factor.standard),
+        radius_mm * factor.value,
+        radius_mm * factor.standard
     );
     Ok(())
 }

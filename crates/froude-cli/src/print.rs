@@ -486,6 +486,7 @@ pub fn comparison_json(c: &Comparison) -> serde_json::Value {
 pub fn text_table(text: &froude::report::document::TextTable) {
     let head: Vec<&str> = text.head.iter().map(String::as_str).collect();
     let mut out = table(&head);
+    out.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
     for row in &text.rows {
         out.add_row(row.iter().enumerate().map(|(i, cell)| {
             Cell::new(cell).set_alignment(if i == 0 { CellAlignment::Left } else { CellAlignment::Right })

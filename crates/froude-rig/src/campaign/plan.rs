@@ -149,7 +149,7 @@ struct Planner<'a> {
     number: u32,
 }
 
-/// The whole campaign in order: jog, warm-up, friction, calibration, pulses, then dry and wet halves of the pairs.
+/// The whole campaign in order: jog, warm-up and pulses bare; friction and calibration with the body dry; then dry and wet halves of the pairs.
 ///
 /// `start_m` is where forward runs begin. The order of the speeds within a half is drawn from `order_seed`.
 #[must_use]
@@ -160,14 +160,18 @@ pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
         planner.run(name, RunKind::Jog, Drive::Jog { volts, distance_m: JOG_M }, None);
     }
     planner.warm_up();
-    planner.friction();
-    planner.calibration();
     if let Some(p) = &asked.excitation {
         let from_m = start_m + 0.5 * asked.distance_m;
         let drive =
             Drive::Pulses { from_m, volts: p.amplitude_v, period_s: p.period_s, duty: p.duty, duration_s: p.duration_s };
         planner.run("pulses", RunKind::Excitation, drive, None);
     }
+    // Friction and newtons a volt are those of the wheel load that is towed: the body rides along, dry.
+    if asked.friction.is_some() || asked.calibration.is_some() {
+        planner.mount(BodyState::Dry, 0.0);
+    }
+    planner.friction();
+    planner.calibration();
     planner.pairs(order_seed);
     planner.steps
 }
@@ -407,8 +411,8 @@ pub(crate) mod tests {
         }
         let (a, b) = (RunKind::Dry, RunKind::Wet);
         assert_eq!(blocks, [a, b, b, a, a, b, b, a]);
-        // dry, wet, dry, wet, dry: a change only where the body moves.
-        assert_eq!(asked, 5);
+        // Dry for friction; on with the weight and off again; then dry, wet, dry, wet, dry without a change at the beginning.
+        assert_eq!(asked, 7);
     }
 
     #[test]

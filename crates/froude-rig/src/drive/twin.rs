@@ -6,7 +6,7 @@ use froude_control::request::Request;
 use froude_control::tick::{AXES, Command, Tick};
 
 use super::{AxisSample, Rig, RigError, Sample};
-use crate::load::Load;
+use crate::load::{HungWeight, Load};
 use crate::twin::{TICK_US, Twin, TwinConfig};
 
 /// Controller and plant, tick by tick.
@@ -16,8 +16,13 @@ pub struct TwinRig {
     controller: Controller,
     command: Command,
     seed: u64,
+    hung_n: f64,
     is_truth_told: bool,
 }
+
+/// Steps in which a weight is let down, and ticks of each: half a second.
+const LETTING_DOWN: u32 = 50;
+const TICKS_A_STEP: u32 = 40;
 
 impl TwinRig {
     /// Powers both up.
@@ -31,6 +36,7 @@ impl TwinRig {
             controller: Controller::new(config).map_err(RigError::Config)?,
             command: Command::default(),
             seed,
+            hung_n: 0.0,
             is_truth_told: true,
         })
     }
@@ -85,8 +91,20 @@ impl Rig for TwinRig {
     fn begin_run(&mut self, load: &Load, run_number: u64) {
         // A stream of its own for each run, so that a resumed campaign draws what it would have drawn.
         let seed = self.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(run_number);
-        let short = Load { hung: crate::load::HungWeight::default(), ..*load };
-        self.twin.begin_run([*load, short], seed);
+        let hung_n = load.hung.weight_n;
+        // Nobody drops a weight onto the cord: it is let down in half a second, while the loop holds.
+        let steps = if hung_n == self.hung_n { 1 } else { LETTING_DOWN };
+        for k in 1..=steps {
+            let weight_n = self.hung_n + (hung_n - self.hung_n) * f64::from(k) / f64::from(steps);
+            let long = Load { hung: HungWeight { weight_n, ..load.hung }, ..*load };
+            let short = Load { hung: HungWeight::default(), ..*load };
+            self.twin.begin_run([long, short], seed);
+            for _ in 0..if steps > 1 { TICKS_A_STEP } else { 0 } {
+                let tick = self.latch(None);
+                self.command = self.controller.step(&tick).command;
+            }
+        }
+        self.hung_n = hung_n;
     }
 
     fn version(&self) -> String {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use froude_identify::carriage::DragRun;
-use froude_identify::carriage::calibration::Calibration;
+use froude_identify::carriage::calibration::{Calibration, Jog as Verdict, jog as judged};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{RunKind, RunLog};
 use froude_records::units::Dimension;
@@ -22,7 +22,7 @@ pub struct Jog {
     /// How far it went, m.
     pub way_m: f64,
     /// Whether it went where the command pushed.
-    pub is_right: bool,
+    pub verdict: Verdict,
 }
 
 /// What came out.
@@ -38,8 +38,10 @@ pub struct CalibrationOutcome {
     pub findings: Vec<Finding>,
 }
 
-/// Reads calibration runs and jogs. A known distance (`measured_m` for the way that the counts call `counted_m`) gives the
-/// encoder's scale; see [`encoder_scale`].
+/// State code of an exciting axis in a log (`froude_control::status::Phase`).
+const EXCITING: f64 = 4.0;
+
+/// Reads calibration runs and jogs.
 ///
 /// # Errors
 ///
@@ -55,18 +57,20 @@ pub fn calibrate(paths: &[PathBuf], campaign: Option<PathBuf>) -> Result<Calibra
         runs.logs.iter().filter(|l| l.meta.kind == RunKind::Jog).map(jog).collect::<Result<_, _>>()?;
     let mut findings = runs.findings;
     findings.extend(why_not);
-    for jog in jogs.iter().filter(|j| !j.is_right) {
-        findings.push(Finding::new(
-            Severity::Error,
-            "polarity",
-            format!(
+    for jog in jogs.iter().filter(|j| j.verdict != Verdict::Right) {
+        let text = match jog.verdict {
+            Verdict::NoMotion { largest_v } => {
+                format!("{}: up to {largest_v:.2} V did not move the axis; raise the jog above breakaway", jog.id)
+            }
+            _ => format!(
                 "{}: {:.2} V moved the axis {:.2} mm the other way: motor or encoder is wired in reverse; swap the encoder's channels \
                  or make counts_per_revolution negative",
                 jog.id,
                 jog.command_v,
                 1e3 * jog.way_m
             ),
-        ));
+        };
+        findings.push(Finding::new(Severity::Error, "polarity", text));
     }
     if calibration.is_none() {
         findings.push(Finding::new(
@@ -84,38 +88,17 @@ fn jog(log: &RunLog) -> Result<Jog, Error> {
     let axis = log.meta.axis.name();
     let position = log.channel(&format!("{axis}/position"), Dimension::LENGTH)?;
     let command = log.channel(&format!("{axis}/command"), Dimension::VOLTAGE)?;
-    // The jog is where the command is largest; holding before and after is not.
-    let peak = command.iter().fold(0.0, |m: f64, u| if u.abs() > m.abs() { *u } else { m });
-    let on: Vec<usize> = (0..command.len()).filter(|&i| command[i] * peak > 0.25 * peak * peak).collect();
-    let way_m = match (on.first(), on.last()) {
-        (Some(&first), Some(&last)) => position[last] - position[first],
-        _ => 0.0,
-    };
-    let command_v = on.iter().map(|&i| command[i]).sum::<f64>() / on.len().max(1) as f64;
-    Ok(Jog { id: log.meta.id.clone(), command_v, way_m, is_right: way_m * command_v > 0.0 })
+    let state = log.channel(&format!("{axis}/state"), Dimension::ONE)?;
+    // Only while the loop is open: what holds before and brakes after pushes the other way.
+    let first = state.iter().position(|s| *s == EXCITING).unwrap_or(0);
+    let end = state.iter().rposition(|s| *s == EXCITING).map_or(first, |i| i + 1);
+    let (position, command) = (&position[first..end], &command[first..end]);
+    let way_m = position.last().zip(position.first()).map_or(0.0, |(last, first)| last - first);
+    Ok(Jog {
+        id: log.meta.id.clone(),
+        command_v: command.iter().sum::<f64>() / command.len().max(1) as f64,
+        way_m,
+        verdict: judged(position, command),
+    })
 }
 
-/// Encoder scale from a known distance: sprocket radius that makes the counted way the measured one, with its standard
-/// uncertainty, m.
-///
-/// R′ = R · measured/counted; the distance's standard uncertainty and one count each at its ends go with it.
-#[must_use]
-pub fn encoder_scale(radius_m: f64, measured_m: f64, measured_std_m: f64, counted_m: f64, count_m: f64) -> (f64, f64) {
-    let radius = radius_m * measured_m / counted_m;
-    // Two ends, each rounded to a count: uniform of width one count.
-    let rounding = count_m / 6f64.sqrt();
-    let relative = (measured_std_m / measured_m).hypot(rounding / counted_m);
-    (radius, radius.abs() * relative)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_way_that_measures_two_per_mille_longer_makes_the_sprocket_two_per_mille_larger() {
-        let (radius, std) = encoder_scale(0.055, 2.004, 0.001, 2.0, 2.47e-6);
-        assert!((radius - 0.055 * 1.002).abs() < 1e-12);
-        assert!((std / radius - 0.001 / 2.004).abs() < 1e-6);
-    }
-}

@@ -210,8 +210,18 @@ fn knots(logs: &[&RunLog]) -> Result<Vec<f64>, Error> {
             (low, high) = (low.min(y), high.max(y));
         }
     }
+    // Whole millimetres, so that their names are short; the outer ones just inside, where rows are.
+    let (low, high) = ((1e3 * low).ceil() / 1e3, (1e3 * high).floor() / 1e3);
     let n = ((high - low) / KNOT_M).round().max(1.0) as usize;
-    Ok((0..=n).map(|i| low + (high - low) * i as f64 / n as f64).collect())
+    Ok((0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect())
+}
+
+/// The part of a run in which the reference moves; at rest friction is anything below breakaway and tells nothing.
+fn moving(log: &RunLog) -> Result<Option<RunLog>, Error> {
+    let speed = log.channel(&format!("{}/reference_velocity", log.meta.axis.name()), Dimension::SPEED)?;
+    let first = speed.iter().position(|v| *v != 0.0);
+    let last = speed.iter().rposition(|v| *v != 0.0);
+    Ok(first.zip(last).map(|(first, last)| log.between(log.time_s[first], log.time_s[last])))
 }
 
 /// All slow runs as rows of one regression.
@@ -223,7 +233,8 @@ fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<Se
         let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
         record_rate_hz = rate_hz;
         chain = Chain { corner_hz: RIGID_CORNER_HZ, decimation: (rate_hz / ROW_RATE_HZ).round().max(1.0) as usize, ..chain };
-        let rows = chain.rows(&servo_log(log)?)?;
+        let Some(moving) = moving(log)? else { continue };
+        let rows = chain.rows(&servo_log(&moving)?)?;
         match &mut all {
             None => all = Some(rows),
             Some(all) => all.append(rows),
