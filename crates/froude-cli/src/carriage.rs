@@ -4,7 +4,7 @@ use std::io::{BufRead, IsTerminal, Write};
 use std::path::PathBuf;
 
 use froude::Error;
-use froude::carriage::drag::{DragJob, drag, methods_table, summary, setup_of};
+use froude::carriage::drag::{DragJob, drag, methods_table, setup_of, summary};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, identify, repeatability_table};
 use froude::carriage::tune::{candidates_table, find_resonance, modes_table, resonance_sentences, tune};
@@ -87,10 +87,10 @@ fn preflight(prepared: &Prepared) {
     for (run, f) in prepared.runs().zip(&prepared.forecasts) {
         let drag = f.drag_n.map_or_else(|| "–".to_owned(), |d| format!("{d:.3}"));
         // Repeats until the drag exceeds what one pair shows.
-        let pairs = f.drag_n.filter(|d| *d > 0.0).map_or_else(
-            || "–".to_owned(),
-            |d| format!("{:.0}", (detectable_n / d).powi(2).ceil().max(1.0)),
-        );
+        let pairs = f
+            .drag_n
+            .filter(|d| *d > 0.0)
+            .map_or_else(|| "–".to_owned(), |d| format!("{:.0}", (detectable_n / d).powi(2).ceil().max(1.0)));
         let cells = vec![
             run.kind.name().to_owned(),
             run.speed_m_s().map_or_else(|| "–".to_owned(), |v| format!("{v:.3}")),
@@ -112,8 +112,18 @@ fn preflight(prepared: &Prepared) {
     let table = TextTable {
         caption: String::new(),
         head: [
-            "kind", "speed [m/s]", "way", "length [s]", "steady [s]", "command [V]", "rms current [A]", "coast [m]", "margin [m]",
-            "drag [N]", "pairs to see it", "runs",
+            "kind",
+            "speed [m/s]",
+            "way",
+            "length [s]",
+            "steady [s]",
+            "command [V]",
+            "rms current [A]",
+            "coast [m]",
+            "margin [m]",
+            "drag [N]",
+            "pairs to see it",
+            "runs",
         ]
         .map(str::to_owned)
         .to_vec(),
@@ -244,8 +254,10 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
     bar.finish_and_clear();
     let coefficients = |c: &[froude::identify::servo::ServoCoefficient]| -> Vec<serde_json::Value> {
         c.iter()
-            .map(|c| json!({"name": c.name, "unit": c.unit, "value": c.value, "interval_95": c.interval,
-                            "std_white": c.classical_std, "std_hac": c.hac_std, "std_blocks": c.block_std}))
+            .map(|c| {
+                json!({"name": c.name, "unit": c.unit, "value": c.value, "interval_95": c.interval,
+                            "std_white": c.classical_std, "std_hac": c.hac_std, "std_blocks": c.block_std})
+            })
             .collect()
     };
     if is_json {
@@ -263,7 +275,9 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
                    "splits": f.splits.iter().map(|s| json!({"name": s.name, "is_identified": s.is_identified,
                        "share_of_motor": s.is_identified.then_some(s.share_of_motor), "interval_95": s.interval})).collect::<Vec<_>>()})
         });
-        return print::json(&json!({"models": models, "two_mass": flexible, "findings": outcome.findings, "report": outcome.page}));
+        return print::json(
+            &json!({"models": models, "two_mass": flexible, "findings": outcome.findings, "report": outcome.page}),
+        );
     }
     for model in &outcome.models {
         let error = froude::report::number::percent(model.report.relative_force_error);
@@ -413,7 +427,12 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
         return print::json(&json!({"gains": rows, "report": outcome.page}));
     }
     match &outcome.cycle {
-        Ok(c) => say!("relay: period {:.4} s, amplitude {:.3} rad, K_u = {:.3} V/rad", c.period_s, c.amplitude_rad, c.ultimate_gain_v_rad),
+        Ok(c) => say!(
+            "relay: period {:.4} s, amplitude {:.3} rad, K_u = {:.3} V/rad",
+            c.period_s,
+            c.amplitude_rad,
+            c.ultimate_gain_v_rad
+        ),
         Err(error) => say!("relay: {error}"),
     }
     print::text_table(&candidates_table(&outcome.candidates));

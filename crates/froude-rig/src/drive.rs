@@ -75,7 +75,9 @@ pub enum RigError {
         reason: String,
     },
     /// The board speaks another version.
-    #[error("the board at {port} speaks version {board} of the protocol, this program {ours}; flash the matching firmware")]
+    #[error(
+        "the board at {port} speaks version {board} of the protocol, this program {ours}; flash the matching firmware"
+    )]
     Version {
         /// The port.
         port: String,

@@ -34,12 +34,7 @@ fn asked() -> CarriagePlan {
         still_s: 0.5,
         warm_up: None,
         friction: None,
-        calibration: Some(Calibration {
-            weights_n: vec![10.0],
-            weight_standard_n: 0.01,
-            speed_m_s: 0.2,
-            repeats: 1,
-        }),
+        calibration: Some(Calibration { weights_n: vec![10.0], weight_standard_n: 0.01, speed_m_s: 0.2, repeats: 1 }),
         excitation: None,
         is_ballasted: true,
         stop_at_relative_half_width: None,

@@ -11,13 +11,13 @@
 //! ```
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub use froude_control as control;
 pub use froude_fit as fit;
 pub use froude_hydro as hydro;
 pub use froude_identify as identify;
 pub use froude_records as records;
 pub use froude_report as report;
 pub use froude_rig as rig;
-pub use froude_control as control;
 
 pub mod carriage;
 pub mod demo;

@@ -162,8 +162,13 @@ pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
     planner.warm_up();
     if let Some(p) = &asked.excitation {
         let from_m = start_m + 0.5 * asked.distance_m;
-        let drive =
-            Drive::Pulses { from_m, volts: p.amplitude_v, period_s: p.period_s, duty: p.duty, duration_s: p.duration_s };
+        let drive = Drive::Pulses {
+            from_m,
+            volts: p.amplitude_v,
+            period_s: p.period_s,
+            duty: p.duty,
+            duration_s: p.duration_s,
+        };
         planner.run("pulses", RunKind::Excitation, drive, None);
     }
     // Friction and newtons a volt are those of the wheel load that is towed: the body rides along, dry.
@@ -196,15 +201,15 @@ pub struct Experiments {
 }
 
 impl Default for Experiments {
-    /// For a carriage like the paper's: the relay at two and a half times breakaway, the sweep beside 50 mm/s from 2 to 40 Hz.
+    /// For a carriage like the paper's: the relay at two and a half times breakaway, the sweep beside 50 mm/s from 1 to 40 Hz.
     fn default() -> Self {
         Self {
             relay_v: 1.0,
             hysteresis_m: 2e-5,
             relay_s: 6.0,
-            sweep_v: 0.5,
-            sweep_hz: [2.0, 40.0],
-            sweep_s: 36.0,
+            sweep_v: 2.0,
+            sweep_hz: [1.0, 40.0],
+            sweep_s: 40.0,
             sweep_m_s: 0.05,
         }
     }
@@ -237,8 +242,9 @@ pub fn resonance(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) 
 
 impl Planner<'_> {
     fn sweep(&mut self, name: &str, experiments: &Experiments) {
-        let &Experiments { sweep_v: volts, sweep_hz: [from_hz, to_hz], sweep_s: duration_s, sweep_m_s: speed_m_s, .. } =
-            experiments;
+        let &Experiments {
+            sweep_v: volts, sweep_hz: [from_hz, to_hz], sweep_s: duration_s, sweep_m_s: speed_m_s, ..
+        } = experiments;
         let from_m = self.start_m;
         self.run(name, RunKind::Sweep, Drive::Sweep { from_m, speed_m_s, volts, from_hz, to_hz, duration_s }, None);
     }
@@ -337,7 +343,9 @@ impl Planner<'_> {
         let n = self.asked.repeats as u32;
         let (dry, wet) = (BodyState::Dry, BodyState::Wet);
         let halves: Vec<(u32, BodyState)> = match self.asked.order {
-            Order::Abba => (1..=n).flat_map(|p| if p % 2 == 1 { [(p, dry), (p, wet)] } else { [(p, wet), (p, dry)] }).collect(),
+            Order::Abba => {
+                (1..=n).flat_map(|p| if p % 2 == 1 { [(p, dry), (p, wet)] } else { [(p, wet), (p, dry)] }).collect()
+            }
             Order::Ab => (1..=n).flat_map(|p| [(p, dry), (p, wet)]).collect(),
             Order::Blocks => (1..=n).map(|p| (p, dry)).chain((1..=n).map(|p| (p, wet))).collect(),
         };
@@ -436,11 +444,8 @@ pub(crate) mod tests {
     #[test]
     fn the_weight_hangs_for_the_calibration_only() {
         let steps = plan(&asked(), 0.5, 1);
-        let weights: Vec<f64> = runs(&steps)
-            .iter()
-            .filter(|r| r.kind == RunKind::Calibration)
-            .map(|r| r.hung_weight_n)
-            .collect();
+        let weights: Vec<f64> =
+            runs(&steps).iter().filter(|r| r.kind == RunKind::Calibration).map(|r| r.hung_weight_n).collect();
         assert_eq!(weights, [0.0, 0.0, 10.0, 10.0, 0.0, 0.0]);
         assert!(runs(&steps).iter().filter(|r| r.kind != RunKind::Calibration).all(|r| r.hung_weight_n == 0.0));
     }

@@ -57,7 +57,12 @@ const SHORTEST_STEADY_S: f64 = 1.5;
 
 /// Forecast of one run, and everything that speaks against it.
 #[must_use]
-pub fn check(run: &PlannedRun, acceleration_m_s2: f64, axis: &AxisConfig, expected: &Expected) -> (Forecast, Vec<Objection>) {
+pub fn check(
+    run: &PlannedRun,
+    acceleration_m_s2: f64,
+    axis: &AxisConfig,
+    expected: &Expected,
+) -> (Forecast, Vec<Objection>) {
     let mut out = Vec::new();
     let mut object = |text: String| out.push(Objection { id: run.id.clone(), text });
     let (drive, limits) = (&axis.drive, &axis.limits);

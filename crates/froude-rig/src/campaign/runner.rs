@@ -226,7 +226,8 @@ fn is_complete(folder: &Path, id: &str) -> Result<bool, RunnerError> {
     if read_run_meta(&sidecar)?.status == RunStatus::Complete {
         return Ok(true);
     }
-    let aside = (1..).map(|n| format!("{id}.interrupted-{n}")).find(|name| !folder.join(format!("{name}.toml")).exists());
+    let aside =
+        (1..).map(|n| format!("{id}.interrupted-{n}")).find(|name| !folder.join(format!("{name}.toml")).exists());
     if let Some(aside) = aside {
         for extension in ["mcap", "toml"] {
             let from = folder.join(format!("{id}.{extension}"));
@@ -528,7 +529,11 @@ impl Session<'_> {
         let first = *self.tick.get_or_insert(sample.tick);
         let number = sample.tick - first;
         if number % TOLD_EVERY == 0 {
-            self.progress.sample(self.run, sample, number as f64 / (self.rig.rate_hz() * self.rig.ticks_per_sample() as f64));
+            self.progress.sample(
+                self.run,
+                sample,
+                number as f64 / (self.rig.rate_hz() * self.rig.ticks_per_sample() as f64),
+            );
         }
         let Some(recorder) = &mut self.recorder else { return Ok(()) };
         if number % self.setting.decimation != 0 {
@@ -567,9 +572,5 @@ impl Session<'_> {
 const TOLD_EVERY: u64 = 133;
 
 /// What only the twin knows, for tests and for looking on; no identification reads it.
-const TRUTHS: [(&str, &str); 4] = [
-    ("truth/y/load_position", "m"),
-    ("truth/y/load_velocity", "m/s"),
-    ("truth/y/drag", "N"),
-    ("truth/y/spring", "N"),
-];
+const TRUTHS: [(&str, &str); 4] =
+    [("truth/y/load_position", "m"), ("truth/y/load_velocity", "m/s"), ("truth/y/drag", "N"), ("truth/y/spring", "N")];

@@ -14,7 +14,7 @@ use crate::defaults::control_config;
 use crate::force_sensor::Drift;
 use crate::load::Load;
 use crate::parameters::AxisParameters;
-use crate::twin::{TwinConfig, TICK_US};
+use crate::twin::{TICK_US, TwinConfig};
 
 /// End switches open this far before the hard stops, m.
 const SWITCH_MARGIN_M: f64 = 0.05;

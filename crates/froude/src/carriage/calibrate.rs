@@ -53,8 +53,7 @@ pub fn calibrate(paths: &[PathBuf], campaign: Option<PathBuf>) -> Result<Calibra
     let hung: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let (calibration, why_not) = calibration_of(&hung, runs.campaign.as_ref(), &setup);
-    let jogs: Vec<Jog> =
-        runs.logs.iter().filter(|l| l.meta.kind == RunKind::Jog).map(jog).collect::<Result<_, _>>()?;
+    let jogs: Vec<Jog> = runs.logs.iter().filter(|l| l.meta.kind == RunKind::Jog).map(jog).collect::<Result<_, _>>()?;
     let mut findings = runs.findings;
     findings.extend(why_not);
     for jog in jogs.iter().filter(|j| j.verdict != Verdict::Right) {
@@ -101,4 +100,3 @@ fn jog(log: &RunLog) -> Result<Jog, Error> {
         verdict: judged(position, command),
     })
 }
-

@@ -133,7 +133,8 @@ pub(crate) fn calibration_of(
     if !runs.iter().any(|r| r.kind == Hung) {
         return (None, None);
     }
-    let declared = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref()).and_then(|p| p.calibration.as_ref());
+    let declared =
+        campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref()).and_then(|p| p.calibration.as_ref());
     let weight_relative = declared.map_or(1e-3, |c| {
         // The heaviest weights tell the most; the uncertainty is that of each weight.
         let heaviest = c.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -178,7 +179,8 @@ fn document(
     sections.push(DocumentSection {
         title: "Uncertainty budget".to_owned(),
         paragraphs: vec![
-            "Standard uncertainty of D_d from each input alone. Errors that all runs share do not average down.".to_owned(),
+            "Standard uncertainty of D_d from each input alone. Errors that all runs share do not average down."
+                .to_owned(),
         ],
         tables: report.coefficients.iter().map(budget_table).collect(),
         charts: Vec::new(),
@@ -301,7 +303,8 @@ pub fn methods_table(report: &DragReport) -> TextTable {
         })
         .collect();
     TextTable {
-        caption: "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none.".to_owned(),
+        caption: "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none."
+            .to_owned(),
         head: ["method", "D_d [N s²/m²]", "95 % interval", "half-width", "C_D [1]", "95 % interval", "ratio", "pairs"]
             .map(str::to_owned)
             .to_vec(),
@@ -356,10 +359,11 @@ fn force_chart(report: &DragReport) -> Chart {
     Chart {
         name: "drag".to_owned(),
         title: "Drag over speed".to_owned(),
-        caption: "Drag of each steady window by method; the line is D_d v|v| of the recommended one with its 95 % band.".to_owned(),
+        caption:
+            "Drag of each steady window by method; the line is D_d v|v| of the recommended one with its 95 % band."
+                .to_owned(),
         x_label: "speed [m/s]".to_owned(),
         panels: vec![ChartPanel { y_label: "drag [N]".to_owned(), series, ..ChartPanel::default() }],
         ..Chart::default()
     }
 }
-

@@ -13,7 +13,7 @@ use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check};
 use froude_rig::campaign::runner::{self, Operator, Progress, Setting};
 use froude_rig::campaign::stop::StopSwitch;
-use froude_rig::campaign::{setup, runner::Outcome};
+use froude_rig::campaign::{runner::Outcome, setup};
 use froude_rig::drive::Rig;
 use froude_rig::drive::twin::TwinRig;
 use froude_rig::load::{Load, TowedBody};
@@ -121,10 +121,9 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         .carriage
         .clone()
         .ok_or_else(|| Error::Nothing(format!("{path}: nothing to drive: the campaign has no [rig]")))?;
-    let asked = carriage
-        .plan
-        .clone()
-        .ok_or_else(|| Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do")))?;
+    let asked = carriage.plan.clone().ok_or_else(|| {
+        Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do"))
+    })?;
     let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
     let density_kg_m3 = density_kg_m3(Some(&campaign));
     // The body with its water and added mass: twice what it displaces, where nothing else is known.
@@ -132,21 +131,17 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     let towed_kg = 2.0 * density_kg_m3 * displaced_m3;
     let control = setup::control(&carriage, towed_kg)?;
     let axis = control.axes[asked.axis as usize];
-    let start_m = asked.start_m.unwrap_or_else(|| {
-        0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m)
-    });
+    let start_m =
+        asked.start_m.unwrap_or_else(|| 0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m));
     let order_seed = match carriage.rig.kind {
         RigKind::Twin { seed, .. } => seed,
         RigKind::Serial { .. } => 1,
     };
     let steps = plan(&asked, start_m, order_seed);
-    let body = TowedBody {
-        displaced_m3,
-        drag_n_s2_m2,
-        ..TowedBody::CYLINDER
-    };
+    let body = TowedBody { displaced_m3, drag_n_s2_m2, ..TowedBody::CYLINDER };
     let load = Load { body, density_kg_m3, ..Load::default() };
-    let spec = if asked.axis as usize == 0 { &carriage.rig.y } else { carriage.rig.x.as_ref().unwrap_or(&carriage.rig.y) };
+    let spec =
+        if asked.axis as usize == 0 { &carriage.rig.y } else { carriage.rig.x.as_ref().unwrap_or(&carriage.rig.y) };
     let expected = Expected {
         drag_n_s2_m2,
         wet_mass_kg: towed_kg,

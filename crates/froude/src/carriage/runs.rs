@@ -86,8 +86,7 @@ fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
     let mut out = Vec::new();
     for path in paths {
         if path.is_dir() {
-            let entries =
-                std::fs::read_dir(path).map_err(|source| Error::Output { path: path.clone(), source })?;
+            let entries = std::fs::read_dir(path).map_err(|source| Error::Output { path: path.clone(), source })?;
             out.extend(
                 entries.filter_map(Result::ok).map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "mcap")),
             );

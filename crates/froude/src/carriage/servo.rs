@@ -104,7 +104,11 @@ fn servo_log(log: &RunLog) -> Result<ServoLog, Error> {
         time_s: log.time_s.clone(),
         position_m: column("position", Dimension::LENGTH)?,
         command_v: column("command", Dimension::VOLTAGE)?,
-        reference_m: log.channels.contains_key(&reference).then(|| column("reference_position", Dimension::LENGTH)).transpose()?,
+        reference_m: log
+            .channels
+            .contains_key(&reference)
+            .then(|| column("reference_position", Dimension::LENGTH))
+            .transpose()?,
         load_n: None,
     })
 }
@@ -128,9 +132,7 @@ fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<ServoOutcome, Error> 
     };
     let models = [("symmetric", Friction::symmetric()), ("asymmetric", Friction::asymmetric())]
         .into_iter()
-        .map(|(name, friction)| {
-            Ok(Model { name: name.to_owned(), report: identify_servo(&servo, &chain(friction))? })
-        })
+        .map(|(name, friction)| Ok(Model { name: name.to_owned(), report: identify_servo(&servo, &chain(friction))? }))
         .collect::<Result<Vec<_>, Error>>()?;
     let findings = told(&models, imported.findings);
     Ok(ServoOutcome { models, flexible: None, repeatability: Vec::new(), motor: None, findings, page: PathBuf::new() })
@@ -232,7 +234,11 @@ fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<Se
     for log in logs {
         let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
         record_rate_hz = rate_hz;
-        chain = Chain { corner_hz: RIGID_CORNER_HZ, decimation: (rate_hz / ROW_RATE_HZ).round().max(1.0) as usize, ..chain };
+        chain = Chain {
+            corner_hz: RIGID_CORNER_HZ,
+            decimation: (rate_hz / ROW_RATE_HZ).round().max(1.0) as usize,
+            ..chain
+        };
         let Some(moving) = moving(log)? else { continue };
         let rows = chain.rows(&servo_log(&moving)?)?;
         match &mut all {
@@ -276,9 +282,17 @@ fn repeatability(logs: &[&RunLog], motor: &MotorSide) -> Result<Vec<Repeatabilit
 pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> TextTable {
     TextTable {
         caption,
-        head: ["coefficient", "unit", "value", "95 % interval (blocks)", "std (white noise)", "std (HAC)", "std (blocks)"]
-            .map(str::to_owned)
-            .to_vec(),
+        head: [
+            "coefficient",
+            "unit",
+            "value",
+            "95 % interval (blocks)",
+            "std (white noise)",
+            "std (HAC)",
+            "std (blocks)",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows: coefficients
             .iter()
             .map(|c| {
@@ -372,7 +386,10 @@ fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Docum
         sections.push(DocumentSection {
             title: "Two masses".to_owned(),
             paragraphs: splits.collect(),
-            tables: vec![coefficient_table("Motor, chain and load from motor-side signals.".to_owned(), &f.coefficients)],
+            tables: vec![coefficient_table(
+                "Motor, chain and load from motor-side signals.".to_owned(),
+                &f.coefficients,
+            )],
             charts: Vec::new(),
         });
     }
@@ -397,7 +414,8 @@ fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Docum
 #[must_use]
 pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
     TextTable {
-        caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run.".to_owned(),
+        caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run."
+            .to_owned(),
         head: ["speed [m/s]", "way", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
         rows: cells
             .iter()
@@ -419,7 +437,13 @@ pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
 fn force_chart(model: &Model) -> Chart {
     let r = &model.report;
     let predicted: Vec<f64> = r.rows.force_n.iter().zip(&r.residuals_n).map(|(f, e)| f - e).collect();
-    let series = |name: &str, y: Vec<f64>, mark| Series { name: name.to_owned(), mark, x: r.rows.time_s.clone(), y, ..Series::default() };
+    let series = |name: &str, y: Vec<f64>, mark| Series {
+        name: name.to_owned(),
+        mark,
+        x: r.rows.time_s.clone(),
+        y,
+        ..Series::default()
+    };
     Chart {
         name: format!("force-{}", model.name),
         title: format!("Drive force and model, friction {}", model.name),

@@ -101,11 +101,15 @@ pub fn tune(
     let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Relay, RunKind::Sweep], None)?;
     let axis = prepared.axis();
     let sweep = runs.logs.iter().find(|l| l.meta.kind == RunKind::Sweep);
-    let plant = response_of(sweep.ok_or_else(|| Error::Nothing("the sweep was not recorded".to_owned()))?, axis, &experiments)?;
-    let cycle = runs.logs.iter().find(|l| l.meta.kind == RunKind::Relay).map_or(
-        Err(TuningError::TooFew { what: "relay runs", found: 0, least: 1, advice: "drive one" }),
-        |log| cycle_of(log, axis, &experiments),
-    );
+    let plant =
+        response_of(sweep.ok_or_else(|| Error::Nothing("the sweep was not recorded".to_owned()))?, axis, &experiments)?;
+    let cycle = runs
+        .logs
+        .iter()
+        .find(|l| l.meta.kind == RunKind::Relay)
+        .map_or(Err(TuningError::TooFew { what: "relay runs", found: 0, least: 1, advice: "drive one" }), |log| {
+            cycle_of(log, axis, &experiments)
+        });
     let rated = |name: &str, gains: LoopGains| candidate(name, gains, axis, prepared.tick_us(), &plant);
     let configured = axis.gains;
     let mut candidates = vec![rated(
@@ -191,13 +195,14 @@ struct Excited {
     rows: std::ops::Range<usize>,
 }
 
-fn excited(log: &RunLog, axis: &AxisConfig, speed_m_s: f64) -> Result<Excited, Error> {
+/// `speed_m_s`: the reference below a sweep; `None` where the loop is open.
+fn excited(log: &RunLog, axis: &AxisConfig, speed_m_s: Option<f64>) -> Result<Excited, Error> {
     let name = log.meta.axis.name();
     let column = |what: &str, dimension| log.channel(&format!("{name}/{what}"), dimension);
     let state = column("state", Dimension::ONE)?;
     let reference = column("reference_velocity", Dimension::SPEED)?;
     let rad_m = axis.drive.gear_ratio / axis.drive.sprocket_radius_m;
-    let is_on = |i: usize| state[i] == EXCITING && (reference[i] - speed_m_s).abs() <= 1e-6;
+    let is_on = |i: usize| state[i] == EXCITING && speed_m_s.is_none_or(|v| (reference[i] - v).abs() <= 1e-6);
     let first = (0..state.len()).find(|&i| is_on(i)).unwrap_or(0);
     let end = (first..state.len()).rfind(|&i| is_on(i)).map_or(first, |i| i + 1);
     Ok(Excited {
@@ -209,7 +214,7 @@ fn excited(log: &RunLog, axis: &AxisConfig, speed_m_s: f64) -> Result<Excited, E
 }
 
 fn response_of(log: &RunLog, axis: &AxisConfig, e: &Experiments) -> Result<Vec<ResponsePoint>, Error> {
-    let columns = excited(log, axis, e.sweep_m_s)?;
+    let columns = excited(log, axis, Some(e.sweep_m_s))?;
     let rows = columns.rows.clone();
     let sweep = Sweep {
         rate_hz: columns.rate_hz,
@@ -225,16 +230,10 @@ fn response_of(log: &RunLog, axis: &AxisConfig, e: &Experiments) -> Result<Vec<R
 
 fn cycle_of(log: &RunLog, axis: &AxisConfig, e: &Experiments) -> Result<LimitCycle, TuningError> {
     let failed = |_| TuningError::TooFew { what: "relay columns", found: 0, least: 1, advice: "drive the relay again" };
-    let columns = excited(log, axis, 0.0).map_err(failed)?;
+    let columns = excited(log, axis, None).map_err(failed)?;
     let hysteresis_rad = e.hysteresis_m * axis.drive.gear_ratio / axis.drive.sprocket_radius_m;
     let rows = columns.rows.clone();
-    limit_cycle(
-        columns.rate_hz,
-        e.relay_v,
-        hysteresis_rad,
-        &columns.command_v[rows.clone()],
-        &columns.angle_rad[rows],
-    )
+    limit_cycle(columns.rate_hz, e.relay_v, hysteresis_rad, &columns.command_v[rows.clone()], &columns.angle_rad[rows])
 }
 
 fn candidate(name: &str, gains: LoopGains, axis: &AxisConfig, tick_us: u32, plant: &[ResponsePoint]) -> Candidate {
@@ -262,11 +261,22 @@ pub fn candidates_table(candidates: &[Candidate]) -> TextTable {
     let digits = |x: f64| number::significant(x, 3);
     let some = |x: Option<f64>, scale: f64| x.map_or_else(|| number::MISSING.to_owned(), |x| digits(scale * x));
     TextTable {
-        caption: "Gains of MCD eq. 6 in SI and per count and tick (V), with their margins on the measured response.".to_owned(),
+        caption: "Gains of MCD eq. 6 in SI and per count and tick (V), with their margins on the measured response."
+            .to_owned(),
         head: [
-            "gains", "K_p [V/rad]", "K_d [V s/rad]", "K_i [V/(rad s)]", "K_p [V/count]", "K_d [V s/count]",
-            "K_i [V/(count tick)]", "crossover [Hz]", "phase margin [°]", "gain margin [1]", "delay margin [ms]",
-            "largest sensitivity [1]", "command per count [V]",
+            "gains",
+            "K_p [V/rad]",
+            "K_d [V s/rad]",
+            "K_i [V/(rad s)]",
+            "K_p [V/count]",
+            "K_d [V s/count]",
+            "K_i [V/(count tick)]",
+            "crossover [Hz]",
+            "phase margin [°]",
+            "gain margin [1]",
+            "delay margin [ms]",
+            "largest sensitivity [1]",
+            "command per count [V]",
         ]
         .map(str::to_owned)
         .to_vec(),
@@ -301,7 +311,8 @@ fn tune_document(outcome: &TuneOutcome, prepared: &Prepared, date: &str) -> Docu
     for c in &outcome.candidates {
         let points = open_loop(&outcome.plant, &c.gains);
         let x: Vec<f64> = points.iter().map(|p| p.frequency_hz).collect();
-        let series = |y: Vec<f64>| Series { name: c.name.clone(), mark: Mark::Line, x: x.clone(), y, ..Series::default() };
+        let series =
+            |y: Vec<f64>| Series { name: c.name.clone(), mark: Mark::Line, x: x.clone(), y, ..Series::default() };
         panels[0].series.push(series(points.iter().map(|p| p.modulus).collect()));
         panels[1].series.push(series(points.iter().map(|p| p.phase_rad.to_degrees()).collect()));
     }
@@ -328,7 +339,8 @@ fn tune_document(outcome: &TuneOutcome, prepared: &Prepared, date: &str) -> Docu
             charts: vec![Chart {
                 name: "bode".to_owned(),
                 title: "Open loop".to_owned(),
-                caption: "Open loop L = C·P: the controller's own response times the measured one of the drive.".to_owned(),
+                caption: "Open loop L = C·P: the controller's own response times the measured one of the drive."
+                    .to_owned(),
                 x_label: "frequency [Hz]".to_owned(),
                 x_scale: Scale::Logarithmic,
                 panels: panels.to_vec(),
@@ -343,10 +355,19 @@ fn tune_document(outcome: &TuneOutcome, prepared: &Prepared, date: &str) -> Docu
 pub fn modes_table(states: &[StateModes]) -> TextTable {
     let missing = || number::MISSING.to_owned();
     TextTable {
-        caption: "Modes from the motor's side: the load on a held motor (to shape for) and both masses free.".to_owned(),
-        head: ["body", "load's mode [Hz]", "damping [1]", "free mode [Hz]", "damping [1]", "inertia ratio [1]", "left unexplained"]
-            .map(str::to_owned)
-            .to_vec(),
+        caption: "Modes from the motor's side: the load on a held motor (to shape for) and both masses free."
+            .to_owned(),
+        head: [
+            "body",
+            "load's mode [Hz]",
+            "damping [1]",
+            "free mode [Hz]",
+            "damping [1]",
+            "inertia ratio [1]",
+            "left unexplained",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows: states
             .iter()
             .map(|s| match &s.modes {
@@ -368,11 +389,8 @@ pub fn modes_table(states: &[StateModes]) -> TextTable {
 /// What to put into the campaign, and why not 13 Hz.
 #[must_use]
 pub fn resonance_sentences(outcome: &ResonanceOutcome) -> Vec<String> {
-    let mut out: Vec<String> = outcome
-        .states
-        .iter()
-        .filter_map(|s| s.modes.as_ref().err().map(|e| format!("{}: {e}.", s.body)))
-        .collect();
+    let mut out: Vec<String> =
+        outcome.states.iter().filter_map(|s| s.modes.as_ref().err().map(|e| format!("{}: {e}.", s.body))).collect();
     if let (Some((hz, damping)), Some(shaper)) = (outcome.proposed, outcome.shaper) {
         out.push(format!(
             "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{damping:.3} 1\", robust_shaper = true. It adds {:.0} ms \
