@@ -34,12 +34,14 @@ pub struct TwoMassModes {
     pub inertia_ratio: f64,
     /// Delay of the loop, s.
     pub delay_s: f64,
-    /// Root-mean-square relative residual of the response.
+    /// Root-mean-square relative residual of the response where its coherence is above 0.8.
     pub relative_residual: f64,
 }
 
 const PARAMETERS: usize = 7;
 const NAMES: [&str; PARAMETERS] = ["ln k", "ln b", "ln f_a", "zeta_a", "ln f_p", "zeta_p", "T"];
+/// Coherence above which a point counts in the residual.
+const SEEN: f64 = 0.8;
 /// A fit that leaves more than this of the response is none.
 const LARGEST_RESIDUAL: f64 = 0.35;
 
@@ -53,7 +55,7 @@ fn model(p: &[f64; PARAMETERS], frequency_hz: f64) -> Complex64 {
 
 /// Fits the two-mass model to the logarithm of the response (modulus and phase), weighted by the coherence.
 ///
-/// Starts from the deepest dip and the highest peak of |θ/v_c|·ω² above it; Gauss–Newton with halved steps.
+/// Gauss–Newton with halved steps from a grid of starts; the best is kept.
 ///
 /// # Errors
 ///
@@ -67,43 +69,30 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
             advice: "sweep longer",
         });
     }
-    let mut p = start(plant);
-    let mut sum = residuals(plant, &p).iter().map(|r| r * r).sum::<f64>();
-    let mut last = None;
-    for _ in 0..60 {
-        let fit = froude_fit::fit(&linearised(plant, &p), &Options::default())?;
-        let step: Vec<f64> = fit.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
-        let mut part = 1.0;
-        let mut improved = false;
-        while part > 1e-4 {
-            let mut trial = p;
-            trial.iter_mut().zip(&step).for_each(|(x, s)| *x += part * s);
-            trial[3] = trial[3].abs();
-            trial[5] = trial[5].abs();
-            let trial_sum = residuals(plant, &trial).iter().map(|r| r * r).sum::<f64>();
-            if trial_sum < sum {
-                improved = trial_sum < sum * (1.0 - 1e-10);
-                (p, sum) = (trial, trial_sum);
-                break;
-            }
-            part *= 0.5;
-        }
-        last = Some(fit);
-        if !improved {
-            break;
+    let mut best: Option<Refined> = None;
+    for start in starts(plant) {
+        // A start from which the normal equations fail is one start less.
+        if let Ok(refined) = refine(plant, start)
+            && best.as_ref().is_none_or(|b| refined.sum < b.sum)
+        {
+            best = Some(refined);
         }
     }
-    let unweighted: f64 =
-        plant.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).sum::<f64>();
-    let relative_residual = (unweighted / plant.len() as f64).sqrt();
     let (low_hz, high_hz) = (plant[0].frequency_hz, plant[plant.len() - 1].frequency_hz);
+    let Some(Refined { parameters: p, fit, .. }) = best else {
+        return Err(TuningError::NoModes { residual_percent: 100.0, low_hz, high_hz });
+    };
+    // Only where the response was seen at all: at an antiresonance the encoder may see nothing.
+    let seen: Vec<&ResponsePoint> = plant.iter().filter(|q| q.coherence > SEEN).collect();
+    let square: f64 = seen.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).sum();
+    let relative_residual = (square / seen.len() as f64).sqrt();
     let (load_hz, free_hz) = (p[2].exp(), p[4].exp());
     let is_inside = |f: f64| (low_hz..=high_hz).contains(&f);
     // A comparison with NaN is false, so this also refuses a fit that ran away.
     if !(relative_residual < LARGEST_RESIDUAL && is_inside(load_hz) && is_inside(free_hz) && load_hz < free_hz) {
         return Err(TuningError::NoModes { residual_percent: 100.0 * relative_residual, low_hz, high_hz });
     }
-    let std = |j: usize| last.as_ref().and_then(|f| f.coefficients[j].standard).unwrap_or(f64::NAN);
+    let std = |j: usize| fit.coefficients[j].standard.unwrap_or(f64::NAN);
     let mode = |f: usize, z: usize| Mode {
         frequency_hz: p[f].exp(),
         frequency_std_hz: p[f].exp() * std(f),
@@ -119,25 +108,53 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
     })
 }
 
-/// First guess: the line through the acceleration response, its dip and its peak.
-fn start(plant: &[ResponsePoint]) -> [f64; PARAMETERS] {
-    let acceleration = |q: &ResponsePoint| q.plant_rad_v.norm() * q.frequency_hz * q.frequency_hz;
-    let dip = (1..plant.len() - 1).min_by(|&a, &b| prominence(plant, a).total_cmp(&prominence(plant, b))).unwrap_or(1);
-    let peak = (dip..plant.len())
-        .max_by(|&a, &b| acceleration(&plant[a]).total_cmp(&acceleration(&plant[b])))
-        .unwrap_or(plant.len() - 1);
-    let (load_hz, free_hz) = (plant[dip].frequency_hz, plant[peak].frequency_hz.max(1.05 * plant[dip].frequency_hz));
-    let last = &plant[plant.len() - 1];
-    let k = last.plant_rad_v.norm() * (std::f64::consts::TAU * last.frequency_hz).powi(2);
-    [k.ln(), 0.0, load_hz.ln(), 0.05, free_hz.ln(), 0.05, 2.5e-4]
+/// A fit from one start.
+struct Refined {
+    parameters: [f64; PARAMETERS],
+    sum: f64,
+    fit: froude_fit::Fit,
 }
 
-/// ln of the acceleration response less that of its neighbourhood (an octave): most negative at the antiresonance.
-fn prominence(plant: &[ResponsePoint], i: usize) -> f64 {
-    let f = plant[i].frequency_hz;
-    let level = |q: &ResponsePoint| (q.plant_rad_v.norm() * q.frequency_hz * q.frequency_hz).ln();
-    let near: Vec<f64> = plant.iter().filter(|q| (0.5..=2.0).contains(&(q.frequency_hz / f))).map(level).collect();
-    level(&plant[i]) - near.iter().sum::<f64>() / near.len() as f64
+/// Gauss–Newton with halved steps.
+fn refine(plant: &[ResponsePoint], start: [f64; PARAMETERS]) -> Result<Refined, TuningError> {
+    let mut p = start;
+    let sum_of = |p: &[f64; PARAMETERS]| residuals(plant, p).iter().map(|r| r * r).sum::<f64>();
+    let mut sum = sum_of(&p);
+    loop {
+        let fit = froude_fit::fit(&linearised(plant, &p), &Options::default())?;
+        let before = sum;
+        let mut part = 1.0;
+        while part > 1e-4 {
+            let mut trial = p;
+            trial.iter_mut().zip(&fit.coefficients).for_each(|(x, c)| *x += part * c.value.unwrap_or(0.0));
+            trial[3] = trial[3].abs();
+            trial[5] = trial[5].abs();
+            let trial_sum = sum_of(&trial);
+            if trial_sum < sum {
+                (p, sum) = (trial, trial_sum);
+                break;
+            }
+            part *= 0.5;
+        }
+        if sum >= before * (1.0 - 1e-6) {
+            return Ok(Refined { parameters: p, sum, fit });
+        }
+    }
+}
+
+/// First guesses: the load's mode anywhere in the range, the free one above it by what light to heavy loads give.
+fn starts(plant: &[ResponsePoint]) -> Vec<[f64; PARAMETERS]> {
+    let (first, last) = (&plant[0], &plant[plant.len() - 1]);
+    let k = last.plant_rad_v.norm() * (std::f64::consts::TAU * last.frequency_hz).powi(2);
+    let range = (last.frequency_hz / first.frequency_hz).ln();
+    let mut out = Vec::new();
+    for i in 0..8 {
+        let load = first.frequency_hz.ln() + range * (0.1 + 0.1 * f64::from(i));
+        for ratio in [1.4_f64, 2.2, 3.5] {
+            out.push([k.ln(), 0.0, load, 0.03, load + ratio.ln(), 0.05, 2.5e-4]);
+        }
+    }
+    out
 }
 
 /// Weighted residuals ln(measured/model): moduli first, then phases.

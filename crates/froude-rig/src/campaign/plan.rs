@@ -207,8 +207,8 @@ impl Default for Experiments {
             relay_v: 1.0,
             hysteresis_m: 2e-5,
             relay_s: 6.0,
-            sweep_v: 2.0,
-            sweep_hz: [1.0, 40.0],
+            sweep_v: 3.0,
+            sweep_hz: [2.0, 40.0],
             sweep_s: 40.0,
             sweep_m_s: 0.05,
         }

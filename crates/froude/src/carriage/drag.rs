@@ -271,7 +271,8 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     }
     if let Some(m) = &report.added_mass {
         out.push(format!(
-            "From the ramps: added mass and water inside {} kg, interval {} kg, {} pairs.",
+            "From the ramps: what the wet run carries more than the dry one (added mass, water inside, ballast) is {} kg, interval \
+             {} kg, {} pairs.",
             number::short_form(m.mass_kg.value, m.mass_kg.standard),
             number::interval(m.interval_95),
             m.runs
