@@ -227,7 +227,7 @@ fn is_complete(folder: &Path, id: &str) -> Result<bool, RunnerError> {
         return Ok(true);
     }
     let aside =
-        (1..).map(|n| format!("{id}.interrupted-{n}")).find(|name| !folder.join(format!("{name}.toml")).exists());
+        (1..10_000).map(|n| format!("{id}.interrupted-{n}")).find(|name| !folder.join(format!("{name}.toml")).exists());
     if let Some(aside) = aside {
         for extension in ["mcap", "toml"] {
             let from = folder.join(format!("{id}.{extension}"));
@@ -288,7 +288,7 @@ impl Session<'_> {
 
     /// The whole run; the record is closed whatever happens.
     fn drive_run(mut self) -> Result<PathBuf, RunnerError> {
-        self.to_start()?;
+        self.approach()?;
         self.wait(self.run.settle_s)?;
         self.begin_record()?;
         let driven = self.motion();
@@ -301,7 +301,7 @@ impl Session<'_> {
         Ok(path?.unwrap_or_default())
     }
 
-    fn to_start(&mut self) -> Result<(), RunnerError> {
+    fn approach(&mut self) -> Result<(), RunnerError> {
         let target_m = match self.run.drive {
             Drive::Profile { from_m, .. }
             | Drive::Pulses { from_m, .. }
@@ -528,7 +528,7 @@ impl Session<'_> {
     fn record(&mut self, sample: &Sample) -> Result<(), RecordError> {
         let first = *self.tick.get_or_insert(sample.tick);
         let number = sample.tick - first;
-        if number % TOLD_EVERY == 0 {
+        if number.is_multiple_of(TOLD_EVERY) {
             self.progress.sample(
                 self.run,
                 sample,
@@ -536,7 +536,7 @@ impl Session<'_> {
             );
         }
         let Some(recorder) = &mut self.recorder else { return Ok(()) };
-        if number % self.setting.decimation != 0 {
+        if !number.is_multiple_of(self.setting.decimation) {
             return Ok(());
         }
         let axis = |i: usize| {

@@ -31,7 +31,7 @@ const HEARTBEAT: Duration = Duration::from_millis(20);
 /// A request that was not answered is repeated after this time.
 const REPEAT: Duration = Duration::from_millis(50);
 /// Without a valid frame for this long the board is given up.
-const SILENCE: Duration = Duration::from_millis(1_000);
+const SILENCE: Duration = Duration::from_secs(1);
 /// How long the greeting and the configuration may take.
 const GREETING: Duration = Duration::from_secs(5);
 /// Holding samples after homing over which the beginning of the counts is averaged.
@@ -188,6 +188,9 @@ impl SerialRig {
     fn listen(&mut self) -> Result<(), RigError> {
         let mut bytes = [0_u8; 4_096];
         let n = match self.line.read(&mut bytes) {
+            Ok(0) => {
+                return Err(RigError::Port { port: self.port.clone(), reason: "the port is gone".to_owned() });
+            }
             Ok(n) => n,
             Err(e) if matches!(e.kind(), std::io::ErrorKind::TimedOut | std::io::ErrorKind::WouldBlock) => 0,
             Err(e) if e.kind() == std::io::ErrorKind::Interrupted => 0,
