@@ -131,8 +131,7 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     let towed_kg = 2.0 * density_kg_m3 * displaced_m3;
     let control = setup::control(&carriage, towed_kg)?;
     let axis = control.axes[asked.axis as usize];
-    let start_m =
-        asked.start_m.unwrap_or_else(|| 0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m));
+    let start_m = asked.start_m.unwrap_or(0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m));
     let order_seed = match carriage.rig.kind {
         RigKind::Twin { seed, .. } => seed,
         RigKind::Serial { .. } => 1,
@@ -298,7 +297,7 @@ impl Live {
 
     /// Reads the run again from its file and asks whether enough is known. A run that gives no point only gives none.
     fn after(&mut self, path: &Path, run: &PlannedRun) -> Option<String> {
-        let target = self.online.as_ref()?;
+        self.online.as_ref()?;
         if !matches!(run.kind, RunKind::Dry | RunKind::Wet | RunKind::Calibration) {
             return None;
         }
@@ -307,7 +306,6 @@ impl Live {
             self.calibration.push(log);
             return None;
         }
-        let _ = target;
         self.calibrate();
         let partner = self.waiting.iter().position(|other| {
             other.meta.pair == log.meta.pair
@@ -329,7 +327,7 @@ impl Live {
         let online = self.online.as_mut()?;
         online.push(&point);
         self.points.push(point);
-        if self.points.len() % self.per_pair != 0 {
+        if !self.points.len().is_multiple_of(self.per_pair) {
             return None;
         }
         let status = online.status()?;
