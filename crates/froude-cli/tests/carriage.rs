@@ -1,0 +1,143 @@
+//! `froude run` and `froude carriage …` as a user meets them, on the twin.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// The example, shortened: two speeds, three pairs, one weight, short waits.
+fn campaign(folder: &Path, changes: &[(&str, &str)]) -> PathBuf {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml");
+    let mut text = std::fs::read_to_string(example).unwrap();
+    let short = [
+        (
+            r#"speeds = ["0.05 m/s", "0.15 m/s", "0.25 m/s", "0.35 m/s", "0.45 m/s", "0.55 m/s"]"#,
+            r#"speeds = ["0.3 m/s", "0.55 m/s"]"#,
+        ),
+        ("repeats = 5  ", "repeats = 3  "),
+        (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
+        (r#"still = "5 s""#, r#"still = "1 s""#),
+        (
+            r#"speeds = ["0.02 m/s", "0.05 m/s", "0.1 m/s", "0.2 m/s", "0.35 m/s", "0.55 m/s"]"#,
+            r#"speeds = ["0.2 m/s", "0.4 m/s"]"#,
+        ),
+        (r#"duration = "1 min""#, r#"duration = "10 s""#),
+        (r#"stop_when = "1.5 %""#, r#"stop_when = "0.1 %""#),
+        (r#"log_rate = "1 kHz""#, r#"log_rate = "500 Hz""#),
+    ];
+    for (from, to) in short.iter().chain(changes) {
+        assert!(text.contains(from), "the example has no {from}");
+        text = text.replace(from, to);
+    }
+    let path = folder.join("campaign.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn froude(args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_froude")).args(args).output().unwrap()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+fn json(args: &[&str]) -> Value {
+    let out = froude(args);
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    serde_json::from_slice(&out.stdout).unwrap()
+}
+
+#[test]
+fn a_campaign_is_driven_and_its_drag_is_the_twins() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[]);
+    let driven = json(&["run", text(&campaign), "--yes", "--json"]);
+    assert_eq!(driven["resumed"], 0);
+    let n = driven["driven"].as_u64().unwrap();
+    let runs = folder.path().join("campaign-runs");
+    // Driven again, nothing is left to do.
+    let again = json(&["run", text(&campaign), "--yes", "--json"]);
+    assert_eq!((again["driven"].as_u64(), again["resumed"].as_u64()), (Some(0), Some(n)));
+
+    let record = json(&["carriage", "drag", text(&runs), "--json"]);
+    let estimates = record["estimates"].as_array().unwrap();
+    for model in ["drag_fsm", "drag_mcd", "drag_mbdp_mapped"] {
+        let estimate = estimates.iter().find(|e| e["model"] == model).unwrap();
+        let interval = &estimate["coefficients"]["D_d"]["interval_95"];
+        let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());
+        // Three pairs: an interval of Student's t with two degrees of freedom, doubled so that one draw cannot miss it.
+        let half = 0.5 * (high - low);
+        assert!(low - half < 20.0 && 20.0 < high + half, "{model}: {low} to {high}");
+    }
+    let report = std::fs::read_to_string(folder.path().join("campaign-runs-drag/report.html")).unwrap();
+    assert!(report.contains("Uncertainty budget") && report.contains("C_D"));
+
+    let known = json(&["carriage", "calibrate", text(&runs), "--json"]);
+    let efficiency = known["calibration"]["efficiency"].as_f64().unwrap();
+    assert!((efficiency - 0.8).abs() < 0.03, "{known}");
+    assert!(known["jogs"].as_array().unwrap().iter().all(|j| j["is_right"] == true), "{known}");
+
+    let servo = json(&["carriage", "identify", text(&runs), "--json"]);
+    let models = servo["models"].as_array().unwrap();
+    assert_eq!(models.len(), 3);
+    assert!(servo["two_mass"].is_object(), "{servo}");
+}
+
+#[test]
+fn a_campaign_beyond_the_travel_is_refused_with_its_numbers_before_anything_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[(r#"distance = "2.2 m""#, r#"distance = "4.7 m""#)]);
+    let out = froude(&["run", text(&campaign), "--yes"]);
+    assert_eq!(out.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(error.contains("nothing was moved: 003-warm-up-forward: it ends 0.150 m before the hard stop"), "{error}");
+    assert!(error.contains("Shorten the travel or start further back"), "{error}");
+    assert!(!folder.path().join("campaign-runs").exists());
+}
+
+#[test]
+fn a_truth_that_the_twin_does_not_have_is_told_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[(r#"pulley_friction = "1 %""#, r#"pully_friction = "1 %""#)]);
+    let out = froude(&["run", text(&campaign), "--yes"]);
+    assert_eq!(out.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(error.contains("campaign.toml:"), "{error}");
+    assert!(error.contains("the twin has no truth `pully_friction`; did you mean `pulley_friction`?"), "{error}");
+}
+
+#[test]
+fn nobody_confirms_for_a_real_rig_and_a_port_that_is_not_there_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let serial = [
+        ("kind = \"twin\"  ", "kind = \"serial\"\nport = \"/dev/no-such-port\" #"),
+        ("seed = 1\n", ""),
+        ("[rig.twin]                        # the truth that identification has to find\n", ""),
+        ("drag = \"20 N s^2/m^2\"\npulley_friction = \"1 %\"\n", ""),
+    ];
+    let campaign = campaign(folder.path(), &serial);
+    let out = froude(&["run", text(&campaign), "--yes"]);
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert_eq!(out.status.code(), Some(2), "{error}");
+    assert!(error.contains("--yes is for the twin"), "{error}");
+    let out = froude(&["run", text(&campaign)]);
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert_eq!(out.status.code(), Some(1), "{error}");
+    assert!(error.contains("/dev/no-such-port"), "{error}");
+}
+
+#[test]
+fn anyones_servo_log_is_identified_with_intervals() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/emps/emps.csv");
+    let out = folder.path().join("servo");
+    let found = json(&["carriage", "identify", text(&log), "--out", text(&out), "--json"]);
+    let symmetric = &found["models"][0];
+    assert_eq!(symmetric["friction"], "symmetric");
+    let mass = &symmetric["coefficients"][0];
+    assert_eq!(mass["name"], "M");
+    assert!((mass["value"].as_f64().unwrap() - 95.1089).abs() < 0.1085, "{mass}");
+    assert!(out.join("report.html").exists());
+}
