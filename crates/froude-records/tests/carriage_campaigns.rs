@@ -34,8 +34,8 @@ fn the_papers_campaign_is_read_as_it_is_written() {
     let RigKind::Twin { seed, truths } = &rig.kind else { panic!("{:?}", rig.kind) };
     assert_eq!(*seed, 1);
     assert_eq!((truths[0].name.as_str(), truths[0].quantity.value_si), ("drag", 20.0));
-    assert_eq!(rig.log_rate_hz, 4000.0);
-    assert_eq!(rig.y.travel_m, [0.0, 5.0]);
+    assert_eq!(rig.log_rate_hz, 1000.0);
+    assert_eq!(rig.y.travel_m, [-0.05, 4.95]);
     let constants = rig.y.constants;
     assert_eq!(constants.gear_ratio, Declared::exact(34.97));
     assert_eq!(constants.torque_constant_n_m_a.value, 26.7e-3);
@@ -46,16 +46,15 @@ fn the_papers_campaign_is_read_as_it_is_written() {
         * constants.torque_constant_n_m_a.value
         * constants.amplifier_a_v.value;
     assert!((n_per_v - 5.976).abs() < 5e-4, "{n_per_v}");
-    let gains = rig.y.gains;
-    assert_eq!(gains.derivative_v_s_rad / gains.proportional_v_rad, 0.1);
+    assert_eq!((rig.y.gains.proportional_v_rad, rig.y.gains.shaped_mode_hz), (20.8, Some(3.6)));
     let plan = plan.unwrap();
     assert_eq!(plan.axis, Axis::Y);
     assert_eq!(plan.speed_m_s, [0.05, 0.15, 0.25, 0.35, 0.45, 0.55]);
-    assert_eq!((plan.repeats, plan.order, plan.directions), (5, Order::Abba, Directions::Forward));
+    assert_eq!((plan.repeats, plan.order, plan.directions), (5, Order::Abba, Directions::Both));
     assert_eq!((plan.distance_m, plan.settling_dry_s, plan.settling_wet_s), (2.2, 5.0, 120.0));
-    assert_eq!(plan.stop_at_relative_half_width, Some(0.01));
+    assert_eq!(plan.stop_at_relative_half_width, Some(0.015));
     assert_eq!(plan.expected_drag_n_s2_m2, Some(20.0));
-    assert_eq!(plan.calibration.unwrap().weights_n.len(), 3);
+    assert_eq!(plan.calibration.unwrap().weights_n.len(), 2);
     assert_eq!(plan.excitation.unwrap().duty, 0.6);
     assert!(plan.is_ballasted);
     assert_eq!(campaign.body.unwrap().reference_area_m2, Some(0.04));
@@ -79,7 +78,7 @@ fn a_board_at_a_serial_port_has_a_port_and_no_seed() {
     let twin = "kind = \"twin\"                     # \"serial\" drives a board: port = \"/dev/ttyUSB0\", baud = 3_000_000\nseed = 1";
     let text = example().replace(twin, "kind = \"serial\"\nport = \"/dev/ttyUSB0\"");
     let text = text.replace(
-        "[rig.twin]                        # the truth that identification has to find\ndrag = \"20 N s^2/m^2\"",
+        "[rig.twin]                        # the truth that identification has to find\ndrag = \"20 N s^2/m^2\"\npulley_friction = \"1 %\"",
         "",
     );
     let rig = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().rig;
@@ -107,14 +106,14 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
             ),
         ),
         (
-            "speed_limit = \"0.7 m/s\"  ",
-            "sped_limit = \"0.7 m/s\"  ",
+            "speed_limit = \"0.6 m/s\"  ",
+            "sped_limit = \"0.6 m/s\"  ",
             format!("{}:1: unknown key `sped_limit` in [rig.y]; did you mean `speed_limit`?", line("speed_limit")),
         ),
         (
-            "travel = [\"0 m\", \"5 m\"] ",
-            "travel = [\"5 m\", \"0 m\"] ",
-            format!("{}:10: `travel` goes from 5 m to 0 m; the first hard stop is the lower one", line("travel")),
+            "travel = [\"-0.05 m\", \"4.95 m\"] ",
+            "travel = [\"4.95 m\", \"0 m\"] ",
+            format!("{}:10: `travel` goes from 4.95 m to 0 m; the first hard stop is the lower one", line("travel")),
         ),
         (
             "efficiency = { value = \"80 %\"",
@@ -135,7 +134,7 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
             ),
         ),
         (
-            "stop_when = \"1 %\"",
+            "stop_when = \"1.5 %\"",
             "stop_when = \"1 1\"",
             format!(
                 "{}:13: `stop_when` is \"1 1\"; the relative half-width of D_d's 95 % interval lies between 0 and 100 %",
@@ -151,8 +150,8 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
             ),
         ),
         (
-            "proportional = \"0.64 V/rad\"",
-            "proportional = \"0.64 V\"\nintegrall = \"1 V/s\"",
+            "proportional = \"20.8 V/rad\"",
+            "proportional = \"20.8 V\"\nintegrall = \"1 V/s\"",
             format!(
                 "c.toml:{}:1: unknown key `integrall` in [rig.y.controller]; did you mean `integral`?",
                 example().lines().position(|l| l.starts_with("proportional")).unwrap() + 2

@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use froude_control::fault::Fault;
 use froude_records::Place;
 use froude_records::carriage::{Calibration, CarriagePlan, Directions, Order};
 use froude_records::run::{Axis, RunKind, RunStatus, read_run};
@@ -186,7 +185,7 @@ fn a_fault_ends_the_run_and_the_run_is_kept_and_marked() {
     let mut hand = Hand::default();
     match run(folder.path(), &mut hand, &mut driven).unwrap_err() {
         RunnerError::Fault { fault, category, run } => {
-            assert!(matches!(fault, Fault::EncoderStuck | Fault::EncoderJump), "{fault:?} in {run}");
+            assert!(Injection::EncoderStuck.accepted().contains(&fault), "{fault:?} in {run}");
             assert_eq!(category, fault.category() as u8);
         }
         other => panic!("{other}"),
