@@ -32,6 +32,8 @@ pub struct Drive {
     pub coulomb_n_m: f64,
     /// Lower bound of C_eff for the coast distance, N m (its fitted interval's lower end).
     pub coulomb_lower_n_m: f64,
+    /// Part of the command by which a held load may be held looser: 1 − η η_b of the gear, which loses both ways; 0 without loss.
+    pub held_band: f64,
     /// Declared drag of the body, N s²/m² at the chain; 0 when dry.
     pub drag_n_s2_m2: f64,
     /// K_T, N m/A.
@@ -280,6 +282,7 @@ impl AxisConfig {
             ("drive.viscous_n_m_s_rad", drive.viscous_n_m_s_rad, 0.0, 1e3),
             ("drive.coulomb_n_m", drive.coulomb_n_m, 0.0, 1e3),
             ("drive.coulomb_lower_n_m", drive.coulomb_lower_n_m, 0.0, drive.coulomb_n_m),
+            ("drive.held_band", drive.held_band, 0.0, 1.0),
             ("drive.drag_n_s2_m2", drive.drag_n_s2_m2, 0.0, 1e5),
             ("drive.torque_constant_n_m_a", drive.torque_constant_n_m_a, 1e-5, 1e3),
             ("drive.amplifier_a_v", drive.amplifier_a_v, 1e-4, 1e3),
@@ -352,6 +355,7 @@ impl AxisConfig {
             viscous_n_m_s_rad: 4.657e-6,
             coulomb_n_m: 3.9e-3,
             coulomb_lower_n_m: 3.5e-3,
+            held_band: 0.0,
             drag_n_s2_m2: 0.0,
             torque_constant_n_m_a: 26.7e-3,
             amplifier_a_v: 0.352,

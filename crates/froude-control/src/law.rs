@@ -33,6 +33,7 @@ pub(crate) struct Law {
     pub volts_coulomb: f64,
     pub volts_drag: f64,
     pub volts_coulomb_lower: f64,
+    pub held_band: f64,
     /// The command never leaves ± this, V: the amplifier's range or the peak current, whichever is less.
     pub limit_v: f64,
     pub amplifier_a_v: f64,
@@ -116,6 +117,7 @@ impl Law {
             volts_coulomb: drive.coulomb_n_m / n_m_per_v,
             volts_drag: drive.drag_n_s2_m2 / (rad_per_m * n_m_per_v),
             volts_coulomb_lower: drive.coulomb_lower_n_m / n_m_per_v,
+            held_band: drive.held_band,
             limit_v: libm::fmin(limits.command_v, limits.current_a / drive.amplifier_a_v),
             amplifier_a_v: drive.amplifier_a_v,
             late_us: f64::from(late_us),

@@ -11,8 +11,9 @@
 //! | overload | (I/I_c)² through a first-order lag of the winding's time constant passes 1 |
 //!
 //! A motor cannot stop within a tick; its encoder can. That is why a count that stands still at speed is a fault at once.
-//! Torque must move an axis that stands (no count for 10 ms) when it changes by more than friction's whole band 2C, whatever load
-//! it holds against; with the loop open, when it is above breakaway. An axis that has just moved with its reference must go on when
+//! Torque must move an axis that stands (no count for 10 ms) when it changes by more than what may hold a load: friction's band 2C, and
+//! (1/η − η_b) T of the gear for the torque T that it holds, which is (1 − η η_b)(h − C) where h is the largest torque; with the loop
+//! open, when it is above breakaway. An axis that has just moved with its reference must go on when
 //! the feedback adds more than stiction: it is stuck as soon as that addition would have carried it twenty counts. That finds a dead
 //! encoder at 5 mm/s within 50 ms, before the loop has run away from it.
 
@@ -170,7 +171,10 @@ impl Monitor {
         let is_driven = match applied.error_m {
             None => libm::fabs(applied.volts) > breakaway_v,
             Some(error_m) => {
-                high_v - low_v > 2.0 * breakaway_v && libm::fabs(error_m) * law.counts_per_m > STUCK_ERROR_COUNTS
+                let largest_v = if high_v > -low_v { high_v } else { -low_v };
+                let gear_v = law.held_band * libm::fmax(largest_v - law.volts_coulomb, 0.0);
+                high_v - low_v > 2.0 * breakaway_v + gear_v
+                    && libm::fabs(error_m) * law.counts_per_m > STUCK_ERROR_COUNTS
             }
         };
         let is_driven = applied.is_enabled && is_driven && moved == 0.0;

@@ -213,6 +213,7 @@ wire_struct!(Drive {
     viscous_n_m_s_rad,
     coulomb_n_m,
     coulomb_lower_n_m,
+    held_band,
     drag_n_s2_m2,
     torque_constant_n_m_a,
     amplifier_a_v,

@@ -187,7 +187,7 @@ pub struct CarriagePlan {
     pub calibration: Option<Calibration>,
     /// Excitation for the servo's parameters.
     pub excitation: Option<PulseTrain>,
-    /// Dry runs carry ballast for the wet wheel load.
+    /// Wet runs carry ballast that restores the dry wheel load: the mass of the water that the body displaces.
     pub is_ballasted: bool,
     /// Stop early when the 95 % interval of D_d is narrower than this, half-width over value.
     pub stop_at_relative_half_width: Option<f64>,

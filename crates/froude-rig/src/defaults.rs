@@ -63,6 +63,7 @@ fn axis_config(axis: &AxisParameters, load: &Load, loop_over_chain: f64, command
             viscous_n_m_s_rad: seen.viscous_n_m_s_rad,
             coulomb_n_m: seen.coulomb_n_m,
             coulomb_lower_n_m: SURE_FRICTION * seen.coulomb_n_m,
+            held_band: 1.0 - axis.efficiency_forward * axis.efficiency_backward,
             drag_n_s2_m2: (load.drag_n_s2_m2() + load.strut_n_s2_m2(axis)) / axis.efficiency_forward,
             torque_constant_n_m_a: axis.torque_constant_n_m_a,
             amplifier_a_v: crate::parameters::AMPLIFIER_A_V,

@@ -1,115 +1,155 @@
-//! Added mass from the ramps: what wet and dry differ by while the carriage accelerates.
+//! Added mass from the ramps: what the wet carriage must be given more than the dry one to reach its speed.
 //!
-//! At one time of the same profile the inertia of carriage and body is in both runs; the difference of the two commands is
-//! F = m a + D_d v|v| + F₀ sgn v, with m the water that moves along: added mass and water inside the body. Fitted by
-//! least squares over ramps and steady part, the jackknife over pairs gives its uncertainty.
+//! At one time of the same profile the inertia of motor, carriage and body is in both runs. The difference F of the two motor forces,
+//! integrated from rest to the steady window (duration T, speed v at its end), is
 //!
-//! Only samples in which the motor drives in both runs count: braking through the gear has another efficiency.
-//! Valid while the profile does not shake the chain; flow history (start-up of the wake) is in the result.
+//! ∫F dt = m v + D ∫u|u| dt + f T,
+//!
+//! with m the water that moves along (added mass and water inside the body) and what ballast the wet carriage carries more than the dry
+//! one, u the reference speed, D and f what the steady part of the same pair gives: its mean difference is F_s = D v|v| + f. With D from
+//! all pairs (a line through F_s over v|v|), one pair gives
+//!
+//! m v = ∫F dt − F_s T + D (v|v| T − ∫u|u| dt).
+//!
+//! An integral does not ask when in the ramp the chain passed the force on: ripple of a flexible chain does not bias it, as it does
+//! a fit sample by sample. Braking is left out: through the gear it has another efficiency. Pairs are weighted by v²/T (friction that
+//! wanders faster than a ramp); the jackknife over pairs gives the uncertainty. Source: impulse balance, our derivation.
+//!
+//! Valid from rest; flow history (start-up of the wake) is in the result.
 
 use super::coefficient::jackknife;
-use super::run::{BodyState, DragRun, DragSetup, RunKind, Uncertain};
+use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind, Uncertain};
+use super::steady::{SteadySettings, window};
 
 /// Water that moves along with the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AddedMass {
-    /// Added mass and water inside, kg.
+    /// Added mass and water inside, kg; with the ballast where its mass is not known.
     pub mass_kg: Uncertain,
     /// Its 95 % interval, kg.
     pub interval_95: [f64; 2],
+    /// Ballast that was taken off, kg; `None` where it is not known and is still in the mass.
+    pub ballast_kg: Option<f64>,
     /// Pairs of runs used.
     pub runs: usize,
 }
 
-/// Normal equations of the difference over acceleration, v|v| and sgn v.
-#[derive(Debug, Clone, Copy, Default)]
-struct Normal {
-    matrix: [[f64; 3]; 3],
-    right: [f64; 3],
+/// Impulse balance of a wet and a dry run.
+#[derive(Debug, Clone, Copy)]
+struct Ramp {
+    pair: u32,
+    /// v at the end of the ramp, m/s.
+    speed_m_s: f64,
+    /// T, s.
+    duration_s: f64,
+    /// ∫F dt over the ramp, N s.
+    impulse_n_s: f64,
+    /// ∫u|u| dt over the ramp, m²/s.
+    squares_m2_s: f64,
+    /// F_s, N.
+    steady_n: f64,
 }
 
-impl Normal {
-    fn add(&mut self, row: [f64; 3], difference_n: f64) {
-        for i in 0..3 {
-            for j in 0..3 {
-                self.matrix[i][j] += row[i] * row[j];
-            }
-            self.right[i] += row[i] * difference_n;
-        }
+impl Ramp {
+    fn square(&self) -> f64 {
+        self.speed_m_s * self.speed_m_s.abs()
     }
 
-    fn with(mut self, other: &Self) -> Self {
-        for i in 0..3 {
-            for j in 0..3 {
-                self.matrix[i][j] += other.matrix[i][j];
-            }
-            self.right[i] += other.right[i];
-        }
-        self
-    }
-
-    /// The mass, by Cramer's rule on columns scaled to one; `None` where the rows do not determine it.
-    fn mass(&self) -> Option<f64> {
-        let scale = [0, 1, 2].map(|i| self.matrix[i][i].sqrt());
-        if scale.contains(&0.0) {
-            return None;
-        }
-        let m = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.matrix[i][j] / (scale[i] * scale[j])));
-        let r = [0, 1, 2].map(|i| self.right[i] / scale[i]);
-        let determinant = |c: [f64; 3]| {
-            c[0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - c[1] * (m[0][1] * m[2][2] - m[0][2] * m[2][1])
-                + c[2] * (m[0][1] * m[1][2] - m[0][2] * m[1][1])
-        };
-        let whole = determinant([m[0][0], m[1][0], m[2][0]]);
-        (whole > 1e-6).then(|| determinant(r) / whole / scale[0])
+    /// m v of this pair, N s.
+    fn momentum(&self, drag_n_s2_m2: f64) -> f64 {
+        self.impulse_n_s - self.steady_n * self.duration_s
+            + drag_n_s2_m2 * (self.square() * self.duration_s - self.squares_m2_s)
     }
 }
 
-/// Takes the samples of one wet and dry run at the same time since their start.
-fn rows(wet: &DragRun<'_>, dry: &DragRun<'_>, force_per_volt_n: f64) -> Normal {
-    let mut out = Normal::default();
+/// The ramp of one pair; `None` without a steady window, or where the two references differ.
+fn ramp(wet: &DragRun<'_>, dry: &DragRun<'_>, force_per_volt_n: f64, settings: SteadySettings) -> Option<Ramp> {
     let start = |run: &DragRun<'_>| run.reference_speed_m_s.iter().position(|&v| v != 0.0);
-    let (Some(i), Some(j)) = (start(wet), start(dry)) else { return out };
+    let (i, j) = (start(wet)?, start(dry)?);
+    let (w, d) = (window(wet, settings).ok()?, window(dry, settings).ok()?);
     let step = wet.step_s();
-    let n = (wet.time_s.len() - i).min(dry.time_s.len() - j);
-    for k in 1..n.saturating_sub(1) {
-        let (v, v_dry) = (wet.reference_speed_m_s[i + k], dry.reference_speed_m_s[j + k]);
-        let (c, c_dry) = (wet.command_v[i + k], dry.command_v[j + k]);
-        let is_same = (v - v_dry).abs() <= 0.01 * wet.target_speed_m_s;
-        if is_same && c * v > 0.0 && c_dry * v > 0.0 {
-            let a = (wet.reference_speed_m_s[i + k + 1] - wet.reference_speed_m_s[i + k - 1]) / (2.0 * step);
-            out.add([a, v * v.abs(), v.signum()], force_per_volt_n * (c - c_dry));
-        }
+    let first = (w.first - i).max(d.first - j);
+    let end = (w.end - i).min(d.end - j);
+    let slack = 0.01 * wet.target_speed_m_s;
+    let differs = |k: &usize| (wet.reference_speed_m_s[i + k] - dry.reference_speed_m_s[j + k]).abs() > slack;
+    if first >= end || (dry.step_s() - step).abs() > 1e-6 * step || (0..first).any(|k| differs(&k)) {
+        return None;
     }
-    out
+    let force_n = |k: usize| force_per_volt_n * (wet.command_v[i + k] - dry.command_v[j + k]);
+    let over = |of: &dyn Fn(usize) -> f64, from: usize, to: usize| (from..to).map(of).sum::<f64>() * step;
+    let square = |k: usize| wet.reference_speed_m_s[i + k] * wet.reference_speed_m_s[i + k].abs();
+    Some(Ramp {
+        pair: wet.pair,
+        speed_m_s: wet.target_speed_m_s * wet.direction,
+        duration_s: first as f64 * step,
+        impulse_n_s: over(&force_n, 0, first),
+        squares_m2_s: over(&square, 0, first),
+        steady_n: over(&force_n, first, end) / ((end - first) as f64 * step),
+    })
 }
 
-/// Added mass by motor current difference; `None` without ramps in at least two pairs.
+/// D of a line through the steady differences over v|v|; through zero where there is one speed only.
+fn drag(ramps: &[&Ramp]) -> f64 {
+    let slowest = ramps.iter().map(|r| r.speed_m_s.abs()).fold(f64::INFINITY, f64::min);
+    let is_one_speed = ramps.iter().all(|r| r.speed_m_s.abs() <= 1.01 * slowest);
+    // Resistance against the motion, so that runs out and back share one offset.
+    let n = if is_one_speed { 0.0 } else { ramps.len() as f64 };
+    let (mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0);
+    for r in ramps {
+        let (square, force) = (r.square().abs(), r.steady_n * r.speed_m_s.signum());
+        (x, y, xx, xy) = (x + square, y + force, xx + square * square, xy + square * force);
+    }
+    if n == 0.0 { xy / xx } else { (n * xy - x * y) / (n * xx - x * x) }
+}
+
+fn mass<'a>(ramps: impl Iterator<Item = &'a Ramp>) -> Option<f64> {
+    let ramps: Vec<&Ramp> = ramps.collect();
+    let d = drag(&ramps);
+    let (mut top, mut bottom) = (0.0, 0.0);
+    for r in &ramps {
+        top += r.momentum(d) * r.speed_m_s / r.duration_s;
+        bottom += r.speed_m_s * r.speed_m_s / r.duration_s;
+    }
+    (bottom > 0.0).then_some(top / bottom)
+}
+
+/// Added mass by motor current difference; `None` without ramps in at least two pairs, or without newtons a volt.
 #[must_use]
 pub fn added_mass(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<AddedMass> {
     let tows = |body: BodyState| runs.iter().filter(move |r| r.kind == RunKind::Tow && r.body == body);
     let k = setup.force_per_volt_n();
-    let all: Vec<(u32, Normal)> = tows(BodyState::Wet)
-        .filter_map(|wet| tows(BodyState::Dry).find(|d| d.is_partner_of(wet)).map(|dry| (wet.pair, rows(wet, dry, k))))
+    let all: Vec<Ramp> = tows(BodyState::Wet)
+        .filter_map(|wet| {
+            tows(BodyState::Dry).find(|d| d.is_partner_of(wet)).and_then(|d| ramp(wet, d, k, setup.steady))
+        })
         .collect();
-    let mut pairs: Vec<u32> = all.iter().map(|a| a.0).collect();
+    let mut pairs: Vec<u32> = all.iter().map(|a| a.pair).collect();
     pairs.sort_unstable();
     pairs.dedup();
-    let of = |skip: Option<u32>| {
-        all.iter().filter(|a| Some(a.0) != skip).fold(Normal::default(), |sum, a| sum.with(&a.1)).mass()
-    };
-    let value = of(None)?;
+    let of = |skip: Option<u32>| mass(all.iter().filter(|a| Some(a.pair) != skip));
+    let moved = of(None)?;
     let (scatter, dof) = jackknife(pairs.len(), |g| of(Some(pairs[g])))?;
     let scale = match (setup.calibration, setup.efficiency) {
         (Some(c), _) => c.force_per_volt_n.relative(),
-        (None, super::run::Efficiency::Declared(e)) => e.relative().hypot(setup.torque_constant_relative),
-        (None, super::run::Efficiency::Undeclared) => return None,
+        (None, Efficiency::Declared(e)) => e.relative().hypot(setup.torque_constant_relative),
+        (None, Efficiency::Undeclared) => return None,
     };
-    let entries = [(scatter * scatter, dof), ((scale * value).powi(2), f64::INFINITY)];
+    let carried = match setup.ballast {
+        Ballast::Matched { carried_kg } => carried_kg,
+        Ballast::Unballasted { .. } => Some(Uncertain::new(0.0, 0.0)),
+    };
+    let ballast = carried.unwrap_or(Uncertain::new(0.0, 0.0));
+    let value = moved - ballast.value;
+    let entries = [
+        (scatter * scatter, dof),
+        ((scale * moved).powi(2), f64::INFINITY),
+        (ballast.standard * ballast.standard, ballast.dof),
+    ];
     let e = froude_fit::propagate::expanded(&entries, 0.95);
     Some(AddedMass {
         mass_kg: Uncertain { value, standard: e.standard, dof: e.dof },
         interval_95: [value - e.expanded, value + e.expanded],
+        ballast_kg: carried.map(|c| c.value),
         runs: all.len(),
     })
 }

@@ -286,7 +286,9 @@ fn doubts(
                 0.01 * unloaded_n
             ),
         );
-    } else if setup.ballast == Ballast::Matched && tows(runs, BodyState::Dry).iter().any(|r| !r.is_ballasted) {
+    } else if matches!(setup.ballast, Ballast::Matched { .. })
+        && tows(runs, BodyState::Dry).iter().any(|r| !r.is_ballasted)
+    {
         warn(
             "ballast-contradicts",
             "the setup says that wheel loads match, but dry runs are marked as not ballasted; say how much load buoyancy \

@@ -77,7 +77,7 @@ pub struct DragRun<'a> {
     /// Pair that the run belongs to. Runs of one pair (all speeds, out and back) share mounts and the hour of the
     /// day: they are one cluster of the scatter. A wet run is paired with the dry run of its pair, speed and direction.
     pub pair: u32,
-    /// Whether the dry carriage carried ballast for the wet wheel load.
+    /// Whether ballast made the wheel load the same wet and dry.
     pub is_ballasted: bool,
     /// Known weight over the pulley, N, pulling towards −y.
     pub hung_weight_n: Option<f64>,
@@ -124,8 +124,12 @@ pub const UNDECLARED_ROLLING: [f64; 2] = [0.0, 0.02];
 /// Whether the dry carriage rolled under the wheel load of the wet one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ballast {
-    /// The dry runs were ballasted to the wet wheel load, or the body is neutrally buoyant.
-    Matched,
+    /// The wheels carried one load wet and dry.
+    Matched {
+        /// What the wet carriage carried more than the dry one for that, kg: the ballast; 0 for a neutrally buoyant body, `None`
+        /// where it is not known. The ramps feel it.
+        carried_kg: Option<Uncertain>,
+    },
     /// The wheels carry less in the wet runs.
     Unballasted {
         /// Wheel load that buoyancy takes off, N.
@@ -194,7 +198,7 @@ impl DragSetup {
             calibration: None,
             sensor: SensorBudget { gain_relative: 0.002, drift_half_width_n: 0.2 },
             speed_scale_relative: 0.0005,
-            ballast: Ballast::Matched,
+            ballast: Ballast::Matched { carried_kg: Some(Uncertain::new(0.0, 0.0)) },
             strut_n_s2_m2: None,
             density_kg_m3: 1000.0,
             reference_area_m2: None,

@@ -140,6 +140,7 @@ fn axis_config(d: &mut Draw) -> AxisConfig {
             gear_ratio: d.f(),
             sprocket_radius_m: d.f(),
             counts_per_revolution: d.f(),
+            held_band: d.f(),
             encoder_sign: d.f(),
         },
         limits: Limits {

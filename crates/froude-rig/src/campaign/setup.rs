@@ -8,6 +8,7 @@ use froude_control::config::{AxisConfig, Config, Drive, Gains, Limits};
 use froude_records::RecordError;
 use froude_records::carriage::{AxisSpec, CarriageCampaign, RigKind, TwinTruth};
 use froude_records::nearest::suggestion;
+use froude_records::run::{AxisConstants, Declared};
 use froude_records::units::parse_unit;
 
 use crate::defaults::control_config;
@@ -84,6 +85,7 @@ fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
             viscous_n_m_s_rad: spec.viscous_n_m_s_rad.map_or(0.0, |b| b.value),
             coulomb_n_m: coulomb.value,
             coulomb_lower_n_m: sure,
+            held_band: held_band(constants),
             drag_n_s2_m2: 0.0,
             torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
             amplifier_a_v: constants.amplifier_a_v.value,
@@ -114,6 +116,16 @@ fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
         mode_damping: gains.shaped_damping.unwrap_or(0.0),
         is_robust_shaper: gains.is_robust_shaper,
     })
+}
+
+/// 1 − η η_b with both efficiencies at the lower end of what is declared: a stuck encoder is found later, a held weight never taken for
+/// one. 0 where the gear's losses are not declared.
+fn held_band(constants: &AxisConstants) -> f64 {
+    let lowest = |e: Declared| (e.value - 1.96 * e.standard_uncertainty).max(0.0);
+    match (constants.efficiency_forward, constants.efficiency_backward) {
+        (Some(forward), Some(backward)) => 1.0 - (lowest(forward) * lowest(backward)).min(1.0),
+        _ => 0.0,
+    }
 }
 
 /// The twin behind the campaign: the paper's rig with the campaign's travel, body and overriding truths.

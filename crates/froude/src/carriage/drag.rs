@@ -53,6 +53,9 @@ pub struct DragOutcome {
 /// Kinds of run that tell drag.
 const KINDS: [RunKind; 4] = [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration];
 
+/// Standard uncertainty of the ballast that the operator puts on, as a part: it is weighed, the body's volume is what limits it.
+const BALLAST_RELATIVE: f64 = 0.005;
+
 /// Reads, calibrates where known weights were hung, reduces by every method, writes `estimate.json` and `report.html`.
 ///
 /// # Errors
@@ -115,11 +118,12 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>, flexi
     if let Some(drift_n) = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.drift_n) {
         setup.sensor = SensorBudget { drift_half_width_n: drift_n, ..setup.sensor };
     }
-    let is_ballasted = carriage.and_then(|c| c.plan.as_ref()).is_none_or(|p| p.is_ballasted);
-    if !is_ballasted {
-        let volume_m3 = campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3).unwrap_or(0.0);
-        setup.ballast = Ballast::Unballasted { unloaded_n: setup.density_kg_m3 * 9.80665 * volume_m3, rolling: None };
-    }
+    let displaced_kg =
+        campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3).map(|v| setup.density_kg_m3 * v);
+    setup.ballast = match carriage.and_then(|c| c.plan.as_ref()).map(|p| p.is_ballasted) {
+        Some(false) => Ballast::Unballasted { unloaded_n: 9.80665 * displaced_kg.unwrap_or(0.0), rolling: None },
+        _ => Ballast::Matched { carried_kg: displaced_kg.map(|kg| Uncertain::new(kg, BALLAST_RELATIVE * kg)) },
+    };
     setup
 }
 
@@ -270,9 +274,21 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
         ));
     }
     if let Some(m) = &report.added_mass {
+        let what = match m.ballast_kg {
+            Some(kg) if kg != 0.0 => {
+                format!(
+                    "water that moves along (added mass, water inside; {} kg of ballast taken off)",
+                    number::plain(kg, 3)
+                )
+            }
+            Some(_) => "water that moves along (added mass, water inside)".to_owned(),
+            None => {
+                "what the wet run carries more than the dry one (added mass, water inside, ballast of unknown mass)"
+                    .to_owned()
+            }
+        };
         out.push(format!(
-            "From the ramps: what the wet run carries more than the dry one (added mass, water inside, ballast) is {} kg, interval \
-             {} kg, {} pairs.",
+            "From the ramps: {what}: {} kg, interval {} kg, {} pairs of runs.",
             number::short_form(m.mass_kg.value, m.mass_kg.standard),
             number::interval(m.interval_95),
             m.runs
