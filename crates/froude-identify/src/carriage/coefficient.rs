@@ -20,8 +20,8 @@ use super::run::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLAR
 const DRAWS: usize = 20_000;
 /// Seed of the draws.
 const SEED: u64 = 0x5eed;
-/// Probability outside the interval, each side.
-const TAIL: f64 = 0.025;
+/// Probability outside the interval, both sides together.
+const OUTSIDE: f64 = 0.05;
 
 /// A steady force.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,8 +134,10 @@ pub struct Coefficient {
     pub type_b: f64,
     /// Effective degrees of freedom (Welch–Satterthwaite).
     pub dof: f64,
-    /// 95 % interval.
+    /// 95 % interval, over all looks.
     pub interval_95: Option<[f64; 2]>,
+    /// Looks that the interval pays for ([`DragSetup::looks`]).
+    pub looks: usize,
     /// The budget, scatter first.
     pub budget: Vec<Part>,
     /// Points.
@@ -168,7 +170,7 @@ impl Coefficient {
         self.type_b = self.type_b.hypot(part.standard);
         self.budget.push(part);
         if self.standard.is_some() {
-            let (standard, dof, interval) = combine(self.value, &self.budget);
+            let (standard, dof, interval) = combine(self.value, &self.budget, self.looks);
             (self.standard, self.dof, self.interval_95) = (Some(standard), dof, Some(interval));
         }
     }
@@ -287,7 +289,7 @@ pub fn coefficient(
         });
     }
     shared_errors(method, &points, measured, setup, &mut budget);
-    let combined = found.map(|_| combine(value, &budget));
+    let combined = found.map(|_| combine(value, &budget, setup.looks));
     let type_b = budget.iter().filter(|p| p.kind == 'B' && !p.in_scatter).map(|p| p.standard * p.standard).sum::<f64>();
     Some(Coefficient {
         method,
@@ -297,6 +299,7 @@ pub fn coefficient(
         type_b: type_b.sqrt(),
         dof: combined.map_or(f64::NAN, |c| c.1),
         interval_95: combined.map(|c| c.2),
+        looks: setup.looks,
         pairs: pairs(&points).len(),
         offset_n: offset(&points),
         budget,
@@ -352,8 +355,8 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
                 }
             }
         }
-        let drift = size * setup.torque_constant_drift_relative;
-        part("drift of K_T from run to run", drift / (points.len() as f64).sqrt(), never, Shape::Bell, "run", true);
+        let drift = size * setup.torque_constant_drift_relative * each_alone(points, |p| p.speed_m_s.powi(2));
+        part("drift of K_T from run to run, on the drag", drift, never, Shape::Bell, "run", true);
         if let Ballast::Unballasted { unloaded_n, rolling } = setup.ballast {
             let per_newton = slope_of(points, |p| p.speed_m_s.signum());
             if let Some(r) = rolling {
@@ -375,14 +378,33 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
         }
     } else {
         part("gain of the sensor", size * setup.sensor.gain_relative, never, Shape::Bell, "campaign", false);
-        let zero = points.iter().map(|p| p.standard_n * p.standard_n).sum::<f64>() / points.len() as f64;
-        let zero = zero.sqrt() * slope_of(points, |p| p.speed_m_s.signum()).abs() / (points.len() as f64).sqrt();
-        part("zero of the sensor and its drift", zero, never, Shape::Bell, "run", true);
+        let zero = each_alone(points, |p| p.standard_n);
+        part("noise, zero of the sensor and its drift", zero, never, Shape::Bell, "run", true);
     }
-    part("length of an encoder count", 2.0 * size * setup.speed_scale_relative, never, Shape::Bell, "campaign", false);
+    // v² takes the sprocket's radius twice; newtons that are not calibrated, (n/R) K_T K_amp, once more in the same direction.
+    let times = if method.is_sensorless() && setup.calibration.is_none() { 3.0 } else { 2.0 };
+    part(
+        "length of an encoder count",
+        times * size * setup.speed_scale_relative,
+        never,
+        Shape::Bell,
+        "campaign",
+        false,
+    );
     if let Some(strut) = setup.strut_n_s2_m2 {
         part("drag of the strut", strut.standard, strut.dof, Shape::Bell, "campaign", false);
     }
+}
+
+/// Standard uncertainty of the slope from forces that err independently, each by `standard_n`: √(Σ x² u²)/Σ x², x = v².
+fn each_alone(points: &[Point], standard_n: impl Fn(&Point) -> f64) -> f64 {
+    let (mut sum, mut xx) = (0.0, 0.0);
+    for p in points {
+        let x = p.speed_m_s * p.speed_m_s;
+        sum += (x * standard_n(p)).powi(2);
+        xx += x * x;
+    }
+    if xx > 0.0 { sum.sqrt() / xx } else { 0.0 }
 }
 
 /// Standard uncertainty of a value left uncorrected for an error between two limits: the mean counts too (GUM F.2.4.5).
@@ -391,11 +413,12 @@ fn one_sided(low: f64, high: f64) -> f64 {
     (mean * mean + half * half / 3.0).sqrt()
 }
 
-/// Combined standard uncertainty, effective degrees of freedom, 95 % interval (held to contain the value).
+/// Combined standard uncertainty, effective degrees of freedom, 95 % interval (held to contain the value), Bonferroni over `looks`.
 ///
 /// Bells alone: Welch and Satterthwaite. With a one-sided error among them: draws of that error and of one bell that
 /// stands for all bells, as wide as their coverage factor says.
-fn combine(value: f64, budget: &[Part]) -> (f64, f64, [f64; 2]) {
+fn combine(value: f64, budget: &[Part], looks: usize) -> (f64, f64, [f64; 2]) {
+    let outside = OUTSIDE / looks.max(1) as f64;
     let counted = || budget.iter().filter(|p| !p.in_scatter);
     let variance_of = |part: &Part| (part.standard * part.standard, part.dof);
     let entries: Vec<(f64, f64)> = counted().map(variance_of).collect();
@@ -408,11 +431,11 @@ fn combine(value: f64, budget: &[Part]) -> (f64, f64, [f64; 2]) {
         .collect();
     let standard = entries.iter().map(|e| e.0).sum::<f64>().sqrt();
     let dof = effective_dof(&entries);
-    let half = expanded(&bells, 1.0 - 2.0 * TAIL).expanded;
+    let half = expanded(&bells, 1.0 - outside).expanded;
     if limits.is_empty() {
         return (standard, dof, [value - half, value + half]);
     }
-    let bell = half / coverage_factor(1.0 - 2.0 * TAIL, f64::INFINITY);
+    let bell = half / coverage_factor(1.0 - outside, f64::INFINITY);
     let mut rng = Pcg64Mcg::seed_from_u64(SEED);
     let mut draws: Vec<f64> = (0..DRAWS)
         .map(|_| {
@@ -424,7 +447,7 @@ fn combine(value: f64, budget: &[Part]) -> (f64, f64, [f64; 2]) {
         let k = ((DRAWS as f64 * probability) as usize).min(DRAWS - 1);
         *draws.select_nth_unstable_by(k, f64::total_cmp).1
     };
-    let (low, high) = (at(TAIL), at(1.0 - TAIL));
+    let (low, high) = (at(0.5 * outside), at(1.0 - 0.5 * outside));
     (standard, dof, [low.min(value), high.max(value)])
 }
 
@@ -493,7 +516,7 @@ mod tests {
                     let mean = pairs.iter().sum::<f64>() / 5.0;
                     let s = (pairs.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 20.0).sqrt();
                     let budget = [part(s, 4.0, 'A'), part(certificate, f64::INFINITY, 'B')];
-                    let (_, _, [low, high]) = combine(mean + certificate * normal(), &budget);
+                    let (_, _, [low, high]) = combine(mean + certificate * normal(), &budget, 1);
                     (low..=high).contains(&0.0)
                 })
                 .count();
@@ -514,7 +537,7 @@ mod tests {
             kind: 'B',
             in_scatter: false,
         };
-        let (_, _, [low, high]) = combine(10.0, &[part]);
+        let (_, _, [low, high]) = combine(10.0, &[part], 1);
         // The quantile of 20 000 uniform draws scatters by 4·√(0.025/20 000) = 0.005.
         assert!((low - 6.1).abs() < 0.02 && high == 10.0, "{low} {high}");
     }

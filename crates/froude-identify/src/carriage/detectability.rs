@@ -1,11 +1,17 @@
 //! What drag a campaign can see, said from still and dry repeats alone, before a body is mounted wet.
 //!
-//! Dry runs of one speed and direction differ by what will scatter the difference of wet and dry: two such runs make a
-//! variance of 2s². A drag D_d v² at one speed is seen when it exceeds its expanded uncertainty t·√2·s/√m over m
-//! differences. The prediction is then held against the scatter of the wet runs: the ratio of the two variances follows
-//! Fisher's F when they agree (χ² of the repeats over χ² of the repeats).
+//! Dry runs of one speed and direction differ by what will scatter the difference of wet and dry. Part of it all runs of a pair share
+//! (mount, hour: standard deviation s_p), part not (s_r). One difference then scatters by √2 √(s_p² + s_r²), its mean over m differences
+//! in P pairs by √2 √(s_p²/P + s_r²/m); a drag D_d v² at one speed is seen when it exceeds that times Student's t. The two parts are
+//! those of a two-way layout (cells of speed and direction against pairs, no interaction); s_p = 0 where the mean square between pairs is
+//! not above that of the rest, which then are pooled.
+//!
+//! The prediction is held against the scatter of the wet runs: the ratio of the two variances follows Fisher's F when they agree.
+//!
+//! **Source.** Searle, Casella & McCulloch (1992), *Variance Components*, 4.3; Satterthwaite (1946) for the degrees of freedom of sums.
 
 use froude_fit::distribution::{coverage_factor, f_upper};
+use froude_fit::propagate::effective_dof;
 
 use super::coefficient::Point;
 use super::run::{BodyState, DragRun, DragSetup, RunKind};
@@ -23,6 +29,8 @@ pub struct Detectability {
     pub dof: f64,
     /// Standard deviation of the sensor's still windows from one side of a run to the other, N; `None` without sensor.
     pub zero_change_n: Option<f64>,
+    /// Part of its variance that all runs of a pair share: only more pairs make it smaller.
+    pub pair_share: f64,
     /// Differences at each speed that the campaign has or plans.
     pub differences: usize,
     /// Expanded uncertainty (95 %) of the drag at one speed from these, N.
@@ -73,24 +81,36 @@ pub fn predict(runs: &[DragRun<'_>], differences: usize, setup: &DragSetup) -> O
         .iter()
         .filter_map(|r| window(r, setup.steady).ok().map(|w| (*r, k * mean(w.of(r.command_v), r.step_s()).value)))
         .collect();
-    let (sum, dof) = pooled(&means, |a, b| a.is_like(b));
-    if dof < 1.0 {
-        return None;
-    }
-    let difference_n = (2.0 * sum / dof).sqrt();
+    // Resistance along the motion: a change of friction that a pair's runs share has one sign both ways.
+    let rows: Vec<Row> = means
+        .iter()
+        .map(|(r, n)| Row {
+            cell: means.iter().position(|(o, _)| o.is_like(r)).unwrap_or(0),
+            pair: r.pair,
+            value: r.direction * n,
+        })
+        .collect();
+    let scatter = Scatter::of(&rows)?;
+    let (variance, dof) = scatter.of_one();
+    let difference_n = (2.0 * variance).sqrt();
     let mut speeds: Vec<f64> = means.iter().map(|m| m.0.target_speed_m_s).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
     let quartic: f64 = speeds.iter().map(|v| v.powi(4)).sum();
-    let coverage = coverage_factor(0.95, dof);
-    let count = differences.max(1) as f64;
+    let (of_mean, mean_dof) = scatter.of_mean(differences.max(1) as f64);
+    // Σ over the speeds of x ε over Σ x²: what pairs share does not average over speeds, the rest does.
+    let squares: f64 = speeds.iter().map(|v| v * v).sum();
+    let shared = scatter.between / scatter.pairs * squares.powi(2);
+    let alone = (of_mean - scatter.between / scatter.pairs) * quartic;
+    let of_slope = (2.0 * (shared + alone)).sqrt() / quartic;
     Some(Detectability {
         difference_n,
         dof,
         zero_change_n: zero_change(runs, setup),
         differences,
-        expanded_n: coverage * difference_n / count.sqrt(),
-        smallest_n_s2_m2: coverage * difference_n / (count * quartic).sqrt(),
+        pair_share: scatter.between / variance,
+        expanded_n: coverage_factor(0.95, mean_dof) * (2.0 * of_mean).sqrt(),
+        smallest_n_s2_m2: coverage_factor(0.95, mean_dof) * of_slope,
     })
 }
 
@@ -108,23 +128,93 @@ fn zero_change(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<f64> {
     (!changes.is_empty()).then(|| (changes.iter().map(|c| c * c).sum::<f64>() / changes.len() as f64).sqrt())
 }
 
-/// Sum of squares about the mean of each group, and its degrees of freedom.
-fn pooled<T>(values: &[(T, f64)], is_same: impl Fn(&T, &T) -> bool) -> (f64, f64) {
-    let mut is_done = vec![false; values.len()];
-    let (mut sum, mut dof) = (0.0, 0.0);
-    for i in 0..values.len() {
-        if is_done[i] {
-            continue;
+/// A value of a two-way layout.
+#[derive(Debug, Clone, Copy)]
+struct Row {
+    cell: usize,
+    pair: u32,
+    value: f64,
+}
+
+/// Variance components of repeats.
+#[derive(Debug, Clone, Copy)]
+struct Scatter {
+    /// s_p².
+    between: f64,
+    /// s_r².
+    within: f64,
+    /// Mean squares with their degrees of freedom: between pairs (none where s_p = 0), the rest.
+    squares: [(f64, f64); 2],
+    pairs: f64,
+    cells: f64,
+}
+
+impl Scatter {
+    /// `None` without two values in one cell.
+    fn of(rows: &[Row]) -> Option<Self> {
+        let mean = |of: &dyn Fn(&Row) -> bool, value: &dyn Fn(&Row) -> f64| {
+            let (mut n, mut sum) = (0.0, 0.0);
+            for r in rows.iter().filter(|r| of(r)) {
+                (n, sum) = (n + 1.0, sum + value(r));
+            }
+            (n, sum / n)
+        };
+        let distinct = |mut keys: Vec<u32>| {
+            keys.sort_unstable();
+            keys.dedup();
+            keys
+        };
+        let cells = distinct(rows.iter().map(|r| r.cell as u32).collect());
+        let pairs = distinct(rows.iter().map(|r| r.pair).collect());
+        let about_cell = |r: &Row| r.value - mean(&|o| o.cell == r.cell, &|o| o.value).1;
+        let total: f64 = rows.iter().map(|r| about_cell(r).powi(2)).sum();
+        let dof = rows.len() as f64 - cells.len() as f64;
+        if dof < 1.0 {
+            return None;
         }
-        let group: Vec<usize> = (i..values.len()).filter(|&j| is_same(&values[i].0, &values[j].0)).collect();
-        let mean = group.iter().map(|&j| values[j].1).sum::<f64>() / group.len() as f64;
-        for &j in &group {
-            is_done[j] = true;
-            sum += (values[j].1 - mean).powi(2);
+        let between: f64 = pairs
+            .iter()
+            .map(|&p| {
+                let (n, effect) = mean(&|o| o.pair == p, &about_cell);
+                n * effect * effect
+            })
+            .sum();
+        let dof_pairs = pairs.len() as f64 - 1.0;
+        let dof_rest = dof - dof_pairs;
+        let per_pair = rows.len() as f64 / pairs.len() as f64;
+        let of_pairs = between / dof_pairs;
+        let rest = (total - between) / dof_rest;
+        let (pairs, cells) = (pairs.len() as f64, cells.len() as f64);
+        if dof_pairs >= 1.0 && dof_rest >= 1.0 && of_pairs > rest {
+            let squares = [(of_pairs, dof_pairs), (rest, dof_rest)];
+            return Some(Self { between: (of_pairs - rest) / per_pair, within: rest, squares, pairs, cells });
         }
-        dof += group.len() as f64 - 1.0;
+        Some(Self { between: 0.0, within: total / dof, squares: [(0.0, 1.0), (total / dof, dof)], pairs, cells })
     }
-    (sum, dof)
+
+    /// `a` of the mean square between pairs and `b` of the rest: their sum, and its degrees of freedom.
+    fn combined(&self, a: f64, b: f64) -> (f64, f64) {
+        let [(p, p_dof), (r, r_dof)] = self.squares;
+        let (p, r) = (a * p, b * r);
+        (p + r, effective_dof(&[(p, p_dof), (r.max(f64::MIN_POSITIVE), r_dof)]))
+    }
+
+    /// Variance of one value.
+    fn of_one(&self) -> (f64, f64) {
+        if self.between == 0.0 {
+            return (self.within, self.squares[1].1);
+        }
+        self.combined(1.0 / self.cells, 1.0 - 1.0 / self.cells)
+    }
+
+    /// Variance of a mean of `count` values, as many of them in each pair.
+    fn of_mean(&self, count: f64) -> (f64, f64) {
+        if self.between == 0.0 {
+            return (self.within / count, self.squares[1].1);
+        }
+        let of_pairs = 1.0 / (self.pairs * self.cells);
+        self.combined(of_pairs, (1.0 / count - of_pairs).max(0.0))
+    }
 }
 
 /// Scatter that the wet runs show, against the prediction.
@@ -153,17 +243,22 @@ impl Agreement {
 /// Holds the scatter of motor current differences against the prediction; `None` without repeats.
 #[must_use]
 pub fn agreement(points: &[Point], predicted: &Detectability, setup: &DragSetup) -> Option<Agreement> {
-    let values: Vec<(f64, f64)> = points.iter().map(|p| (p.speed_m_s, p.force_n)).collect();
-    let (sum, dof) = pooled(&values, |a, b| (a - b).abs() < 0.01 * a.abs().max(b.abs()));
-    if dof < 1.0 {
-        return None;
-    }
+    let is_like = |a: f64, b: f64| (a - b).abs() < 0.01 * a.abs().max(b.abs());
+    let rows: Vec<Row> = points
+        .iter()
+        .map(|p| Row {
+            cell: points.iter().position(|o| is_like(o.speed_m_s, p.speed_m_s)).unwrap_or(0),
+            pair: p.pair,
+            value: p.speed_m_s.signum() * p.force_n,
+        })
+        .collect();
+    let (variance, dof) = Scatter::of(&rows)?.of_one();
     let on_drag = points.iter().map(|p| (setup.torque_constant_drift_relative * p.force_n).powi(2)).sum::<f64>();
     let predicted_variance = predicted.difference_n.powi(2) + on_drag / points.len() as f64;
-    let ratio = sum / dof / predicted_variance;
+    let ratio = variance / predicted_variance;
     let upper = f_upper(ratio, dof, predicted.dof);
     Some(Agreement {
-        observed_n: (sum / dof).sqrt(),
+        observed_n: variance.sqrt(),
         dof,
         predicted_n: predicted_variance.sqrt(),
         ratio,

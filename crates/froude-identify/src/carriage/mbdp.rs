@@ -62,11 +62,12 @@ pub fn flexible_point(
     wet: &DragRun<'_>,
     friction: &Friction,
     force_per_volt_n: f64,
+    efficiency: f64,
     model: Flexible,
     settings: SteadySettings,
 ) -> Result<Point, Rejected> {
     let w = on_the_map(wet, friction, settings)?;
-    Ok(of_force(wet, w, w.of(&flexible_force_n(wet, friction, force_per_volt_n, model))))
+    Ok(of_force(wet, w, w.of(&flexible_force_n(wet, friction, force_per_volt_n, efficiency, model))))
 }
 
 /// The steady window, if the friction is known there.
@@ -96,7 +97,7 @@ fn of_force(wet: &DragRun<'_>, w: Window, force_n: &[f64]) -> Point {
 
 /// Eq. 9 sample by sample, ramps included: resistance in newtons.
 ///
-/// `moving_mass_kg` is J_eff (n/R)². The span of the derivative smooths the first and last half of itself.
+/// `moving_mass_kg` is what the chain's force accelerates: η J_eff (n/R)², since `force_per_volt_n` has η in it. The span of the derivative smooths the first and last half of itself.
 #[must_use]
 pub fn rigid_force_n(
     run: &DragRun<'_>,
@@ -115,14 +116,24 @@ pub fn rigid_force_n(
 }
 
 /// Eq. 2 solved for the resistance, sample by sample, from motor-side signals alone.
+///
+/// `efficiency` is what `force_per_volt_n` has of the ideal newtons a volt: the motor's own inertia stands before the gear, so that
+/// the chain gets η (K v_c − J_m θ̈).
 #[must_use]
-pub fn flexible_force_n(run: &DragRun<'_>, friction: &Friction, force_per_volt_n: f64, model: Flexible) -> Vec<f64> {
+pub fn flexible_force_n(
+    run: &DragRun<'_>,
+    friction: &Friction,
+    force_per_volt_n: f64,
+    efficiency: f64,
+    model: Flexible,
+) -> Vec<f64> {
     let step = run.step_s();
     let motor = Derivatives::of(run.position_m, step, model.span_s);
     // 2a: what the motor puts into the chain, smoothed like the acceleration that it is balanced with.
     let drive = smooth(run.command_v, step, model.span_s);
+    let motor_kg = efficiency * model.motor_mass_kg;
     let chain: Vec<f64> =
-        drive.iter().zip(&motor.acceleration).map(|(v, a)| force_per_volt_n * v - model.motor_mass_kg * a).collect();
+        drive.iter().zip(&motor.acceleration).map(|(v, a)| force_per_volt_n * v - motor_kg * a).collect();
     // K_e δ + B_e δ̇ = chain: how far the load lags behind the motor.
     let lag = lag_m(&chain, step, model);
     let load_m: Vec<f64> = motor.value.iter().zip(&lag).map(|(q, d)| q - d).collect();
@@ -304,7 +315,7 @@ mod tests {
         };
         let mass = MODEL.motor_mass_kg + MODEL.load_mass_kg;
         let rigid = rigid_force_n(&run, &friction, N_PER_VOLT, mass, MODEL.span_s);
-        let flexible = flexible_force_n(&run, &friction, N_PER_VOLT, MODEL);
+        let flexible = flexible_force_n(&run, &friction, N_PER_VOLT, 1.0, MODEL);
         let (r, f) = (rms(&rigid, 600, 1500), rms(&flexible, 600, 1500));
         assert!(f < 0.1 * r && r > 0.2, "rigid {r} N, flexible {f} N");
         // Once the chain is quiet both say D v².

@@ -1,21 +1,24 @@
 //! Motor current difference, eq. 8: the command of the wet run less that of the dry run *at the same positions*.
 //!
 //! Friction that depends on position is in both and cancels; what differs from run to run stays and is the scatter of
-//! the pairs. The difference is taken where both runs are steady.
+//! the pairs. The difference is taken where both runs are steady, and from where it has settled: the wake of a body that starts
+//! needs several of its lengths, as for the force sensor.
 
 use super::coefficient::Point;
 use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
-use super::steady::{Rejected, SteadySettings, Window, mean, window};
+use super::steady::{Rejected, SteadySettings, Window, mean, settled_part, window};
 
 /// Shortest stretch of positions in common, as part of the wet window.
 const SHARED: f64 = 0.5;
+/// A change over the window by less than this part of the difference is no settling that matters.
+const NO_MATTER: f64 = 1e-3;
 
 /// The steady point of a wet and a dry run, in newtons by `force_per_volt_n`.
 ///
 /// # Errors
 ///
-/// [`Rejected`] when one of them has no steady window, or they share too little of the tank.
+/// [`Rejected`] when one of them has no steady window, they share too little of the tank, or their difference does not settle.
 pub fn point(
     wet: &DragRun<'_>,
     dry: &DragRun<'_>,
@@ -37,7 +40,10 @@ pub fn point(
         });
     }
     let (difference_v, used) = difference(wet, in_wet, dry, in_dry);
-    let m = mean(&difference_v, wet.step_s());
+    let slack = NO_MATTER * (difference_v.iter().sum::<f64>() / difference_v.len().max(1) as f64).abs();
+    let settled = settled_part(wet, &difference_v, slack, settings)?;
+    let m = mean(settled.of(&difference_v), wet.step_s());
+    let used = Window { first: used.first + settled.first, end: used.end.min(used.first + settled.end) };
     Ok(Point {
         run: wet.id.to_owned(),
         speed_m_s: mean_speed(wet, used),

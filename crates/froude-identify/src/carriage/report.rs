@@ -164,7 +164,29 @@ fn with_drift(mut c: Coefficient, wet: &[&DragRun<'_>], setup: &DragSetup, findi
     c
 }
 
-/// MBDP: the friction is identified anew without each pair, so that its own scatter is in the type A.
+/// Whom a run that the friction is identified from stands or falls with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cluster {
+    /// A dry tow: with its pair.
+    Pair(u32),
+    /// A friction run: with its repeat of all speeds, or alone where repeats are not told apart.
+    Sweep(u32),
+}
+
+/// Clusters of the runs that the friction is identified from.
+fn clusters(runs: &[&DragRun<'_>]) -> Vec<Cluster> {
+    let mut repeats = runs.iter().filter(|r| r.kind == RunKind::Friction).map(|r| r.pair);
+    let first = repeats.next();
+    let is_told = repeats.any(|r| Some(r) != first);
+    let of = |(i, r): (usize, &&DragRun<'_>)| match r.kind {
+        RunKind::Friction => Cluster::Sweep(if is_told { r.pair } else { i as u32 }),
+        _ => Cluster::Pair(r.pair),
+    };
+    runs.iter().enumerate().map(of).collect()
+}
+
+/// MBDP. Its type A has the scatter of the pairs, the friction identified anew without each of them, and that of the friction runs,
+/// each of their repeats left out in turn.
 fn model_based(
     method: Method,
     wet: &[&DragRun<'_>],
@@ -176,32 +198,37 @@ fn model_based(
 ) -> Option<Coefficient> {
     let is_mapped = method != Method::MbdpConstant;
     let k = setup.force_per_volt_n();
-    let of_runs = |runs: &[&DragRun<'_>]| -> Vec<(u32, Vec<Cell>)> {
-        runs.iter().map(|r| (r.pair, cells(r, setup.steady))).collect()
-    };
-    let (without_drag, with_drag) = (of_runs(frictional), of_runs(wet));
-    let identify = |skip: Option<u32>| {
+    let without_drag: Vec<(Cluster, Vec<Cell>)> =
+        clusters(frictional).into_iter().zip(frictional.iter().map(|r| cells(r, setup.steady))).collect();
+    let with_drag: Vec<(u32, Vec<Cell>)> = wet.iter().map(|r| (r.pair, cells(r, setup.steady))).collect();
+    let identify = |skip: Option<Cluster>| {
         Friction::identify(without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1), is_mapped)
     };
     let friction = identify(None)?;
     let model = setup.flexible.filter(|_| method == Method::MbdpFlexible);
     let point = |run: &DragRun<'_>| match model {
-        Some(model) => mbdp::flexible_point(run, &friction, k, model, setup.steady),
+        Some(model) => mbdp::flexible_point(run, &friction, k, k / setup.ideal_force_per_volt_n, model, setup.steady),
         None => mbdp::point(run, &friction, k, setup.steady),
     };
     let points = keep(wet.iter().map(|w| point(w)), method, rejected);
     let groups = pairs(&points);
-    let type_a = jackknife(groups.len(), |g| {
-        let without = identify(Some(groups[g]))?;
+    let without = |skip: Cluster| {
+        let without = identify(Some(skip))?;
         let (mut xx, mut xy) = (0.0, 0.0);
-        for (_, cells) in with_drag.iter().filter(|c| c.0 != groups[g] && groups.contains(&c.0)) {
+        for (_, cells) in with_drag.iter().filter(|c| Cluster::Pair(c.0) != skip && groups.contains(&c.0)) {
             let x = cells.first().map_or(0.0, |c| c.speed_m_s * c.speed_m_s.abs());
             let left = cells.iter().map(|c| c.command_v - without.command_v(c.position_m, c.speed_m_s)).sum::<f64>();
             xx += x * x;
             xy += x * k * left / cells.len().max(1) as f64;
         }
         (xx > 0.0).then(|| xy / xx)
-    });
+    };
+    let mut sweeps: Vec<Cluster> =
+        without_drag.iter().map(|c| c.0).filter(|c| matches!(c, Cluster::Sweep(_))).collect();
+    sweeps.dedup();
+    let of_pairs = jackknife(groups.len(), |g| without(Cluster::Pair(groups[g])));
+    let of_sweeps = jackknife(sweeps.len(), |g| without(sweeps[g]));
+    let type_a = of_pairs.map(|pairs| of_sweeps.map_or(pairs, |sweeps| together(pairs, sweeps)));
     let mut out = coefficient(method, points, setup, type_a)?;
     // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
     let of_nothing: Vec<Point> = dry.iter().filter_map(|d| point(d).ok()).collect();
@@ -233,6 +260,11 @@ fn model_based(
         }
     }
     Some(out)
+}
+
+/// Two independent scatters: root of the sum of squares, degrees of freedom by Welch and Satterthwaite.
+fn together((u, dof): (f64, f64), (v, other): (f64, f64)) -> (f64, f64) {
+    (u.hypot(v), froude_fit::propagate::effective_dof(&[(u * u, dof), (v * v, other)]))
 }
 
 /// Differences at one speed: both directions and all pairs.
@@ -278,9 +310,9 @@ fn doubts(
     }
     if let Ballast::Unballasted { unloaded_n, rolling: None } = setup.ballast {
         warn(
-            "dry-not-ballasted",
+            "wet-not-ballasted",
             format!(
-                "the dry runs were not ballasted to the wet wheel load: buoyancy takes {unloaded_n:.0} N off the wheels, at a \
+                "the wet runs carried no ballast for what buoyancy takes off the wheels, {unloaded_n:.0} N: at a \
                  rolling coefficient of 0.01 that is {:.2} N of friction that looks like less drag; the intervals reach over \
                  coefficients from 0 to 0.02",
                 0.01 * unloaded_n
@@ -291,8 +323,7 @@ fn doubts(
     {
         warn(
             "ballast-contradicts",
-            "the setup says that wheel loads match, but dry runs are marked as not ballasted; say how much load buoyancy \
-             takes off"
+            "the setup says that wheel loads match, but runs are marked as not ballasted; say how much load buoyancy takes off"
                 .to_owned(),
         );
     }
@@ -357,9 +388,15 @@ fn doubts(
             Severity::Warning,
             "wet-scatters-otherwise",
             format!(
-                "wet repeats scatter by {:.3} N where dry ones promised {:.3} N (p = {:.4}): water not at rest, or a mount that \
-                 does not repeat",
-                a.observed_n, a.predicted_n, a.p
+                "wet repeats scatter by {:.3} N where dry ones promised {:.3} N (p = {:.4}): {}",
+                a.observed_n,
+                a.predicted_n,
+                a.p,
+                if a.ratio > 1.0 {
+                    "water not at rest, or a mount that does not repeat"
+                } else {
+                    "the dry runs had a trouble of their own, and the limit of detection is too pessimistic"
+                }
             ),
         ));
     }

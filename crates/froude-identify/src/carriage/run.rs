@@ -126,8 +126,8 @@ pub const UNDECLARED_ROLLING: [f64; 2] = [0.0, 0.02];
 pub enum Ballast {
     /// The wheels carried one load wet and dry.
     Matched {
-        /// What the wet carriage carried more than the dry one for that, kg: the ballast; 0 for a neutrally buoyant body, `None`
-        /// where it is not known. The ramps feel it.
+        /// What the wet carriage carried more than the dry one for that, kg: the ballast, as heavy as the displaced water; 0 where the body
+        /// floats as it is towed and was not on the dry carriage; `None` where it is not known. The ramps feel it.
         carried_kg: Option<Uncertain>,
     },
     /// The wheels carry less in the wet runs.
@@ -176,10 +176,11 @@ pub struct DragSetup {
     pub density_kg_m3: f64,
     /// Area that C_D refers to, m².
     pub reference_area_m2: Option<f64>,
-    /// Moving mass at the chain, J_eff (n/R)², kg: inertia that eq. 9 takes off where the carriage accelerates.
-    pub moving_mass_kg: f64,
     /// The two-mass model, where it was identified.
     pub flexible: Option<Flexible>,
+    /// 1; or, where the campaign stopped at the first interval that was short enough, the number of looks that were planned: the
+    /// intervals then hold over all of them (Bonferroni).
+    pub looks: usize,
     /// How steady windows are chosen.
     pub steady: SteadySettings,
 }
@@ -202,8 +203,8 @@ impl DragSetup {
             strut_n_s2_m2: None,
             density_kg_m3: 1000.0,
             reference_area_m2: None,
-            moving_mass_kg: 1.502e-5 * ratio * ratio,
             flexible: None,
+            looks: 1,
             steady: SteadySettings::default(),
         }
     }

@@ -250,8 +250,23 @@ pub fn settled_window(
     settings: SteadySettings,
 ) -> Result<Window, Rejected> {
     let start = window(run, settings)?;
+    let settled = settled_part(run, start.of(force), slack, settings)?;
+    Ok(Window { first: start.first + settled.first, end: start.first + settled.end })
+}
+
+/// The settled part of a force over a steady window of `run`, as a window into `force`: as [`settled_window`].
+///
+/// # Errors
+///
+/// As there.
+pub fn settled_part(
+    run: &DragRun<'_>,
+    force: &[f64],
+    slack: f64,
+    settings: SteadySettings,
+) -> Result<Window, Rejected> {
     let step = run.step_s();
-    let mut now = start;
+    let mut now = Window { first: 0, end: force.len() };
     loop {
         let fifth = now.len() / 5;
         let split = now.first + fifth;
@@ -259,11 +274,11 @@ pub fn settled_window(
         if change.abs() <= SETTLED_WITHIN * standard + slack {
             break;
         }
-        if (split - start.first) as f64 > MOST_SETTLING * start.len() as f64 {
+        if split as f64 > MOST_SETTLING * force.len() as f64 {
             return Err(Rejected::NotSettled {
                 run: run.id.to_owned(),
                 trend_n: -change,
-                dropped_s: settings.settle_s + (now.first - start.first) as f64 * step,
+                dropped_s: settings.settle_s + now.first as f64 * step,
             });
         }
         now.first = split;
@@ -274,7 +289,7 @@ pub fn settled_window(
         return Err(Rejected::TooShort {
             run: run.id.to_owned(),
             found_s,
-            dropped_s: settings.settle_s + (now.first - start.first) as f64 * step,
+            dropped_s: settings.settle_s + now.first as f64 * step,
             needed_s: settings.shortest_s,
         });
     }

@@ -111,9 +111,6 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>, flexi
         if let Some(e) = &c.efficiency_forward {
             setup.efficiency = Efficiency::Declared(Uncertain::new(e.value, e.standard_uncertainty));
         }
-        if let Some(inertia) = spec.and_then(|s| s.inertia_kg_m2) {
-            setup.moving_mass_kg = inertia.value * ratio * ratio;
-        }
     }
     if let Some(drift_n) = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.drift_n) {
         setup.sensor = SensorBudget { drift_half_width_n: drift_n, ..setup.sensor };
