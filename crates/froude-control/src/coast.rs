@@ -22,13 +22,13 @@ pub struct Coast {
 const SMALL: f64 = 1e-3;
 
 impl Coast {
-    /// With the lower bound of the drive's Coulomb friction.
+    /// With the lower bounds of the drive's friction.
     #[must_use]
     pub fn of(drive: &Drive) -> Self {
         let per_motor = drive.sprocket_radius_m / drive.gear_ratio;
         Self {
             coulomb_m_s2: drive.coulomb_lower_n_m / drive.coast_inertia_kg_m2 * per_motor,
-            viscous_1_s: drive.viscous_n_m_s_rad / drive.coast_inertia_kg_m2,
+            viscous_1_s: drive.viscous_lower_n_m_s_rad / drive.coast_inertia_kg_m2,
         }
     }
 

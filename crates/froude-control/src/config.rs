@@ -28,6 +28,8 @@ pub struct Drive {
     pub coast_inertia_kg_m2: f64,
     /// B_eff, N m s/rad.
     pub viscous_n_m_s_rad: f64,
+    /// Lower bound of B_eff for the coast distance, N m s/rad.
+    pub viscous_lower_n_m_s_rad: f64,
     /// C_eff, N m.
     pub coulomb_n_m: f64,
     /// Lower bound of C_eff for the coast distance, N m (its fitted interval's lower end).
@@ -224,7 +226,7 @@ impl fmt::Display for ConfigError {
             Self::NoFriction { axis } => {
                 write!(
                     f,
-                    "axis {axis}: no friction is declared, so no coast distance; give coulomb_lower_n_m or viscous_n_m_s_rad"
+                    "axis {axis}: no friction is declared, so no coast distance; give coulomb_lower_n_m or viscous_lower_n_m_s_rad"
                 )
             }
             Self::SwitchTooClose { axis, end, room_m, needed_m } => write!(
@@ -280,6 +282,7 @@ impl AxisConfig {
             ("drive.inertia_kg_m2", drive.inertia_kg_m2, 1e-9, 1e3),
             ("drive.coast_inertia_kg_m2", drive.coast_inertia_kg_m2, drive.inertia_kg_m2, 1e3),
             ("drive.viscous_n_m_s_rad", drive.viscous_n_m_s_rad, 0.0, 1e3),
+            ("drive.viscous_lower_n_m_s_rad", drive.viscous_lower_n_m_s_rad, 0.0, drive.viscous_n_m_s_rad),
             ("drive.coulomb_n_m", drive.coulomb_n_m, 0.0, 1e3),
             ("drive.coulomb_lower_n_m", drive.coulomb_lower_n_m, 0.0, drive.coulomb_n_m),
             ("drive.held_band", drive.held_band, 0.0, 1.0),
@@ -314,7 +317,7 @@ impl AxisConfig {
         if self.mode_hz > 0.0 {
             in_range(axis, "mode_hz", self.mode_hz, 0.05, nyquist_hz)?;
         }
-        if drive.coulomb_lower_n_m <= 0.0 && drive.viscous_n_m_s_rad <= 0.0 {
+        if drive.coulomb_lower_n_m <= 0.0 && drive.viscous_lower_n_m_s_rad <= 0.0 {
             return Err(ConfigError::NoFriction { axis });
         }
         let law = Law::new(self, tick_us, late_us);
@@ -353,6 +356,7 @@ impl AxisConfig {
             inertia_kg_m2: 1.502e-5,
             coast_inertia_kg_m2: 1.502e-5,
             viscous_n_m_s_rad: 4.657e-6,
+            viscous_lower_n_m_s_rad: 4.4e-6,
             coulomb_n_m: 3.9e-3,
             coulomb_lower_n_m: 3.5e-3,
             held_band: 0.0,

@@ -211,6 +211,7 @@ wire_struct!(Drive {
     inertia_kg_m2,
     coast_inertia_kg_m2,
     viscous_n_m_s_rad,
+    viscous_lower_n_m_s_rad,
     coulomb_n_m,
     coulomb_lower_n_m,
     held_band,

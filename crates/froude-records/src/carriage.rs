@@ -150,6 +150,8 @@ pub struct ForceSensorSpec {
     pub noise_n: Option<f64>,
     /// Half-width of its slow drift, taken as uniform.
     pub drift_n: Option<f64>,
+    /// Standard uncertainty of its gain, as a part.
+    pub gain_standard: Option<f64>,
 }
 
 /// What the carriage is to do.
@@ -258,6 +260,12 @@ pub struct Calibration {
     pub speed_m_s: f64,
     /// How often each; 1 when not given.
     pub repeats: usize,
+    /// Where lifting begins; that of the tows when not given.
+    pub start_m: Option<f64>,
+    /// Way of each lift; that of the tows when not given.
+    pub distance_m: Option<f64>,
+    /// Where a weight that goes down comes to rest on the floor: below this coordinate the cord is slack.
+    pub floor_m: Option<f64>,
 }
 
 /// Square pulses that excite the servo (the paper: 60 % of 1 s).

@@ -247,12 +247,13 @@ fn gains(s: &Section<'_>) -> Result<GainsSpec, RecordError> {
 }
 
 fn force_sensor(s: &Section<'_>) -> Result<ForceSensorSpec, RecordError> {
-    s.only(&["range", "resolution", "noise", "drift"])?;
+    s.only(&["range", "resolution", "noise", "drift", "gain_standard"])?;
     Ok(ForceSensorSpec {
         range_n: s.positive("range", Dimension::FORCE)?,
         resolution_n: s.positive("resolution", Dimension::FORCE)?,
         noise_n: s.positive("noise", Dimension::FORCE)?,
         drift_n: s.positive("drift", Dimension::FORCE)?,
+        gain_standard: fraction(s, "gain_standard", "the standard uncertainty of its gain")?,
     })
 }
 
@@ -374,7 +375,7 @@ fn friction_sweep(s: &Section<'_>) -> Result<FrictionSweep, RecordError> {
 }
 
 fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
-    s.only(&["weights", "standard", "speed", "repeats"])?;
+    s.only(&["weights", "standard", "speed", "repeats", "start", "distance", "floor"])?;
     let value = s.get("weights");
     let value =
         value.ok_or_else(|| s.missing("weights", "write the weights as forces, [\"9.81 N\", \"19.62 N\"], say"))?;
@@ -385,6 +386,9 @@ fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
             .positive("speed", Dimension::SPEED)?
             .ok_or_else(|| s.missing("speed", "write how fast they are lifted, \"0.1 m/s\", say"))?,
         repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
+        start_m: s.quantity("start", Dimension::LENGTH)?,
+        distance_m: s.positive("distance", Dimension::LENGTH)?,
+        floor_m: s.quantity("floor", Dimension::LENGTH)?,
     })
 }
 

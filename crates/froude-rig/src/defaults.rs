@@ -61,6 +61,7 @@ fn axis_config(axis: &AxisParameters, load: &Load, loop_over_chain: f64, command
             inertia_kg_m2: seen.inertia_kg_m2,
             coast_inertia_kg_m2: seen.inertia_kg_m2,
             viscous_n_m_s_rad: seen.viscous_n_m_s_rad,
+            viscous_lower_n_m_s_rad: SURE_FRICTION * seen.viscous_n_m_s_rad,
             coulomb_n_m: seen.coulomb_n_m,
             coulomb_lower_n_m: SURE_FRICTION * seen.coulomb_n_m,
             held_band: 1.0 - axis.efficiency_forward * axis.efficiency_backward,

@@ -66,12 +66,21 @@ impl TowedBody {
 }
 
 /// A known weight over a pulley, for calibration.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HungWeight {
     /// Its pull on the load against +y, N (negative: along +y).
     pub weight_n: f64,
     /// Friction of the pulley over the weight \[-\].
     pub pulley_friction: f64,
+    /// Below this coordinate the weight rests on the floor and the cord is slack, m.
+    pub floor_m: f64,
+}
+
+impl Default for HungWeight {
+    /// None; one that is hung finds no floor.
+    fn default() -> Self {
+        Self { weight_n: 0.0, pulley_friction: 0.0, floor_m: f64::NEG_INFINITY }
+    }
 }
 
 /// Everything that rides on an axis.

@@ -119,6 +119,7 @@ pub struct Plant {
     asymmetry: f64,
     drag_n_s2_m2: f64,
     hung_n: f64,
+    floor_m: f64,
     low_m: f64,
     high_m: f64,
     /// Friction that neither place nor speed changes: slow noise, a jam, the pulley.
@@ -159,6 +160,7 @@ impl Plant {
             asymmetry: axis.asymmetry,
             drag_n_s2_m2: load.drag_n_s2_m2() + load.strut_n_s2_m2(axis),
             hung_n: load.hung.weight_n,
+            floor_m: load.hung.floor_m,
             low_m: axis.hard_low_m,
             high_m: axis.hard_high_m,
             added_n: load.hung.pulley_friction * load.hung.weight_n.abs(),
@@ -214,7 +216,8 @@ impl Plant {
         if d_q == 0.0 || d_y == 0.0 || self.memory.direction != d_y {
             return 0;
         }
-        let Self { mut memory, mut friction_n, low_m, high_m, .. } = *self;
+        let Self { mut memory, mut friction_n, high_m, .. } = *self;
+        let low_m = self.low_m.max(self.floor_m);
         let (mut q, mut v_q) = (self.motor.position_m, self.motor.speed_m_s);
         let (mut y, mut v_y) = (self.load.position_m, self.load.speed_m_s);
         let is_driven = d_q * self.spring_n() < 0.0;
@@ -288,7 +291,8 @@ impl Plant {
     /// Drag, hung weight and hard stops on the load, N, signed along +y.
     fn outer_n(&self) -> f64 {
         let (y, v) = (self.load.position_m, self.load.speed_m_s);
-        let free_n = -self.drag_n_s2_m2 * v * v.abs() - self.hung_n;
+        let hung_n = if y >= self.floor_m { self.hung_n } else { 0.0 };
+        let free_n = -self.drag_n_s2_m2 * v * v.abs() - hung_n;
         if y < self.low_m {
             free_n + (STOP.0 * (self.low_m - y) - STOP.1 * v).max(0.0)
         } else if y > self.high_m {

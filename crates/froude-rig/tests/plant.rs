@@ -218,7 +218,7 @@ fn the_gear_takes_its_part_when_driving_and_when_driven() {
         ..AxisParameters::long().lossless()
     };
     let w = 10.0;
-    let load = Load { hung: HungWeight { weight_n: w, pulley_friction: 0.0 }, ..Load::default() };
+    let load = Load { hung: HungWeight { weight_n: w, ..HungWeight::default() }, ..Load::default() };
     let acceleration = |v: f64, motor_n: f64| {
         let mut plant = Plant::new(&axis, &load, STEP_S, 1.0, 1.0);
         plant.launch(v);
@@ -260,13 +260,40 @@ fn friction_is_a_fifth_higher_at_mid_travel() {
 #[test]
 fn a_pulley_takes_from_the_weight_in_one_direction_and_adds_in_the_other() {
     let axis = AxisParameters { chain_damping_n_s_m: 40.0, ..AxisParameters::long().lossless() };
-    let load = Load { hung: HungWeight { weight_n: 10.0, pulley_friction: 0.02 }, ..Load::default() };
+    let load =
+        Load { hung: HungWeight { weight_n: 10.0, pulley_friction: 0.02, ..HungWeight::default() }, ..Load::default() };
     for (v, balanced_n) in [(0.3, 10.2), (-0.3, 9.8)] {
         let mut plant = Plant::new(&axis, &load, STEP_S, 1.0, 1.0);
         plant.launch(v);
         plant.stretch(balanced_n / axis.stiffness_n_m);
         run(&mut plant, balanced_n, 0.5);
         assert!((plant.load_speed_m_s() - v).abs() < 1e-9);
+    }
+}
+
+/// The torque fails while 10 N are lifted: whatever rides on the carriage, it goes at least to the floor's coordinate and not further
+/// beyond it than (W/F − 1) h, F what friction holds at least.
+#[test]
+fn a_weight_pulls_the_carriage_to_its_floor_and_friction_stops_it_from_there() {
+    let axis = AxisParameters::long();
+    let (top_m, floor_m, w) = (4.6, 4.05, 10.0);
+    for mounting in [Mounting::None, Mounting::Dry] {
+        let hung = HungWeight { weight_n: w, floor_m, ..HungWeight::default() };
+        let load = Load { hung, ..Load::mounted(mounting) };
+        let mut plant = Plant::new(&axis, &load, STEP_S, top_m, 1.0);
+        plant.launch(0.1);
+        let mut last_m = top_m;
+        for _ in 0..600_000 {
+            plant.step(0.0);
+            last_m = plant.load_position_m();
+        }
+        assert_eq!(plant.load_speed_m_s(), 0.0);
+        let held_n = axis.load_friction_n(load.wheel_load_n(&axis)) + axis.motor_coulomb_n_m / axis.chain_m_rad();
+        let beyond_m = (w / held_n - 1.0) * (top_m - floor_m + 0.05);
+        assert!(
+            last_m < floor_m && last_m > floor_m - beyond_m,
+            "{mounting:?}: {last_m}, {beyond_m} m beyond {floor_m}"
+        );
     }
 }
 

@@ -64,7 +64,12 @@ proptest! {
 fn the_papers_carriage_coasts_thirty_centimetres() {
     // J ω²/2C = 0.37 m without viscous friction, and the closed form with it.
     let drive = froude_control::config::AxisConfig::PUBLISHED.drive;
-    let coast = Coast::of(&froude_control::config::Drive { coulomb_lower_n_m: 3.9e-3, ..drive });
+    let fitted = froude_control::config::Drive {
+        coulomb_lower_n_m: drive.coulomb_n_m,
+        viscous_lower_n_m_s_rad: drive.viscous_n_m_s_rad,
+        ..drive
+    };
+    let coast = Coast::of(&fitted);
     let frictional = Coast { viscous_1_s: 0.0, ..coast };
     assert!((frictional.distance_m(0.55) - 0.3704).abs() < 1e-4, "{}", frictional.distance_m(0.55));
     assert!((coast.distance_m(0.55) - 0.2915).abs() < 1e-4, "{}", coast.distance_m(0.55));

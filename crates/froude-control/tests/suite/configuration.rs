@@ -14,8 +14,8 @@ fn refusals_say_what_was_found_and_what_is_accepted() {
     assert_eq!(refused(|a| a.limits.speed_m_s = f64::NAN), "axis 1: limits.speed_m_s is NaN, must be in 0.001..=100");
     assert_eq!(refused(|a| a.drive.encoder_sign = 0.5), "axis 1: drive.encoder_sign squared is 0.25, must be in 1..=1");
     assert_eq!(
-        refused(|a| (a.drive.coulomb_lower_n_m, a.drive.viscous_n_m_s_rad) = (0.0, 0.0)),
-        "axis 1: no friction is declared, so no coast distance; give coulomb_lower_n_m or viscous_n_m_s_rad"
+        refused(|a| (a.drive.coulomb_lower_n_m, a.drive.viscous_lower_n_m_s_rad) = (0.0, 0.0)),
+        "axis 1: no friction is declared, so no coast distance; give coulomb_lower_n_m or viscous_lower_n_m_s_rad"
     );
     let close = refused(|a| a.limits.low_switch_m = -0.045);
     assert!(

@@ -2,12 +2,14 @@
 //!
 //! **Setting.** The carriage creeps at one speed both ways; a weight W pulls towards −y through a cord over a pulley. With
 //! s = ±1 the direction of motion, f the carriage's friction and λW the pulley's, the chain must give, along the motion,
-//! f + sW + λW. As long as that is positive the motor drives and its command is s·v_c = (f + sW + λW)/k.
+//! f + sW + λW. As long as that is positive the motor drives the gear and its command is s·v_c = c + (f + sW + λW)/k, with c the
+//! friction of the motor itself, before the gear.
 //!
-//! - Both directions with W below the friction: the half-difference of s·v_c over s = ±1 is W/k; carriage and pulley cancel.
-//! - Heavier weights going down drive the motor backward through the gear, which loses the other way: these runs do not
-//!   tell k. Their lifting runs do, against runs with less weight, once the pulley's loss λ is known: from light
-//!   weights both ways, or declared.
+//! - Both directions with W below f: the half-difference of s·v_c over s = ±1 is W/k; carriage, motor and pulley cancel.
+//! - A weight that goes down with W above f drives the gear, which then loses the other way: such a run does not tell k. Its command
+//!   need not be negative, since the motor's own friction has still to be overcome. How much of the friction is the motor's no run
+//!   without weight shows; therefore only weights up to half of c k + f are believed on their way down.
+//! - Lifting runs tell k against runs with less weight, once the pulley's loss λ is known: from light weights both ways, or declared.
 //!
 //! Fitted by least squares over all driving runs: s·v_c = a₀ + a₁ sW + a₂ W with a₁ = 1/k, a₂ = λ/k, the declared loss as
 //! a prior of a₂.
@@ -25,6 +27,12 @@ use super::steady::{SteadySettings, mean, window};
 /// The pulley's loss where both directions with light weights do not measure it, and nobody declared it: a ball bearing
 /// with a thin cord loses some 0.5 to 1.5 %.
 pub const PULLEY_LOSS: Uncertain = Uncertain::new(0.01, 0.003);
+
+/// A weight that goes down counts as driven by the motor up to this part of the friction that the motor sees: up to half of that
+/// may be the motor's own.
+const SURELY_DRIVEN: f64 = 0.5;
+/// The pulley's loss is doubted this many standard uncertainties away from what is declared.
+const DOUBTED: f64 = 2.0;
 
 /// Newtons at the chain for a volt of the drive command, driving forward.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,13 +73,14 @@ pub struct Calibration {
     pub friction_n: f64,
     /// Driving runs used.
     pub used: usize,
-    /// Runs in which the weight drove the motor; left out.
+    /// Runs in which the weight drove the gear, or may have; left out.
     pub overhauled: usize,
     /// Sentences for the reader.
     pub notes: Vec<String>,
 }
 
 /// Command over a steady window, with the weight's pull.
+#[derive(Debug, Clone, Copy)]
 struct Reading {
     direction: f64,
     weight_n: f64,
@@ -88,7 +97,17 @@ struct Reading {
 pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calibration, DragError> {
     let readings = readings(runs, setup)?;
     let total = readings.len();
-    let driving: Vec<Reading> = readings.into_iter().filter(|r| r.along_v > 0.0).collect();
+    // First with what goes up or has no weight: its friction says which weights the motor surely drives down.
+    let is_lifting = |r: &Reading| r.along_v > 0.0 && (r.weight_n == 0.0 || r.direction > 0.0);
+    let lifting: Vec<Reading> = readings.iter().copied().filter(is_lifting).collect();
+    let heaviest = |of: &[Reading]| of.iter().map(|r| r.weight_n).fold(0.0, f64::max);
+    let is_told = lifting.iter().any(|r| r.weight_n < 0.9 * heaviest(&lifting));
+    let friction_n = match fitted(&lifting, setup.pulley_loss, setup.ideal_force_per_volt_n) {
+        Ok(f) if is_told => take(&f, 0)?.value / take(&f, 1)?.value,
+        _ => 0.0,
+    };
+    let is_driven = |r: &Reading| is_lifting(r) || (r.along_v > 0.0 && r.weight_n <= SURELY_DRIVEN * friction_n);
+    let driving: Vec<Reading> = readings.into_iter().filter(is_driven).collect();
     let overhauled = total - driving.len();
     let weights = reach(&driving.iter().map(|r| r.weight_n).collect::<Vec<_>>());
     if driving.is_empty() || weights[1] <= 0.0 {
@@ -130,7 +149,7 @@ pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calib
         friction_n: friction_v * k,
         used: driving.len(),
         overhauled,
-        notes: notes(force, ideal, overhauled, is_pulley_measured, loss),
+        notes: notes(force, ideal, overhauled, is_pulley_measured, loss, pulley_loss, friction_v * k),
     })
 }
 
@@ -181,7 +200,15 @@ fn readings(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Vec<Readin
     Ok(out)
 }
 
-fn notes(force: Uncertain, ideal: f64, overhauled: usize, is_pulley_measured: bool, loss: Uncertain) -> Vec<String> {
+fn notes(
+    force: Uncertain,
+    ideal: f64,
+    overhauled: usize,
+    is_pulley_measured: bool,
+    loss: Uncertain,
+    found: Uncertain,
+    friction_n: f64,
+) -> Vec<String> {
     let efficiency = force.value / ideal;
     let half = coverage_factor(0.95, force.dof) * force.relative();
     let mut out = vec![format!(
@@ -197,8 +224,18 @@ fn notes(force: Uncertain, ideal: f64, overhauled: usize, is_pulley_measured: bo
     }
     if overhauled > 0 {
         out.push(format!(
-            "{overhauled} runs were left out: the weight drove the motor, and a gear loses differently that way; weights \
-             below the carriage's friction can be lowered under power"
+            "{overhauled} runs were left out: the weight drove the gear or may have, and a gear loses differently that way; weights \
+             up to {:.1} N, half the friction, can be lowered under power",
+            SURELY_DRIVEN * friction_n
+        ));
+    }
+    if (found.value - loss.value).abs() > DOUBTED * loss.standard {
+        out.push(format!(
+            "the pulley's loss comes out as {:.1} %, declared are {:.1} ± {:.1} %: the light weight may have driven the gear on its way \
+             down; hang a lighter one, or look at the pulley",
+            100.0 * found.value,
+            100.0 * loss.value,
+            100.0 * loss.standard
         ));
     }
     if !is_pulley_measured {
@@ -308,7 +345,7 @@ mod tests {
         let mut scenario = quiet();
         scenario.pulley_loss = 0.013; // one standard uncertainty beside the declared one
         let heavy = calibrated(&scenario, &[0.0, 20.0], |_| true).unwrap();
-        let both = calibrated(&scenario, &[0.0, 2.0, 20.0], |_| true).unwrap();
+        let both = calibrated(&scenario, &[0.0, 1.5, 20.0], |_| true).unwrap();
         let off = |c: &Calibration| c.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
         assert!((off(&heavy) + 0.003).abs() < 4e-4, "{}", off(&heavy));
         assert!(off(&both).abs() < 4e-4, "{}", off(&both));
@@ -316,6 +353,21 @@ mod tests {
         assert!((both.efficiency.value - 0.8).abs() < 1e-3);
         // Lowering 20 N drives the motor: four runs that do not count.
         assert_eq!((heavy.overhauled, heavy.used), (4, 12));
+    }
+
+    /// 3 N of weight against 2.9 N of friction behind the gear, 0.9 N before it: on its way down the weight drives the gear and the
+    /// motor still has to push. Believed, these runs would raise newtons a volt by over 2 %.
+    #[test]
+    fn a_weight_that_drives_the_gear_while_the_motor_pushes_is_left_out() {
+        let scenario = Scenario { motor_coulomb_n: 0.9, ..quiet() };
+        let found = calibrated(&scenario, &[0.0, 3.5, 10.0], |_| true).unwrap();
+        assert_eq!((found.overhauled, found.used), (8, 16));
+        let off = found.force_per_volt.force_per_volt_n.value / scenario.force_per_volt_n() - 1.0;
+        assert!(off.abs() < 4e-4, "{off}");
+        let pushed = scenario.calibration_runs(&[3.5], 1, 1);
+        let down = pushed[1].view();
+        let w = window(&down, SteadySettings::default()).unwrap();
+        assert!(down.direction < 0.0 && mean(w.of(down.command_v), down.step_s()).value < 0.0);
     }
 
     #[test]

@@ -28,6 +28,8 @@ pub struct Scenario {
     pub efficiency: f64,
     /// Coulomb friction at the chain at the ends of the tank, N.
     pub coulomb_n: f64,
+    /// Coulomb friction of the motor itself, before the gear, at the chain, N; in addition to [`Scenario::coulomb_n`].
+    pub motor_coulomb_n: f64,
     /// Viscous friction at the chain, N s/m.
     pub viscous_n_s_m: f64,
     /// Growth of the Coulomb part mid-tank, as a part.
@@ -104,6 +106,7 @@ impl Scenario {
             ideal_force_per_volt_n: ratio * 26.7e-3 * 0.352,
             efficiency: 0.8,
             coulomb_n: 3.9e-3 * ratio,
+            motor_coulomb_n: 0.0,
             viscous_n_s_m: 4.657e-6 * ratio * ratio,
             bump: 0.2,
             bump_width_m: 0.35,
@@ -260,7 +263,8 @@ impl Scenario {
             run.time_s.push(time_s);
             run.position_m.push(position_m);
             run.reference_speed_m_s.push(v);
-            run.command_v.push(chain_n * through / (self.ideal_force_per_volt_n * torque_factor));
+            let motor_n = if v == 0.0 { 0.0 } else { v.signum() * self.motor_coulomb_n };
+            run.command_v.push((chain_n * through + motor_n) / (self.ideal_force_per_volt_n * torque_factor));
             run.force_n.push((sensed_n / self.sensor_step_n).round() * self.sensor_step_n);
         }
         run

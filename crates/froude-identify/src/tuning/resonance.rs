@@ -183,8 +183,10 @@ fn linearised(plant: &[ResponsePoint], p: &[f64; PARAMETERS]) -> Problem {
 }
 
 /// A shaper for a mode: impulses that leave it at rest (Singer & Seering 1990).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Shaper {
+    /// Its impulses: time, s, and part of the whole.
+    pub impulses: Vec<(f64, f64)>,
     /// Time that it adds to a move, s.
     pub added_s: f64,
     /// Residual swing with the mode `wrong` (relative) off, as a part of the unshaped one.
@@ -205,19 +207,24 @@ pub fn shaper(mode: &Mode, is_robust: bool) -> Shaper {
     } else {
         vec![(0.0, 1.0 / (1.0 + k)), (half_s, k / (1.0 + k))]
     };
-    let residual = |factor: f64| {
-        let omega = std::f64::consts::TAU * mode.frequency_hz * factor;
-        let end = impulses.last().map_or(0.0, |i| i.0);
-        impulses
-            .iter()
-            .map(|&(t, a)| a * (Complex64::new(-mode.damping * omega, omega * damped) * (end - t)).exp())
-            .sum::<Complex64>()
-            .norm()
-            / (-mode.damping * omega * end).exp()
-    };
-    Shaper {
+    let mut out = Shaper {
+        impulses,
         added_s: if is_robust { 2.0 * half_s } else { half_s },
-        residual_10_percent_low: residual(0.9),
-        residual_10_percent_high: residual(1.1),
+        residual_10_percent_low: 0.0,
+        residual_10_percent_high: 0.0,
+    };
+    out.residual_10_percent_low = out.residual(0.9 * mode.frequency_hz, mode.damping);
+    out.residual_10_percent_high = out.residual(1.1 * mode.frequency_hz, mode.damping);
+    out
+}
+
+impl Shaper {
+    /// Swing of a mode that is left, as a part of the unshaped one: |Σ a e^((ζ − i√(1−ζ²)) ω t)|.
+    #[must_use]
+    pub fn residual(&self, frequency_hz: f64, damping: f64) -> f64 {
+        let omega = std::f64::consts::TAU * frequency_hz;
+        let damped = (1.0 - damping * damping).max(1e-6).sqrt();
+        let term = |&(t, a): &(f64, f64)| a * (Complex64::new(damping * omega, -omega * damped) * t).exp();
+        self.impulses.iter().map(term).sum::<Complex64>().norm()
     }
 }

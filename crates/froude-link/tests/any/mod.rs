@@ -132,6 +132,7 @@ fn axis_config(d: &mut Draw) -> AxisConfig {
             inertia_kg_m2: d.f(),
             coast_inertia_kg_m2: d.f(),
             viscous_n_m_s_rad: d.f(),
+            viscous_lower_n_m_s_rad: d.f(),
             coulomb_n_m: d.f(),
             coulomb_lower_n_m: d.f(),
             drag_n_s2_m2: d.f(),

@@ -94,10 +94,12 @@ pub struct PlannedRun {
     pub drive: Drive,
     /// Body.
     pub body: BodyState,
-    /// Whether the dry carriage is ballasted.
+    /// Whether ballast makes the wheel load the same wet and dry.
     pub is_ballasted: bool,
     /// Weight over the pulley, N.
     pub hung_weight_n: f64,
+    /// Where that weight rests on the floor, m; `None` where nobody said.
+    pub floor_m: Option<f64>,
     /// Wait before it, s.
     pub settle_s: f64,
 }
@@ -201,7 +203,7 @@ pub struct Experiments {
 }
 
 impl Default for Experiments {
-    /// For a carriage like the paper's: the relay at two and a half times breakaway, the sweep beside 50 mm/s from 1 to 40 Hz.
+    /// For a carriage like the paper's: the relay at two and a half times breakaway, the sweep beside 50 mm/s from 2 to 40 Hz.
     fn default() -> Self {
         Self {
             relay_v: 1.0,
@@ -262,6 +264,7 @@ impl Planner<'_> {
             body: self.body,
             is_ballasted: self.body != BodyState::None && self.asked.is_ballasted,
             hung_weight_n: self.hung_weight_n,
+            floor_m: self.asked.calibration.as_ref().and_then(|c| c.floor_m),
             settle_s: if is_wet { self.asked.settling_wet_s } else { self.asked.settling_dry_s },
         }));
     }
@@ -289,16 +292,33 @@ impl Planner<'_> {
             prompts.push(if hung_weight_n == 0.0 {
                 "take the weight off the pulley".to_owned()
             } else {
-                format!("hang {hung_weight_n:.3} N over the pulley, pulling against +y")
+                let floor_m = self.asked.calibration.as_ref().and_then(|c| c.floor_m);
+                let floor = floor_m.map_or_else(String::new, |y| {
+                    format!(", with as much cord as lets it rest on the floor when the carriage is at {y:.3} m")
+                });
+                format!("hang {hung_weight_n:.3} N over the pulley, pulling against +y{floor}")
             });
         }
         (self.body, self.hung_weight_n) = (body, hung_weight_n);
         self.steps.push(Step::Operator(OperatorStep { prompt: prompts.join("; "), body, hung_weight_n }));
     }
 
-    /// There, or there and back; each way is a run of its own.
+    /// There, or there and back, where the tows go; each way is a run of its own.
     fn strokes(&mut self, name: &str, kind: RunKind, speed_m_s: f64, is_both: bool, pair: Option<(u32, u32)>) {
-        let (from_m, to_m) = (self.start_m, self.start_m + self.asked.distance_m);
+        self.strokes_over(self.start_m, self.asked.distance_m, name, kind, speed_m_s, is_both, pair);
+    }
+
+    fn strokes_over(
+        &mut self,
+        from_m: f64,
+        way_m: f64,
+        name: &str,
+        kind: RunKind,
+        speed_m_s: f64,
+        is_both: bool,
+        pair: Option<(u32, u32)>,
+    ) {
+        let to_m = from_m + way_m;
         self.run(&format!("{name}-forward"), kind, Drive::Profile { from_m, to_m, speed_m_s }, pair);
         if is_both {
             let back = Drive::Profile { from_m: to_m, to_m: from_m, speed_m_s };
@@ -316,10 +336,11 @@ impl Planner<'_> {
 
     fn friction(&mut self) {
         let Some(sweep) = &self.asked.friction else { return };
-        for _ in 0..sweep.repeats {
+        // A repeat of all speeds is what the friction's scatter is taken over.
+        for repeat in 1..=sweep.repeats as u32 {
             for &speed_m_s in &sweep.speed_m_s {
                 let name = format!("friction-{:.0}mm_s", 1e3 * speed_m_s);
-                self.strokes(&name, RunKind::Friction, speed_m_s, true, None);
+                self.strokes(&name, RunKind::Friction, speed_m_s, true, Some((repeat, repeat)));
             }
         }
     }
@@ -327,12 +348,14 @@ impl Planner<'_> {
     /// No weight, then each weight, then no weight again: the drift of friction shows between the two.
     fn calibration(&mut self) {
         let Some(calibration) = &self.asked.calibration else { return };
+        let from_m = calibration.start_m.unwrap_or(self.start_m);
+        let way_m = calibration.distance_m.unwrap_or(self.asked.distance_m);
         let weights = calibration.weights_n.iter().copied();
         for weight_n in std::iter::once(0.0).chain(weights).chain(std::iter::once(0.0)) {
             self.mount(self.body, weight_n);
             for _ in 0..calibration.repeats {
                 let name = format!("calibration-{weight_n:.0}N");
-                self.strokes(&name, RunKind::Calibration, calibration.speed_m_s, true, None);
+                self.strokes_over(from_m, way_m, &name, RunKind::Calibration, calibration.speed_m_s, true, None);
             }
         }
     }
@@ -390,6 +413,9 @@ pub(crate) mod tests {
                 weight_standard_n: 0.01,
                 speed_m_s: 0.1,
                 repeats: 1,
+                start_m: None,
+                distance_m: None,
+                floor_m: None,
             }),
             excitation: None,
             is_ballasted: true,

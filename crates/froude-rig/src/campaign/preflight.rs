@@ -6,6 +6,7 @@
 
 use froude_control::coast::{Coast, StoppingWay};
 use froude_control::config::AxisConfig;
+use froude_records::run::BodyState;
 
 use super::plan::{Drive, PlannedRun};
 
@@ -41,13 +42,15 @@ pub struct Objection {
     pub text: String,
 }
 
-/// Declared drag of the body and efficiency of the gear.
+/// Declared drag and mass of the body, efficiency of the gear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Expected {
     /// D_d, N s²/m²; 0 where unknown.
     pub drag_n_s2_m2: f64,
     /// Extra mass of the body, its water and its added mass when wet, kg.
     pub wet_mass_kg: f64,
+    /// Mass of the dry body, kg.
+    pub dry_mass_kg: f64,
     /// η; 1 where it is part of the declared friction.
     pub efficiency: f64,
 }
@@ -67,7 +70,7 @@ pub fn check(
     let mut object = |text: String| out.push(Objection { id: run.id.clone(), text });
     let (drive, limits) = (&axis.drive, &axis.limits);
     let chain_m = drive.sprocket_radius_m / drive.gear_ratio;
-    let is_wet = run.body == froude_records::run::BodyState::Wet;
+    let is_wet = run.body == BodyState::Wet;
     let Drive::Profile { from_m, to_m, speed_m_s } = run.drive else {
         return (pulse_forecast(run, axis), out);
     };
@@ -77,7 +80,11 @@ pub fn check(
     let drag_n = if is_wet { expected.drag_n_s2_m2 * speed_m_s * speed_m_s } else { 0.0 };
     let friction_n_m = drive.coulomb_n_m + drive.viscous_n_m_s_rad * speed_m_s / chain_m;
     let steady_n_m = friction_n_m + chain_m * (drag_n + run.hung_weight_n.abs()) / expected.efficiency;
-    let mass = if is_wet { expected.wet_mass_kg } else { 0.0 };
+    let mass = match run.body {
+        BodyState::Wet => expected.wet_mass_kg,
+        BodyState::Dry => expected.dry_mass_kg,
+        BodyState::None => 0.0,
+    };
     let inertia_kg_m2 = drive.inertia_kg_m2 + mass * chain_m * chain_m / expected.efficiency;
     let ramp_n_m = inertia_kg_m2 * acceleration_m_s2 / chain_m;
     let peak_n_m = steady_n_m + ramp_n_m;
@@ -108,6 +115,9 @@ pub fn check(
              its end, and {:.3} m are kept for the following error: {:.3} m are missing. Shorten the travel or start further back",
             limits.following_error_m, -margin_m
         ));
+    }
+    if let Some(text) = fall(run, from_m.max(to_m), speed_m_s, axis, expected) {
+        object(text);
     }
     if speed_m_s > limits.speed_m_s {
         object(format!("its speed {speed_m_s:.3} m/s is above the limit of {:.3} m/s", limits.speed_m_s));
@@ -150,6 +160,37 @@ pub fn check(
         drag_n: is_wet.then_some(drag_n),
     };
     (forecast, out)
+}
+
+/// What a hung weight does when the torque fails, where that does not end inside the travel.
+///
+/// It is held for sure by F = η C n/R (all friction behind the gear, its lower bound). A heavier weight W pulls the carriage from the
+/// highest place of the run to where the weight rests on its floor, h below, and friction stops it from there: whatever the mass,
+/// F s = (W − F) h, and the coast from the run's own speed comes on top.
+fn fall(run: &PlannedRun, top_m: f64, speed_m_s: f64, axis: &AxisConfig, expected: &Expected) -> Option<String> {
+    let (drive, limits) = (&axis.drive, &axis.limits);
+    let weight_n = run.hung_weight_n;
+    let held_n = expected.efficiency * drive.coulomb_lower_n_m * drive.gear_ratio / drive.sprocket_radius_m;
+    if weight_n <= held_n {
+        return None;
+    }
+    let Some(floor_m) = run.floor_m else {
+        return Some(format!(
+            "friction surely holds {held_n:.2} N of its {weight_n:.2} N: if the torque fails the weight pulls the carriage into the stop \
+             at {:.3} m. Give it a floor to rest on, floor = \"{:.2} m\" in [carriage.calibration], or hang less",
+            limits.hard_low_m,
+            top_m - 0.5
+        ));
+    };
+    let fall_m = (top_m - floor_m).max(0.0);
+    let coast_m = (weight_n / held_n - 1.0) * fall_m + Coast::of(drive).distance_m(speed_m_s);
+    let room_m = floor_m - limits.hard_low_m;
+    (coast_m > room_m).then(|| {
+        format!(
+            "if the torque fails its {weight_n:.2} N pull the carriage from {top_m:.3} m to {floor_m:.3} m, where they rest on the floor; \
+             it then coasts {coast_m:.3} m and {room_m:.3} m are free. Lift less high, further from the stop, or hang less"
+        )
+    })
 }
 
 /// Pulses and jogs are held inside the soft limits by the controller itself; only command and current are forecast.

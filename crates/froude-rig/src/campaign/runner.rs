@@ -117,6 +117,9 @@ pub trait Progress {
 /// After a run: whether its campaign knows enough. The text says why.
 pub type Enough<'a> = dyn FnMut(&Path, &PlannedRun) -> Option<String> + 'a;
 
+/// An approach that coasts too far even at this speed is none, m/s.
+const SLOWEST_APPROACH_M_S: f64 = 0.02;
+
 /// What is the same for all runs.
 #[derive(Debug, Clone)]
 pub struct Setting {
@@ -249,7 +252,16 @@ fn load_of(run: &PlannedRun, base: &Load) -> Load {
         BodyState::Wet => Mounting::Wet,
     };
     let ballast_kg = if run.is_ballasted && mounting == Mounting::Wet { base.balancing_ballast_kg() } else { 0.0 };
-    Load { mounting, ballast_kg, hung: HungWeight { weight_n: run.hung_weight_n, ..base.hung }, ..*base }
+    Load {
+        mounting,
+        ballast_kg,
+        hung: HungWeight {
+            weight_n: run.hung_weight_n,
+            floor_m: run.floor_m.unwrap_or(f64::NEG_INFINITY),
+            ..base.hung
+        },
+        ..*base
+    }
 }
 
 /// Longest that homing may take, s.
@@ -301,15 +313,30 @@ impl Session<'_> {
         Ok(path?.unwrap_or_default())
     }
 
+    /// Goes to where the run starts: as fast as allowed, with a hung weight no faster than the run itself; more slowly where the coast
+    /// beyond the start would not fit into the travel.
     fn approach(&mut self) -> Result<(), RunnerError> {
+        let mut speed_m_s = self.setting.return_speed_m_s;
         let target_m = match self.run.drive {
-            Drive::Profile { from_m, .. }
-            | Drive::Pulses { from_m, .. }
-            | Drive::Relay { from_m, .. }
-            | Drive::Sweep { from_m, .. } => from_m,
+            Drive::Profile { from_m, speed_m_s: own_m_s, .. } => {
+                if self.run.hung_weight_n != 0.0 {
+                    speed_m_s = own_m_s;
+                }
+                from_m
+            }
+            Drive::Pulses { from_m, .. } | Drive::Relay { from_m, .. } | Drive::Sweep { from_m, .. } => from_m,
             Drive::Jog { .. } => return Ok(()),
         };
-        self.go(target_m, self.setting.return_speed_m_s)
+        loop {
+            match self.go(target_m, speed_m_s) {
+                Err(RunnerError::Refused { refusal: Refusal::BeyondTravel, .. })
+                    if speed_m_s > SLOWEST_APPROACH_M_S =>
+                {
+                    speed_m_s *= 0.5;
+                }
+                other => return other,
+            }
+        }
     }
 
     fn go(&mut self, target_m: f64, speed_m_s: f64) -> Result<(), RunnerError> {

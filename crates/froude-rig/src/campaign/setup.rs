@@ -22,6 +22,9 @@ const SWITCH_MARGIN_M: f64 = 0.05;
 /// The part of declared friction that a coast distance may count on, where no standard uncertainty is declared.
 const SURE_FRICTION: f64 = 0.85;
 
+/// How long the sensor's zero remembers, s.
+const SENSOR_DRIFT_S: f64 = 300.0;
+
 /// Why a rig cannot be set up.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -62,12 +65,6 @@ fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
     let inertia = spec.inertia_kg_m2.ok_or_else(|| missing("inertia", coast))?;
     let coulomb = spec.coulomb_n_m.ok_or_else(|| missing("coulomb_friction", coast))?;
     let (constants, limits, gains) = (&spec.constants, &spec.limits, &spec.gains);
-    let sure = if coulomb.standard_uncertainty > 0.0 {
-        // The lower end of its 95 % interval.
-        (coulomb.value - 1.96 * coulomb.standard_uncertainty).max(0.1 * coulomb.value)
-    } else {
-        SURE_FRICTION * coulomb.value
-    };
     let chain_m = constants.sprocket_radius_m.value / constants.gear_ratio.value;
     let efficiency = constants.efficiency_forward.map_or(1.0, |e| e.value);
     Ok(AxisConfig {
@@ -83,8 +80,9 @@ fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
                 + 1.96 * inertia.standard_uncertainty
                 + towed_kg * chain_m * chain_m / efficiency,
             viscous_n_m_s_rad: spec.viscous_n_m_s_rad.map_or(0.0, |b| b.value),
+            viscous_lower_n_m_s_rad: spec.viscous_n_m_s_rad.map_or(0.0, sure),
             coulomb_n_m: coulomb.value,
-            coulomb_lower_n_m: sure,
+            coulomb_lower_n_m: sure(coulomb),
             held_band: held_band(constants),
             drag_n_s2_m2: 0.0,
             torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
@@ -118,6 +116,15 @@ fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
     })
 }
 
+/// What of a declared friction a coast distance may count on: the lower end of its 95 % interval, at least a tenth.
+fn sure(friction: Declared) -> f64 {
+    if friction.standard_uncertainty > 0.0 {
+        (friction.value - 1.96 * friction.standard_uncertainty).max(0.1 * friction.value)
+    } else {
+        SURE_FRICTION * friction.value
+    }
+}
+
 /// 1 − η η_b with both efficiencies at the lower end of what is declared: a stuck encoder is found later, a held weight never taken for
 /// one. 0 where the gear's losses are not declared.
 fn held_band(constants: &AxisConstants) -> f64 {
@@ -143,7 +150,8 @@ pub fn twin(campaign: &CarriageCampaign, mut body: Load) -> Result<(TwinConfig, 
         f.step_n = sensor.resolution_n.unwrap_or(f.step_n);
         f.noise_n = sensor.noise_n.unwrap_or(f.noise_n);
         if let Some(drift_n) = sensor.drift_n {
-            f.drift = Drift::PerRun(drift_n);
+            // As wide as the uniform one, and slow: it moves within a run too.
+            f.drift = Drift::Walk(drift_n / 3.0_f64.sqrt(), SENSOR_DRIFT_S);
         }
     }
     for (i, spec) in [Some(&campaign.rig.y), campaign.rig.x.as_ref()].into_iter().enumerate() {

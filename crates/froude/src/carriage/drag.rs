@@ -6,7 +6,9 @@ use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULL
 use froude_identify::carriage::coefficient::{Coefficient, Method};
 use froude_identify::carriage::mbdp::Flexible;
 use froude_identify::carriage::report::{DragReport, drag_report};
-use froude_identify::carriage::run::{Ballast, DragRun, DragSetup, Efficiency, SensorBudget, Uncertain};
+use froude_identify::carriage::run::{
+    self as drag_run, Ballast, DragRun, DragSetup, Efficiency, SensorBudget, Uncertain,
+};
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
@@ -53,6 +55,12 @@ pub struct DragOutcome {
 /// Kinds of run that tell drag.
 const KINDS: [RunKind; 4] = [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration];
 
+/// Standard acceleration of gravity, m/s².
+const G_M_S2: f64 = 9.80665;
+
+/// Standard uncertainty of the gain of a force sensor of which nobody declares it: what a cell in use has, a year after its certificate.
+const UNDECLARED_GAIN: f64 = 0.01;
+
 /// Standard uncertainty of the ballast that the operator puts on, as a part: it is weighed, the body's volume is what limits it.
 const BALLAST_RELATIVE: f64 = 0.005;
 
@@ -69,7 +77,21 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     let mut setup = setup_of(runs.campaign.as_ref(), constants, job.flexible);
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
     setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
+    let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
+    let stopped = stopped_early(runs.campaign.as_ref(), &reduced);
+    setup.looks = stopped.map_or(1, |(_, planned)| planned);
     let mut report = drag_report(&reduced, &setup)?;
+    report.findings.extend(undeclared);
+    report.findings.extend(stopped.map(|(found, planned)| {
+        Finding::new(
+            Severity::Note,
+            "stopped-early",
+            format!(
+                "the campaign stopped after {found} of {planned} pairs because its interval was short enough; chance makes some intervals \
+                 short, so that all intervals here hold over {planned} looks (Bonferroni)"
+            ),
+        )
+    }));
     report.findings.extend(runs.findings.iter().cloned());
     report.findings.extend(why_not);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
@@ -87,6 +109,47 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     });
     let written = crate::results::write(&out, &file, &[], &[], &page)?;
     Ok(DragOutcome { report, calibration, file, estimate: written.estimate, page: written.report })
+}
+
+/// Pairs found and pairs planned of a campaign that may stop at a short interval, where it did.
+fn stopped_early(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Option<(usize, usize)> {
+    let plan = campaign?.carriage.as_ref()?.plan.as_ref()?;
+    plan.stop_at_relative_half_width?;
+    let wet = runs.iter().filter(|r| r.body == drag_run::BodyState::Wet && r.kind == drag_run::RunKind::Tow);
+    let mut pairs: Vec<u32> = wet.map(|r| r.pair).collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    (pairs.len() < plan.repeats).then_some((pairs.len(), plan.repeats))
+}
+
+/// Declarations that the budget needs and the campaign lacks.
+///
+/// # Errors
+///
+/// Wet runs without ballast of a body whose volume is not declared: nothing says what buoyancy takes off the wheels.
+fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Option<Finding>, Error> {
+    let carriage = campaign.and_then(|c| c.carriage.as_ref());
+    let is_ballasted = carriage.and_then(|c| c.plan.as_ref()).is_none_or(|p| p.is_ballasted);
+    let volume_m3 = campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3);
+    if !is_ballasted && volume_m3.is_none() {
+        return Err(Error::Nothing(
+            "the wet runs carried no ballast and the campaign declares no volume of the body: nothing says what buoyancy takes off the \
+             wheels. Write volume = \"6.283e-3 m^3\" (its own) in [body]; 0 is not assumed"
+                .to_owned(),
+        ));
+    }
+    let has_sensor = runs.iter().any(|r| r.force_n.is_some());
+    let gain = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.gain_standard);
+    Ok((has_sensor && gain.is_none()).then(|| {
+        Finding::new(
+            Severity::Note,
+            "gain-not-declared",
+            format!(
+                "no uncertainty of the force sensor's gain is declared; {} is taken. Write gain_standard in [rig.force_sensor]",
+                number::percent(UNDECLARED_GAIN)
+            ),
+        )
+    }))
 }
 
 /// What is declared, from the campaign where there is one, else from what the runs say of their rig.
@@ -115,13 +178,20 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>, flexi
     if let Some(drift_n) = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.drift_n) {
         setup.sensor = SensorBudget { drift_half_width_n: drift_n, ..setup.sensor };
     }
+    let declared = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.gain_standard);
+    setup.sensor.gain_relative = declared.unwrap_or(UNDECLARED_GAIN);
     let displaced_kg =
         campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3).map(|v| setup.density_kg_m3 * v);
     setup.ballast = match carriage.and_then(|c| c.plan.as_ref()).map(|p| p.is_ballasted) {
-        Some(false) => Ballast::Unballasted { unloaded_n: 9.80665 * displaced_kg.unwrap_or(0.0), rolling: None },
+        Some(false) => Ballast::Unballasted { unloaded_n: G_M_S2 * displaced_kg.unwrap_or(0.0), rolling: None },
         _ => Ballast::Matched { carried_kg: displaced_kg.map(|kg| Uncertain::new(kg, BALLAST_RELATIVE * kg)) },
     };
     setup
+}
+
+/// Standard uncertainty of the weights, as a part: that of the heaviest, which tells the most.
+pub(crate) fn weight_relative(calibration: &froude_records::carriage::Calibration) -> f64 {
+    calibration.weight_standard_n / calibration.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Calibration from the runs with weights; a finding where there are such runs and they do not calibrate.
@@ -136,11 +206,7 @@ pub(crate) fn calibration_of(
     }
     let declared =
         campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref()).and_then(|p| p.calibration.as_ref());
-    let weight_relative = declared.map_or(1e-3, |c| {
-        // The heaviest weights tell the most; the uncertainty is that of each weight.
-        let heaviest = c.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        c.weight_standard_n / heaviest
-    });
+    let weight_relative = declared.map_or(1e-3, weight_relative);
     let asked = CalibrationSetup {
         ideal_force_per_volt_n: setup.ideal_force_per_volt_n,
         weight_relative,
@@ -327,7 +393,7 @@ pub fn methods_table(report: &DragReport) -> TextTable {
 }
 
 fn budget_table(c: &Coefficient) -> TextTable {
-    let total: f64 = c.budget.iter().map(|p| p.standard * p.standard).sum();
+    let total: f64 = c.budget.iter().filter(|p| !p.in_scatter).map(|p| p.standard * p.standard).sum();
     TextTable {
         caption: format!("{}.", c.method.words()),
         head: ["input", "standard uncertainty [N s²/m²]", "of the variance"].map(str::to_owned).to_vec(),
@@ -335,8 +401,12 @@ fn budget_table(c: &Coefficient) -> TextTable {
             .budget
             .iter()
             .map(|p| {
-                let share = if total > 0.0 { p.standard * p.standard / total } else { 0.0 };
-                vec![p.name.to_string(), number::significant(p.standard, 2), number::percent(share)]
+                let share = if p.in_scatter {
+                    "in the scatter".to_owned()
+                } else {
+                    number::percent(if total > 0.0 { p.standard * p.standard / total } else { 0.0 })
+                };
+                vec![p.name.to_string(), number::significant(p.standard, 2), share]
             })
             .collect(),
     }

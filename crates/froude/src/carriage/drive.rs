@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::carriage::calibration::{CalibrationSetup, calibrate};
-use froude_identify::carriage::coefficient::Point;
 use froude_identify::carriage::online::OnLine;
 use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
@@ -19,7 +18,7 @@ use froude_rig::drive::twin::TwinRig;
 use froude_rig::load::{Load, TowedBody};
 use indexmap::IndexMap;
 
-use super::drag::setup_of;
+use super::drag::{setup_of, weight_relative};
 use super::runs::{CAMPAIGN_COPY, density_kg_m3, for_drag};
 use crate::Error;
 
@@ -57,7 +56,7 @@ pub struct Prepared {
     job: DriveJob,
 }
 
-/// Relative run-to-run change of dry friction that is taken before any repeat has shown it (MCD's rig: about 2 %).
+/// Relative run-to-run change of dry friction that is taken before any repeat has shown it (our assumption).
 const ASSUMED_REPEATABILITY: f64 = 0.02;
 
 impl Prepared {
@@ -95,7 +94,11 @@ impl Prepared {
     #[must_use]
     pub fn detectable_n(&self) -> f64 {
         let drive = &self.control.axes[self.asked.axis as usize].drive;
-        let friction_n = drive.coulomb_n_m * drive.gear_ratio / drive.sprocket_radius_m;
+        let spec =
+            if self.asked.axis as usize == 0 { Some(&self.carriage.rig.y) } else { self.carriage.rig.x.as_ref() };
+        let efficiency = spec.and_then(|s| s.constants.efficiency_forward).map_or(1.0, |e| e.value);
+        // As the motor sees it through the gear, and as a force at the chain.
+        let friction_n = efficiency * drive.coulomb_n_m * drive.gear_ratio / drive.sprocket_radius_m;
         1.96 * std::f64::consts::SQRT_2 * ASSUMED_REPEATABILITY * friction_n
     }
 }
@@ -126,9 +129,10 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     })?;
     let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
     let density_kg_m3 = density_kg_m3(Some(&campaign));
-    // The body with its water and added mass: twice what it displaces, where nothing else is known.
+    // The body with its water and added mass: twice what it displaces, where nothing else is known; and the ballast, once that.
     let displaced_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3).unwrap_or(TowedBody::CYLINDER.displaced_m3);
-    let towed_kg = 2.0 * density_kg_m3 * displaced_m3;
+    let displaced_kg = density_kg_m3 * displaced_m3;
+    let towed_kg = if asked.is_ballasted { 3.0 } else { 2.0 } * displaced_kg;
     let control = setup::control(&carriage, towed_kg)?;
     let axis = control.axes[asked.axis as usize];
     let start_m = asked.start_m.unwrap_or(0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m));
@@ -144,6 +148,7 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     let expected = Expected {
         drag_n_s2_m2,
         wet_mass_kg: towed_kg,
+        dry_mass_kg: displaced_kg,
         efficiency: spec.constants.efficiency_forward.map_or(1.0, |e| e.value),
     };
     let (mut forecasts, mut objections) = (Vec::new(), Vec::new());
@@ -268,7 +273,8 @@ struct Live {
     waiting: Vec<RunLog>,
     calibration: Vec<RunLog>,
     is_calibrated: bool,
-    points: Vec<Point>,
+    /// Differences seen, whether they gave a point or not.
+    differences: usize,
     per_pair: usize,
     weight_relative: f64,
 }
@@ -277,10 +283,7 @@ impl Live {
     fn new(prepared: &Prepared) -> Self {
         let asked = &prepared.asked;
         let setup = setup_of(Some(&prepared.campaign), None, None);
-        let weight_relative = asked.calibration.as_ref().map_or(0.0, |c| {
-            let least = c.weights_n.iter().copied().fold(f64::INFINITY, f64::min);
-            c.weight_standard_n / least
-        });
+        let weight_relative = asked.calibration.as_ref().map_or(0.0, weight_relative);
         let online = asked.stop_at_relative_half_width.map(|target| OnLine::new(target, 0.0, asked.repeats));
         let directions = if asked.directions == froude_records::carriage::Directions::Both { 2 } else { 1 };
         Self {
@@ -289,7 +292,7 @@ impl Live {
             waiting: Vec::new(),
             calibration: Vec::new(),
             is_calibrated: false,
-            points: Vec::new(),
+            differences: 0,
             per_pair: asked.speed_m_s.len() * directions,
             weight_relative,
         }
@@ -317,17 +320,20 @@ impl Live {
             return None;
         };
         let other = self.waiting.swap_remove(partner);
+        self.differences += 1;
         let (wet, dry) = if log.meta.body == BodyState::Wet { (&log, &other) } else { (&other, &log) };
         let point = match (for_drag(wet), for_drag(dry)) {
             (Ok(Some(wet)), Ok(Some(dry))) => {
                 mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady).ok()
             }
             _ => None,
-        }?;
+        };
         let online = self.online.as_mut()?;
-        online.push(&point);
-        self.points.push(point);
-        if !self.points.len().is_multiple_of(self.per_pair) {
+        if let Some(point) = &point {
+            online.push(point);
+        }
+        // A look is taken after whole pairs only, also where a run of them gave no point.
+        if !self.differences.is_multiple_of(self.per_pair) {
             return None;
         }
         let status = online.status()?;
