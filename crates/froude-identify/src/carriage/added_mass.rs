@@ -1,7 +1,7 @@
 //! Added mass from the ramps: what the wet carriage must be given more than the dry one to reach its speed.
 //!
 //! At one time of the same profile the inertia of motor, carriage and body is in both runs. The difference F of the two motor forces,
-//! integrated from rest to the steady window (duration T, speed v at its end), is
+//! integrated from the first sample in motion to the steady window (duration T, speed gained v), is
 //!
 //! ∫F dt = m v + D ∫u|u| dt + f T,
 //!
@@ -40,6 +40,8 @@ struct Ramp {
     pair: u32,
     /// v at the end of the ramp, m/s.
     speed_m_s: f64,
+    /// What the speed has grown by since the first sample in motion, m/s.
+    gained_m_s: f64,
     /// T, s.
     duration_s: f64,
     /// ∫F dt over the ramp, N s.
@@ -72,19 +74,22 @@ fn ramp(wet: &DragRun<'_>, dry: &DragRun<'_>, force_per_volt_n: f64, settings: S
     let end = (w.end - i).min(d.end - j);
     let slack = 0.01 * wet.target_speed_m_s;
     let differs = |k: &usize| (wet.reference_speed_m_s[i + k] - dry.reference_speed_m_s[j + k]).abs() > slack;
-    if first >= end || (dry.step_s() - step).abs() > 1e-6 * step || (0..first).any(|k| differs(&k)) {
+    if first + 1 >= end || (dry.step_s() - step).abs() > 1e-6 * step || (0..first).any(|k| differs(&k)) {
         return None;
     }
     let force_n = |k: usize| force_per_volt_n * (wet.command_v[i + k] - dry.command_v[j + k]);
-    let over = |of: &dyn Fn(usize) -> f64, from: usize, to: usize| (from..to).map(of).sum::<f64>() * step;
+    let over = |of: &dyn Fn(usize) -> f64, from: usize, to: usize| {
+        (from..to).map(|k| 0.5 * (of(k) + of(k + 1))).sum::<f64>() * step
+    };
     let square = |k: usize| wet.reference_speed_m_s[i + k] * wet.reference_speed_m_s[i + k].abs();
     Some(Ramp {
         pair: wet.pair,
         speed_m_s: wet.target_speed_m_s * wet.direction,
+        gained_m_s: wet.target_speed_m_s * wet.direction - wet.reference_speed_m_s[i],
         duration_s: first as f64 * step,
         impulse_n_s: over(&force_n, 0, first),
         squares_m2_s: over(&square, 0, first),
-        steady_n: over(&force_n, first, end) / ((end - first) as f64 * step),
+        steady_n: over(&force_n, first, end - 1) / ((end - 1 - first) as f64 * step),
     })
 }
 
@@ -107,8 +112,8 @@ fn mass<'a>(ramps: impl Iterator<Item = &'a Ramp>) -> Option<f64> {
     let d = drag(&ramps);
     let (mut top, mut bottom) = (0.0, 0.0);
     for r in &ramps {
-        top += r.momentum(d) * r.speed_m_s / r.duration_s;
-        bottom += r.speed_m_s * r.speed_m_s / r.duration_s;
+        top += r.momentum(d) * r.gained_m_s / r.duration_s;
+        bottom += r.gained_m_s * r.gained_m_s / r.duration_s;
     }
     (bottom > 0.0).then_some(top / bottom)
 }

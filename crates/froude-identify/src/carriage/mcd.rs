@@ -137,7 +137,7 @@ mod tests {
         // 3.45 m where the wet window ends, less 2.98 m where the dry one begins.
         assert_eq!(
             why,
-            "runs \"wet 1 +0.50 m/s\" and \"dry 1 +0.50 m/s\": the steady windows share 0.47 m, 0.84 m are needed"
+            "runs \"wet 1 +0.50 m/s\" and \"dry 1 +0.50 m/s\": the steady windows share 0.47 m, 0.83 m are needed"
         );
     }
 }

@@ -211,12 +211,14 @@ impl Scenario {
         let mut wander = self.noise_n * normal();
         let direction = (to_m - from_m).signum();
         let profile = Trapezoid::new((to_m - from_m).abs(), speed, self.acceleration_m_s2);
-        let n = ((profile.duration_s + 2.0 * self.still_s) * self.rate_hz).round() as usize + 1;
+        let n = ((profile.duration_s + 2.0 * self.still_s) * self.rate_hz).round() as usize + 2;
         let kept = (-1.0 / (self.rate_hz * self.noise_time_s)).exp();
         let fresh = self.noise_n * (1.0 - kept * kept).sqrt();
         let drift_n = self.sensor_drift_n * (2.0 * rng.random::<f64>() - 1.0);
         // The drift is an exponential of time, rising early or late: not a straight line.
         let bend = 6.0 * rng.random::<f64>() - 3.0;
+        // The profile starts anywhere between two samples.
+        let starts_s = self.still_s + rng.random::<f64>() / self.rate_hz;
         let is_wet = body == BodyState::Wet;
         let (drag, added) = if is_wet { (self.drag_n_s2_m2, self.added_mass_kg) } else { (0.0, 0.0) };
         let unloaded_n = if is_wet { self.buoyancy_friction_n } else { 0.0 };
@@ -242,7 +244,7 @@ impl Scenario {
         };
         for i in 0..n {
             let time_s = i as f64 / self.rate_hz;
-            let (s, v, a) = profile.at(time_s - self.still_s);
+            let (s, v, a) = profile.at(time_s - starts_s);
             let (position_m, v, a) = (from_m + direction * s, direction * v, direction * a);
             wander = kept * wander + fresh * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, rng);
             let viscous = self.viscous_n_s_m * if self.viscous_changes { friction_factor } else { 1.0 };

@@ -152,7 +152,9 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
     let mut chosen = Errors::default();
     for report in &reports {
         let best = report.coefficients.iter().find(|c| Some(c.method) == report.recommended);
-        best.into_iter().for_each(|c| chosen.add(c, d));
+        if let Some(c) = best {
+            chosen.add(c, d);
+        }
     }
     claims.holds(
         SECTION,
