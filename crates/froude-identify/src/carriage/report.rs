@@ -7,7 +7,7 @@ use super::added_mass::{AddedMass, added_mass};
 use super::coefficient::{Coefficient, Method, Part, Point, Shape, coefficient, jackknife, pairs, slope, slope_of};
 use super::detectability::{Agreement, Detectability, agreement, predict};
 use super::error::DragError;
-use super::friction::{Cell, Friction, cells};
+use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
 use super::steady::{Rejected, still_windows};
 use super::{fsm, mbdp, mcd, record};
@@ -201,10 +201,25 @@ fn model_based(
     let without_drag: Vec<(Cluster, Vec<Cell>)> =
         clusters(frictional).into_iter().zip(frictional.iter().map(|r| cells(r, setup.steady))).collect();
     let with_drag: Vec<(u32, Vec<Cell>)> = wet.iter().map(|r| (r.pair, cells(r, setup.steady))).collect();
+    // A map is made where it is used: friction runs elsewhere would leave stretches of it that nobody passed.
+    let towed: Vec<f64> = with_drag.iter().flat_map(|c| &c.1).map(|c| c.position_m).collect();
+    let [low, high] = super::fsm::reach(&towed);
+    let is_near = |c: &&Cell| !is_mapped || (low - KNOT_SPACING_M..=high + KNOT_SPACING_M).contains(&c.position_m);
     let identify = |skip: Option<Cluster>| {
-        Friction::identify(without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1), is_mapped)
+        let cells = without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1);
+        Friction::identify(cells.filter(is_near), is_mapped)
     };
-    let friction = identify(None)?;
+    let Some(friction) = identify(None) else {
+        if !frictional.is_empty() {
+            let why = if is_mapped {
+                "the dry runs do not pass every stretch of the tow"
+            } else {
+                "no dry run has a steady window"
+            };
+            findings.push(Finding::new(Severity::Note, "no-friction", format!("{}: left out: {why}", method.name())));
+        }
+        return None;
+    };
     let model = setup.flexible.filter(|_| method == Method::MbdpFlexible);
     let point = |run: &DragRun<'_>| match model {
         Some(model) => mbdp::flexible_point(run, &friction, k, k / setup.ideal_force_per_volt_n, model, setup.steady),

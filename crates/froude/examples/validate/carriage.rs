@@ -19,7 +19,7 @@ const SECTION: &str = "Drag from a towing carriage: simulated campaigns of the p
 const PAPER: &str = "Drag from a towing carriage: what the paper prints (MCD, Table IV)";
 
 /// Standard uncertainty of the calibration, as a part; one draw a campaign.
-const CALIBRATED_TO: f64 = 0.005;
+pub const CALIBRATED_TO: f64 = 0.005;
 /// Seeds whose bars are those of the issue.
 const FULL_SEEDS: usize = 400;
 /// End of the friction sweeps that eq. 9 is identified from, m: near one end of the tank.
@@ -42,14 +42,14 @@ pub fn all(claims: &mut Claims, seeds: usize) {
 
 /// Errors of one method over the campaigns.
 #[derive(Default, Clone)]
-struct Errors {
+pub struct Errors {
     relative: Vec<f64>,
-    covered: Count,
+    pub covered: Count,
     half_width: f64,
 }
 
 impl Errors {
-    fn add(&mut self, c: &Coefficient, truth: f64) {
+    pub fn add(&mut self, c: &Coefficient, truth: f64) {
         self.relative.push(c.value / truth - 1.0);
         let holds = c.interval_95.is_some_and(|[low, high]| (low..=high).contains(&truth));
         self.covered.add(holds);
@@ -60,15 +60,15 @@ impl Errors {
         self.relative.len() as f64
     }
 
-    fn bias(&self) -> f64 {
+    pub fn bias(&self) -> f64 {
         self.relative.iter().sum::<f64>() / self.n()
     }
 
-    fn rms(&self) -> f64 {
+    pub fn rms(&self) -> f64 {
         (self.relative.iter().map(|e| e * e).sum::<f64>() / self.n()).sqrt()
     }
 
-    fn text(&self) -> String {
+    pub fn text(&self) -> String {
         format!(
             "bias {:+.2} %, rms {:.2} %, {} of {} covered, mean half-width {:.2} %",
             100.0 * self.bias(),
@@ -227,7 +227,7 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
 }
 
 /// 372 to 390 of 400; for other numbers three binomial standard deviations either side.
-fn band(trials: u64) -> (u64, u64) {
+pub fn band(trials: u64) -> (u64, u64) {
     if trials == FULL_SEEDS as u64 {
         return (372, 390);
     }
