@@ -13,7 +13,7 @@ use crate::sequence::{Arrival, Order, OrderCounts};
 static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
 
 /// Longest unencoded frame: kind, sequence number, body, CRC.
-pub const MAX_PLAIN: usize = 576;
+pub const MAX_PLAIN: usize = 640;
 /// Longest frame on the wire: COBS adds a byte per 254, the zero closes it.
 pub const MAX_WIRE: usize = cobs::max_encoding_length(MAX_PLAIN) + 1;
 /// Kind, sequence number, CRC, one COBS byte and the zero.

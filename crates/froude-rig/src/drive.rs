@@ -91,6 +91,17 @@ pub enum RigError {
     Config(froude_control::config::ConfigError),
 }
 
+/// A tick of the board on the host's clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HostClock {
+    /// When it was, s since 1970.
+    pub unix_s: f64,
+    /// How much faster the host's clock runs than the board's.
+    pub drift: f64,
+    /// Standard uncertainty of `unix_s` against the host's clock, s.
+    pub standard_uncertainty_s: f64,
+}
+
 /// Something that can be driven.
 pub trait Rig {
     /// One tick. Blocks until the board has sent it, or simulates it.
@@ -102,6 +113,11 @@ pub trait Rig {
 
     /// Samples per second: those of the controller's ticks that the line carries.
     fn rate_hz(&self) -> f64;
+
+    /// When a tick was on the host's clock; `None` where the two clocks are one, or before they have been compared.
+    fn host_clock(&self, _tick: u64) -> Option<HostClock> {
+        None
+    }
 
     /// Ticks of the controller from one sample to the next; more than one where the line is too slow for all.
     fn ticks_per_sample(&self) -> u64 {

@@ -178,6 +178,13 @@ fn a_board_is_greeted_configured_homed_and_moved_over_the_line() {
     let end = until(&mut rig, 30.0, |s| s.axes[0].phase == Phase::Holding);
     // Three counts of 2.5 µm: friction holds the axis within them, and the beginning of the counts is as good.
     assert!((end.axes[0].position_m - 0.5).abs() < 1e-5, "{end:?}");
+    // The last tick lies just before now on the host's clock, as well as the line's delay tells.
+    let now_s = || std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap().as_secs_f64();
+    let last = rig.tick(None).unwrap();
+    let clock = rig.host_clock(last.tick).unwrap();
+    assert!((clock.unix_s - now_s()).abs() < 1.0, "{clock:?} {}", now_s());
+    assert!(clock.standard_uncertainty_s > 0.0 && clock.standard_uncertainty_s.is_finite(), "{clock:?}");
+    println!("{clock:?}, off by {} s", clock.unix_s - now_s());
     // A refused request comes back as one.
     rig.tick(Some(Request::Move { axis: 0, profile: Move { target_m: 50.0, ..profile } })).unwrap();
     let refused = until(&mut rig, 20.0, |s| s.refusal.is_some());

@@ -261,7 +261,7 @@ pub struct AxisConstants {
 /// Board clock against host clock: host = `host_at_zero_s` + (1 + `drift`)·board.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ClockAlignment {
-    /// Host time at board time zero, s since the start of the run.
+    /// Host time at the record's time zero, s since the start of the campaign ([`RunMeta::start_unix_ns`]).
     pub host_at_zero_s: f64,
     /// Relative drift of the host clock against the board's, 1.
     pub drift: f64,

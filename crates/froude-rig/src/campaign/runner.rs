@@ -12,8 +12,8 @@ use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_records::RecordError;
 use froude_records::run::{
-    AxisConstants, AxisSample, BodyState, CarriageSample, EventKind, Layout, Packing, Recorder, RunMeta, RunStatus,
-    read_run_meta,
+    AxisConstants, AxisSample, BodyState, CarriageSample, ClockAlignment, EventKind, Layout, Packing, Recorder,
+    RunMeta, RunStatus, read_run_meta,
 };
 use indexmap::IndexMap;
 
@@ -308,6 +308,7 @@ impl Session<'_> {
         if let (Some(recorder), Err(error)) = (&mut self.recorder, &driven) {
             recorder.meta_mut().note = error.to_string();
         }
+        self.align_clock();
         let path = self.recorder.take().map(|r| r.finish(status)).transpose();
         driven?;
         Ok(path?.unwrap_or_default())
@@ -353,6 +354,18 @@ impl Session<'_> {
         // The longest way at this speed, and time for ramps and shaping.
         let limit_s = 10.0 / speed_m_s.max(1e-3) + 30.0;
         self.until("the move", limit_s, |s| s.axes[axis].phase == Phase::Holding)
+    }
+
+    /// Where the record's first tick lies on the host's clock.
+    fn align_clock(&mut self) {
+        let clock = self.tick.and_then(|tick| self.rig.host_clock(tick));
+        if let (Some(recorder), Some(clock)) = (&mut self.recorder, clock) {
+            recorder.meta_mut().clock = Some(ClockAlignment {
+                host_at_zero_s: clock.unix_s - 1e-9 * self.setting.start_unix_ns as f64,
+                drift: clock.drift,
+                standard_uncertainty_s: clock.standard_uncertainty_s,
+            });
+        }
     }
 
     /// Still, motion, still.

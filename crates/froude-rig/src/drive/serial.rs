@@ -7,27 +7,32 @@
 //! **Position.** Telemetry carries raw counts. Where they begin is learnt while the axis holds after homing: the mean of reference less
 //! counts over half a second, good to less than a count (2.5 µm).
 //!
+//! **Clock.** Ten times a second the board is asked for its time; where its ticks lie on the host's clock goes into every record, with the
+//! uncertainty of that ([`froude_link::clock`]).
+//!
 //! Not here: the force sensor, which has a box of its own; its log is joined by time afterwards.
 
 use std::collections::VecDeque;
 use std::io::{Read, Write};
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use froude_control::config::Config;
 use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::Request;
 use froude_control::status::{Phase, Refusal};
 use froude_control::tick::AXES;
-use froude_link::clock::Unwrapped;
+use froude_link::clock::{Aligner, Exchange, Unwrapped};
 use froude_link::message::{FromBoard, ToBoard};
 use froude_link::status::{BoardHello, Verdict};
 use froude_link::{FrameReader, FrameWriter, Telemetry, VERSION};
 
-use super::{AxisSample, Rig, RigError, Sample};
+use super::{AxisSample, HostClock, Rig, RigError, Sample};
 use crate::load::Load;
 
 /// A sign of life at least this often.
 const HEARTBEAT: Duration = Duration::from_millis(20);
+/// The board is asked for its time this often.
+const ASK_TIME: Duration = Duration::from_millis(100);
 /// A request that was not answered is repeated after this time.
 const REPEAT: Duration = Duration::from_millis(50);
 /// Without a valid frame for this long the board is given up.
@@ -71,6 +76,38 @@ pub struct SerialRig {
     refusal: Option<Refusal>,
     last_sent: Instant,
     last_heard: Instant,
+    clock: Clock,
+}
+
+/// Exchanges of time with the board.
+struct Clock {
+    /// When the host's stamps begin, on both of its clocks.
+    opened: Instant,
+    opened_unix_s: f64,
+    asked: Instant,
+    aligner: Aligner,
+    board: Unwrapped,
+    /// The last telemetry: its tick, and its time on the board's clock without wraps, µs.
+    latched: Option<(u64, u64)>,
+}
+
+impl Clock {
+    fn new() -> Self {
+        let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let now = Instant::now();
+        Self {
+            opened: now,
+            opened_unix_s: since_1970.as_secs_f64(),
+            asked: now,
+            aligner: Aligner::default(),
+            board: Unwrapped::default(),
+            latched: None,
+        }
+    }
+
+    fn host_us(&self) -> u64 {
+        self.opened.elapsed().as_micros() as u64
+    }
 }
 
 impl SerialRig {
@@ -110,6 +147,7 @@ impl SerialRig {
             refusal: None,
             last_sent: now,
             last_heard: now,
+            clock: Clock::new(),
         };
         rig.greet()?;
         rig.configure()?;
@@ -229,7 +267,18 @@ impl SerialRig {
                     };
                 }
             }
-            // Faults and phases are in the telemetry as well; health and time are asked for by nobody here.
+            FromBoard::TimeReply(reply) => {
+                let clock = &mut self.clock;
+                let board_received_us = clock.board.unwrap(reply.board_received_us);
+                let on_board = reply.board_sent_us.wrapping_sub(reply.board_received_us);
+                clock.aligner.add(Exchange {
+                    host_sent_us: reply.host_sent_us,
+                    board_received_us,
+                    board_sent_us: board_received_us + u64::from(on_board),
+                    host_received_us: clock.host_us(),
+                });
+            }
+            // Faults and phases are in the telemetry as well; health is asked for by nobody here.
             _ => {}
         }
         Ok(())
@@ -257,6 +306,10 @@ impl SerialRig {
             }
             if self.last_sent.elapsed() > HEARTBEAT {
                 self.send(&ToBoard::Heartbeat)?;
+            }
+            if self.clock.asked.elapsed() > ASK_TIME {
+                self.clock.asked = Instant::now();
+                self.send(&ToBoard::TimeRequest { host_sent_us: self.clock.host_us() })?;
             }
             self.listen()?;
         }
@@ -297,14 +350,9 @@ impl SerialRig {
                 is_homed: t.is_homed,
             };
         }
-        Sample {
-            tick: self.ticks.unwrap(telemetry.tick),
-            axes,
-            force_n: None,
-            fault: telemetry.fault,
-            refusal: self.refusal.take(),
-            truth: None,
-        }
+        let tick = self.ticks.unwrap(telemetry.tick);
+        self.clock.latched = Some((tick, self.clock.board.unwrap(telemetry.latched_us)));
+        Sample { tick, axes, force_n: None, fault: telemetry.fault, refusal: self.refusal.take(), truth: None }
     }
 }
 
@@ -322,6 +370,19 @@ impl Rig for SerialRig {
     }
 
     fn begin_run(&mut self, _: &Load, _: u64) {}
+
+    fn host_clock(&self, tick: u64) -> Option<HostClock> {
+        let alignment = self.clock.aligner.alignment()?;
+        let (last_tick, last_us) = self.clock.latched?;
+        let tick_us = u64::from(self.hello?.tick_us);
+        let board_us = last_us.wrapping_sub(last_tick.wrapping_sub(tick).wrapping_mul(tick_us));
+        let host_us = alignment.host_us as f64 + alignment.host_after_us(board_us);
+        Some(HostClock {
+            unix_s: self.clock.opened_unix_s + 1e-6 * host_us,
+            drift: 1.0 / (1.0 + alignment.drift) - 1.0,
+            standard_uncertainty_s: 1e-6 * alignment.host_after_std_us(board_us),
+        })
+    }
 
     fn version(&self) -> String {
         self.hello.map_or_else(|| "board".to_owned(), |h| format!("{:?}, protocol {VERSION}", h.board))
