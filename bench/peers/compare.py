@@ -25,6 +25,10 @@ CASES = [
     ("csv", "csv-polars", 4.0, "CSV to two components", "polars + numpy"),
     ("csv-cluster", "csv-polars", 4.0, "the same with cluster CR3", "polars + numpy, no CR3"),
     ("csv", "csv-pyarrow", None, "CSV to two components", "pyarrow + numpy"),
+    ("gaussian", "gaussian", 12.0, "Gaussian, 161 taps, 10^7", "scipy gaussian_filter1d"),
+    ("savitzky-golay", "savitzky-golay", 12.0, "Savitzky-Golay derivative, 41", "scipy savgol_filter"),
+    ("forward-backward", "forward-backward", 1.7, "forward-backward, order 4", "scipy sosfiltfilt"),
+    ("hour", "hour", None, "axis, an hour of 10 kHz x 8", "numpy + scipy in memory"),
     ("bootstrap", "bootstrap", 2.5, "bootstrap 10^4 of 1,000 x 10", "bincount x gemm, batched"),
 ]
 

@@ -89,6 +89,47 @@ def csv(path, reader):
     return np.concatenate([b[:, 0], b[:, 1]])
 
 
+def shown(y):
+    """The numbers of a filtered record that are compared: its ends and every 1009th."""
+    return np.concatenate([y[:50], y[:-51:-1], y[::1009]])
+
+
+def filtered(case, x):
+    from scipy import ndimage, signal
+    if case == "gaussian":
+        return lambda: shown(ndimage.gaussian_filter1d(x, 20.0))
+    if case == "savitzky-golay":
+        return lambda: shown(signal.savgol_filter(x, 41, 3, deriv=1, delta=1e-3))
+    sections = signal.butter(4, 10.0, fs=1000.0, output="sos")
+    return lambda: shown(signal.sosfiltfilt(sections, x))
+
+
+def hour(path, rate_hz=10_000.0, factor=10, trim_s=0.2, lag_s=1.0):
+    """Order 4 at 100 Hz, differences, parallel decimation, least squares, HAC by moving sums."""
+    import scipy.linalg as sl
+    from scipy import signal
+    rows = np.fromfile(path).reshape(-1, 8)
+    force = 6.0 * rows[:, 1]
+    y = signal.sosfiltfilt(signal.butter(4, 100.0, fs=rate_hz, output="sos"), rows[:, 0])
+    del rows
+    v = np.gradient(y, 1 / rate_hz)
+    a = np.gradient(v, 1 / rate_hz)
+    trim = round(trim_s * rate_hz / factor)
+    X = np.stack([signal.decimate(c, factor, ftype="fir")[trim:-trim] for c in (a, v, np.sign(v), np.ones(len(v)))], 1)
+    f = signal.decimate(force, factor, ftype="fir")[trim:-trim]
+    gram = sl.inv(X.T @ X)
+    b = sl.lstsq(X, f, lapack_driver="gelsy", check_finite=False)[0]
+    e = f - X @ b
+    n, p = X.shape
+    classical = np.sqrt(np.diag(gram) * (e @ e) / (n - p))
+    # Bartlett's triangle is a box folded with itself: moving sums of the scores, at any lag.
+    lag = round(lag_s * rate_hz / factor)
+    total = np.cumsum(np.pad(X * e[:, None], ((lag + 1, lag), (0, 0))), 0)
+    window = total[lag + 1:] - total[:-lag - 1]
+    middle = window.T @ window / (lag + 1) * n / (n - p)
+    return np.concatenate([b, classical, np.sqrt(np.diag(gram @ middle @ gram))])
+
+
 def main(case, folder):
     runs = 5
     if case.startswith("csv-"):
@@ -99,6 +140,11 @@ def main(case, folder):
         *x, y = raw(folder, 1000)
         X = regressors(*x)
         call, runs = (lambda: bootstrap(X, y)), 7
+    elif case in ("gaussian", "savitzky-golay", "forward-backward"):
+        call = filtered(case, np.fromfile(os.path.join(folder, "u.f64")))
+    elif case == "hour":
+        import scipy.signal  # noqa: F401
+        call, runs = (lambda: hour(os.path.join(folder, "hour.f64"))), 2
     elif case.startswith("features"):
         *x, y = raw(folder)
         call = lambda: gram(regressors(*x), y)  # noqa: E731

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Compare Froude with other programs on this machine: sh bench/peers/run.sh [options of compare.py]
 #
-# Needs Python 3.11 or later, cargo, taskset, 6 GB of memory, and 1.1 GB in $PEERS_DATA
+# Needs Python 3.11 or later, cargo, taskset, 6 GB of memory, and 3.4 GB in $PEERS_DATA
 # (default bench/peers/data). $PEERS_ROWS changes the size (default 1e7).
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
@@ -16,5 +16,8 @@ program=$target/release/peer-bench
 if [ "$(cat "$data/rows" 2>/dev/null)" != "$rows" ]; then
     "$program" make "$data" "$rows"
     echo "$rows" > "$data/rows"
+fi
+if [ ! -e "$data/hour.f64" ]; then
+    "$program" make-hour "$data" 3600
 fi
 exec "$here/.venv/bin/python" "$here/compare.py" "$program" "$data" "$@"

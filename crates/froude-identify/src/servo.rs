@@ -10,6 +10,8 @@
 //! | rigid, closed loop    | [`instrument`], [`output_error`] | instruments or residuals from the model in the known loop |
 //! | two masses and a chain | [`two_mass`]    | MCD eq. 2a, 2b from motor-side signals                                |
 //!
+//! A record of hours goes through [`long`] a chunk at a time.
+//!
 //! Every coefficient comes with the classical standard deviation, which needs white residuals, and beside it
 //! two that do not ([`interval`]). Residuals of a servo are never white: the interval of the report is that of the blocks.
 //!
@@ -27,6 +29,7 @@ pub mod held_out;
 pub mod instrument;
 pub mod interval;
 pub mod log;
+pub mod long;
 pub mod motor;
 pub mod output_error;
 pub mod printed;
@@ -40,6 +43,7 @@ pub use chain::Chain;
 pub use error::ServoError;
 pub use friction::Friction;
 pub use log::ServoLog;
+pub use long::{LongReport, LongServo};
 pub use motor::MotorSide;
 pub use report::{ServoCoefficient, ServoReport, identify_servo};
 pub use two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};

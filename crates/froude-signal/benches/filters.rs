@@ -1,4 +1,4 @@
-//! Filters over 10⁷ samples, the fast ones beside their definitions; scipy's side is `bench/peers/signals.py`.
+//! Filters over 10⁷ samples, the fast ones beside their definitions; scipy's side is in `bench/peers`.
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use divan::counter::ItemsCount;

@@ -87,7 +87,7 @@ impl LowPass {
     pub fn memory(&self) -> usize {
         let slowest = self.sections.iter().map(|s| if s.a[1] == 0.0 { s.a[0].abs() } else { s.a[1].sqrt() });
         let decay = slowest.fold(0.0, f64::max);
-        (2.0 * f64::EPSILON.ln() / decay.ln()).ceil() as usize + 3 * (self.order + 1)
+        ((2.0 * f64::EPSILON.ln() / decay.ln()).ceil() as usize).saturating_add(3 * (self.order + 1))
     }
 }
 

@@ -8,8 +8,8 @@
 //! Conventions of `scipy.ndimage.gaussian_filter1d` (its defaults `truncate=4`, `mode="reflect"`). The smoothing
 //! "by a Gaussian curve" of the carriage paper states neither width nor ends.
 
+use crate::convolve::{Parity, convolve};
 use crate::error::{SignalError, all_finite, in_range, positive};
-use crate::lanes::convolve;
 
 /// Standard deviations at which the weights are cut.
 const TRUNCATE: f64 = 4.0;
@@ -26,11 +26,7 @@ const WIDEST: f64 = 1e5;
 /// [`SignalError::NotPositive`] or [`SignalError::OutOfRange`] for the width; [`SignalError::NotFinite`].
 pub fn smooth(record: &[f64], sigma_samples: f64) -> Result<Vec<f64>, SignalError> {
     let weights = weights(sigma_samples)?;
-    all_finite(record)?;
-    if record.is_empty() {
-        return Ok(Vec::new());
-    }
-    Ok(convolve(&weights, record.len(), |i| mirrored(record, i), record))
+    convolve(&weights, Parity::Even, |i| mirrored(record, i), record)
 }
 
 /// As [`smooth`], written as its definition: the yardstick of the fast one.

@@ -28,12 +28,15 @@
 pub mod autocorrelation;
 pub mod blocks;
 pub mod butterworth;
+mod cascade;
+mod convolve;
 pub mod decimate;
 pub mod differences;
 mod error;
 pub mod gaussian;
 mod lanes;
 pub mod long_run;
+mod pages;
 pub mod savitzky_golay;
 pub mod spectrum;
 pub mod stream;

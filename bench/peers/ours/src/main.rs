@@ -2,14 +2,17 @@
 //!
 //! ```text
 //! peer-bench make DIR ROWS      write the problem that both sides solve
+//! peer-bench make-hour DIR S    write the long record of an axis, S seconds of it
 //! peer-bench CASE DIR THREADS   solve it, print one line of JSON
 //! ```
 //!
 //! Cases: `columns`, `columns-qr`, `rows`, `non-negative`, `bootstrap`, `csv`,
-//! `csv-cluster`. The problem and the peers are described in `bench/peers/README.md`.
+//! `csv-cluster`, `gaussian`, `savitzky-golay`, `forward-backward`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
 
+mod hour;
 mod make;
 mod meter;
+mod signals;
 
 use std::error::Error;
 use std::num::NonZeroUsize;
@@ -33,6 +36,9 @@ fn main() -> Outcome<()> {
     if case == "make" {
         return make::make(dir, number.parse::<f64>()? as usize);
     }
+    if case == "make-hour" {
+        return hour::make(dir, number.parse()?);
+    }
     let threads: NonZeroUsize = number.parse()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get()).build()?;
     let row = pool.install(|| match case.as_str() {
@@ -43,6 +49,8 @@ fn main() -> Outcome<()> {
         "bootstrap" => bootstrap(dir),
         "csv" => csv(dir, threads, false),
         "csv-cluster" => csv(dir, threads, true),
+        "gaussian" | "savitzky-golay" | "forward-backward" => signals::filter(dir, case),
+        "hour" => hour::identify(dir),
         other => Err(format!("there is no case {other}").into()),
     })?;
     println!("{}", row.json(case, threads.get()));

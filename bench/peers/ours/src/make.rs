@@ -17,12 +17,16 @@ const TRUE: [f64; 10] = [0.02, 1.2, 0.4, 2.2, 0.01, 0.6, 0.0, 1.5, 0.3, 0.05];
 const FORCE: [f64; 8] = [0.02, 1.2, 0.4, 2.2, 0.01, 0.6, 0.3, 1.5];
 
 /// A seeded stream of standard normal numbers (xorshift64*, Box and Muller).
-struct Normal {
+pub struct Normal {
     state: u64,
     spare: Option<f64>,
 }
 
 impl Normal {
+    pub fn seeded(seed: u64) -> Self {
+        Self { state: seed, spare: None }
+    }
+
     fn uniform(&mut self) -> f64 {
         self.state ^= self.state >> 12;
         self.state ^= self.state << 25;
@@ -31,7 +35,7 @@ impl Normal {
         ((random >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
         }
@@ -48,7 +52,7 @@ pub fn make(dir: &Path, rows: usize) -> Outcome<()> {
 }
 
 fn columns(dir: &Path, rows: usize) -> Outcome<()> {
-    let mut normal = Normal { state: 1, spare: None };
+    let mut normal = Normal::seeded(1);
     let mut files = Vec::new();
     for name in RAW {
         files.push(BufWriter::new(File::create(dir.join(name))?));
@@ -69,7 +73,7 @@ fn columns(dir: &Path, rows: usize) -> Outcome<()> {
 
 /// A force record at 1 kHz, six decimals: about 65 MB a million rows.
 fn record(path: &Path, rows: usize) -> Outcome<()> {
-    let mut normal = Normal { state: 2, spare: None };
+    let mut normal = Normal::seeded(2);
     let mut file = BufWriter::with_capacity(1 << 20, File::create(path)?);
     let mut line = String::new();
     writeln!(file, "t,fx,fy,vx,vy,theta,omega")?;

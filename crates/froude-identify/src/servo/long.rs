@@ -1,0 +1,528 @@
+//! A record of hours, a chunk at a time, in bounded memory.
+//!
+//! The same chain as [`Chain::rows`] and the same least squares, in one pass: filter, differences, regressors, parallel
+//! decimation, both ends dropped, orthogonal triangle. Coefficients equal those of the whole record to rounding.
+//!
+//! HAC needs no second pass either. Bartlett's triangle is a box folded with itself, so that
+//!
+//! ```text
+//! n (Γ₀ + Σ_k w_k (Γ_k + Γ_kᵀ)) = 1/(lag + 1) Σ_t B_t B_tᵀ,   B_t = Σ_{i = t − lag … t} x_i e_i
+//! ```
+//!
+//! and with `e = y − xᵀb` a window's score is `B_t = Σ x y − (Σ x xᵀ) b`: windows' sums of products are gathered while
+//! the record goes by, and `b` is put in at the end. A lag costs nothing, but must be known beforehand. So that the
+//! products do not lose the digits by which residuals are smaller than the force, `y` is taken less a fit of the
+//! record's beginning, and `b` likewise.
+//!
+//! Not here: blocks and the test of whiteness, which need all rows at once ([`crate::servo::interval`]).
+
+use std::collections::VecDeque;
+
+use froude_fit::faer::Mat;
+use froude_fit::stream::{Accumulator, Shape};
+use froude_signal::butterworth;
+use froude_signal::stream::{Decimator, Differences, Link, ZeroPhase};
+
+use crate::servo::chain::{Chain, Motion};
+use crate::servo::error::ServoError;
+use crate::servo::interval::diagonal_roots;
+use crate::servo::regression::{inverse_gram, solve};
+
+/// Samples taken in at a time, so that the memory does not grow with a chunk.
+const BITE: usize = 8192;
+
+/// Rows of the beginning that scores are taken from, at least.
+const BEGINNING: usize = 4096;
+
+/// What a long record says about an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LongReport {
+    /// Name and unit of each coefficient, in the order of the regression.
+    pub names: Vec<(String, &'static str)>,
+    /// Values.
+    pub coefficients: Vec<f64>,
+    /// Standard deviations if residuals were white.
+    pub classical: Vec<f64>,
+    /// Standard deviations by HAC.
+    pub hac: Vec<f64>,
+    /// Lag of HAC, s.
+    pub hac_lag_s: f64,
+    /// Standard deviation of the residuals, N.
+    pub sigma_n: f64,
+    /// Rows of the regression.
+    pub n_rows: usize,
+    /// Their rate, Hz.
+    pub rate_hz: f64,
+}
+
+/// An identification under way.
+///
+/// # Example
+///
+/// ```
+/// use froude_identify::servo::{Chain, Friction, LongServo};
+/// let mut servo = LongServo::new(&Chain::new(6.0, Friction::symmetric()), 1000.0)?;
+/// for second in 0..20 {
+///     let time_s: Vec<f64> = (0..1000).map(|i| f64::from(second) + 1e-3 * f64::from(i)).collect();
+///     let position_m: Vec<f64> = time_s.iter().map(|t| 0.2 * (1.3 * t).sin() + 0.1 * (3.1 * t).sin()).collect();
+///     let command_v: Vec<f64> = (time_s.iter())
+///         .map(|t| {
+///             let v = 0.26 * (1.3 * t).cos() + 0.31 * (3.1 * t).cos();
+///             let a = -0.338 * (1.3 * t).sin() - 0.961 * (3.1 * t).sin();
+///             (6.0 * a + 2.0 * v + 2.5 * v.signum()) / 6.0
+///         })
+///         .collect();
+///     servo.push(&position_m, &command_v, None)?;
+/// }
+/// let report = servo.finish()?;
+/// assert_eq!(report.names[0].0, "M");
+/// assert!((report.coefficients[0] - 6.0).abs() < 0.01);
+/// # Ok::<(), froude_identify::servo::ServoError>(())
+/// ```
+#[derive(Debug)]
+pub struct LongServo {
+    chain: Chain,
+    names: Vec<(String, &'static str)>,
+    rate_hz: f64,
+    trim: usize,
+    taken: usize,
+    filter: ZeroPhase,
+    first: Differences,
+    second: Differences,
+    /// Filtered and differentiated, not yet made into regressors; the three end at different samples.
+    motion: Motion,
+    /// Load on the guides of those samples.
+    load_n: Vec<f64>,
+    force: Decimator,
+    columns: Vec<Decimator>,
+    decimated: Decimated,
+    rows: Accumulator,
+    windows: Windows,
+}
+
+/// Decimated columns that wait for each other, and for the record's end to be far enough away.
+#[derive(Debug, Clone)]
+struct Decimated {
+    force_n: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+    /// Rows at the record's front that are still to be dropped.
+    in_front: usize,
+}
+
+impl LongServo {
+    /// Begins a record sampled at `rate_hz`.
+    ///
+    /// HAC's lag is the chain's `hac_lag_s`, or the length of its blocks where that is left open: the automatic lag needs
+    /// the residuals first.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError`]: a filter or a friction law that cannot be, a lag that is not a time.
+    pub fn new(chain: &Chain, rate_hz: f64) -> Result<Self, ServoError> {
+        let low_pass = butterworth::low_pass(chain.filter_order, chain.corner_hz, rate_hz)?;
+        let row_rate_hz = rate_hz / chain.decimation as f64;
+        let lag_s = chain.intervals.hac_lag_s.unwrap_or(chain.intervals.block_s);
+        if !(0.0..f64::INFINITY).contains(&lag_s) {
+            return Err(ServoError::Setting {
+                what: "lag of HAC (s)",
+                found: lag_s,
+                must: "it is a time, 0 or longer",
+            });
+        }
+        let none = Motion { position_m: Vec::new(), velocity_m_s: Vec::new(), acceleration_m_s2: Vec::new() };
+        let names: Vec<_> = (chain.regressors(&none, Some(&[]))?.into_iter()).map(|r| (r.name, r.unit)).collect();
+        let decimator = Decimator::new(chain.decimation)?;
+        let trim = (chain.trim_s * row_rate_hz).round() as usize;
+        Ok(Self {
+            rate_hz,
+            trim,
+            taken: 0,
+            filter: ZeroPhase::new(low_pass),
+            first: Differences::new(rate_hz.recip())?,
+            second: Differences::new(rate_hz.recip())?,
+            motion: none,
+            load_n: Vec::new(),
+            force: decimator.clone(),
+            columns: vec![decimator; names.len()],
+            decimated: Decimated { force_n: Vec::new(), columns: vec![Vec::new(); names.len()], in_front: trim },
+            rows: Accumulator::new(Shape { regressors: names.len(), responses: 1 }),
+            windows: Windows::new(names.len(), (lag_s * row_rate_hz).round() as usize),
+            chain: chain.clone(),
+            names,
+        })
+    }
+
+    /// Takes the next samples; the load on the guides is needed by friction over load only.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError::Length`], [`ServoError::Missing`], [`ServoError::Fit`] for a number that is none.
+    pub fn push(&mut self, position_m: &[f64], command_v: &[f64], load_n: Option<&[f64]>) -> Result<(), ServoError> {
+        let load_n = load_n.filter(|_| self.chain.friction.is_loaded);
+        let columns = [("command", Some(command_v)), ("load", load_n)];
+        for (column, values) in columns.into_iter().filter_map(|(c, v)| v.map(|v| (c, v))) {
+            if values.len() != position_m.len() {
+                return Err(ServoError::Length { column, found: values.len(), expected: position_m.len() });
+            }
+        }
+        for start in (0..position_m.len()).step_by(BITE) {
+            let bite = start..position_m.len().min(start + BITE);
+            self.taken += bite.len();
+            if let Some(load_n) = load_n {
+                self.load_n.extend_from_slice(&load_n[bite.clone()]);
+            }
+            let force_n: Vec<f64> = command_v[bite.clone()].iter().map(|u| self.chain.force_per_volt_n_v * u).collect();
+            self.force.push(&force_n, &mut self.decimated.force_n);
+            let position = self.motion.position_m.len();
+            self.filter.take(&position_m[bite], &mut self.motion.position_m);
+            self.differentiate(position);
+            self.regress(self.trim)?;
+        }
+        Ok(())
+    }
+
+    /// Differences of the filtered positions from `position` on.
+    fn differentiate(&mut self, position: usize) {
+        let velocity = self.motion.velocity_m_s.len();
+        self.first.take(&self.motion.position_m[position..], &mut self.motion.velocity_m_s);
+        self.second.take(&self.motion.velocity_m_s[velocity..], &mut self.motion.acceleration_m_s2);
+    }
+
+    /// Rows of what is complete; `kept` of them stay, in case the record ends here.
+    fn regress(&mut self, kept: usize) -> Result<(), ServoError> {
+        let Motion { position_m, velocity_m_s, acceleration_m_s2 } = &mut self.motion;
+        let n = acceleration_m_s2.len();
+        let part = |column: &mut Vec<f64>| column.drain(..n).collect::<Vec<f64>>();
+        let motion = Motion {
+            position_m: part(position_m),
+            velocity_m_s: part(velocity_m_s),
+            acceleration_m_s2: part(acceleration_m_s2),
+        };
+        let load_n = self.load_n.get(..n).filter(|_| self.chain.friction.is_loaded);
+        let regressors = self.chain.regressors(&motion, load_n)?;
+        self.load_n.drain(..n.min(self.load_n.len()));
+        let to = self.columns.iter_mut().zip(&mut self.decimated.columns);
+        for (regressor, (decimator, column)) in regressors.iter().zip(to) {
+            decimator.push(&regressor.values, column);
+        }
+        self.fit(kept)
+    }
+
+    /// Decimated rows into the fit.
+    fn fit(&mut self, kept: usize) -> Result<(), ServoError> {
+        let Decimated { force_n, columns, in_front } = &mut self.decimated;
+        let complete = columns.iter().map(Vec::len).fold(force_n.len(), usize::min);
+        let ready = complete.saturating_sub(kept);
+        let dropped = ready.min(*in_front);
+        *in_front -= dropped;
+        let regressors: Vec<&[f64]> = columns.iter().map(|c| &c[dropped..ready]).collect();
+        let response = &force_n[dropped..ready];
+        self.rows.push(&regressors, &[response])?;
+        self.windows.push(&regressors, response);
+        force_n.drain(..ready);
+        for column in columns {
+            column.drain(..ready);
+        }
+        Ok(())
+    }
+
+    /// Ends the record.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError::TooFewRows`], [`ServoError::Signal`] for a record shorter than the filter, [`ServoError::Fit`] where
+    /// it does not determine the coefficients.
+    pub fn finish(mut self) -> Result<LongReport, ServoError> {
+        let total = self.taken.div_ceil(self.chain.decimation);
+        let (rows, needed) = (total.saturating_sub(2 * self.trim), self.names.len() + 2);
+        if rows < needed {
+            return Err(ServoError::TooFewRows { rows, needed });
+        }
+        let position = self.motion.position_m.len();
+        self.filter.clone().finish(&mut self.motion.position_m)?;
+        self.differentiate(position);
+        let velocity = self.motion.velocity_m_s.len();
+        self.first.clone().finish(&mut self.motion.velocity_m_s)?;
+        self.second.take(&self.motion.velocity_m_s[velocity..], &mut self.motion.acceleration_m_s2);
+        self.second.clone().finish(&mut self.motion.acceleration_m_s2)?;
+        self.regress(self.trim)?;
+        self.force.clone().finish(&mut self.decimated.force_n);
+        for (decimator, column) in self.columns.iter().zip(&mut self.decimated.columns) {
+            decimator.clone().finish(column);
+        }
+        self.fit(self.trim)?;
+
+        let solution = self.rows.finish().solve(0)?;
+        let p = self.names.len();
+        let middle = self.windows.finish(&solution.coefficients);
+        let dof = rows as f64 / (rows - p) as f64;
+        let middle = Mat::from_fn(p, p, |i, j| dof * middle[i * p + j]);
+        let inverse_gram = inverse_gram(&solution);
+        let rate_hz = self.rate_hz / self.chain.decimation as f64;
+        Ok(LongReport {
+            hac: diagonal_roots(&(&inverse_gram * middle * &inverse_gram)),
+            hac_lag_s: self.windows.lag as f64 / rate_hz,
+            names: self.names,
+            coefficients: solution.coefficients,
+            classical: solution.standard,
+            sigma_n: solution.sigma,
+            n_rows: rows,
+            rate_hz,
+        })
+    }
+}
+
+/// Products of the sums over moving windows of `lag + 1` rows: what the scores' long-run covariance needs, for any
+/// coefficients.
+#[derive(Debug, Clone)]
+struct Windows {
+    p: usize,
+    lag: usize,
+    /// Products of a row, `x e` and then the upper triangle of `x xᵀ`.
+    width: usize,
+    /// Coefficients of the beginning, and its rows until there are enough of them.
+    reference: Option<Vec<f64>>,
+    beginning: Vec<Vec<f64>>,
+    /// `Σ_t W_t W_tᵀ` of the windows' sums `W`, upper triangle by rows.
+    squares: Vec<f64>,
+    /// Sums over the rows of the block of `lag + 1` before this one, from each row to the block's end.
+    behind: VecDeque<f64>,
+    /// Rows of this block.
+    block: Vec<f64>,
+    /// Sum over this block so far.
+    sum: Vec<f64>,
+}
+
+impl Windows {
+    fn new(p: usize, lag: usize) -> Self {
+        let width = p + p * (p + 1) / 2;
+        Self {
+            p,
+            lag,
+            width,
+            reference: None,
+            beginning: vec![Vec::new(); p + 1],
+            squares: vec![0.0; width * (width + 1) / 2],
+            behind: VecDeque::new(),
+            block: Vec::new(),
+            sum: vec![0.0; width],
+        }
+    }
+
+    fn push(&mut self, columns: &[&[f64]], response: &[f64]) {
+        if self.reference.is_some() {
+            self.products(columns, response);
+            return;
+        }
+        for (held, new) in self.beginning.iter_mut().zip(columns.iter().chain([&response])) {
+            held.extend_from_slice(new);
+        }
+        if self.beginning[self.p].len() >= BEGINNING.max(4 * self.lag) {
+            self.begin();
+        }
+    }
+
+    /// Fits the beginning and takes its rows in. One that determines nothing yet is no reference: zeros are.
+    fn begin(&mut self) {
+        let beginning = std::mem::take(&mut self.beginning);
+        let (columns, response) = beginning.split_at(self.p);
+        let fit = solve(columns, &response[0]).map_or_else(|_| vec![0.0; self.p], |s| s.coefficients);
+        self.reference = Some(fit);
+        let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        self.products(&columns, &response[0]);
+    }
+
+    fn products(&mut self, columns: &[&[f64]], response: &[f64]) {
+        let reference = self.reference.take().unwrap_or_default();
+        let mut row = Vec::with_capacity(self.width);
+        for (i, y) in response.iter().enumerate() {
+            let e = columns.iter().zip(&reference).fold(*y, |e, (x, b)| e - x[i] * b);
+            row.clear();
+            row.extend(columns.iter().map(|x| x[i] * e));
+            for a in 0..self.p {
+                row.extend((a..self.p).map(|b| columns[a][i] * columns[b][i]));
+            }
+            self.row(&row);
+        }
+        self.reference = Some(reference);
+    }
+
+    /// A window ends with this row: the rest of the block before, and this block so far. Nothing is ever taken off a
+    /// sum, so that rounding does not gather.
+    fn row(&mut self, row: &[f64]) {
+        for (sum, x) in self.sum.iter_mut().zip(row) {
+            *sum += x;
+        }
+        self.block.extend_from_slice(row);
+        self.behind.drain(..self.width.min(self.behind.len()));
+        let mut window = self.sum.clone();
+        for (w, x) in window.iter_mut().zip(&self.behind) {
+            *w += x;
+        }
+        let mut squares = self.squares.iter_mut();
+        for (i, a) in window.iter().enumerate() {
+            for (b, square) in window[i..].iter().zip(squares.by_ref()) {
+                *square += a * b;
+            }
+        }
+        if self.block.len() == (self.lag + 1) * self.width {
+            for at in (0..self.block.len() - self.width).rev() {
+                self.block[at] += self.block[at + self.width];
+            }
+            self.behind = std::mem::take(&mut self.block).into();
+            self.sum.fill(0.0);
+        }
+    }
+
+    /// `n (Γ₀ + Σ w_k (Γ_k + Γ_kᵀ))` of the scores for these coefficients, `p × p`, row-major.
+    fn finish(&mut self, coefficients: &[f64]) -> Vec<f64> {
+        if self.reference.is_none() {
+            self.begin();
+        }
+        let reference = self.reference.iter().flatten();
+        let coefficients: Vec<f64> = coefficients.iter().zip(reference).map(|(b, r)| b - r).collect();
+        // Windows that the record's end cuts short.
+        let nothing = vec![0.0; self.width];
+        for _ in 0..self.lag {
+            self.row(&nothing);
+        }
+        // Score of a window = map · W.
+        let (p, width) = (self.p, self.width);
+        let mut map = vec![0.0; p * width];
+        let mut at = p;
+        for a in 0..p {
+            map[a * width + a] = 1.0;
+            for b in a..p {
+                map[a * width + at] -= coefficients[b];
+                if a != b {
+                    map[b * width + at] -= coefficients[a];
+                }
+                at += 1;
+            }
+        }
+        let square = |i: usize, j: usize| {
+            let (i, j) = (i.min(j), i.max(j));
+            self.squares[i * (2 * width - i + 1) / 2 + j - i]
+        };
+        let mut out = vec![0.0; p * p];
+        for (k, out) in out.iter_mut().enumerate() {
+            let (a, b) = (&map[k / p * width..][..width], &map[k % p * width..][..width]);
+            for i in 0..width {
+                let row: f64 = (0..width).map(|j| square(i, j) * b[j]).sum();
+                *out += a[i] * row / (self.lag + 1) as f64;
+            }
+        }
+        out
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::servo::friction::Friction;
+    use crate::servo::interval::hac;
+    use crate::servo::log::ServoLog;
+    use crate::servo::regression::least_squares;
+    use proptest::prelude::*;
+
+    /// Two tones that reverse every few seconds, a command with friction, a ripple nobody records; 60 s at 1 kHz.
+    fn record(load_n: bool) -> ServoLog {
+        let time_s: Vec<f64> = (0..60_000).map(|i| 1e-3 * f64::from(i)).collect();
+        let position_m = time_s.iter().map(|t| 0.2 * (1.3 * t).sin() + 0.1 * (3.1 * t).sin()).collect();
+        let command_v = (time_s.iter())
+            .map(|t| {
+                let v = 0.26 * (1.3 * t).cos() + 0.31 * (3.1 * t).cos();
+                let a = -0.338 * (1.3 * t).sin() - 0.961 * (3.1 * t).sin();
+                (6.0 * a + 2.0 * v + 2.5 * v.signum() + 0.3 + 0.1 * (17.0 * t).sin()) / 6.0
+            })
+            .collect();
+        let load_n = load_n.then(|| time_s.iter().map(|t| 20.0 + (0.05 * t).sin()).collect());
+        ServoLog { time_s, position_m, command_v, load_n, ..ServoLog::default() }
+    }
+
+    /// Both sides round alike but in another order: some 6000 roundings times a condition of some 100 are 1.3e-10.
+    const TOLERANCE: f64 = 1e-9;
+
+    #[track_caller]
+    fn same(found: &[f64], expected: &[f64]) {
+        assert_eq!(found.len(), expected.len());
+        for (a, b) in found.iter().zip(expected) {
+            assert!((a - b).abs() <= TOLERANCE * b.abs(), "{a} {b}");
+        }
+    }
+
+    fn compare(log: &ServoLog, chain: &Chain, cut: usize) {
+        let rows = chain.rows(log).unwrap();
+        let whole = least_squares(&rows).unwrap();
+        let residuals = rows.residuals_n(&whole.coefficients);
+        let lag_s = chain.intervals.hac_lag_s;
+        let (expected, lag_s) = hac(&rows.columns, &residuals, &inverse_gram(&whole), rows.rate_hz, lag_s);
+
+        let mut servo = LongServo::new(chain, 1000.0).unwrap();
+        for start in (0..log.time_s.len()).step_by(cut) {
+            let part = log.part(start..log.time_s.len().min(start + cut));
+            servo.push(&part.position_m, &part.command_v, part.load_n.as_deref()).unwrap();
+        }
+        let report = servo.finish().unwrap();
+        assert_eq!(report.n_rows, rows.force_n.len());
+        assert_eq!(report.names, rows.names);
+        assert!((report.hac_lag_s - lag_s).abs() < 1e-9);
+        same(&report.coefficients, &whole.coefficients);
+        same(&report.classical, &whole.standard);
+        same(&report.hac, &expected);
+    }
+
+    #[test]
+    fn however_it_is_cut_a_record_gives_what_it_gives_in_memory() {
+        let mut chain = Chain::new(6.0, Friction::symmetric());
+        chain.intervals.hac_lag_s = Some(0.77);
+        let log = record(false);
+        for cut in [997, 10_000, 60_000] {
+            compare(&log, &chain, cut);
+        }
+    }
+
+    #[test]
+    fn every_law_of_friction_and_a_lag_of_none() {
+        let log = record(true);
+        for friction in [
+            Friction::asymmetric(),
+            Friction { knots_m: vec![-0.2, 0.0, 0.2], ..Friction::default() },
+            Friction { is_loaded: true, stribeck_speed_m_s: Some(0.05), ..Friction::default() },
+        ] {
+            let mut chain = Chain::new(6.0, friction);
+            chain.intervals.hac_lag_s = Some(0.0);
+            compare(&log, &chain, 7001);
+        }
+    }
+
+    #[test]
+    fn a_record_of_a_moment_is_refused_with_both_numbers() {
+        let mut servo = LongServo::new(&Chain::new(6.0, Friction::symmetric()), 1000.0).unwrap();
+        servo.push(&[0.0; 300], &[0.0; 300], None).unwrap();
+        let error = servo.finish().unwrap_err();
+        assert_eq!(error, ServoError::TooFewRows { rows: 0, needed: 6 });
+    }
+
+    proptest! {
+        /// Windows of products are the sum over lags, also where the lag is longer than the record.
+        #[test]
+        fn windows_are_the_sum_over_lags(
+            rows in prop::collection::vec(prop::array::uniform3(-1.0..1.0_f64), 1..60), lag in 0_usize..80,
+        ) {
+            let column = |k: usize| rows.iter().map(|r| r[k]).collect::<Vec<f64>>();
+            let (x, y) = ([column(0), column(1)], column(2));
+            let coefficients = [0.3, -0.7];
+            let mut windows = Windows::new(2, lag);
+            windows.push(&[&x[0], &x[1]], &y);
+            let found = windows.finish(&coefficients);
+            let e: Vec<f64> = (0..y.len()).map(|i| y[i] - coefficients[0] * x[0][i] - coefficients[1] * x[1][i]).collect();
+            let scores: Vec<Vec<f64>> = x.iter().map(|x| x.iter().zip(&e).map(|(x, e)| x * e).collect()).collect();
+            let expected = froude_signal::long_run::covariance_of_sum(&[&scores[0], &scores[1]], lag);
+            for (a, b) in found.iter().zip(&expected) {
+                // Some 60² products of numbers of the order of one.
+                prop_assert!((a - b).abs() < 1e-12, "{} {}", a, b);
+            }
+        }
+    }
+}
