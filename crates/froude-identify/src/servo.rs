@@ -19,6 +19,7 @@
 //! Not here: drag of the body (sensor, current difference and model based), files.
 
 pub mod chain;
+mod cluster;
 mod error;
 pub mod flexible;
 pub mod friction;
@@ -42,4 +43,4 @@ pub use friction::Friction;
 pub use log::ServoLog;
 pub use motor::MotorSide;
 pub use report::{ServoCoefficient, ServoReport, identify_servo};
-pub use two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
+pub use two_mass::{FlexibleOptions, FlexibleReport, Gear, identify_flexible};
