@@ -13,6 +13,8 @@ mod flexible;
 mod kvlcc2;
 mod rm2;
 mod snake;
+mod sweeps;
+mod two_mass_rig;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -39,7 +41,9 @@ fn main() -> ExitCode {
         snake::recommendation(claims, &root, if full { 2_000 } else { 40 })?;
         rm2::all(claims, &root)?;
         emps::all(claims, &root)?;
-        flexible::coverage(claims, if full { 400 } else { 100 })?;
+        flexible::coverage(claims, if full { 400 } else { 40 })?;
+        two_mass_rig::coverage(claims, if full { 100 } else { 20 })?;
+        sweeps::coverage(claims, if full { 400 } else { 40 })?;
         kvlcc2::hmri(claims, &shared)?;
         kvlcc2::fhr(claims, &shared)?;
         carriage::all(claims, if full { 400 } else { 60 });
