@@ -37,6 +37,7 @@ pub(crate) struct Clustered {
     pub covariance: Mat<f64>,
     root: Mat<f64>,
     parts: Vec<Part>,
+    how: Enlarged,
 }
 
 /// One cluster in the coordinates of `Lᵀ`.
@@ -44,6 +45,8 @@ pub(crate) struct Clustered {
 struct Part {
     gram: Mat<f64>,
     enlarged: Mat<f64>,
+    /// Sum of its rows.
+    sum: Mat<f64>,
 }
 
 impl Clustered {
@@ -83,32 +86,39 @@ impl Clustered {
             let score =
                 Mat::from_fn(p, 1, |i, _| product(&columns[i][range.clone()], &residuals[range.clone()]) / size[i]);
             moved.push(&root * (&enlarged * (root.transpose() * score)));
-            parts.push(Part { gram, enlarged });
+            let sum = Mat::from_fn(p, 1, |i, _| columns[i][range.clone()].iter().sum::<f64>() / size[i]);
+            parts.push(Part { gram, enlarged, sum: root.transpose() * sum });
         }
         let covariance =
             Mat::from_fn(p, p, |i, j| moved.iter().map(|m| m[(i, 0)] * m[(j, 0)]).sum::<f64>() / (size[i] * size[j]));
         let root = Mat::from_fn(p, p, |i, j| root[(i, j)] / size[i]);
-        Ok(Self { covariance, root, parts })
+        Ok(Self { covariance, root, parts, how })
     }
 
-    /// Degrees of freedom of the variance of `Σ gradient · coefficient`.
+    /// Degrees of freedom of the variance of `Σ gradient · coefficient`, for errors as [`Enlarged`] takes them.
     pub fn dof(&self, gradient: &[f64]) -> f64 {
         let p = gradient.len();
         let along = self.root.transpose() * Mat::from_fn(p, 1, |i, _| gradient[i]);
         let a: Vec<Mat<f64>> = self.parts.iter().map(|q| &q.enlarged * &along).collect();
         let seen: Vec<Mat<f64>> = self.parts.iter().zip(&a).map(|(q, a)| &q.gram * a).collect();
         let dot = |x: &Mat<f64>, y: &Mat<f64>| (0..p).map(|i| x[(i, 0)] * y[(i, 0)]).sum::<f64>();
-        let (mut trace, mut squares) = (0.0, 0.0);
-        for i in 0..a.len() {
-            for j in 0..a.len() {
+        let n = a.len();
+        let entry: Box<dyn Fn(usize, usize) -> f64> = match self.how {
+            Enlarged::Average => Box::new(|i, j| {
                 let own = if i == j { dot(&a[i], &seen[i]) } else { 0.0 };
-                let entry = own - dot(&seen[i], &seen[j]);
-                squares += entry * entry;
-                if i == j {
-                    trace += entry;
-                }
+                own - dot(&seen[i], &seen[j])
+            }),
+            Enlarged::Jackknife => {
+                // What an error common to the rows of cluster k does to the term of cluster i.
+                let felt = Mat::from_fn(n, n, |k, i| {
+                    let own = if i == k { dot(&self.parts[i].sum, &a[i]) } else { 0.0 };
+                    own - dot(&self.parts[k].sum, &seen[i])
+                });
+                Box::new(move |i, j| (0..n).map(|k| felt[(k, i)] * felt[(k, j)]).sum())
             }
-        }
+        };
+        let trace: f64 = (0..n).map(|i| entry(i, i)).sum();
+        let squares: f64 = (0..n).map(|i| (0..n).map(|j| entry(i, j).powi(2)).sum::<f64>()).sum();
         trace * trace / squares
     }
 }
