@@ -185,6 +185,15 @@ fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
     }
     let mut findings = told(&models, runs.findings.clone());
     findings.extend(varies(&models));
+    if !models.is_empty() {
+        findings.push(Finding::new(
+            Severity::Note,
+            "servo",
+            "M and J_eff of runs at constant speed rest on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
+             may be off by a per cent, which their intervals do not hold; take the masses from the pulses"
+                .to_owned(),
+        ));
+    }
     let flexible = match runs.logs.iter().find(|l| l.meta.kind == RunKind::Excitation) {
         Some(log) => match identify_flexible(&servo_log(log)?, &flexible_options(motor, constants)) {
             Ok(report) => Some(report),
