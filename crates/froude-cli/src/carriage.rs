@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use froude::Error;
 use froude::carriage::drag::{DragJob, drag, methods_table, setup_of, summary};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::carriage::servo::{ServoJob, coefficient_table, effective, identify, repeatability_table};
+use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
 use froude::carriage::tune::{candidates_table, find_resonance, modes_table, resonance_sentences, tune};
 use froude::carriage::{calibrate, runs};
 use froude::identify::carriage::Uncertain;
@@ -290,7 +290,7 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
     }
     if let Some(f) = &outcome.flexible {
         say!("\nTwo masses, from the motor's side");
-        print::text_table(&coefficient_table(String::new(), &f.coefficients));
+        print::text_table(&flexible_table(f));
         for s in &f.splits {
             let told = if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };
             say!("  {}: {told}", s.name);
@@ -308,14 +308,14 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
 fn drag_verb(runs: Vec<PathBuf>, campaign: Option<PathBuf>, out: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
     let bar = crate::spinner();
     bar.set_message("reducing the runs");
-    let job = DragJob { runs, campaign: campaign.clone(), out, flexible: None, date: Some(crate::today()) };
+    let job = DragJob { runs, campaign: campaign.clone(), out, date: Some(crate::today()) };
     let outcome = drag(&job)?;
     bar.finish_and_clear();
     if is_json {
         return print::json(&outcome.file);
     }
     print::text_table(&methods_table(&outcome.report));
-    let mut setup = setup_of(None, None, None);
+    let mut setup = setup_of(None, None);
     setup.calibration = outcome.calibration.as_ref().map(|c| c.force_per_volt);
     say!("");
     for sentence in summary(&outcome.report, &setup) {

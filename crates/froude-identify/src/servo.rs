@@ -21,6 +21,7 @@
 //! Not here: drag of the body (sensor, current difference and model based), files.
 
 pub mod chain;
+mod cluster;
 mod error;
 pub mod flexible;
 pub mod friction;
@@ -46,4 +47,4 @@ pub use log::ServoLog;
 pub use long::{LongReport, LongServo};
 pub use motor::MotorSide;
 pub use report::{ServoCoefficient, ServoReport, identify_servo};
-pub use two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
+pub use two_mass::{FlexibleOptions, FlexibleReport, Gear, identify_flexible};

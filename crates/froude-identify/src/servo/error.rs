@@ -67,6 +67,17 @@ pub enum ServoError {
         time_s: f64,
     },
 
+    /// A run, or a stretch of a record, that decides something alone: nothing tells its error.
+    #[error("run or stretch {} alone decides a coefficient, so that its scatter cannot be told; record more like it", cluster + 1)]
+    Alone {
+        /// Which, from 0.
+        cluster: usize,
+    },
+
+    /// Columns of the fit that are combinations of each other.
+    #[error("the record does not tell the coefficients apart; excite more, or fit fewer")]
+    Dependent,
+
     /// A filter refused.
     #[error(transparent)]
     Signal(#[from] SignalError),

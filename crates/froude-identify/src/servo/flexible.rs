@@ -6,10 +6,19 @@
 //! regularised sign. A step in which a mass stops, breaks away or turns is taken again in 32 pieces: only there does
 //! the instant of a change matter.
 //!
+//! **Gear.** The chain's force F loads the motor by F/η while the motor drives (F·ṗ > 0) and by η_b F while it is driven. That is a mean
+//! load ½(1/η + η_b) F, which is linear, and a friction ½(1/η − η_b)|F|, which adds to the motor's own and locks it at rest. F and the drag
+//! of the load, D ẏ|ẏ|, are those of mid-step (second order).
+//!
+//! **Observer.** [`Stepper::innovations`] corrects the state at every sample by what the encoder says, with the stationary gain of a Kalman
+//! filter of the sliding axis whose unrecorded forces are white. What is left is what the past does not predict: a force that
+//! nobody recorded acts once, where a free simulation carries it along for seconds.
+//!
 //! # Source
 //!
 //! Moreau (1988), *Unilateral contact and dry friction in finite freedom dynamics*, CISM 302 (time stepping of friction impulses);
-//! Golub & Van Loan (2013), *Matrix Computations*, 9.3 (exponential by scaling and squaring).
+//! Golub & Van Loan (2013), *Matrix Computations*, 9.3 (exponential by scaling and squaring); Anderson & Moore (1979), *Optimal
+//! Filtering*, 4.4 (the stationary gain). The gear's law is that of the carriage's twin.
 
 use std::f64::consts::TAU;
 
@@ -37,11 +46,36 @@ pub struct TwoMass {
     pub motor_coulomb_n: f64,
     /// `C`, N.
     pub load_coulomb_n: f64,
-    /// Force per volt, N/V.
+    /// Force per volt, N/V, without the gear's losses.
     pub force_per_volt_n_v: f64,
+    /// η: the motor drives the chain. 1 without a gear.
+    pub efficiency_forward: f64,
+    /// η_b: the chain drives the motor. 1 without a gear.
+    pub efficiency_backward: f64,
+    /// Drag of the load over ẏ|ẏ|, N s²/m².
+    pub load_drag_n_s2_m2: f64,
+    /// From the command to the force, s.
+    pub delay_s: f64,
 }
 
 impl TwoMass {
+    /// No force but the motor's, no mass: for `..TwoMass::BARE` where gear, drag and delay play no part.
+    pub const BARE: Self = Self {
+        motor_mass_kg: 0.0,
+        load_mass_kg: 0.0,
+        stiffness_n_m: 0.0,
+        damping_n_s_m: 0.0,
+        motor_viscous_n_s_m: 0.0,
+        load_viscous_n_s_m: 0.0,
+        motor_coulomb_n: 0.0,
+        load_coulomb_n: 0.0,
+        force_per_volt_n_v: 0.0,
+        efficiency_forward: 1.0,
+        efficiency_backward: 1.0,
+        load_drag_n_s2_m2: 0.0,
+        delay_s: 0.0,
+    };
+
     /// Frequency at which the load swings against a held motor, `√(K/M)/2π`, Hz.
     #[must_use]
     pub fn antiresonance_hz(&self) -> f64 {
@@ -57,6 +91,10 @@ impl TwoMass {
 
 /// Motor position, motor speed, load position, load speed.
 const STATES: usize = 4;
+
+/// Most steps of the filter's covariance, and the part by which a settled gain still moves in one.
+const GAIN_STEPS: usize = 20_000;
+const GAIN_TOLERANCE: f64 = 1e-7;
 
 /// Pieces of a step in which something stops, breaks away or turns.
 const PIECES: usize = 32;
@@ -74,12 +112,32 @@ struct Linear {
 pub struct Stepper {
     step: Linear,
     piece: Linear,
-    /// Largest friction, N.
+    /// Largest Coulomb friction, N.
     limit_n: [f64; 2],
+    /// ½(1/η − η_b).
+    gear_loss: f64,
+    stiffness_n_m: f64,
+    damping_n_s_m: f64,
+    load_drag_n_s2_m2: f64,
     force_per_volt_n_v: f64,
+    /// Delay in samples: whole ones, and the rest.
+    delay: (usize, f64),
     /// Steps between two commands.
     steps: usize,
     sample_s: f64,
+}
+
+/// Where the masses are, and what holds them.
+#[derive(Debug, Clone, Copy)]
+struct Moment {
+    state: [f64; STATES],
+    friction_n: [f64; 2],
+    /// Which way each friction stands at its limit; 0 within it.
+    side: [i8; 2],
+}
+
+impl Moment {
+    const AT_REST: Self = Self { state: [0.0; STATES], friction_n: [0.0; 2], side: [0; 2] };
 }
 
 impl Stepper {
@@ -87,7 +145,8 @@ impl Stepper {
     ///
     /// # Errors
     ///
-    /// [`ServoError::Setting`] for a mass or stiffness that is not positive, or Coulomb friction that drives.
+    /// [`ServoError::Setting`] for a mass or stiffness that is not positive, Coulomb friction that drives, a gear that gives
+    /// power, or a negative delay.
     pub fn new(axis: &TwoMass, sample_s: f64, longest_step_s: f64) -> Result<Self, ServoError> {
         let TwoMass { motor_mass_kg: m, load_mass_kg: load, stiffness_n_m: k, damping_n_s_m: d, .. } = *axis;
         let limit_n = [axis.motor_coulomb_n, axis.load_coulomb_n];
@@ -98,12 +157,23 @@ impl Stepper {
             let must = "masses and stiffness must be positive, Coulomb friction not negative";
             return Err(ServoError::Setting { what: "least of masses, stiffness and friction", found, must });
         }
+        let (drive, driven) = (axis.efficiency_forward.recip(), axis.efficiency_backward);
+        let is_gear = axis.efficiency_forward > 0.0 && drive >= driven && driven >= 0.0;
+        if !is_gear {
+            let must = "it must be positive, and with the backward one take power, not give it";
+            return Err(ServoError::Setting { what: "efficiency of the gear", found: axis.efficiency_forward, must });
+        }
+        if axis.delay_s.is_nan() || axis.delay_s < 0.0 {
+            let must = "the force cannot come before the command";
+            return Err(ServoError::Setting { what: "delay (s)", found: axis.delay_s, must });
+        }
         let steps = (sample_s / longest_step_s - 1e-9).ceil().max(1.0);
         let (b_m, b) = (axis.motor_viscous_n_s_m, axis.load_viscous_n_s_m);
+        let mean = 0.5 * (drive + driven);
         // d/dt [p, ṗ, y, ẏ, F_motor, F_load], forces constant.
         let generator = [
             [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-            [-k / m, -(d + b_m) / m, k / m, d / m, 1.0 / m, 0.0],
+            [-mean * k / m, -(mean * d + b_m) / m, mean * k / m, mean * d / m, 1.0 / m, 0.0],
             [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
             [k / load, d / load, -k / load, -(d + b) / load, 0.0, 1.0 / load],
             [0.0; 6],
@@ -116,11 +186,17 @@ impl Stepper {
                 response: std::array::from_fn(|f| std::array::from_fn(|i| whole[i][STATES + f])),
             }
         };
+        let late = axis.delay_s / sample_s;
         Ok(Self {
             step: over(sample_s / steps),
             piece: over(sample_s / steps / PIECES as f64),
             limit_n,
+            gear_loss: 0.5 * (drive - driven),
+            stiffness_n_m: k,
+            damping_n_s_m: d,
+            load_drag_n_s2_m2: axis.load_drag_n_s2_m2,
             force_per_volt_n_v: axis.force_per_volt_n_v,
+            delay: (late as usize, late.fract()),
             steps: steps as usize,
             sample_s,
         })
@@ -133,60 +209,159 @@ impl Stepper {
     /// [`ServoError::RanAway`].
     pub fn run(&self, command_v: &[f64], start_m: f64) -> Result<Vec<f64>, ServoError> {
         // Positions from the start: the numbers stay small.
-        let mut state = [0.0_f64; STATES];
-        let mut friction_n = [0.0_f64; 2];
+        let mut moment = Moment::AT_REST;
         let mut out = Vec::with_capacity(command_v.len());
-        for (k, command) in command_v.iter().enumerate() {
-            if state[0].is_nan() || state[0].abs() > RUN_AWAY_M {
-                return Err(ServoError::RanAway { time_s: k as f64 * self.sample_s });
-            }
-            out.push(start_m + state[0]);
-            let force_n = self.force_per_volt_n_v * command;
-            for _ in 0..self.steps {
-                let (next, friction) = self.after(&self.step, &state, friction_n, force_n);
-                if self.side(friction) == self.side(friction_n) {
-                    (state, friction_n) = (next, friction);
-                    continue;
-                }
-                for _ in 0..PIECES {
-                    (state, friction_n) = self.after(&self.piece, &state, friction_n, force_n);
-                }
-            }
+        for k in 0..command_v.len() {
+            self.check(&moment, k)?;
+            out.push(start_m + moment.state[0]);
+            self.sample(&mut moment, self.force_n(command_v, k));
         }
         Ok(out)
     }
 
-    /// Which way each friction stands at its limit; 0 within it.
-    fn side(&self, friction_n: [f64; 2]) -> [i8; 2] {
-        std::array::from_fn(|i| {
-            i8::from(friction_n[i] >= self.limit_n[i]) - i8::from(friction_n[i] <= -self.limit_n[i])
-        })
+    /// Measured motor positions less predicted ones, m; each corrects the state by `gain` before the next is predicted.
+    ///
+    /// # Errors
+    ///
+    /// [`ServoError::RanAway`].
+    pub fn innovations(
+        &self,
+        command_v: &[f64],
+        measured_m: &[f64],
+        gain: &[f64; STATES],
+    ) -> Result<Vec<f64>, ServoError> {
+        let start_m = measured_m.first().copied().unwrap_or(0.0);
+        let mut moment = Moment::AT_REST;
+        let mut out = Vec::with_capacity(measured_m.len());
+        for (k, measured) in measured_m.iter().enumerate() {
+            self.check(&moment, k)?;
+            let apart = (measured - start_m) - moment.state[0];
+            out.push(apart);
+            for (x, g) in moment.state.iter_mut().zip(gain) {
+                *x += g * apart;
+            }
+            self.sample(&mut moment, self.force_n(command_v, k));
+        }
+        Ok(out)
     }
 
-    /// State and friction after one step under a constant force on the motor.
+    /// The stationary gain of the Kalman filter of the sliding axis.
+    ///
+    /// `force_over_noise_n_m` is the standard deviation of a white force on each mass, constant over a sample, over that of the
+    /// measured position.
+    #[must_use]
+    pub fn gain(&self, force_over_noise_n_m: f64) -> [f64; STATES] {
+        let (a, on_motor, on_load) = self.over_a_sample();
+        let q = force_over_noise_n_m * force_over_noise_n_m;
+        let noise: [[f64; STATES]; STATES] =
+            std::array::from_fn(|i| std::array::from_fn(|j| q * (on_motor[i] * on_motor[j] + on_load[i] * on_load[j])));
+        let mut covariance = noise;
+        let mut gain = [0.0; STATES];
+        for _ in 0..GAIN_STEPS {
+            let variance = covariance[0][0] + 1.0;
+            let next: [f64; STATES] = std::array::from_fn(|i| covariance[i][0] / variance);
+            let is_settled = next.iter().zip(&gain).all(|(n, g)| (n - g).abs() <= GAIN_TOLERANCE * n.abs());
+            gain = next;
+            if is_settled {
+                break;
+            }
+            let left: [[f64; STATES]; STATES] =
+                std::array::from_fn(|i| std::array::from_fn(|j| covariance[i][j] - gain[i] * covariance[0][j]));
+            let moved: [[f64; STATES]; STATES] =
+                std::array::from_fn(|i| std::array::from_fn(|j| (0..STATES).map(|k| a[i][k] * left[k][j]).sum()));
+            covariance = std::array::from_fn(|i| {
+                std::array::from_fn(|j| noise[i][j] + (0..STATES).map(|k| moved[i][k] * a[j][k]).sum::<f64>())
+            });
+        }
+        gain
+    }
+
+    /// Transition over a sample, and the response to a unit force on motor and load.
+    fn over_a_sample(&self) -> ([[f64; STATES]; STATES], [f64; STATES], [f64; STATES]) {
+        let Linear { transition, response } = &self.step;
+        let through = |x: &[f64; STATES]| -> [f64; STATES] {
+            std::array::from_fn(|i| (0..STATES).map(|k| transition[i][k] * x[k]).sum())
+        };
+        let column = |j: usize| -> [f64; STATES] { std::array::from_fn(|i| f64::from(u8::from(i == j))) };
+        let mut columns: [[f64; STATES]; STATES] = std::array::from_fn(column);
+        let mut forces = [[0.0; STATES]; 2];
+        for _ in 0..self.steps {
+            columns = columns.map(|c| through(&c));
+            for (f, unit) in forces.iter_mut().zip(response) {
+                let moved = through(f);
+                *f = std::array::from_fn(|i| moved[i] + unit[i]);
+            }
+        }
+        (std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i])), forces[0], forces[1])
+    }
+
+    fn check(&self, moment: &Moment, k: usize) -> Result<(), ServoError> {
+        if moment.state[0].is_nan() || moment.state[0].abs() > RUN_AWAY_M {
+            return Err(ServoError::RanAway { time_s: k as f64 * self.sample_s });
+        }
+        Ok(())
+    }
+
+    /// Mean force of the drive over the sample that begins with command `k`, N.
     #[inline]
-    fn after(
-        &self,
-        linear: &Linear,
-        state: &[f64; STATES],
-        friction_n: [f64; 2],
-        force_n: f64,
-    ) -> ([f64; STATES], [f64; 2]) {
+    fn force_n(&self, command_v: &[f64], k: usize) -> f64 {
+        let (whole, part) = self.delay;
+        let at = |late: usize| k.checked_sub(late).map_or(0.0, |i| command_v[i]);
+        let volts = if part > 0.0 { (1.0 - part) * at(whole) + part * at(whole + 1) } else { at(whole) };
+        self.force_per_volt_n_v * volts
+    }
+
+    /// Steps from one command to the next under a constant force on the motor.
+    #[inline]
+    fn sample(&self, moment: &mut Moment, force_n: f64) {
+        for _ in 0..self.steps {
+            let next = self.after(&self.step, moment, force_n);
+            if next.side == moment.side {
+                *moment = next;
+                continue;
+            }
+            for _ in 0..PIECES {
+                *moment = self.after(&self.piece, moment, force_n);
+            }
+        }
+    }
+
+    /// After one step under a constant force on the motor.
+    #[inline]
+    fn after(&self, linear: &Linear, moment: &Moment, force_n: f64) -> Moment {
         let [on_motor, on_load] = &linear.response;
-        let free: [f64; STATES] = std::array::from_fn(|i| {
+        let state = &moment.state;
+        let mut free: [f64; STATES] = std::array::from_fn(|i| {
             let row = &linear.transition[i];
             row[0] * state[0] + row[1] * state[1] + row[2] * state[2] + row[3] * state[3] + on_motor[i] * force_n
         });
+        if self.load_drag_n_s2_m2 != 0.0 {
+            // v = v without drag − ½ response · D v|v|, solved for v.
+            let v = 0.5 * (state[3] + free[3] - on_load[3] * moment.friction_n[1]);
+            let v = 2.0 * v / (1.0 + (1.0 + 2.0 * on_load[3] * self.load_drag_n_s2_m2 * v.abs()).sqrt());
+            let drag_n = self.load_drag_n_s2_m2 * v * v.abs();
+            (0..STATES).for_each(|i| free[i] -= on_load[i] * drag_n);
+        }
+        let [mut motor_limit_n, load_limit_n] = self.limit_n;
+        if self.gear_loss != 0.0 {
+            let mean = |i: usize| 0.5 * (state[i] - state[i + 2] + free[i] - free[i + 2]);
+            motor_limit_n += self.gear_loss * (self.stiffness_n_m * mean(0) + self.damping_n_s_m * mean(1)).abs();
+        }
         // Friction that stops each mass at the end of the step, within its limit. The masses hardly act on each other within a
         // step, so that two sweeps settle it.
-        let [mut f_m, mut f_l] = friction_n;
+        let [mut f_m, mut f_l] = moment.friction_n;
         for _ in 0..2 {
             let v = free[1] - on_load[1] * f_l;
-            f_m = (v / on_motor[1]).clamp(-self.limit_n[0], self.limit_n[0]);
+            f_m = (v / on_motor[1]).clamp(-motor_limit_n, motor_limit_n);
             let v = free[3] - on_motor[3] * f_m;
-            f_l = (v / on_load[3]).clamp(-self.limit_n[1], self.limit_n[1]);
+            f_l = (v / on_load[3]).clamp(-load_limit_n, load_limit_n);
         }
-        (std::array::from_fn(|i| free[i] - on_motor[i] * f_m - on_load[i] * f_l), [f_m, f_l])
+        let side = |f: f64, limit: f64| i8::from(f >= limit) - i8::from(f <= -limit);
+        Moment {
+            state: std::array::from_fn(|i| free[i] - on_motor[i] * f_m - on_load[i] * f_l),
+            friction_n: [f_m, f_l],
+            side: [side(f_m, motor_limit_n), side(f_l, load_limit_n)],
+        }
     }
 }
 
@@ -228,11 +403,8 @@ mod tests {
             load_mass_kg: 4.0,
             stiffness_n_m: 2.0e4,
             damping_n_s_m: 10.0,
-            motor_viscous_n_s_m: 0.0,
-            load_viscous_n_s_m: 0.0,
-            motor_coulomb_n: 0.0,
-            load_coulomb_n: 0.0,
             force_per_volt_n_v: 6.0,
+            ..TwoMass::BARE
         }
     }
 
@@ -266,5 +438,54 @@ mod tests {
         // √(K/M) and √(K(1/m + 1/M)).
         assert!((axis().antiresonance_hz() - 5000.0_f64.sqrt() / TAU).abs() < 1e-12);
         assert!((axis().resonance_hz() - 15000.0_f64.sqrt() / TAU).abs() < 1e-12);
+    }
+
+    /// Driven up by a constant force, the gear's load is the chain's force over η; coasting, η_b times it.
+    #[test]
+    fn a_gear_makes_the_load_heavier_for_a_motor_that_drives_and_lighter_for_one_that_is_driven() {
+        let axis = TwoMass { efficiency_forward: 0.8, efficiency_backward: 0.75, motor_coulomb_n: 1.0, ..axis() };
+        let command: Vec<f64> = (0..3000).map(|k| if k < 1500 { 2.0 } else { 0.0 }).collect();
+        let p = Stepper::new(&axis, 1e-3, 2e-4).unwrap().run(&command, 0.0).unwrap();
+        let acceleration = |from: usize, to: usize| {
+            let speed = |k: usize| (p[k + 100] - p[k - 100]) / 0.2;
+            (speed(to) - speed(from)) / ((to - from) as f64 * 1e-3)
+        };
+        // 11 N on 2 + 4/0.8 kg; then 1 N of friction at the motor, which the load drives on, slows 2 + 4·0.75 kg.
+        // What is left of the swing after a step, some 0.02 m/s, over 0.7 s.
+        let (up, down) = (acceleration(600, 1300), acceleration(2100, 2800));
+        assert!((up - 11.0 / 7.0).abs() < 0.03, "{up}");
+        assert!((down + 1.0 / 5.0).abs() < 0.03, "{down}");
+    }
+
+    #[test]
+    fn drag_on_the_load_ends_in_the_speed_where_it_balances_the_drive() {
+        let axis = TwoMass { load_drag_n_s2_m2: 12.0, ..axis() };
+        let p = Stepper::new(&axis, 1e-3, 1e-3).unwrap().run(&vec![2.0; 8000], 0.0).unwrap();
+        // 12 N = 12 v|v|; after 8 s, e^{-2·8·12/6} is left of the way there.
+        assert!(((p[7999] - p[7899]) / 0.1 - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_delay_of_one_and_a_half_samples_is_one_and_a_half_samples() {
+        let late = TwoMass { delay_s: 1.5e-3, ..axis() };
+        let run = |axis: &TwoMass| Stepper::new(axis, 1e-3, 1e-3).unwrap().run(&[1.0; 2000], 0.0).unwrap();
+        let (now, then) = (run(&axis()), run(&late));
+        // Linear in the command, so the mean of one and two samples late.
+        assert!((then[1999] - 0.5 * (now[1998] + now[1997])).abs() < 1e-12);
+    }
+
+    #[test]
+    fn an_observer_of_the_true_axis_is_left_with_nothing_and_forgets_a_wrong_start() {
+        let axis = TwoMass { motor_coulomb_n: 1.0, load_coulomb_n: 1.5, ..axis() };
+        let stepper = Stepper::new(&axis, 1e-3, 2e-4).unwrap();
+        let command: Vec<f64> = (0..4000).map(|k| 2.0 * (0.01 * f64::from(k)).sin()).collect();
+        let p = stepper.run(&command, 0.0).unwrap();
+        let gain = stepper.gain(1e5);
+        let left = stepper.innovations(&command, &p, &gain).unwrap();
+        assert!(left.iter().all(|e| e.abs() < 1e-12));
+        let mut shifted = p;
+        shifted[0] += 1e-3;
+        let left = stepper.innovations(&command, &shifted, &gain).unwrap();
+        assert!(left[1].abs() > 1e-4 && left[3900..].iter().all(|e| e.abs() < 1e-7), "{} {}", left[1], left[3999]);
     }
 }

@@ -24,6 +24,9 @@ const NEARLY_UNDAMPED: f64 = 1e-2;
 /// Or when the sum of squares falls by less than this part: with 2,000 rows, 0.04 of a standard deviation.
 const SUM_TOLERANCE: f64 = 1e-6;
 
+/// Step of the differences, as a part of a scale: small against it, large against the kinks that reversals put into a simulation.
+pub(crate) const DIFFERENCE: f64 = 1e-3;
+
 /// Where the iteration ended.
 pub(crate) struct Fitted {
     /// Parameters.
@@ -114,11 +117,9 @@ fn derivatives(
     scale: &[f64],
     residuals: &impl Fn(&[f64]) -> Result<Vec<f64>, ServoError>,
 ) -> Result<Vec<Vec<f64>>, ServoError> {
-    // Small against a scale, large against the kinks that reversals put into a simulation.
-    const PART: f64 = 1e-3;
     (0..parameters.len())
         .map(|j| {
-            let step = PART * scale[j];
+            let step = DIFFERENCE * scale[j];
             let moved = |by: f64| {
                 let mut p = parameters.to_vec();
                 p[j] += by;

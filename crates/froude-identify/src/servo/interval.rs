@@ -6,7 +6,10 @@
 //! | HAC       | correlation dies out within the lag           | Bartlett weights over an automatic lag, five correlation times or longer |
 //! | blocks    | it dies out within a block                    | moving blocks of neighbours, 1 s or longer, drawn and refitted |
 //!
-//! The interval that is reported is that of the blocks, with Student's t for as many degrees of freedom as blocks
+//! | clusters  | runs, or stretches of a record, are independent | CR3 or CR2, with the degrees of freedom of each coefficient   |
+//!
+//! Several runs of a campaign are clusters: friction and newtons a volt change between them, which no block within a run shows. The
+//! interval that is reported of a single record is that of the blocks, with Student's t for as many degrees of freedom as blocks
 //! lie side by side less the coefficients: twenty blocks are twenty pieces of evidence, however many rows they have. Whether
 //! residuals are white is told by their first autocorrelation and by Ljung and Box's test over 25 lags.
 //!
@@ -22,6 +25,7 @@ use froude_signal::long_run::{automatic_lag, covariance_of_sum};
 use rayon::prelude::*;
 
 use crate::servo::chain::Rows;
+use crate::servo::cluster::{Clustered, Enlarged};
 use crate::servo::error::ServoError;
 use crate::servo::regression::{inverse_gram, solve};
 
@@ -97,12 +101,22 @@ pub struct Spread {
     pub blocks: Vec<f64>,
     /// Length of a block, s.
     pub block_s: f64,
-    /// Blocks side by side less coefficients: degrees of freedom of the interval.
-    pub dof: f64,
-    /// Half-width of the interval over the standard deviation of the blocks.
-    pub coverage_factor: f64,
-    /// Covariance over the blocks' resamples.
+    /// Runs whose scatter stands in the place of the blocks'; `None` for a single record.
+    pub runs: Option<usize>,
+    /// Degrees of freedom of each interval: blocks side by side less coefficients, or those of the clusters' variance.
+    pub dof: Vec<f64>,
+    /// Half-width of each interval over the standard deviation of the blocks.
+    pub coverage_factor: Vec<f64>,
+    /// Covariance over the blocks' resamples, or over the runs.
     pub covariance: Mat<f64>,
+}
+
+impl Spread {
+    /// What was taken as one piece of evidence, in words.
+    #[must_use]
+    pub fn pieces(&self) -> String {
+        self.runs.map_or_else(|| format!("blocks of {:.1} s", self.block_s), |n| format!("{n} whole runs as clusters"))
+    }
 }
 
 /// Standard deviations of a least-squares solution of `rows`.
@@ -127,9 +141,36 @@ pub fn spread(rows: &Rows, solution: &Solution, options: &IntervalOptions) -> Re
         hac_lag_s,
         blocks: diagonal_roots(&over.covariance),
         block_s: over.block_s,
-        dof: over.dof,
-        coverage_factor: coverage_factor(options.confidence, over.dof),
+        runs: None,
+        dof: vec![over.dof; solution.coefficients.len()],
+        coverage_factor: vec![coverage_factor(options.confidence, over.dof); solution.coefficients.len()],
         covariance: over.covariance,
+    })
+}
+
+/// As [`spread`], the runs (ranges of rows) being the clusters.
+pub(crate) fn over_runs(
+    rows: &Rows,
+    solution: &Solution,
+    runs: &[std::ops::Range<usize>],
+    options: &IntervalOptions,
+) -> Result<Spread, ServoError> {
+    let residuals = rows.residuals_n(&solution.coefficients);
+    let (hac, hac_lag_s) = hac(&rows.columns, &residuals, &inverse_gram(solution), rows.rate_hz, options.hac_lag_s);
+    let clustered = Clustered::new(&rows.columns, &residuals, runs, None, Enlarged::Jackknife)?;
+    let p = solution.coefficients.len();
+    let of_one = |j: usize| clustered.dof(&(0..p).map(|k| f64::from(u8::from(k == j))).collect::<Vec<f64>>());
+    let dof: Vec<f64> = (0..p).map(of_one).collect();
+    Ok(Spread {
+        classical: solution.standard.clone(),
+        hac,
+        hac_lag_s,
+        blocks: diagonal_roots(&clustered.covariance),
+        block_s: options.block_s,
+        runs: Some(runs.len()),
+        coverage_factor: dof.iter().map(|dof| coverage_factor(options.confidence, *dof)).collect(),
+        dof,
+        covariance: clustered.covariance,
     })
 }
 

@@ -35,6 +35,7 @@ pub fn carriage() -> TwoMass {
         motor_coulomb_n: 0.35 * coulomb,
         load_coulomb_n: 0.65 * coulomb,
         force_per_volt_n_v: MotorSide::MCD.force_per_volt_n_v(),
+        ..TwoMass::BARE
     }
 }
 

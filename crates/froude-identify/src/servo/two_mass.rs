@@ -1,39 +1,45 @@
 //! The flexible axis: a motor and a load joined by a chain, identified from the motor's side alone.
 //!
-//! In chain coordinates, `p = Rθ/n` and `m = J_m (n/R)²`, MCD eq. 2a and 2b read
+//! In chain coordinates, `p = Rθ/n` and `m = J_m (n/R)²`, MCD eq. 2a and 2b read, with the drag and the gear that the paper leaves out,
 //!
-//! `m p̈ + b_m ṗ + c_m sgn ṗ − K(y − p) − B(ẏ − ṗ) = g u`,
-//! `M ÿ + b ẏ + c sgn ẏ + K(y − p) + B(ẏ − ṗ) = 0`.
+//! `m p̈ + b_m ṗ + c_m sgn ṗ + r F = g u`, `F = K(p − y) + B(ṗ − ẏ)`, `r = 1/η` while `F ṗ > 0`, else `η_b`,
+//! `M ÿ + b ẏ + c sgn ẏ + D ẏ|ẏ| = F`.
 //!
-//! Only `p` and `u` are measured. **Identified** by output error: the recorded command drives the model, parameters are moved
-//! until the model's motor speed is the measured one. Speed, because an error of position grows without end in an open chain.
-//! Measured and simulated position pass the same differences and the same decimation.
+//! Only `p` and `u` are measured. **Identified** by prediction error: an observer that runs the model and is corrected at every sample by
+//! the encoder ([`Stepper::innovations`]) predicts the next position, and parameters are moved until the squares of what it fails to
+//! predict are least. A free simulation would carry a force that nobody records along for seconds, and would see it as
+//! a slow error of speed that no block holds; here it acts once, and what is left is nearly white. How much the observer trusts the encoder, the
+//! ratio of unrecorded force to noise of position, is the one that predicts best.
 //!
-//! A force that nobody records leaves an error of speed that lasts seconds, longer than any affordable block. What is left by a
-//! first search is therefore described by an autoregression, and a second search minimises what that does not predict
-//! (generalised least squares): smaller scatter, and intervals whose blocks hold the correlation that remains.
+//! **Intervals** are those of stretches of a second as clusters (CR2, Student's t with the degrees of freedom of each coefficient), so that
+//! correlation which the observer leaves is in them. Declared inputs (η, η_b, D, delay, newtons a volt) move
+//! the estimate by one linearised step; their standard uncertainties are added.
 //!
 //! **What the motor cannot tell.** How viscous and Coulomb friction are split between motor and load shows only in the vibration
 //! and in the moments of sticking. The sums are coefficients; the splits are fractions in 0…1 with a prior that knows
 //! nothing (mean ½, standard deviation of a uniform one), and count as identified only when their interval lies inside 0…1 and is
-//! shorter than half of it.
+//! shorter than half of it. Newtons a volt cannot be told from the masses, nor η from the load's mass.
 //!
 //! # Source
 //!
-//! MCD eq. 2a, 2b (drag left out: a dry axis), 3b for the sums.
+//! MCD eq. 2a, 2b, 3b for the sums; Ljung (1999), *System Identification*, 2nd ed., 7.2 and 4.3 (prediction errors of a state-space model
+//! in innovations form).
 
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
+use froude_fit::propagate::effective_dof;
 use froude_fit::{End, Report};
-use froude_signal::autocorrelation::{whitened, whitening_filter};
 use froude_signal::{decimate, differences};
 
+use crate::carriage::Uncertain;
+use crate::carriage::mbdp;
 use crate::servo::chain::{Chain, norm};
+use crate::servo::cluster::{Clustered, Enlarged, stretches};
 use crate::servo::error::ServoError;
 use crate::servo::flexible::{Stepper, TwoMass};
 use crate::servo::friction::Friction;
-use crate::servo::gauss_newton::{Fitted, minimise};
-use crate::servo::interval::{IntervalOptions, Whiteness, hac_covariance, over_blocks, whiteness};
+use crate::servo::gauss_newton::{DIFFERENCE, Fitted, minimise};
+use crate::servo::interval::{IntervalOptions, Whiteness, hac_covariance, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::{inverse_gram, least_squares, solve};
@@ -42,41 +48,82 @@ use crate::servo::report::ServoCoefficient;
 /// Mean and standard deviation of a fraction of which nothing is known.
 const KNOWS_NOTHING: [f64; 2] = [0.5, 0.288_675_134_594_812_9];
 
-/// Past of a residual that may predict it, s.
-const WHITENING_S: f64 = 0.2;
-
 /// Parameters of the iteration: logarithms of four, sums of two, fractions of two.
 const PARAMETERS: usize = 8;
+
+/// Most rough searches, the ratio of force to noise chosen anew before each.
+const SEARCHES: usize = 2;
+/// Ratios tried: decades of N/m, and the part of a decade between them.
+const RATIO_DECADES: [f64; 2] = [3.0, 8.0];
+const RATIO_STEP: f64 = 0.5;
+/// A change of the ratio that no longer matters, decades.
+const RATIO_TOLERANCE: f64 = 0.1;
+
+/// Rate at which free simulation and record are compared, Hz, and what is dropped at each end, s.
+const SPEED_RATE_HZ: f64 = 100.0;
+const TRIM_S: f64 = 0.2;
+
+/// What is known of the gear between motor and chain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Gear {
+    /// There is none, or it takes nothing.
+    Lossless,
+    /// It takes some and nobody says how much: what lies behind it is found as it appears through it.
+    Undeclared,
+    /// Declared or calibrated.
+    Declared {
+        /// η, the motor drives.
+        forward: Uncertain,
+        /// η_b, the load drives.
+        backward: Uncertain,
+    },
+}
 
 /// How a flexible axis is identified.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlexibleOptions {
     /// The drive.
     pub motor: MotorSide,
-    /// Decimation of the residuals.
-    pub decimation: usize,
-    /// Dropped at each end, s.
-    pub trim_s: f64,
+    /// Its gear.
+    pub gear: Gear,
+    /// Drag of the load over ẏ|ẏ|, N s²/m²: a body in the water. It is not identified.
+    pub load_drag_n_s2_m2: Uncertain,
+    /// From the command to the force, s.
+    pub delay_s: Uncertain,
+    /// Standard uncertainty of newtons a volt, as a part.
+    pub force_relative: f64,
     /// Longest step of the simulation, s.
     pub step_s: f64,
     /// Antiresonances tried as a start, Hz.
     pub start_hz: Vec<f64>,
-    /// How intervals are made.
+    /// How intervals are made; of the blocks only their length is used.
     pub intervals: IntervalOptions,
 }
 
 impl FlexibleOptions {
-    /// For a record at 1 kHz and a mode between some 5 and 40 Hz.
+    /// For a mode between some 2 and 40 Hz; no gear, no drag, no delay.
     #[must_use]
     pub fn new(motor: MotorSide) -> Self {
         Self {
             motor,
-            decimation: 10,
-            trim_s: 0.2,
+            gear: Gear::Lossless,
+            load_drag_n_s2_m2: Uncertain::new(0.0, 0.0),
+            delay_s: Uncertain::new(0.0, 0.0),
+            force_relative: 0.0,
             step_s: 2e-4,
-            start_hz: vec![5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 22.0, 30.0],
-            intervals: IntervalOptions { resamples: 500, ..IntervalOptions::default() },
+            start_hz: vec![2.5, 3.2, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 22.0, 30.0],
+            intervals: IntervalOptions::default(),
         }
+    }
+
+    /// Declared inputs: η, η_b, drag, delay.
+    fn declared(&self) -> [Uncertain; 4] {
+        let one = Uncertain::new(1.0, 0.0);
+        let [forward, backward] = match self.gear {
+            Gear::Declared { forward, backward } => [forward, backward],
+            Gear::Lossless | Gear::Undeclared => [one; 2],
+        };
+        [forward, backward, self.load_drag_n_s2_m2, self.delay_s]
     }
 }
 
@@ -97,16 +144,22 @@ pub struct Split {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlexibleReport {
     /// At the chain: `m`, `M`, `K_e`, `B_e`, `B_sum`, `C_sum`; at the motor: `J_m`, `J_eff`, `B_eff`, `C_eff`; `f_antiresonance`, `f_resonance`.
+    ///
+    /// `block_std` and the interval hold the declared inputs' uncertainties, the other two only scatter.
     pub coefficients: Vec<ServoCoefficient>,
     /// Splits of friction between motor and load.
     pub splits: Vec<Split>,
     /// The axis with these parameters.
     pub axis: TwoMass,
-    /// `‖speed − model‖/‖speed‖` of the motor.
+    /// Whether what lies behind the gear is as it appears through it, because nobody declared its efficiency.
+    pub is_apparent: bool,
+    /// `‖speed − model‖/‖speed‖` of the motor in a free simulation.
     pub relative_speed_error: f64,
-    /// Whether the residuals are white after their autoregression.
+    /// Standard deviation of what is not predicted from sample to sample, m.
+    pub innovation_m: f64,
+    /// Whether that is white.
     pub whiteness: Option<Whiteness>,
-    /// Rows compared.
+    /// Samples compared.
     pub n_rows: usize,
     /// How the iteration ended.
     pub end: Report,
@@ -120,6 +173,20 @@ impl FlexibleReport {
     pub fn coefficient(&self, name: &str) -> Option<&ServoCoefficient> {
         self.coefficients.iter().find(|c| c.name == name)
     }
+
+    /// The chain for drag by the model of two masses (MCD eq. 9 with the chain's force).
+    ///
+    /// Positions are differentiated over a third of the period of the fastest mode.
+    #[must_use]
+    pub fn flexible(&self) -> mbdp::Flexible {
+        mbdp::Flexible {
+            motor_mass_kg: self.axis.motor_mass_kg,
+            load_mass_kg: self.axis.load_mass_kg,
+            stiffness_n_m: self.axis.stiffness_n_m,
+            damping_n_s_m: self.axis.damping_n_s_m,
+            span_s: (3.0 * self.axis.resonance_hz()).recip(),
+        }
+    }
 }
 
 /// Identifies a flexible axis from command and motor position, at rest in the beginning.
@@ -131,43 +198,33 @@ impl FlexibleReport {
 /// [`ServoError`].
 pub fn identify_flexible(log: &ServoLog, options: &FlexibleOptions) -> Result<FlexibleReport, ServoError> {
     let mut record = Record::new(log, options)?;
+    // Found with one step a sample, then once more with the steps asked for.
+    record.step_s = record.step_s.max(record.rate_hz.recip());
     let start = record.start(record.rigid()?)?;
     // Natural steps: a tenth of each; a fraction's is a tenth of its range.
-    let scale: Vec<f64> = (0..PARAMETERS)
-        .map(|j| {
-            if j < 4 {
-                0.1
-            } else if j < 6 {
-                0.1 * start[j]
-            } else {
-                0.1
-            }
-        })
-        .collect();
-    let sigma = record.noise(&start)?;
-    let fitted = minimise(&start, &scale, |theta| record.residuals_with_prior(theta, sigma))?;
-    // Once more, against what the residuals' past does not predict.
-    let order = (WHITENING_S * record.row_rate_hz()).round() as usize;
-    let left = record.residuals(&record.axis(&fitted.parameters))?;
-    record.whitening = whitening_filter(&left, order).unwrap_or_else(|| vec![1.0]);
-    let sigma = record.noise(&fitted.parameters)?;
-    let fitted = minimise(&fitted.parameters, &scale, |theta| record.residuals_with_prior(theta, sigma))?;
+    let scale: Vec<f64> = (0..PARAMETERS).map(|j| if (4..6).contains(&j) { 0.1 * start[j] } else { 0.1 }).collect();
+    let mut ratio = record.best_ratio(&start)?;
+    let mut fitted = record.search(&start, &scale, ratio)?;
+    for _ in 1..SEARCHES {
+        let better = record.best_ratio(&fitted.parameters)?;
+        if (better - ratio).abs() < RATIO_TOLERANCE {
+            break;
+        }
+        ratio = better;
+        fitted = record.search(&fitted.parameters, &scale, ratio)?;
+    }
+    // Differences over ± half a standard deviation: kinks within it are no slope.
+    let scale = spreads(&fitted)?.map(|std| 0.5 * std / DIFFERENCE);
+    record.step_s = options.step_s;
+    let ratio = record.best_ratio(&fitted.parameters)?;
+    let fitted = record.search(&fitted.parameters, &scale, ratio)?;
     record.report(&fitted)
 }
 
-/// Physical parameters of an iterate; beyond 0…1 a share of Coulomb friction stays at its end, the prior pulls it back.
-fn axis_of(theta: &[f64], force_per_volt_n_v: f64) -> TwoMass {
-    TwoMass {
-        motor_mass_kg: theta[0].exp(),
-        load_mass_kg: theta[1].exp(),
-        stiffness_n_m: theta[2].exp(),
-        damping_n_s_m: theta[3].exp(),
-        motor_viscous_n_s_m: theta[4] * theta[6],
-        load_viscous_n_s_m: theta[4] * (1.0 - theta[6]),
-        motor_coulomb_n: theta[5] * theta[7].clamp(0.0, 1.0),
-        load_coulomb_n: theta[5] * (1.0 - theta[7].clamp(0.0, 1.0)),
-        force_per_volt_n_v,
-    }
+/// Standard deviations of the parameters, were the innovations white.
+fn spreads(fitted: &Fitted) -> Result<[f64; PARAMETERS], ServoError> {
+    let solution = solve(&fitted.columns, &fitted.residuals)?;
+    Ok(std::array::from_fn(|j| solution.standard[j]))
 }
 
 /// A record made ready for comparison.
@@ -175,62 +232,117 @@ struct Record<'a> {
     log: &'a ServoLog,
     options: &'a FlexibleOptions,
     rate_hz: f64,
-    /// Autoregression of the residuals; `[1]` before they are known.
-    whitening: Vec<f64>,
+    /// Longest step of the simulation, s.
+    step_s: f64,
+    /// Values of the declared inputs.
+    declared: [f64; 4],
+    gain: [f64; 4],
 }
 
 impl<'a> Record<'a> {
     fn new(log: &'a ServoLog, options: &'a FlexibleOptions) -> Result<Self, ServoError> {
-        Ok(Self { log, options, rate_hz: log.rate_hz()?, whitening: vec![1.0] })
-    }
-
-    /// Measured less simulated speed of the motor, decimated and trimmed, m/s.
-    fn residuals(&self, axis: &TwoMass) -> Result<Vec<f64>, ServoError> {
-        let start_m = self.log.position_m[0];
-        let simulated =
-            Stepper::new(axis, self.rate_hz.recip(), self.options.step_s)?.run(&self.log.command_v, start_m)?;
-        let apart: Vec<f64> = self.log.position_m.iter().zip(&simulated).map(|(m, s)| m - s).collect();
-        self.speed(&apart)
-    }
-
-    /// Speed of a position, decimated and trimmed.
-    fn speed(&self, position_m: &[f64]) -> Result<Vec<f64>, ServoError> {
-        let speed = differences::central(position_m, self.rate_hz.recip())?;
-        let speed = decimate::decimate(&speed, self.options.decimation)?;
-        let trim = (self.options.trim_s * self.row_rate_hz()).round() as usize;
-        let needed = 2 * PARAMETERS;
-        if speed.len() < 2 * trim + needed {
-            return Err(ServoError::TooFewRows { rows: speed.len().saturating_sub(2 * trim), needed });
+        let rate_hz = log.rate_hz()?;
+        let needed = (PARAMETERS + 2) * (options.intervals.block_s * rate_hz).ceil() as usize;
+        if log.position_m.len() < needed {
+            return Err(ServoError::TooFewRows { rows: log.position_m.len(), needed });
         }
-        Ok(speed[trim..speed.len() - trim].to_vec())
+        Ok(Self {
+            log,
+            options,
+            rate_hz,
+            step_s: options.step_s,
+            declared: options.declared().map(|d| d.value),
+            gain: [0.0; 4],
+        })
     }
 
-    fn row_rate_hz(&self) -> f64 {
-        self.rate_hz / self.options.decimation as f64
-    }
-
+    /// Physical parameters of an iterate; beyond 0…1 a share of Coulomb friction stays at its end, the prior pulls it back.
     fn axis(&self, theta: &[f64]) -> TwoMass {
-        axis_of(theta, self.options.motor.force_per_volt_n_v())
+        let [efficiency_forward, efficiency_backward, load_drag_n_s2_m2, delay_s] = self.declared;
+        TwoMass {
+            motor_mass_kg: theta[0].exp(),
+            load_mass_kg: theta[1].exp(),
+            stiffness_n_m: theta[2].exp(),
+            damping_n_s_m: theta[3].exp(),
+            motor_viscous_n_s_m: theta[4] * theta[6],
+            load_viscous_n_s_m: theta[4] * (1.0 - theta[6]),
+            motor_coulomb_n: theta[5] * theta[7].clamp(0.0, 1.0),
+            load_coulomb_n: theta[5] * (1.0 - theta[7].clamp(0.0, 1.0)),
+            force_per_volt_n_v: self.options.motor.force_per_volt_n_v(),
+            efficiency_forward,
+            efficiency_backward,
+            load_drag_n_s2_m2,
+            delay_s,
+        }
     }
 
-    /// Residuals that their own past does not predict.
-    fn unpredicted(&self, axis: &TwoMass) -> Result<Vec<f64>, ServoError> {
-        Ok(whitened(&self.residuals(axis)?, &self.whitening))
+    fn stepper(&self, theta: &[f64]) -> Result<Stepper, ServoError> {
+        Stepper::new(&self.axis(theta), self.rate_hz.recip(), self.step_s)
     }
 
-    /// Residuals, and two rows of prior in the unit of the residuals.
+    /// What the observer does not predict, m.
+    fn unpredicted(&self, theta: &[f64]) -> Result<Vec<f64>, ServoError> {
+        self.stepper(theta)?.innovations(&self.log.command_v, &self.log.position_m, &self.gain)
+    }
+
+    /// The ratio of unrecorded force to noise of position that predicts best, as decades of N/m.
+    fn best_ratio(&self, theta: &[f64]) -> Result<f64, ServoError> {
+        let stepper = self.stepper(theta)?;
+        let squares = |decades: f64| -> Result<f64, ServoError> {
+            let gain = stepper.gain(10_f64.powf(decades));
+            let left = stepper.innovations(&self.log.command_v, &self.log.position_m, &gain)?;
+            Ok(norm(&left).ln())
+        };
+        let [first, last] = RATIO_DECADES;
+        let count = ((last - first) / RATIO_STEP).round() as usize;
+        let tried: Vec<f64> =
+            (0..=count).map(|i| squares(first + RATIO_STEP * i as f64)).collect::<Result<_, ServoError>>()?;
+        let least = (0..=count).min_by(|&i, &j| tried[i].total_cmp(&tried[j])).unwrap_or(0);
+        let at = first + RATIO_STEP * least as f64;
+        if least == 0 || least == count {
+            return Ok(at);
+        }
+        // The lowest point of the parabola through it and its neighbours.
+        let (below, here, above) = (tried[least - 1], tried[least], tried[least + 1]);
+        Ok(at + 0.5 * RATIO_STEP * (below - above) / (below - 2.0 * here + above).max(f64::MIN_POSITIVE))
+    }
+
+    /// Least squares of what an observer with this ratio does not predict.
+    fn search(&mut self, start: &[f64], scale: &[f64], ratio: f64) -> Result<Fitted, ServoError> {
+        self.gain = self.stepper(start)?.gain(10_f64.powf(ratio));
+        let sigma = self.noise(start)?;
+        minimise(start, scale, |theta| self.residuals_with_prior(theta, sigma))
+    }
+
+    /// Innovations, and two rows of prior in their unit.
     fn residuals_with_prior(&self, theta: &[f64], sigma: f64) -> Result<Vec<f64>, ServoError> {
-        let mut out = self.unpredicted(&self.axis(theta))?;
+        let mut out = self.unpredicted(theta)?;
         let [mean, std] = KNOWS_NOTHING;
         out.extend(theta[6..].iter().map(|fraction| sigma * (mean - fraction) / std));
         Ok(out)
     }
 
-    /// Scatter of the residuals, as if one row in a correlation time counted.
+    /// Scatter of the innovations, as if one row in a correlation time counted.
     fn noise(&self, theta: &[f64]) -> Result<f64, ServoError> {
-        let residuals = self.unpredicted(&self.axis(theta))?;
+        let residuals = self.unpredicted(theta)?;
         let time = whiteness(&residuals, 1.0).and_then(|w| w.correlation_time_s).unwrap_or(1.0).max(1.0);
         Ok(norm(&residuals) * (time / residuals.len() as f64).sqrt())
+    }
+
+    /// Speed of a position, decimated and trimmed, m/s.
+    fn speed(&self, position_m: &[f64]) -> Result<Vec<f64>, ServoError> {
+        let decimation = (self.rate_hz / SPEED_RATE_HZ).round().max(1.0) as usize;
+        let speed = differences::central(position_m, self.rate_hz.recip())?;
+        let speed = decimate::decimate(&speed, decimation)?;
+        let trim = (TRIM_S * self.rate_hz / decimation as f64).round() as usize;
+        Ok(speed[trim..speed.len() - trim].to_vec())
+    }
+
+    /// Measured less freely simulated speed of the motor, m/s.
+    fn speed_error(&self, theta: &[f64]) -> Result<Vec<f64>, ServoError> {
+        let simulated = self.stepper(theta)?.run(&self.log.command_v, self.log.position_m[0])?;
+        let apart: Vec<f64> = self.log.position_m.iter().zip(&simulated).map(|(m, s)| m - s).collect();
+        self.speed(&apart)
     }
 
     /// Mass, viscous and Coulomb friction of the rigid axis that the record shows below its lowest mode.
@@ -248,15 +360,16 @@ impl<'a> Record<'a> {
     fn start(&self, [mass_kg, viscous_n_s_m, coulomb_n]: [f64; 3]) -> Result<Vec<f64>, ServoError> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         for hz in &self.options.start_hz {
-            for share in [0.2_f64, 0.35, 0.5, 0.7] {
-                let load_kg = mass_kg * (1.0 - share);
+            for share in [0.1_f64, 0.2, 0.35, 0.5, 0.7] {
+                // What the motor feels of the load it feels through the gear.
+                let load_kg = mass_kg * (1.0 - share) * self.declared[0];
                 let omega = 2.0 * std::f64::consts::PI * hz;
                 // A twentieth of critical damping.
                 let damping = 0.1 * load_kg * omega;
                 let logs = [mass_kg * share, load_kg, load_kg * omega * omega, damping].map(f64::ln);
                 let mut theta = logs.to_vec();
                 theta.extend([viscous_n_s_m.max(0.1 * mass_kg), coulomb_n.max(1e-3), 0.5, 0.5]);
-                let Ok(residuals) = self.residuals(&self.axis(&theta)) else { continue };
+                let Ok(residuals) = self.speed_error(&theta) else { continue };
                 let size = norm(&residuals);
                 if best.as_ref().is_none_or(|(least, _)| size < *least) {
                     best = Some((size, theta));
@@ -273,17 +386,30 @@ impl<'a> Record<'a> {
 
     fn report(&self, fitted: &Fitted) -> Result<FlexibleReport, ServoError> {
         let theta = &fitted.parameters;
-        let axis = self.axis(theta);
         let n = fitted.residuals.len() - 2;
         let covariance = self.covariance(fitted, n)?;
-        let whiteness = whiteness(&fitted.residuals[..n], self.row_rate_hz());
+        let innovations = &fitted.residuals[..n];
         let speed = self.speed(&self.log.position_m)?;
-        let coefficients = self.coefficients(theta, &covariance);
         let splits = [(6, "B_m/B"), (7, "C_m/C")].map(|(j, name)| {
-            let half = covariance.factor * covariance.blocks[(j, j)].sqrt();
+            let half = covariance.half_width(&unit_vector(j, 1.0));
             let interval = [theta[j] - half, theta[j] + half];
             Split { name, share_of_motor: theta[j], interval, is_identified: is_told(interval) }
         });
+        Ok(FlexibleReport {
+            coefficients: self.coefficients(theta, &covariance),
+            axis: self.axis(theta),
+            is_apparent: self.options.gear == Gear::Undeclared,
+            relative_speed_error: norm(&self.speed_error(theta)?) / norm(&speed),
+            innovation_m: norm(innovations) / (n as f64).sqrt(),
+            whiteness: whiteness(innovations, self.rate_hz),
+            n_rows: n,
+            end: fitted.report,
+            findings: self.findings(&splits, &fitted.report),
+            splits: splits.to_vec(),
+        })
+    }
+
+    fn findings(&self, splits: &[Split], end: &Report) -> Vec<String> {
         let mut findings = Vec::new();
         for s in splits.iter().filter(|s| !s.is_identified) {
             findings.push(format!(
@@ -291,42 +417,39 @@ impl<'a> Record<'a> {
                 s.name, s.interval[0], s.interval[1]
             ));
         }
-        if fitted.report.end != End::Converged {
-            findings.push(format!("the search ended unconverged after {} steps", fitted.report.iterations));
+        if self.options.gear == Gear::Undeclared {
+            findings.push(
+                "no efficiency of the gear is declared: mass, stiffness, damping and friction behind it are apparent, through the gear,                  1/eta times the true ones while the motor drives and eta_b times while it is driven (1.25 and 0.75 for a gear of 0.8 and                  0.75), and their intervals do not hold that factor"
+                    .to_owned(),
+            );
         }
-        Ok(FlexibleReport {
-            coefficients,
-            splits: splits.to_vec(),
-            axis,
-            relative_speed_error: norm(&self.residuals(&axis)?) / norm(&speed),
-            whiteness,
-            n_rows: n,
-            end: fitted.report,
-            findings,
-        })
+        if end.end != End::Converged {
+            findings.push(format!("the search ended unconverged after {} steps", end.iterations));
+        }
+        findings
     }
 
     /// Covariances of the parameters of the iteration, three ways.
     fn covariance(&self, fitted: &Fitted, n: usize) -> Result<Covariance, ServoError> {
-        let solution = solve(&fitted.columns, &fitted.residuals)?;
-        let gram = inverse_gram(&solution);
+        let gram = inverse_gram(&solve(&fitted.columns, &fitted.residuals)?);
         let data: Vec<Vec<f64>> = fitted.columns.iter().map(|c| c[..n].to_vec()).collect();
+        let innovations = &fitted.residuals[..n];
         let options = &self.options.intervals;
-        let (hac, _) = hac_covariance(&data, &fitted.residuals[..n], &gram, self.row_rate_hz(), options.hac_lag_s);
-        // Resamples of the data; the prior stays, its mean drawn by nobody: its variance is added below.
-        let over = over_blocks(n, self.row_rate_hz(), PARAMETERS, options, |chosen| {
-            let pick = |c: &Vec<f64>| chosen.iter().map(|&i| c[i]).chain(c[n..].iter().copied()).collect::<Vec<f64>>();
-            let columns: Vec<Vec<f64>> = fitted.columns.iter().map(pick).collect();
-            solve(&columns, &pick(&fitted.residuals)).ok().map(|s| s.coefficients)
-        })?;
+        let (hac, _) = hac_covariance(&data, innovations, &gram, self.rate_hz, options.hac_lag_s);
+        let information = Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| {
+            (n..n + 2).map(|k| fitted.columns[i][k] * fitted.columns[j][k]).sum()
+        });
+        let length = (options.block_s * self.rate_hz).round() as usize;
+        let clustered =
+            Clustered::new(&data, innovations, &stretches(n, length), Some(&information), Enlarged::Average)?;
         let prior = Self::of_prior(fitted, n, &gram);
-        let sum = |a: &Mat<f64>| Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| a[(i, j)] + prior[(i, j)]);
-        let scatter = norm(&fitted.residuals[..n]) / ((n - PARAMETERS) as f64).sqrt();
+        let scatter = norm(innovations) / ((n - PARAMETERS) as f64).sqrt();
         Ok(Covariance {
             classical: Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| scatter * scatter * gram[(i, j)]),
-            hac: sum(&hac),
-            blocks: sum(&over.covariance),
-            factor: coverage_factor(options.confidence, over.dof),
+            hac: &hac + &prior,
+            known: &prior + &self.of_declared(fitted, &gram)?,
+            clustered,
+            confidence: options.confidence,
         })
     }
 
@@ -335,60 +458,83 @@ impl<'a> Record<'a> {
         let [_, std] = KNOWS_NOTHING;
         let mut out = Mat::zeros(PARAMETERS, PARAMETERS);
         for (k, j) in [(n, 6), (n + 1, 7)] {
-            let row = Mat::from_fn(PARAMETERS, 1, |l, _| fitted.columns[l][k]);
-            let moved = gram * &row;
-            let sigma = fitted.columns[j][k].abs() * std;
-            for a in 0..PARAMETERS {
-                for b in 0..PARAMETERS {
-                    out[(a, b)] += sigma * sigma * moved[(a, 0)] * moved[(b, 0)];
-                }
-            }
+            let row: Vec<f64> = fitted.columns.iter().map(|c| c[k]).collect();
+            add_outer(&mut out, &times(gram, &row), fitted.columns[j][k].abs() * std);
         }
         out
     }
 
-    /// Physical coefficients; their spread by the chain rule, positive ones on a logarithmic scale.
+    /// What the declared inputs' uncertainties bring: each moves the estimate by one linearised step.
+    fn of_declared(&self, fitted: &Fitted, gram: &Mat<f64>) -> Result<Mat<f64>, ServoError> {
+        let theta = &fitted.parameters;
+        let mut out = Mat::zeros(PARAMETERS, PARAMETERS);
+        for (k, input) in self.options.declared().iter().enumerate().filter(|(_, d)| d.standard > 0.0) {
+            // Half a standard uncertainty to either side, unless that is not possible (a delay below zero).
+            let moved = |by: f64| {
+                let mut record = Record { declared: self.declared, ..*self };
+                record.declared[k] += by * input.standard;
+                record.unpredicted(theta)
+            };
+            let (up, down, width) = match moved(-0.5) {
+                Ok(down) => (moved(0.5)?, down, 1.0),
+                Err(_) => (moved(0.5)?, moved(0.0)?, 0.5),
+            };
+            let score: Vec<f64> = fitted
+                .columns
+                .iter()
+                .map(|c| up.iter().zip(&down).zip(c).map(|((u, d), x)| (u - d) / width * x).sum::<f64>())
+                .collect();
+            add_outer(&mut out, &times(gram, &score), 1.0);
+        }
+        // Newtons a volt scale masses, stiffness and friction alike.
+        let scaled = [1.0, 1.0, 1.0, 1.0, theta[4], theta[5], 0.0, 0.0];
+        add_outer(&mut out, &scaled, self.options.force_relative);
+        Ok(out)
+    }
+
+    /// Physical coefficients; their spread by the chain rule: masses, stiffness and damping on a logarithmic scale, friction on its own.
     fn coefficients(&self, theta: &[f64], covariance: &Covariance) -> Vec<ServoCoefficient> {
         let motor = self.options.motor;
         let axis = self.axis(theta);
         let (m, load) = (axis.motor_mass_kg, axis.load_mass_kg);
         let total = m + load;
-        // Value and gradient of its logarithm over the parameters of the iteration.
-        let log_of = |j: usize| unit_vector(j, 1.0);
-        let sum_of = |j: usize| unit_vector(j, 1.0 / theta[j]);
-        let mut shares = [0.0; PARAMETERS];
-        (shares[0], shares[1]) = (m / total, load / total);
-        let mut antiresonance = [0.0; PARAMETERS];
-        (antiresonance[1], antiresonance[2]) = (-0.5, 0.5);
-        let mut resonance = [0.0; PARAMETERS];
-        (resonance[0], resonance[1], resonance[2]) = (-0.5 * load / total, -0.5 * m / total, 0.5);
-        let viscous = theta[4];
+        // Gradient, over the parameters of the iteration, of the logarithm or of the value.
+        let log_of = |j: usize| (true, unit_vector(j, 1.0));
+        let sum_of = |j: usize, factor: f64| (false, unit_vector(j, factor));
+        let logs = |gradient: [f64; 3]| {
+            let mut out = [0.0; PARAMETERS];
+            out[..3].copy_from_slice(&gradient);
+            (true, out)
+        };
+        let (viscous, coulomb) = (motor.viscous_n_m_s_rad(1.0), motor.torque_n_m(1.0));
         [
             ("m", "kg", m, log_of(0)),
             ("M", "kg", load, log_of(1)),
             ("K_e", "N/m", axis.stiffness_n_m, log_of(2)),
             ("B_e", "N s/m", axis.damping_n_s_m, log_of(3)),
-            ("B_sum", "N s/m", viscous, sum_of(4)),
-            ("C_sum", "N", theta[5], sum_of(5)),
+            ("B_sum", "N s/m", theta[4], sum_of(4, 1.0)),
+            ("C_sum", "N", theta[5], sum_of(5, 1.0)),
             ("J_m", "kg m^2", motor.inertia_kg_m2(m), log_of(0)),
-            ("J_eff", "kg m^2", motor.inertia_kg_m2(total), shares),
-            ("B_eff", "N m s/rad", motor.viscous_n_m_s_rad(viscous), sum_of(4)),
-            ("C_eff", "N m", motor.torque_n_m(theta[5]), sum_of(5)),
-            ("f_antiresonance", "Hz", axis.antiresonance_hz(), antiresonance),
-            ("f_resonance", "Hz", axis.resonance_hz(), resonance),
+            ("J_eff", "kg m^2", motor.inertia_kg_m2(total), logs([m / total, load / total, 0.0])),
+            ("B_eff", "N m s/rad", viscous * theta[4], sum_of(4, viscous)),
+            ("C_eff", "N m", coulomb * theta[5], sum_of(5, coulomb)),
+            ("f_antiresonance", "Hz", axis.antiresonance_hz(), logs([0.0, -0.5, 0.5])),
+            ("f_resonance", "Hz", axis.resonance_hz(), logs([-0.5 * load / total, -0.5 * m / total, 0.5])),
         ]
         .into_iter()
-        .map(|(name, unit, value, gradient)| {
-            let std = |c: &Mat<f64>| quadratic(&gradient, c).max(0.0).sqrt();
-            let half = covariance.factor * std(&covariance.blocks);
+        .map(|(name, unit, value, (is_log, gradient))| {
+            let half = covariance.half_width(&gradient);
+            let scale = if is_log { value } else { 1.0 };
+            let interval =
+                if is_log { [value * (-half).exp(), value * half.exp()] } else { [value - half, value + half] };
             ServoCoefficient {
                 name: name.to_owned(),
                 unit,
                 value,
-                classical_std: value.abs() * std(&covariance.classical),
-                hac_std: value.abs() * std(&covariance.hac),
-                block_std: value.abs() * std(&covariance.blocks),
-                interval: [value * (-half).exp(), value * half.exp()],
+                classical_std: scale * quadratic(&gradient, &covariance.classical).sqrt(),
+                hac_std: scale * quadratic(&gradient, &covariance.hac).sqrt(),
+                block_std: scale * covariance.variance(&gradient).sqrt(),
+                interval,
             }
         })
         .collect()
@@ -403,8 +549,24 @@ fn is_told([low, high]: [f64; 2]) -> bool {
 struct Covariance {
     classical: Mat<f64>,
     hac: Mat<f64>,
-    blocks: Mat<f64>,
-    factor: f64,
+    clustered: Clustered,
+    /// Of the prior and the declared inputs: known, not estimated.
+    known: Mat<f64>,
+    confidence: f64,
+}
+
+impl Covariance {
+    fn variance(&self, gradient: &[f64; PARAMETERS]) -> f64 {
+        quadratic(gradient, &self.clustered.covariance) + quadratic(gradient, &self.known)
+    }
+
+    /// Of the interval, with the degrees of freedom by Welch and Satterthwaite.
+    fn half_width(&self, gradient: &[f64; PARAMETERS]) -> f64 {
+        let scatter = quadratic(gradient, &self.clustered.covariance);
+        let known = quadratic(gradient, &self.known);
+        let dof = effective_dof(&[(scatter, self.clustered.dof(gradient)), (known, f64::INFINITY)]);
+        coverage_factor(self.confidence, dof) * (scatter + known).sqrt()
+    }
 }
 
 fn unit_vector(j: usize, value: f64) -> [f64; PARAMETERS] {
@@ -415,7 +577,21 @@ fn unit_vector(j: usize, value: f64) -> [f64; PARAMETERS] {
 
 /// `gᵀ C g`.
 fn quadratic(g: &[f64; PARAMETERS], c: &Mat<f64>) -> f64 {
-    (0..PARAMETERS).map(|i| (0..PARAMETERS).map(|j| g[i] * c[(i, j)] * g[j]).sum::<f64>()).sum()
+    (0..PARAMETERS).map(|i| (0..PARAMETERS).map(|j| g[i] * c[(i, j)] * g[j]).sum::<f64>()).sum::<f64>().max(0.0)
+}
+
+/// `C x`.
+fn times(c: &Mat<f64>, x: &[f64]) -> Vec<f64> {
+    (0..PARAMETERS).map(|i| (0..PARAMETERS).map(|j| c[(i, j)] * x[j]).sum()).collect()
+}
+
+/// Adds `(s x)(s x)ᵀ`.
+fn add_outer(out: &mut Mat<f64>, x: &[f64], s: f64) {
+    for i in 0..PARAMETERS {
+        for j in 0..PARAMETERS {
+            out[(i, j)] += s * x[i] * s * x[j];
+        }
+    }
 }
 
 #[cfg(test)]
@@ -462,5 +638,27 @@ mod tests {
         let split = &report.splits[0];
         assert!(!split.is_identified, "{split:?}");
         assert!(report.findings.iter().any(|f| f.starts_with("B_m/B is not identifiable from the motor's side")));
+    }
+
+    #[test]
+    fn a_load_behind_a_gear_is_itself_where_the_gear_is_declared_and_apparent_where_it_is_not() {
+        let axis = TwoMass { efficiency_forward: 0.8, efficiency_backward: 0.75, ..carriage() };
+        let log = record(&axis, 1000.0, 10.0, &Noise { force_std_n: 0.05, ..Noise::encoder_only() }, 3).unwrap();
+        let of =
+            |gear| identify_flexible(&log, &FlexibleOptions { gear, ..FlexibleOptions::new(MotorSide::MCD) }).unwrap();
+        let eta = |value: f64| Uncertain::new(value, 0.02 * value);
+        let report = of(Gear::Declared { forward: eta(0.8), backward: eta(0.75) });
+        let c = report.coefficient("M").unwrap();
+        assert!((c.interval[0]..=c.interval[1]).contains(&axis.load_mass_kg), "{c:?}");
+        // What 2 % of the efficiency is worth is in the interval.
+        assert!(c.interval[1] - c.interval[0] > 2.0 * 0.02 * axis.load_mass_kg, "{c:?}");
+        let chain = report.flexible();
+        assert!((chain.span_s * 3.0 * axis.resonance_hz() - 1.0).abs() < 0.05, "{chain:?}");
+        let apparent = of(Gear::Undeclared);
+        assert!(
+            apparent.is_apparent
+                && apparent.findings.iter().any(|f| f.starts_with("no efficiency of the gear is declared"))
+        );
+        assert!(apparent.coefficient("M").unwrap().value > 1.02 * axis.load_mass_kg);
     }
 }

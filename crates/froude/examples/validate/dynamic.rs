@@ -44,7 +44,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
     let control = setup::control(&carriage, 3.0 * 1000.0 * TowedBody::CYLINDER.displaced_m3)?;
     let (twin, load) = setup::twin(&carriage, Load::default())?;
     for d in [20.0, 10.0] {
-        pinned(claims, &twin, load, control, d, seeds)?;
+        pinned(claims, &twin, load, &control, d, seeds)?;
     }
     Ok(())
 }
@@ -53,7 +53,7 @@ fn pinned(
     claims: &mut Claims,
     twin: &TwinConfig,
     load: Load,
-    control: Config,
+    control: &Config,
     d: f64,
     seeds: usize,
 ) -> Result<(), Box<dyn Error>> {
@@ -138,7 +138,7 @@ fn pinned(
 }
 
 /// One campaign, from power-up to the report.
-fn campaign(twin: &TwinConfig, mut load: Load, control: Config, d: f64, seed: u64) -> Result<DragReport, String> {
+fn campaign(twin: &TwinConfig, mut load: Load, control: &Config, d: f64, seed: u64) -> Result<DragReport, String> {
     load.body.drag_n_s2_m2 = d;
     let mut rig = Rig::homed(twin, control, seed)?;
     let mut runs = Vec::new();
@@ -168,21 +168,21 @@ fn campaign(twin: &TwinConfig, mut load: Load, control: Config, d: f64, seed: u6
 
 /// The loop, and how many runs it has made.
 struct Rig {
-    rig: ClosedLoop,
+    driven: ClosedLoop,
     seed: u64,
     run: u64,
     acceleration_m_s2: f64,
 }
 
 impl Rig {
-    fn homed(twin: &TwinConfig, control: Config, seed: u64) -> Result<Self, String> {
+    fn homed(twin: &TwinConfig, control: &Config, seed: u64) -> Result<Self, String> {
         let mut twin = *twin;
         twin.axes[0].start_m = 0.02;
-        let mut rig = ClosedLoop::new(&twin, control, seed).map_err(|e| e.to_string())?;
-        rig.step();
-        let is_homed =
-            rig.carry_out(Request::Enable { axis: 0 }, 0, 1) && rig.carry_out(Request::Home { axis: 0 }, 0, 400_000);
-        let fault = rig.output.status.fault;
+        let mut driven = ClosedLoop::new(&twin, *control, seed).map_err(|e| e.to_string())?;
+        driven.step();
+        let is_homed = driven.carry_out(Request::Enable { axis: 0 }, 0, 1)
+            && driven.carry_out(Request::Home { axis: 0 }, 0, 400_000);
+        let fault = driven.output.status.fault;
         is_homed.then_some(Self { rig, seed, run: 0, acceleration_m_s2: 0.6 }).ok_or(format!("homing: {fault:?}"))
     }
 
@@ -200,7 +200,7 @@ impl Rig {
         for speed_m_s in SPEEDS_M_S {
             for (start_m, end_m) in [(from_m, to_m), (to_m, from_m)] {
                 self.run += 1;
-                self.rig.twin.begin_run([load; 2], self.seed << 16 | self.run);
+                self.driven.twin.begin_run([load; 2], self.seed << 16 | self.run);
                 let body = if load.mounting == Mounting::Wet { BodyState::Wet } else { BodyState::Dry };
                 let direction = (end_m - start_m).signum();
                 let id = format!("{body:?} {pair} {:+.2} m/s", direction * speed_m_s);
@@ -218,8 +218,8 @@ impl Rig {
 
     fn go(&mut self, target_m: f64, speed_m_s: f64) -> Result<(), String> {
         let request = self.request(target_m, speed_m_s);
-        let is_there = self.rig.carry_out(request, 0, 1_000_000);
-        let status = self.rig.output.status;
+        let is_there = self.driven.carry_out(request, 0, 1_000_000);
+        let status = self.driven.output.status;
         is_there.then_some(()).ok_or(format!("move to {target_m} m: {:?} {:?}", status.fault, status.refusal))
     }
 
@@ -251,13 +251,13 @@ impl Rig {
         };
         let still = (STILL_S * 4000.0) as u64;
         self.log(&mut out, still);
-        self.rig.request(self.request(target_m, speed_m_s));
+        self.driven.request(self.request(target_m, speed_m_s));
         self.log(&mut out, TICKS);
         let mut patience = 60_000;
-        while self.rig.output.status.axes[0].reference_m_s != 0.0 || patience == 60_000 {
+        while self.driven.output.status.axes[0].reference_m_s != 0.0 || patience == 60_000 {
             self.log(&mut out, TICKS);
             patience -= 1;
-            let status = self.rig.output.status;
+            let status = self.driven.output.status;
             if patience == 0 || status.fault.is_some() || status.refusal.is_some() {
                 return Err(format!("{}: {:?} {:?}", out.id, status.fault, status.refusal));
             }
@@ -270,10 +270,10 @@ impl Rig {
         for _ in 0..ticks / TICKS {
             let mut sums = [0.0; 4];
             for _ in 0..TICKS {
-                let command_v = self.rig.output.command.axes[0].volts;
-                self.rig.step();
-                let axis = &self.rig.output.status.axes[0];
-                let row = [command_v, axis.position_m, axis.reference_m_s, self.rig.twin.force_n()];
+                let command_v = self.driven.output.command.axes[0].volts;
+                self.driven.step();
+                let axis = &self.driven.output.status.axes[0];
+                let row = [command_v, axis.position_m, axis.reference_m_s, self.driven.twin.force_n()];
                 sums.iter_mut().zip(row).for_each(|(sum, x)| *sum += x);
             }
             let [command_v, position_m, reference_m_s, force_n] = sums.map(|s| s / TICKS as f64);

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, carriage, dynamic, coverage); no page is
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, dynamic, coverage); no page is
 //! written then. A line that misses its bar fails the run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
 
@@ -15,6 +15,8 @@ mod flexible;
 mod kvlcc2;
 mod rm2;
 mod snake;
+mod sweeps;
+mod two_mass_rig;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -51,7 +53,13 @@ fn main() -> ExitCode {
         }
         if wants("servo") {
             emps::all(claims, &root)?;
-            flexible::coverage(claims, if full { 400 } else { 100 })?;
+        }
+        if wants("two-mass") {
+            flexible::coverage(claims, if full { 400 } else { 30 })?;
+            two_mass_rig::coverage(claims, if full { 100 } else { 12 })?;
+        }
+        if wants("sweeps") {
+            sweeps::coverage(claims, if full { 400 } else { 40 })?;
         }
         if wants("carriage") {
             carriage::all(claims, if full { 400 } else { 60 });

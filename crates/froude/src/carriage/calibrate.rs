@@ -49,7 +49,7 @@ const EXCITING: f64 = 4.0;
 pub fn calibrate(paths: &[PathBuf], campaign: Option<PathBuf>) -> Result<CalibrationOutcome, Error> {
     let runs = read(paths, &[RunKind::Calibration, RunKind::Jog], campaign.as_deref())?;
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
-    let setup = setup_of(runs.campaign.as_ref(), constants, None);
+    let setup = setup_of(runs.campaign.as_ref(), constants);
     let hung: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let (calibration, why_not) = calibration_of(&hung, runs.campaign.as_ref(), &setup);

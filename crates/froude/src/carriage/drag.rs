@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, calibrate};
 use froude_identify::carriage::coefficient::{Coefficient, Method};
-use froude_identify::carriage::mbdp::Flexible;
 use froude_identify::carriage::report::{DragReport, drag_report};
 use froude_identify::carriage::run::{
     self as drag_run, Ballast, DragRun, DragSetup, Efficiency, SensorBudget, Uncertain,
@@ -20,6 +19,7 @@ use froude_report::number;
 use indexmap::IndexMap;
 
 use super::runs::{Runs, density_kg_m3, for_drag, read};
+use super::servo::two_masses;
 use crate::Error;
 
 /// What to reduce.
@@ -31,8 +31,6 @@ pub struct DragJob {
     pub campaign: Option<PathBuf>,
     /// Folder of the results; beside the runs, unless said.
     pub out: Option<PathBuf>,
-    /// Two-mass model, where it was identified.
-    pub flexible: Option<Flexible>,
     /// Date for the report.
     pub date: Option<String>,
 }
@@ -52,8 +50,8 @@ pub struct DragOutcome {
     pub page: PathBuf,
 }
 
-/// Kinds of run that tell drag.
-const KINDS: [RunKind; 4] = [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration];
+/// Kinds of run that tell drag; pulses tell the two masses of the flexible model.
+const KINDS: [RunKind; 5] = [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration, RunKind::Excitation];
 
 /// Standard acceleration of gravity, m/s².
 const G_M_S2: f64 = 9.80665;
@@ -74,7 +72,9 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     let reduced: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
-    let mut setup = setup_of(runs.campaign.as_ref(), constants, job.flexible);
+    let (two_masses, no_two_masses) = two_masses(&runs.logs)?;
+    let mut setup = setup_of(runs.campaign.as_ref(), constants);
+    setup.flexible = two_masses.map(|report| report.flexible());
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
     setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
     let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
@@ -94,6 +94,7 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     }));
     report.findings.extend(runs.findings.iter().cloned());
     report.findings.extend(why_not);
+    report.findings.extend(no_two_masses);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
@@ -154,10 +155,9 @@ fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Optio
 
 /// What is declared, from the campaign where there is one, else from what the runs say of their rig.
 #[must_use]
-pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>, flexible: Option<Flexible>) -> DragSetup {
+pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
     let mut setup = DragSetup::of_the_paper();
     setup.efficiency = Efficiency::Undeclared;
-    setup.flexible = flexible;
     setup.density_kg_m3 = density_kg_m3(campaign);
     let carriage = campaign.and_then(|c| c.carriage.as_ref());
     if let Some(campaign) = campaign {

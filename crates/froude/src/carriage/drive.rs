@@ -282,7 +282,7 @@ struct Live {
 impl Live {
     fn new(prepared: &Prepared) -> Self {
         let asked = &prepared.asked;
-        let setup = setup_of(Some(&prepared.campaign), None, None);
+        let setup = setup_of(Some(&prepared.campaign), None);
         let weight_relative = asked.calibration.as_ref().map_or(0.0, weight_relative);
         let online = asked.stop_at_relative_half_width.map(|target| OnLine::new(target, 0.0, asked.repeats));
         let directions = if asked.directions == froude_records::carriage::Directions::Both { 2 } else { 1 };

@@ -5,14 +5,15 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_identify::carriage::Uncertain;
 use froude_identify::carriage::steady::{SteadySettings, mean, window};
 use froude_identify::servo::chain::Rows;
 use froude_identify::servo::motor::MotorSide;
-use froude_identify::servo::report::of_rows;
+use froude_identify::servo::report::of_runs as of_several;
 use froude_identify::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
-use froude_identify::servo::{Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo};
+use froude_identify::servo::{Chain, Friction, Gear, ServoCoefficient, ServoLog, ServoReport, identify_servo};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{RunKind, RunLog, import_run};
+use froude_records::run::{AxisConstants, Declared, RunKind, RunLog, import_run};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
@@ -153,6 +154,9 @@ const KINDS: [RunKind; 3] = [RunKind::Friction, RunKind::Dry, RunKind::Excitatio
 const ROW_RATE_HZ: f64 = 20.0;
 /// Corner of the position's filter for the rigid model, Hz: the chain's modes lie above it.
 const RIGID_CORNER_HZ: f64 = 3.0;
+/// The model of one Coulomb friction everywhere, and that of a map.
+const CONSTANT: &str = "symmetric";
+const OVER_POSITION: &str = "over position";
 /// Distance of the friction map's knots, m.
 const KNOT_M: f64 = 0.25;
 
@@ -161,47 +165,77 @@ fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis()).ok_or_else(|| {
         Error::Nothing("the runs do not say what rig they come from (their .toml has no [rig])".to_owned())
     })?;
-    let motor = MotorSide {
-        torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
-        amplifier_a_v: constants.amplifier_a_v.value,
-        gear_ratio: constants.gear_ratio.value,
-        sprocket_radius_m: constants.sprocket_radius_m.value,
-    };
+    let motor = motor_of(constants);
     let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.kind == RunKind::Friction).collect();
     let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.kind == RunKind::Dry).collect() } else { slow };
     let mut models = Vec::new();
     if !slow.is_empty() {
         let map = Friction { knots_m: knots(&slow)?, ..Friction::default() };
         for (name, friction) in
-            [("symmetric", Friction::default()), ("asymmetric", Friction::asymmetric()), ("over position", map)]
+            [(CONSTANT, Friction::default()), ("asymmetric", Friction::asymmetric()), (OVER_POSITION, map)]
         {
             let report = of_slow(&slow, &motor, friction)?;
             models.push(Model { name: name.to_owned(), report });
         }
     }
     let mut findings = told(&models, runs.findings.clone());
-    let flexible = match runs.logs.iter().find(|l| l.meta.kind == RunKind::Excitation) {
-        Some(log) => {
-            let rate_hz = log.sample_rate_hz().unwrap_or(1_000.0);
-            let options = FlexibleOptions {
-                decimation: (rate_hz / 100.0).round().max(1.0) as usize,
-                ..FlexibleOptions::new(motor)
-            };
-            match identify_flexible(&servo_log(log)?, &options) {
-                Ok(report) => Some(report),
-                Err(error) => {
-                    findings.push(Finding::new(Severity::Warning, "two-mass", format!("{}: {error}", log.meta.id)));
-                    None
-                }
-            }
-        }
-        None => None,
-    };
+    findings.extend(varies(&models));
+    if !models.is_empty() {
+        findings.push(Finding::new(
+            Severity::Note,
+            "servo",
+            "M and J_eff of runs at constant speed rest on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
+             may be off by a per cent, which their intervals do not hold; take the masses from the pulses"
+                .to_owned(),
+        ));
+    }
+    let (flexible, why_not) = two_masses(&runs.logs)?;
+    findings.extend(why_not);
     if let Some(report) = &flexible {
         findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
     }
     let repeatability = repeatability(&slow, &motor)?;
     Ok(ServoOutcome { models, flexible, repeatability, motor: Some(motor), findings, page: PathBuf::new() })
+}
+
+fn motor_of(constants: &AxisConstants) -> MotorSide {
+    MotorSide {
+        torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
+        amplifier_a_v: constants.amplifier_a_v.value,
+        gear_ratio: constants.gear_ratio.value,
+        sprocket_radius_m: constants.sprocket_radius_m.value,
+    }
+}
+
+/// Two masses and a chain from the first run with pulses; a finding where there is one that does not tell them.
+pub(crate) fn two_masses(logs: &[RunLog]) -> Result<(Option<FlexibleReport>, Option<Finding>), Error> {
+    let pulses = logs.iter().find(|l| l.meta.kind == RunKind::Excitation);
+    let Some((log, constants)) = pulses.and_then(|l| l.meta.moving_axis().map(|c| (l, c))) else {
+        return Ok((None, None));
+    };
+    Ok(match identify_flexible(&servo_log(log)?, &flexible_options(motor_of(constants), constants)) {
+        Ok(report) => (Some(report), None),
+        Err(error) => (None, Some(Finding::new(Severity::Warning, "two-mass", format!("{}: {error}", log.meta.id)))),
+    })
+}
+
+/// From a command to the force on the rotor: half a tick of the controller and the amplifier's current loop, which a campaign does not
+/// declare; 0.5 to 2 kHz is usual.
+const DELAY_S: Uncertain = Uncertain::new(2e-4, 1e-4);
+
+/// What the campaign declares of the drive.
+fn flexible_options(motor: MotorSide, constants: &AxisConstants) -> FlexibleOptions {
+    let uncertain = |d: &Declared| Uncertain::new(d.value, d.standard_uncertainty);
+    let gear = match (&constants.efficiency_forward, &constants.efficiency_backward) {
+        (Some(forward), Some(backward)) => {
+            Gear::Declared { forward: uncertain(forward), backward: uncertain(backward) }
+        }
+        _ if motor.gear_ratio == 1.0 => Gear::Lossless,
+        _ => Gear::Undeclared,
+    };
+    let part = |d: &Declared| d.standard_uncertainty / d.value;
+    let force_relative = part(&constants.torque_constant_n_m_a).hypot(part(&constants.amplifier_a_v));
+    FlexibleOptions { gear, delay_s: DELAY_S, force_relative, ..FlexibleOptions::new(motor) }
 }
 
 /// Knots over the travel that the runs cover.
@@ -226,11 +260,11 @@ fn moving(log: &RunLog) -> Result<Option<RunLog>, Error> {
     Ok(first.zip(last).map(|(first, last)| log.between(log.time_s[first], log.time_s[last])))
 }
 
-/// All slow runs as rows of one regression.
+/// All slow runs as rows of one regression; the run is the piece of evidence.
 fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<ServoReport, Error> {
-    let mut all: Option<Rows> = None;
     let mut chain = Chain::new(motor.force_per_volt_n_v(), friction);
     let mut record_rate_hz = 0.0;
+    let mut runs: Vec<Rows> = Vec::new();
     for log in logs {
         let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
         record_rate_hz = rate_hz;
@@ -240,16 +274,36 @@ fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<Se
             ..chain
         };
         let Some(moving) = moving(log)? else { continue };
-        let rows = chain.rows(&servo_log(&moving)?)?;
-        match &mut all {
-            None => all = Some(rows),
-            Some(all) => all.append(rows),
-        }
+        runs.push(chain.rows(&servo_log(&moving)?)?);
     }
-    let rows = all.ok_or_else(|| Error::Nothing("no run with steady motion".to_owned()))?;
-    let mut report = of_rows(rows, &chain)?;
+    if runs.is_empty() {
+        return Err(Error::Nothing("no run with steady motion".to_owned()));
+    }
+    let mut report = of_several(runs, &chain)?;
     report.record_rate_hz = record_rate_hz;
     Ok(report)
+}
+
+/// Whether a constant friction stands for one that changes along the travel: its interval is then that of a mean, and of no place.
+fn varies(models: &[Model]) -> Option<Finding> {
+    let of = |name: &str| models.iter().find(|m| m.name == name).map(|m| &m.report);
+    let constant = of(CONSTANT)?.coefficient("F_c")?;
+    let map: Vec<&ServoCoefficient> =
+        of(OVER_POSITION)?.coefficients.iter().filter(|c| c.name.starts_with("F_c(")).collect();
+    if map.iter().all(|c| c.interval[0] <= constant.value && constant.value <= c.interval[1]) {
+        return None;
+    }
+    let least = map.iter().min_by(|a, b| a.value.total_cmp(&b.value))?;
+    let most = map.iter().max_by(|a, b| a.value.total_cmp(&b.value))?;
+    Some(Finding::new(
+        Severity::Warning,
+        "servo",
+        format!(
+            "friction changes along the travel, from {} = {:.2} N to {} = {:.2} N: F_c = {:.2} N (and C_eff) is its mean over what was \
+             travelled, and its interval says how well the mean repeats, not what friction is at a place; take the map",
+            least.name, least.value, most.name, most.value, constant.value
+        ),
+    ))
 }
 
 /// Mean force of the steady windows by speed and direction, with the standard deviation over runs.
@@ -286,10 +340,10 @@ pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> 
             "coefficient",
             "unit",
             "value",
-            "95 % interval (blocks)",
+            "95 % interval (clusters)",
             "std (white noise)",
             "std (HAC)",
-            "std (blocks)",
+            "std (clusters)",
         ]
         .map(str::to_owned)
         .to_vec(),
@@ -309,6 +363,22 @@ pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> 
             })
             .collect(),
     }
+}
+
+/// Two masses; behind a gear of which nobody declared the efficiency every row says that it is apparent.
+#[must_use]
+pub fn flexible_table(report: &FlexibleReport) -> TextTable {
+    let mut table =
+        coefficient_table("Motor, chain and load from motor-side signals.".to_owned(), &report.coefficients);
+    if report.is_apparent {
+        for (row, c) in table.rows.iter_mut().zip(&report.coefficients) {
+            // The rotor lies before the gear, and frequencies do not care.
+            if !matches!(c.name.as_str(), "m" | "J_m" | "f_antiresonance" | "f_resonance") {
+                row[0].push_str(" (apparent, through the gear)");
+            }
+        }
+    }
+    table
 }
 
 /// Sums at the motor's shaft (MCD Table II) of a rigid model: J_eff, B_eff, C_eff.
@@ -349,16 +419,16 @@ fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Docum
         if let Some(w) = &r.whiteness {
             paragraphs.push(format!(
                 "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of white-noise least squares are no honest \
-                 intervals unless that p is large; the intervals are those of whole blocks of {} s.",
+                 intervals unless that p is large; the intervals are those of {}.",
                 w.r1,
                 w.lags,
                 w.ljung_box,
                 number::p_value(w.p),
-                number::plain(r.spread.block_s, 2)
+                r.spread.pieces()
             ));
         }
         let mut tables = vec![coefficient_table(format!("Rigid model, friction {}.", model.name), &r.coefficients)];
-        if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == "symmetric") {
+        if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
             tables.push(coefficient_table(
                 "The same at the motor's shaft (MCD Table II). A gear that loses part of the torque is in these numbers.".to_owned(),
                 &effective(r, motor),
@@ -386,10 +456,7 @@ fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Docum
         sections.push(DocumentSection {
             title: "Two masses".to_owned(),
             paragraphs: splits.collect(),
-            tables: vec![coefficient_table(
-                "Motor, chain and load from motor-side signals.".to_owned(),
-                &f.coefficients,
-            )],
+            tables: vec![flexible_table(f)],
             charts: Vec::new(),
         });
     }
