@@ -183,7 +183,7 @@ impl Rig {
         let is_homed = driven.carry_out(Request::Enable { axis: 0 }, 0, 1)
             && driven.carry_out(Request::Home { axis: 0 }, 0, 400_000);
         let fault = driven.output.status.fault;
-        is_homed.then_some(Self { rig, seed, run: 0, acceleration_m_s2: 0.6 }).ok_or(format!("homing: {fault:?}"))
+        is_homed.then_some(Self { driven, seed, run: 0, acceleration_m_s2: 0.6 }).ok_or(format!("homing: {fault:?}"))
     }
 
     /// All speeds out and back.
