@@ -48,7 +48,7 @@ pub enum Verb {
         #[arg(long)]
         all: bool,
     },
-    /// Say what is in a table, campaign or record, with units, ranges and every finding.
+    /// Say what is in a table, campaign, record or run (.mcap), with units, ranges and every finding.
     Inspect {
         /// The file.
         file: PathBuf,

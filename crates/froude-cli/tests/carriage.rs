@@ -61,6 +61,17 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     let again = json(&["run", text(&campaign), "--yes", "--json"]);
     assert_eq!((again["driven"].as_u64(), again["resumed"].as_u64()), (Some(0), Some(n)));
 
+    // A run tells what it was for, what is in it and what happened.
+    let mcap = std::fs::read_dir(&runs).unwrap().filter_map(Result::ok).map(|e| e.path());
+    let wet = mcap.filter(|p| p.extension().is_some_and(|e| e == "mcap")).find(|p| text(p).contains("wet")).unwrap();
+    let inside = json(&["inspect", text(&wet), "--json"]);
+    assert_eq!(inside["kind"], "run");
+    let columns = inside["columns"].as_array().unwrap();
+    let position = columns.iter().find(|c| c["name"] == "y/position").unwrap();
+    assert_eq!(position["unit"], "m");
+    assert!(position["high"].as_f64().unwrap() - position["low"].as_f64().unwrap() > 2.1, "{position}");
+    assert!(inside["facts"].to_string().contains("the motion begins"), "{inside}");
+
     let record = json(&["carriage", "drag", text(&runs), "--json"]);
     let estimates = record["estimates"].as_array().unwrap();
     for model in ["drag_fsm", "drag_mcd", "drag_mbdp_mapped"] {
@@ -95,6 +106,20 @@ fn a_campaign_beyond_the_travel_is_refused_with_its_numbers_before_anything_move
     assert!(error.contains("nothing was moved: 003-warm-up-forward: it ends 0.150 m before the hard stop"), "{error}");
     assert!(error.contains("Shorten the travel or start further back"), "{error}");
     assert!(!folder.path().join("campaign-runs").exists());
+}
+
+#[test]
+fn a_weight_that_would_pull_the_carriage_into_its_stop_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[("floor = \"4.05 m\"\n", "")]);
+    let out = froude(&["run", text(&campaign), "--check"]);
+    assert_eq!(out.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(
+        error.contains("of its 10.00 N: if the torque fails the weight pulls the carriage into the stop"),
+        "{error}"
+    );
+    assert!(error.contains("floor = "), "{error}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `froude inspect`: what is in a table, a campaign or a record, and everything doubtful about it. Nothing is fitted.
+//! `froude inspect`: what is in a table, a campaign, a record or a carriage's run, and everything doubtful about it. Nothing is fitted.
 
 use std::path::Path;
 
@@ -7,8 +7,9 @@ use froude_identify::source::{asked_models, check_budget, laws};
 use froude_identify::{lint, validity};
 use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
 use froude_records::estimate::Estimate;
-use froude_records::finding::Finding;
+use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
+use froude_records::run::read_run;
 use froude_records::table::{ColumnData, Table, read_table};
 
 use crate::Error;
@@ -73,11 +74,11 @@ pub struct SourceFacts {
 /// What is in a file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Inspection {
-    /// `table`, `campaign` or `estimate`.
+    /// `table`, `campaign`, `estimate` or `run`.
     pub kind: String,
     /// Facts in words, `(name, value)`.
     pub facts: Vec<(String, String)>,
-    /// Columns of a table.
+    /// Columns of a table or a run.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub columns: Vec<ColumnFacts>,
     /// Sources of a campaign.
@@ -97,7 +98,7 @@ impl Inspection {
     }
 }
 
-/// Inspects a table, a campaign or an estimate record, by the ending of its name.
+/// Inspects a table, a campaign, an estimate record or a run, by the ending of its name.
 ///
 /// # Errors
 ///
@@ -107,6 +108,7 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
     match ending.as_deref() {
         Some("toml") => campaign(path),
         Some("json") => estimates(path),
+        Some("mcap") => run(path),
         _ => table(path, sidecar),
     }
 }
@@ -246,4 +248,52 @@ fn estimates(path: &Path) -> Result<Inspection, Error> {
     let mut facts = vec![("schema".to_owned(), record.schema.clone())];
     facts.extend(record.data.iter().map(|d| ("data".to_owned(), d.path.clone())));
     Ok(Inspection { estimates: record.estimates, ..Inspection::new("estimate", facts, record.findings) })
+}
+
+/// A carriage's run: what it was for, its channels, what happened, what is missing.
+fn run(path: &Path) -> Result<Inspection, Error> {
+    let log = read_run(path)?;
+    let meta = &log.meta;
+    let mut facts: Vec<(String, String)> = Vec::new();
+    let mut fact = |name: &str, value: String| facts.push((name.to_owned(), value));
+    fact("run", format!("{} of campaign \"{}\"", meta.id, meta.campaign));
+    fact("kind", format!("{}, body {}, axis {}", meta.kind.name(), meta.body.name(), meta.axis.name()));
+    if let (Some(speed), Some(direction)) = (meta.target_speed_m_s, meta.direction) {
+        fact("steady part", format!("{speed} m/s {}", direction.name()));
+    }
+    if let Some(pair) = meta.pair {
+        fact("pair", pair.to_string());
+    }
+    if let Some(weight_n) = meta.hung_weight_n {
+        fact("weight over the pulley", format!("{weight_n} N"));
+    }
+    let note = if meta.note.is_empty() { String::new() } else { format!(": {}", meta.note) };
+    fact("status", format!("{}{note}", meta.status.name()));
+    let rate = log.sample_rate_hz().map_or_else(String::new, |hz| format!(" at {hz:.1} Hz"));
+    fact("samples", format!("{}{rate}, {:.3} s", log.len(), log.duration_s()));
+    if let Some(clock) = &meta.clock {
+        fact(
+            "board clock",
+            format!("time zero is {:.6} s of the host, ± {:.1e} s", clock.host_at_zero_s, clock.standard_uncertainty_s),
+        );
+    }
+    for (name, version) in &meta.versions {
+        fact("version", format!("{name} {version}"));
+    }
+    for event in &log.events {
+        fact(&format!("{:.3} s", event.time_s), format!("{}: {}", event.kind.name(), event.text));
+    }
+    let findings = log.lost.iter().map(|gap| Finding::new(Severity::Warning, "run-gap", gap.text.clone())).collect();
+    let columns = log
+        .channels
+        .iter()
+        .map(|(name, c)| ColumnFacts {
+            name: name.clone(),
+            unit: c.unit.clone(),
+            low: c.values.iter().copied().reduce(f64::min),
+            high: c.values.iter().copied().reduce(f64::max),
+            distinct: c.values.iter().map(|v| v.to_bits()).collect::<std::collections::BTreeSet<_>>().len(),
+        })
+        .collect();
+    Ok(Inspection { columns, ..Inspection::new("run", facts, findings) })
 }

@@ -27,7 +27,7 @@ pub struct RunMeta {
     pub direction: Option<Direction>,
     /// What hangs on the strut.
     pub body: BodyState,
-    /// Whether a dry carriage carries ballast for the wet wheel load.
+    /// Whether ballast makes the wheel load the same wet and dry.
     pub is_ballasted: bool,
     /// Known weight over the pulley, N, in a calibration.
     pub hung_weight_n: Option<f64>,
