@@ -55,17 +55,17 @@ fn main() -> ExitCode {
             emps::all(claims, &root)?;
         }
         if wants("two-mass") {
-            flexible::coverage(claims, if full { 400 } else { 30 })?;
-            two_mass_rig::coverage(claims, if full { 100 } else { 12 })?;
+            flexible::coverage(claims, if full { 200 } else { 30 })?;
+            two_mass_rig::coverage(claims, if full { 60 } else { 12 })?;
         }
         if wants("sweeps") {
-            sweeps::coverage(claims, if full { 400 } else { 40 })?;
+            sweeps::coverage(claims, if full { 200 } else { 40 })?;
         }
         if wants("carriage") {
             carriage::all(claims, if full { 400 } else { 60 });
         }
         if wants("dynamic") {
-            dynamic::all(claims, &root, if full { 400 } else { 8 })?;
+            dynamic::all(claims, &root, if full { 200 } else { 8 })?;
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;
