@@ -22,7 +22,7 @@ use froude::rig::twin::TwinConfig;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
-use crate::carriage::{CALIBRATED_TO, Errors, band};
+use crate::carriage::{CALIBRATED_TO, Errors, mcd_holds};
 use crate::claims::{Claims, Verdict};
 use crate::coverage::normal;
 
@@ -71,32 +71,7 @@ fn pinned(
             .for_each(|c: &Coefficient| out.add(c, d));
         out
     };
-    let chance = 1.0 + if seeds < 400 { 3.0 / (2.0 * seeds as f64).sqrt() } else { 0.0 };
-    let mcd = of(Method::Mcd);
-    let rms_bar = if d > 15.0 { 0.7 } else { 1.0 } * chance;
-    claims.holds(
-        SECTION,
-        &format!("{head}: MCD, root-mean-square error"),
-        &format!("≤ {rms_bar:.2} % (issue)"),
-        format!("{:.3} %", 100.0 * mcd.rms()),
-        100.0 * mcd.rms() <= rms_bar,
-    );
-    let bias_bar = 0.3 * chance;
-    claims.holds(
-        SECTION,
-        &format!("{head}: MCD, bias"),
-        &format!("within ± {bias_bar:.2} % (issue)"),
-        format!("{:+.3} %", 100.0 * mcd.bias()),
-        100.0 * mcd.bias().abs() <= bias_bar,
-    );
-    let (low, high) = band(seeds as u64);
-    claims.holds(
-        SECTION,
-        &format!("{head}: MCD, 95 % interval covers"),
-        &format!("{low} to {high} of {seeds}"),
-        format!("{} of {}", mcd.covered.hits, mcd.covered.trials),
-        (low..=high).contains(&mcd.covered.hits) && mcd.covered.trials == seeds as u64,
-    );
+    let (low, _) = mcd_holds(claims, SECTION, &head, d, seeds, &of(Method::Mcd));
     for method in [Method::Fsm, Method::MbdpMapped] {
         let found = of(method);
         claims.holds(
