@@ -146,7 +146,16 @@ fn refused(prepared: &Prepared) -> Result<(), Error> {
         say!("\nPre-flight passed. Nothing was moved.");
         return Ok(());
     }
-    let lines: Vec<String> = prepared.objections.iter().map(|o| format!("  {}: {}", o.id, o.text)).collect();
+    // The same sentence for many runs is told once, with how many.
+    let mut told: Vec<(&str, &str, usize)> = Vec::new();
+    for o in &prepared.objections {
+        match told.iter_mut().find(|t| t.1 == o.text) {
+            Some(t) => t.2 += 1,
+            None => told.push((&o.id, &o.text, 0)),
+        }
+    }
+    let more = |n: usize| if n == 0 { String::new() } else { format!(" (and {n} more runs)") };
+    let lines: Vec<String> = told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n))).collect();
     Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
 }
 

@@ -157,7 +157,8 @@ fn dry_repeats_alone_say_what_can_be_seen() {
     assert_eq!(
         advice,
         format!(
-            "below {limit:.3} m/s your drag is under its uncertainty: tow faster or repeat {repeats} times at 0.020 m/s"
+            "below {limit:.3} m/s your drag is under its uncertainty: tow faster or repeat {repeats} times at 0.020 m/s (a repeat is one \
+             wet-less-dry difference; a pair out and back gives two)"
         )
     );
 }

@@ -227,7 +227,7 @@ pub fn pairs(points: &[Point]) -> Vec<u32> {
 }
 
 /// Type A of the slope: over pairs where there are two, else over the points of the one pair.
-fn scatter(points: &[Point]) -> Option<(f64, f64, &'static str)> {
+pub(super) fn scatter(points: &[Point]) -> Option<(f64, f64, &'static str)> {
     let pairs = pairs(points);
     if pairs.len() >= 2 {
         let (u, dof) = jackknife(pairs.len(), |g| slope(points.iter().filter(|p| p.pair != pairs[g])))?;
@@ -258,6 +258,17 @@ fn offset(points: &[Point]) -> Option<Uncertain> {
     Some(Uncertain { value: fit(None)?, standard, dof })
 }
 
+/// A scatter that was found otherwise than from the points alone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TypeA {
+    /// Standard uncertainty of D_d, N s²/m².
+    pub standard: f64,
+    /// Its degrees of freedom.
+    pub dof: f64,
+    /// Its line in the budget.
+    pub name: &'static str,
+}
+
 /// D_d of points already in newtons, its scatter replaced by `type_a` where the method has more to shake than its points.
 ///
 /// `None` without a moving point.
@@ -266,18 +277,20 @@ pub fn coefficient(
     method: Method,
     mut points: Vec<Point>,
     setup: &DragSetup,
-    type_a: Option<(f64, f64)>,
+    type_a: Option<TypeA>,
 ) -> Option<Coefficient> {
     let mut budget = Vec::new();
     restore_buoyancy(method, &mut points, setup);
     let measured = slope(&points)?;
     let value = measured - setup.strut_n_s2_m2.map_or(0.0, |s| s.value);
     let found = match type_a {
-        Some((u, dof)) => Some((u, dof, "pair")),
-        None => scatter(&points),
+        Some(TypeA { standard, dof, name }) => Some((standard, dof, "pair", name)),
+        None => scatter(&points).map(|(u, dof, shared)| {
+            let name = if shared == "pair" { "scatter between pairs" } else { "scatter of the runs about the law" };
+            (u, dof, shared, name)
+        }),
     };
-    if let Some((standard, dof, shared)) = found {
-        let name = if shared == "pair" { "scatter between pairs" } else { "scatter of the runs about the law" };
+    if let Some((standard, dof, shared, name)) = found {
         budget.push(Part {
             name: name.to_owned(),
             shared,
@@ -397,7 +410,7 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
 }
 
 /// Standard uncertainty of the slope from forces that err independently, each by `standard_n`: √(Σ x² u²)/Σ x², x = v².
-fn each_alone(points: &[Point], standard_n: impl Fn(&Point) -> f64) -> f64 {
+pub(super) fn each_alone(points: &[Point], standard_n: impl Fn(&Point) -> f64) -> f64 {
     let (mut sum, mut xx) = (0.0, 0.0);
     for p in points {
         let x = p.speed_m_s * p.speed_m_s;

@@ -31,6 +31,10 @@ pub struct Detectability {
     pub zero_change_n: Option<f64>,
     /// Part of its variance that all runs of a pair share: only more pairs make it smaller.
     pub pair_share: f64,
+    /// Standard deviation of D_d from all differences, N s²/m², and its degrees of freedom.
+    pub slope_n_s2_m2: f64,
+    /// See [`Detectability::slope_n_s2_m2`].
+    pub slope_dof: f64,
     /// Differences at each speed that the campaign has or plans.
     pub differences: usize,
     /// Expanded uncertainty (95 %) of the drag at one speed from these, N.
@@ -65,57 +69,83 @@ impl Detectability {
                 || format!("{MOST_REPEATS} repeats would not do at {slowest_planned_m_s:.3} m/s"),
                 |n| format!("repeat {n} times at {slowest_planned_m_s:.3} m/s"),
             );
-            format!("below {limit:.3} m/s your drag is under its uncertainty: tow faster or {repeat}")
+            format!(
+                "below {limit:.3} m/s your drag is under its uncertainty: tow faster or {repeat} (a repeat is one wet-less-dry difference; \
+                 a pair out and back gives two)"
+            )
         })
     }
 }
 
-/// Prediction for `differences` wet-less-dry differences at each of the dry runs' speeds and directions together.
+/// Resistance of a dry tow over its steady window.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DryMean {
+    /// Speed of the steady part, m/s, signed.
+    pub velocity_m_s: f64,
+    /// Its pair.
+    pub pair: u32,
+    /// Mean resistance along the motion, V: a change of friction that a pair's runs share has one sign both ways.
+    pub resistance_v: f64,
+}
+
+impl DryMean {
+    /// `None` for a run that is no dry tow, or without a steady window.
+    #[must_use]
+    pub fn of(run: &DragRun<'_>, setup: &DragSetup) -> Option<Self> {
+        if run.body != BodyState::Dry || run.kind != RunKind::Tow {
+            return None;
+        }
+        let w = window(run, setup.steady).ok()?;
+        let resistance_v = run.direction * mean(w.of(run.command_v), run.step_s()).value;
+        Some(Self { velocity_m_s: run.direction * run.target_speed_m_s, pair: run.pair, resistance_v })
+    }
+}
+
+/// Prediction for `differences` wet-less-dry differences at each speed, both directions together, from as many `pairs`.
 ///
 /// `None` without two dry runs of one speed and direction.
 #[must_use]
-pub fn predict(runs: &[DragRun<'_>], differences: usize, setup: &DragSetup) -> Option<Detectability> {
+pub fn predict(means: &[DryMean], differences: usize, pairs: usize, setup: &DragSetup) -> Option<Detectability> {
     let k = setup.force_per_volt_n();
-    let dry: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.body == BodyState::Dry && r.kind == RunKind::Tow).collect();
-    let means: Vec<(&DragRun<'_>, f64)> = dry
-        .iter()
-        .filter_map(|r| window(r, setup.steady).ok().map(|w| (*r, k * mean(w.of(r.command_v), r.step_s()).value)))
-        .collect();
-    // Resistance along the motion: a change of friction that a pair's runs share has one sign both ways.
+    let is_like = |a: f64, b: f64| (a - b).abs() <= 1e-6 * (1.0 + a.abs());
     let rows: Vec<Row> = means
         .iter()
-        .map(|(r, n)| Row {
-            cell: means.iter().position(|(o, _)| o.is_like(r)).unwrap_or(0),
-            pair: r.pair,
-            value: r.direction * n,
+        .map(|m| Row {
+            cell: means.iter().position(|o| is_like(o.velocity_m_s, m.velocity_m_s)).unwrap_or(0),
+            pair: m.pair,
+            value: k * m.resistance_v,
         })
         .collect();
     let scatter = Scatter::of(&rows)?;
     let (variance, dof) = scatter.of_one();
     let difference_n = (2.0 * variance).sqrt();
-    let mut speeds: Vec<f64> = means.iter().map(|m| m.0.target_speed_m_s).collect();
+    let mut speeds: Vec<f64> = means.iter().map(|m| m.velocity_m_s.abs()).collect();
     speeds.sort_by(f64::total_cmp);
     speeds.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
     let quartic: f64 = speeds.iter().map(|v| v.powi(4)).sum();
-    let (of_mean, mean_dof) = scatter.of_mean(differences.max(1) as f64);
+    let pairs = pairs.max(1) as f64;
+    let (of_mean, mean_dof) = scatter.of_mean(differences.max(1) as f64, pairs);
     // Σ over the speeds of x ε over Σ x²: what pairs share does not average over speeds, the rest does.
     let squares: f64 = speeds.iter().map(|v| v * v).sum();
-    let shared = scatter.between / scatter.pairs * squares.powi(2);
-    let alone = (of_mean - scatter.between / scatter.pairs) * quartic;
+    let shared = scatter.between / pairs * squares.powi(2);
+    let alone = (of_mean - scatter.between / pairs) * quartic;
     let of_slope = (2.0 * (shared + alone)).sqrt() / quartic;
     Some(Detectability {
         difference_n,
         dof,
-        zero_change_n: zero_change(runs, setup),
+        zero_change_n: None,
         differences,
         pair_share: scatter.between / variance,
+        slope_n_s2_m2: of_slope,
+        slope_dof: mean_dof,
         expanded_n: coverage_factor(0.95, mean_dof) * (2.0 * of_mean).sqrt(),
         smallest_n_s2_m2: coverage_factor(0.95, mean_dof) * of_slope,
     })
 }
 
-/// Root mean square change of the sensor's zero over a run, N.
-fn zero_change(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<f64> {
+/// Root mean square change of the sensor's zero over a run, N; `None` without a sensor.
+#[must_use]
+pub fn zero_change(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<f64> {
     let changes: Vec<f64> = runs
         .iter()
         .filter_map(|run| {
@@ -145,7 +175,6 @@ struct Scatter {
     within: f64,
     /// Mean squares with their degrees of freedom: between pairs (none where s_p = 0), the rest.
     squares: [(f64, f64); 2],
-    pairs: f64,
     cells: f64,
 }
 
@@ -184,12 +213,12 @@ impl Scatter {
         let per_pair = rows.len() as f64 / pairs.len() as f64;
         let of_pairs = between / dof_pairs;
         let rest = (total - between) / dof_rest;
-        let (pairs, cells) = (pairs.len() as f64, cells.len() as f64);
+        let cells = cells.len() as f64;
         if dof_pairs >= 1.0 && dof_rest >= 1.0 && of_pairs > rest {
             let squares = [(of_pairs, dof_pairs), (rest, dof_rest)];
-            return Some(Self { between: (of_pairs - rest) / per_pair, within: rest, squares, pairs, cells });
+            return Some(Self { between: (of_pairs - rest) / per_pair, within: rest, squares, cells });
         }
-        Some(Self { between: 0.0, within: total / dof, squares: [(0.0, 1.0), (total / dof, dof)], pairs, cells })
+        Some(Self { between: 0.0, within: total / dof, squares: [(0.0, 1.0), (total / dof, dof)], cells })
     }
 
     /// `a` of the mean square between pairs and `b` of the rest: their sum, and its degrees of freedom.
@@ -207,12 +236,12 @@ impl Scatter {
         self.combined(1.0 / self.cells, 1.0 - 1.0 / self.cells)
     }
 
-    /// Variance of a mean of `count` values, as many of them in each pair.
-    fn of_mean(&self, count: f64) -> (f64, f64) {
+    /// Variance of a mean of `count` values from so many pairs.
+    fn of_mean(&self, count: f64, pairs: f64) -> (f64, f64) {
         if self.between == 0.0 {
             return (self.within / count, self.squares[1].1);
         }
-        let of_pairs = 1.0 / (self.pairs * self.cells);
+        let of_pairs = 1.0 / (pairs * self.cells);
         self.combined(of_pairs, (1.0 / count - of_pairs).max(0.0))
     }
 }
@@ -238,6 +267,26 @@ impl Agreement {
     pub fn is_within_band(&self) -> bool {
         self.p > 0.05
     }
+}
+
+/// Standard deviation of D_d from repeats, and its degrees of freedom: the wet repeats' own (`seen`, the jackknife over pairs) and what
+/// the dry ones promise, pooled by their degrees of freedom.
+///
+/// A few pairs that agree by chance would otherwise state a D_d that is wrong by many of its intervals. Where the wet repeats scatter
+/// significantly more than promised, only the larger of the two counts. What K_T's drift does to the drag itself is added to the promise.
+#[must_use]
+pub fn pooled_scatter(
+    seen: (f64, f64),
+    promised: (f64, f64),
+    on_drag: f64,
+    agreement: Option<Agreement>,
+) -> (f64, f64) {
+    let (u, dof) = seen;
+    let (p, p_dof) = (promised.0.hypot(on_drag), promised.1);
+    if agreement.is_some_and(|a| a.ratio > 1.0 && !a.is_within_band()) {
+        return if u >= p { seen } else { (p, p_dof) };
+    }
+    (((dof * u * u + p_dof * p * p) / (dof + p_dof)).sqrt(), dof + p_dof)
 }
 
 /// Holds the scatter of motor current differences against the prediction; `None` without repeats.

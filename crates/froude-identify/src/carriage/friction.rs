@@ -146,7 +146,7 @@ mod tests {
     use crate::carriage::run::BodyState;
     use crate::carriage::simulate::{Logged, Scenario};
 
-    /// Noise small: what is left is a bump of 0.35 m width seen through cells of 0.1 m, 0.5 N·(0.1/0.35)²/24 = 2 mN, and
+    /// Noise small: what is left is a bump of 0.27 m width seen through cells of 0.1 m, 0.5 N·(0.1/0.27)²/24 = 3 mN, and
     /// the broken line, twice that.
     #[test]
     fn the_map_shows_the_bump_where_it_is() {

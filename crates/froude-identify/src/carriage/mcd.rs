@@ -104,7 +104,7 @@ mod tests {
 
     /// A bump of the whole friction, and a dry run that started 0.2 m earlier: paired by time, half the bump would stay.
     ///
-    /// Interpolation between samples 2.5 mm apart leaves less than 2.5 N·(2.5 mm/0.35 m)²/8, a part in 10⁵ of a newton.
+    /// Interpolation between samples 2.5 mm apart leaves less than 2.5 N·(2.5 mm/0.27 m)²/8, three parts in 10⁵ of a newton.
     #[test]
     fn friction_over_position_cancels_also_when_the_runs_start_elsewhere() {
         let mut scenario = Scenario::pinned(20.0);

@@ -10,6 +10,7 @@
 use froude_fit::propagate::expanded;
 
 use super::coefficient::{Point, jackknife};
+use super::detectability::pooled_scatter;
 
 /// Fewest whole pairs to look at: two have one degree of freedom, and an interval of chance.
 pub const FEWEST_PAIRS: usize = 3;
@@ -22,6 +23,8 @@ pub struct OnLine {
     shared_relative: f64,
     looks: usize,
     target_relative: f64,
+    /// Standard deviation of one pair's D_d as dry repeats promise it, N s²/m², and its degrees of freedom.
+    promised: Option<(f64, f64)>,
 }
 
 /// What the display shows.
@@ -46,13 +49,19 @@ impl OnLine {
     /// not average down (calibration), `looks` the number of pairs planned.
     #[must_use]
     pub fn new(target_relative: f64, shared_relative: f64, looks: usize) -> Self {
-        Self { pairs: Vec::new(), shared_relative, looks: looks.max(1), target_relative }
+        Self { pairs: Vec::new(), shared_relative, looks: looks.max(1), target_relative, promised: None }
     }
 
     /// The same with another shared standard uncertainty, once a calibration has told it.
     #[must_use]
     pub fn with_shared(self, shared_relative: f64) -> Self {
         Self { shared_relative, ..self }
+    }
+
+    /// What dry repeats promise: the standard deviation of D_d from one pair, N s²/m², and its degrees of freedom. Without it few pairs
+    /// that agree by chance would stop a campaign.
+    pub fn promise(&mut self, of_one_pair: f64, dof: f64) {
+        self.promised = Some((of_one_pair, dof));
     }
 
     /// Takes one steady point.
@@ -78,7 +87,11 @@ impl OnLine {
         let value = ratio(usize::MAX)?;
         let confidence = 1.0 - 0.05 / self.looks as f64;
         let shared = (self.shared_relative * value).powi(2);
-        let scatter = jackknife(n, ratio);
+        let seen = jackknife(n, ratio);
+        let scatter = seen.map(|seen| match self.promised {
+            Some((of_one, dof)) => pooled_scatter(seen, (of_one / (n as f64).sqrt(), dof), 0.0, None),
+            None => seen,
+        });
         let half = |standard: f64, dof: f64| {
             expanded(&[(standard * standard, dof), (shared, f64::INFINITY)], confidence).expanded
         };
@@ -86,8 +99,9 @@ impl OnLine {
         let half_width = scatter.map(|(u, dof)| half(u, dof));
         let pairs_needed = scatter.and_then(|(u, _)| {
             let of_one = u * (n as f64).sqrt();
+            let more = self.promised.map_or(0.0, |p| p.1);
             (FEWEST_PAIRS.max(n)..=10 * self.looks.max(n))
-                .find(|&m| half(of_one / (m as f64).sqrt(), m as f64 - 1.0) <= target)
+                .find(|&m| half(of_one / (m as f64).sqrt(), m as f64 - 1.0 + more) <= target)
         });
         let may_stop = n >= FEWEST_PAIRS && half_width.is_some_and(|h| h <= target);
         Some(Status { value, half_width, pairs: n, may_stop, pairs_needed })

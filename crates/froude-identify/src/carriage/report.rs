@@ -4,8 +4,10 @@ use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 
 use super::added_mass::{AddedMass, added_mass};
-use super::coefficient::{Coefficient, Method, Part, Point, Shape, coefficient, jackknife, pairs, slope, slope_of};
-use super::detectability::{Agreement, Detectability, agreement, predict};
+use super::coefficient::{
+    Coefficient, Method, Part, Point, Shape, TypeA, coefficient, each_alone, jackknife, pairs, scatter, slope, slope_of,
+};
+use super::detectability::{Agreement, Detectability, DryMean, agreement, pooled_scatter, predict, zero_change};
 use super::error::DragError;
 use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
@@ -62,7 +64,9 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let mut coefficients = Vec::new();
     if wet.iter().any(|r| r.force_n.is_some()) {
         let all = wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
-        let sensed = coefficient(Method::Fsm, keep(all, Method::Fsm, &mut rejected), setup, None);
+        let points = keep(all, Method::Fsm, &mut rejected);
+        let type_a = sensed_scatter(&points);
+        let sensed = coefficient(Method::Fsm, points, setup, type_a);
         coefficients.extend(sensed.map(|c| with_drift(c, &wet, setup, &mut findings)));
     }
     let k = setup.force_per_volt_n();
@@ -72,8 +76,15 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
             Err(Rejected::NoPartner { run: w.id.to_owned(), pair: w.pair, speed_m_s: w.target_speed_m_s * w.direction })
         }
     });
+    let means: Vec<DryMean> = dry.iter().filter_map(|r| DryMean::of(r, setup)).collect();
+    let (mut detectability, mut agrees) = (None, None);
     if !dry.is_empty() {
-        coefficients.extend(coefficient(Method::Mcd, keep(differences, Method::Mcd, &mut rejected), setup, None));
+        let points = keep(differences, Method::Mcd, &mut rejected);
+        detectability = predict(&means, differences_per_speed(&points), pairs(&points).len(), setup)
+            .map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
+        agrees = detectability.as_ref().and_then(|d| agreement(&points, d, setup));
+        let type_a = repeats(&points, detectability.as_ref(), agrees, setup);
+        coefficients.extend(coefficient(Method::Mcd, points, setup, type_a));
     }
     let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
     let for_constant = if sweeps.is_empty() { &dry } else { &sweeps };
@@ -86,11 +97,9 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     }
     let by = |method: Method| coefficients.iter().find(|c| c.method == method);
     let current = by(Method::Mcd);
-    let detectability = predict(runs, current.map_or(1, differences_per_speed), setup);
-    let agreement = current.zip(detectability.as_ref()).and_then(|(c, d)| agreement(&c.points, d, setup));
     let reference = by(Method::Fsm).or(current).or(coefficients.first()).map(|c| c.value);
     let recommended = recommended(&coefficients);
-    findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agreement));
+    findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agrees));
     findings.extend(
         rejected
             .iter()
@@ -106,7 +115,7 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
         ratios: coefficients.iter().map(|c| c.value / reference.unwrap_or(f64::NAN)).collect(),
         recommended,
         detectability,
-        agreement,
+        agreement: agrees,
         added_mass: added_mass(runs, setup),
         rejected,
         findings,
@@ -243,8 +252,21 @@ fn model_based(
     sweeps.dedup();
     let of_pairs = jackknife(groups.len(), |g| without(Cluster::Pair(groups[g])));
     let of_sweeps = jackknife(sweeps.len(), |g| without(sweeps[g]));
-    let type_a = of_pairs.map(|pairs| of_sweeps.map_or(pairs, |sweeps| together(pairs, sweeps)));
-    let mut out = coefficient(method, points, setup, type_a)?;
+    // A wet run alone has half the variance of a difference; the friction it is taken from has its own part of that.
+    let share = 0.5 * (1.0 + groups.len() as f64 / clusters_in(&without_drag).max(1) as f64);
+    let promised = predict(
+        &dry.iter().filter_map(|r| DryMean::of(r, setup)).collect::<Vec<_>>(),
+        differences_per_speed(&points),
+        groups.len(),
+        setup,
+    );
+    let of_repeats = of_pairs.map(|pairs| match &promised {
+        Some(d) => pooled_scatter(pairs, (share.sqrt() * d.slope_n_s2_m2, d.slope_dof), on_drag(&points, setup), None),
+        None => pairs,
+    });
+    let type_a = of_repeats.map(|pairs| of_sweeps.map_or(pairs, |sweeps| together(pairs, sweeps)));
+    let named = type_a.map(|(standard, dof)| TypeA { standard, dof, name: "scatter of the repeats" });
+    let mut out = coefficient(method, points, setup, named)?;
     // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
     let of_nothing: Vec<Point> = dry.iter().filter_map(|d| point(d).ok()).collect();
     if let Some(phantom) = slope(&of_nothing) {
@@ -277,15 +299,50 @@ fn model_based(
     Some(out)
 }
 
+/// How many clusters there are.
+fn clusters_in(runs: &[(Cluster, Vec<Cell>)]) -> usize {
+    runs.iter().enumerate().filter(|(i, c)| !runs[..*i].iter().any(|o| o.0 == c.0)).count()
+}
+
 /// Two independent scatters: root of the sum of squares, degrees of freedom by Welch and Satterthwaite.
 fn together((u, dof): (f64, f64), (v, other): (f64, f64)) -> (f64, f64) {
     (u.hypot(v), froude_fit::propagate::effective_dof(&[(u * u, dof), (v * v, other)]))
 }
 
+/// Scatter of differences: of the wet repeats and of what the dry ones promise.
+fn repeats(
+    points: &[Point],
+    promised: Option<&Detectability>,
+    agrees: Option<Agreement>,
+    setup: &DragSetup,
+) -> Option<TypeA> {
+    let (u, dof, shared) = scatter(points)?;
+    let promised = promised.filter(|_| shared == "pair")?;
+    let on_drag = on_drag(points, setup);
+    let (standard, dof) = pooled_scatter((u, dof), (promised.slope_n_s2_m2, promised.slope_dof), on_drag, agrees);
+    Some(TypeA { standard, dof, name: "scatter of the repeats, wet and dry" })
+}
+
+/// What K_T's drift from run to run does to D_d through the drag itself.
+fn on_drag(points: &[Point], setup: &DragSetup) -> f64 {
+    setup.torque_constant_drift_relative * each_alone(points, |p| p.force_n)
+}
+
+/// Scatter of the force sensor: that of the pairs, and not less than what noise and zeros within the runs must give.
+fn sensed_scatter(points: &[Point]) -> Option<TypeA> {
+    let (standard, _, _) = scatter(points)?;
+    let least = each_alone(points, |p| p.standard_n);
+    (least > standard).then_some(TypeA {
+        standard: least,
+        dof: points.iter().map(|p| p.effective_n).sum(),
+        name: "noise and zeros of the runs (the pairs agree better than these allow)",
+    })
+}
+
 /// Differences at one speed: both directions and all pairs.
-fn differences_per_speed(c: &Coefficient) -> usize {
-    let fastest = c.points.iter().map(|p| p.speed_m_s.abs()).fold(0.0, f64::max);
-    c.points.iter().filter(|p| p.speed_m_s.abs() > 0.99 * fastest).count()
+fn differences_per_speed(points: &[Point]) -> usize {
+    let fastest = points.iter().map(|p| p.speed_m_s.abs()).fold(0.0, f64::max);
+    points.iter().filter(|p| p.speed_m_s.abs() > 0.99 * fastest).count()
 }
 
 /// The narrowest interval among the methods that need no model of the friction.

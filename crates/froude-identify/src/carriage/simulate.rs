@@ -94,7 +94,7 @@ impl Scenario {
     /// The pinned scenario: friction of the MCD paper at the chain (C_eff n/R, B_eff (n/R)²), +20 % mid-tank, 2 % from run
     /// to run, 0.05 N rms with 0.3 s, K_T 0.5 % a run, sensor ± 0.2 N, efficiency 0.8, six speeds, five pairs out and back.
     ///
-    /// The scenario gives the bump's height, not its width: 0.35 m makes it about half its height in the mean over the
+    /// The scenario gives the bump's height, not its width: 0.27 m makes it about half its height in the (tapered) mean over the
     /// steady windows, so that friction identified near one end is wrong there by 0.24 N.
     #[must_use]
     pub fn pinned(drag_n_s2_m2: f64) -> Self {
@@ -109,7 +109,7 @@ impl Scenario {
             motor_coulomb_n: 0.0,
             viscous_n_s_m: 4.657e-6 * ratio * ratio,
             bump: 0.2,
-            bump_width_m: 0.35,
+            bump_width_m: 0.27,
             tank_m: 5.0,
             run_to_run: 0.02,
             viscous_changes: false,

@@ -354,7 +354,7 @@ impl Planner<'_> {
         for weight_n in std::iter::once(0.0).chain(weights).chain(std::iter::once(0.0)) {
             self.mount(self.body, weight_n);
             for _ in 0..calibration.repeats {
-                let name = format!("calibration-{weight_n:.0}N");
+                let name = format!("calibration-{weight_n}N");
                 self.strokes_over(from_m, way_m, &name, RunKind::Calibration, calibration.speed_m_s, true, None);
             }
         }

@@ -116,7 +116,7 @@ pub fn check(
             limits.following_error_m, -margin_m
         ));
     }
-    if let Some(text) = fall(run, from_m.max(to_m), speed_m_s, axis, expected) {
+    if let Some(text) = fall(run, [from_m.min(to_m), from_m.max(to_m)], speed_m_s, axis, expected) {
         object(text);
     }
     if speed_m_s > limits.speed_m_s {
@@ -167,10 +167,22 @@ pub fn check(
 /// It is held for sure by F = η C n/R (all friction behind the gear, its lower bound). A heavier weight W pulls the carriage from the
 /// highest place of the run to where the weight rests on its floor, h below, and friction stops it from there: whatever the mass,
 /// F s = (W − F) h, and the coast from the run's own speed comes on top.
-fn fall(run: &PlannedRun, top_m: f64, speed_m_s: f64, axis: &AxisConfig, expected: &Expected) -> Option<String> {
+fn fall(
+    run: &PlannedRun,
+    [bottom_m, top_m]: [f64; 2],
+    speed_m_s: f64,
+    axis: &AxisConfig,
+    expected: &Expected,
+) -> Option<String> {
     let (drive, limits) = (&axis.drive, &axis.limits);
     let weight_n = run.hung_weight_n;
     let held_n = expected.efficiency * drive.coulomb_lower_n_m * drive.gear_ratio / drive.sprocket_radius_m;
+    if let Some(floor_m) = run.floor_m.filter(|&floor_m| weight_n != 0.0 && floor_m > bottom_m) {
+        return Some(format!(
+            "its weight rests on the floor while the carriage is below {floor_m:.3} m, and the run begins or ends at {bottom_m:.3} m: it would \
+             not hang all the way. The floor of [carriage.calibration] is a coordinate of the carriage, just below its start"
+        ));
+    }
     if weight_n <= held_n {
         return None;
     }
@@ -179,16 +191,18 @@ fn fall(run: &PlannedRun, top_m: f64, speed_m_s: f64, axis: &AxisConfig, expecte
             "friction surely holds {held_n:.2} N of its {weight_n:.2} N: if the torque fails the weight pulls the carriage into the stop \
              at {:.3} m. Give it a floor to rest on, floor = \"{:.2} m\" in [carriage.calibration], or hang less",
             limits.hard_low_m,
-            top_m - 0.5
+            bottom_m - 0.05
         ));
     };
     let fall_m = (top_m - floor_m).max(0.0);
     let coast_m = (weight_n / held_n - 1.0) * fall_m + Coast::of(drive).distance_m(speed_m_s);
     let room_m = floor_m - limits.hard_low_m;
+    let own_m = Coast::of(drive).distance_m(speed_m_s);
+    let most_n = held_n * (1.0 + (room_m - own_m).max(0.0) / fall_m.max(1e-3));
     (coast_m > room_m).then(|| {
         format!(
             "if the torque fails its {weight_n:.2} N pull the carriage from {top_m:.3} m to {floor_m:.3} m, where they rest on the floor; \
-             it then coasts {coast_m:.3} m and {room_m:.3} m are free. Lift less high, further from the stop, or hang less"
+             it then coasts {coast_m:.3} m and {room_m:.3} m are free. Lift less high, further from the stop, or hang at most {most_n:.1} N"
         )
     })
 }

@@ -56,6 +56,9 @@ const KINDS: [RunKind; 5] = [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunK
 /// Standard acceleration of gravity, m/s².
 const G_M_S2: f64 = 9.80665;
 
+/// A calibration that knows newtons a volt to less than this part is none.
+const USELESS: f64 = 0.2;
+
 /// Standard uncertainty of the gain of a force sensor of which nobody declares it: what a cell in use has, a year after its certificate.
 const UNDECLARED_GAIN: f64 = 0.01;
 
@@ -79,10 +82,19 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
     let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
     let stopped = stopped_early(runs.campaign.as_ref(), &reduced);
-    setup.looks = stopped.map_or(1, |(_, planned)| planned);
+    // Fewer pairs than planned may also be a campaign that is not finished: it stopped early if its interval is short enough for it.
+    setup.looks = stopped.map_or(1, |s| s.planned);
     let mut report = drag_report(&reduced, &setup)?;
+    let stopped = stopped.filter(|s| {
+        let mcd = report.coefficients.iter().find(|c| c.method == Method::Mcd);
+        mcd.and_then(Coefficient::relative_half_width).is_some_and(|half| half <= SLACK * s.target)
+    });
+    if stopped.is_none() && setup.looks > 1 {
+        setup.looks = 1;
+        report = drag_report(&reduced, &setup)?;
+    }
     report.findings.extend(undeclared);
-    report.findings.extend(stopped.map(|(found, planned)| {
+    report.findings.extend(stopped.map(|EarlyStop { found, planned, .. }| {
         Finding::new(
             Severity::Note,
             "stopped-early",
@@ -112,15 +124,26 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     Ok(DragOutcome { report, calibration, file, estimate: written.estimate, page: written.report })
 }
 
-/// Pairs found and pairs planned of a campaign that may stop at a short interval, where it did.
-fn stopped_early(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Option<(usize, usize)> {
+/// The interval that stopped a campaign, seen with the whole budget, may be this much wider.
+const SLACK: f64 = 1.25;
+
+/// A campaign with fewer pairs than planned that may stop at a short interval.
+#[derive(Debug, Clone, Copy)]
+struct EarlyStop {
+    found: usize,
+    planned: usize,
+    /// Relative half-width that stops it.
+    target: f64,
+}
+
+fn stopped_early(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Option<EarlyStop> {
     let plan = campaign?.carriage.as_ref()?.plan.as_ref()?;
-    plan.stop_at_relative_half_width?;
+    let target = plan.stop_at_relative_half_width?;
     let wet = runs.iter().filter(|r| r.body == drag_run::BodyState::Wet && r.kind == drag_run::RunKind::Tow);
     let mut pairs: Vec<u32> = wet.map(|r| r.pair).collect();
     pairs.sort_unstable();
     pairs.dedup();
-    (pairs.len() < plan.repeats).then_some((pairs.len(), plan.repeats))
+    (pairs.len() < plan.repeats).then_some(EarlyStop { found: pairs.len(), planned: plan.repeats, target })
 }
 
 /// Declarations that the budget needs and the campaign lacks.
@@ -214,6 +237,19 @@ pub(crate) fn calibration_of(
         steady: setup.steady,
     };
     match calibrate(runs, &asked) {
+        Ok(c) if c.efficiency.value > 1.0 + 3.0 * c.efficiency.standard || c.efficiency.relative() > USELESS => (
+            None,
+            Some(Finding::new(
+                Severity::Error,
+                "calibration-impossible",
+                format!(
+                    "the known weights say a gear of efficiency {} ± {}: not used. Look whether the weight hung all the way (floor), at the \
+                     weights declared, K_T, the amplifier's gain and the sprocket's radius",
+                    number::significant(c.efficiency.value, 3),
+                    number::significant(c.efficiency.standard, 2)
+                ),
+            )),
+        ),
         Ok(calibration) => (Some(calibration), None),
         Err(error) => (None, Some(Finding::new(Severity::Warning, "not-calibrated", error.to_string()))),
     }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::carriage::calibration::{CalibrationSetup, calibrate};
+use froude_identify::carriage::detectability::{DryMean, predict};
 use froude_identify::carriage::online::OnLine;
 use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
@@ -141,7 +142,15 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         RigKind::Serial { .. } => 1,
     };
     let steps = plan(&asked, start_m, order_seed);
-    let body = TowedBody { displaced_m3, drag_n_s2_m2, ..TowedBody::CYLINDER };
+    // What is not declared of the twin's body is the cylinder's, in proportion to the volume; [rig.twin] overrides it.
+    let scale = displaced_m3 / TowedBody::CYLINDER.displaced_m3;
+    let body = TowedBody {
+        mass_kg: scale * TowedBody::CYLINDER.mass_kg,
+        displaced_m3,
+        body_water_kg: scale * TowedBody::CYLINDER.body_water_kg,
+        added_mass_kg: scale * TowedBody::CYLINDER.added_mass_kg,
+        drag_n_s2_m2,
+    };
     let load = Load { body, density_kg_m3, ..Load::default() };
     let spec =
         if asked.axis as usize == 0 { &carriage.rig.y } else { carriage.rig.x.as_ref().unwrap_or(&carriage.rig.y) };
@@ -273,9 +282,11 @@ struct Live {
     waiting: Vec<RunLog>,
     calibration: Vec<RunLog>,
     is_calibrated: bool,
+    dry: Vec<DryMean>,
     /// Differences seen, whether they gave a point or not.
     differences: usize,
     per_pair: usize,
+    speeds: usize,
     weight_relative: f64,
 }
 
@@ -292,8 +303,10 @@ impl Live {
             waiting: Vec::new(),
             calibration: Vec::new(),
             is_calibrated: false,
+            dry: Vec::new(),
             differences: 0,
             per_pair: asked.speed_m_s.len() * directions,
+            speeds: asked.speed_m_s.len(),
             weight_relative,
         }
     }
@@ -310,6 +323,9 @@ impl Live {
             return None;
         }
         self.calibrate();
+        if let Ok(Some(run)) = for_drag(&log) {
+            self.dry.extend(DryMean::of(&run, &self.setup));
+        }
         let partner = self.waiting.iter().position(|other| {
             other.meta.pair == log.meta.pair
                 && other.meta.target_speed_m_s == log.meta.target_speed_m_s
@@ -335,6 +351,11 @@ impl Live {
         // A look is taken after whole pairs only, also where a run of them gave no point.
         if !self.differences.is_multiple_of(self.per_pair) {
             return None;
+        }
+        // As many differences at each speed as one pair gives.
+        let per_speed = self.per_pair / self.speeds.max(1);
+        if let Some(promised) = predict(&self.dry, per_speed, 1, &self.setup) {
+            online.promise(promised.slope_n_s2_m2, promised.slope_dof);
         }
         let status = online.status()?;
         status.may_stop.then(|| {

@@ -395,8 +395,9 @@ pub fn resonance_sentences(outcome: &ResonanceOutcome) -> Vec<String> {
         let left: Vec<String> = outcome
             .states
             .iter()
+            .filter(|s| s.body != "none")
             .filter_map(|s| s.modes.as_ref().ok().map(|m| (&s.body, m.load)))
-            .map(|(body, load)| format!("{} {body}", number::percent(shaper.residual(load.frequency_hz, load.damping))))
+            .map(|(body, load)| format!("{body} {}", number::percent(shaper.residual(load.frequency_hz, load.damping))))
             .collect();
         out.push(format!(
             "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{damping:.3} 1\", robust_shaper = true. It adds {:.0} ms \
