@@ -86,11 +86,8 @@ fn preflight(prepared: &Prepared) {
     let mut rows: Vec<(Vec<String>, usize)> = Vec::new();
     for (run, f) in prepared.runs().zip(&prepared.forecasts) {
         let drag = f.drag_n.map_or_else(|| "–".to_owned(), |d| format!("{d:.3}"));
-        // Repeats until the drag exceeds what one pair shows.
-        let pairs = f
-            .drag_n
-            .filter(|d| *d > 0.0)
-            .map_or_else(|| "–".to_owned(), |d| format!("{:.0}", (detectable_n / d).powi(2).ceil().max(1.0)));
+        let pairs = f.drag_n.filter(|d| *d > 0.0);
+        let pairs = pairs.map_or_else(|| "–".to_owned(), |d| format!("{:.0}", pairs_to_see(detectable_n, d)));
         let cells = vec![
             run.kind.name().to_owned(),
             run.speed_m_s().map_or_else(|| "–".to_owned(), |v| format!("{v:.3}")),
@@ -115,7 +112,7 @@ fn preflight(prepared: &Prepared) {
             "kind",
             "speed [m/s]",
             "way",
-            "length [s]",
+            "takes [s]",
             "steady [s]",
             "command [V]",
             "rms current [A]",
@@ -139,6 +136,41 @@ fn preflight(prepared: &Prepared) {
     say!(
         "\nOne wet/dry pair is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
     );
+    if let Some(few) = few_pairs(prepared, detectable_n) {
+        say!("{few}");
+    }
+}
+
+/// Speeds that are planned with fewer differences than their drag needs; `None` where all have enough, or no drag is expected.
+fn few_pairs(prepared: &Prepared, detectable_n: f64) -> Option<String> {
+    let drags = prepared.runs().zip(&prepared.forecasts).filter_map(|(run, f)| run.speed_m_s().zip(f.drag_n));
+    // Speed, drag, wet runs: each gives one difference.
+    let mut planned: Vec<(f64, f64, usize)> = Vec::new();
+    for (speed, drag) in drags.filter(|d| d.1 > 0.0) {
+        match planned.iter_mut().find(|p| p.0 == speed) {
+            Some(p) => p.2 += 1,
+            None => planned.push((speed, drag, 1)),
+        }
+    }
+    let few: Vec<String> = planned
+        .iter()
+        .filter_map(|&(speed, drag, runs)| {
+            let needed = pairs_to_see(detectable_n, drag);
+            (needed > runs as f64).then(|| format!("{needed:.0} at {speed:.3} m/s, where {runs} are planned"))
+        })
+        .collect();
+    (!few.is_empty()).then(|| {
+        format!(
+            "To see the drag at each speed by itself it takes more: {} (out and back count as two). D_d rests on the fast runs and does \
+             not need them.",
+            few.join("; ")
+        )
+    })
+}
+
+/// Repeats until a drag exceeds what one pair shows.
+fn pairs_to_see(detectable_n: f64, drag_n: f64) -> f64 {
+    (detectable_n / drag_n).powi(2).ceil().max(1.0)
 }
 
 fn refused(prepared: &Prepared) -> Result<(), Error> {
@@ -290,7 +322,7 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
     }
     for model in &outcome.models {
         let error = froude::report::number::percent(model.report.relative_force_error);
-        say!("\nRigid, friction {} (relative force error {error})", model.name);
+        say!("\nRigid, friction {}{} (relative force error {error})", model.name, runs::mounted(&outcome.rigid_mounts));
         print::text_table(&coefficient_table(String::new(), &model.report.coefficients));
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == "symmetric") {
             say!("\nAt the motor's shaft");
@@ -298,7 +330,7 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
         }
     }
     if let Some(f) = &outcome.flexible {
-        say!("\nTwo masses, from the motor's side");
+        say!("\nTwo masses, from the motor's side{}", runs::mounted(&outcome.two_mass_mounts));
         print::text_table(&flexible_table(f));
         for s in &f.splits {
             let told = if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };

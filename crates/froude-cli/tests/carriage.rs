@@ -109,6 +109,25 @@ fn a_campaign_beyond_the_travel_is_refused_with_its_numbers_before_anything_move
 }
 
 #[test]
+fn the_preflight_tells_where_the_drag_is_too_small_to_be_seen_and_inspect_what_will_be_driven() {
+    let folder = tempfile::tempdir().unwrap();
+    let slow = (r#"speeds = ["0.3 m/s", "0.55 m/s"]"#, r#"speeds = ["0.05 m/s", "0.55 m/s"]"#);
+    let campaign = campaign(folder.path(), &[slow]);
+    let out = froude(&["run", text(&campaign), "--check"]);
+    assert!(out.status.success());
+    let told = String::from_utf8_lossy(&out.stdout);
+    // 2√2 of 2 % of 2.85 N are 0.16 N; the drag at 0.05 m/s is 0.05 N: ten differences and more, three pairs give six.
+    assert!(told.contains("at 0.050 m/s, where 6 are planned (out and back count as two)"), "{told}");
+    assert!(!told.contains("at 0.550 m/s, where"), "{told}");
+    let inside = json(&["inspect", text(&campaign), "--json"])["facts"].to_string();
+    for fact in
+        ["twin, seed 1", "axis y, 0.05, 0.55 m/s over 2.2 m", "3 at each speed, out and back; wet runs ballasted"]
+    {
+        assert!(inside.contains(fact), "{fact}: {inside}");
+    }
+}
+
+#[test]
 fn a_weight_that_would_pull_the_carriage_into_its_stop_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[("floor = \"4.05 m\"\n", "")]);

@@ -128,6 +128,27 @@ fn an_area_in_the_wrong_unit_is_found_out_by_its_drag_coefficient() {
 }
 
 #[test]
+fn a_sensor_whose_gain_is_off_contradicts_the_motor_current() {
+    let scenario = scenario();
+    let of_gain = |gain: f64| {
+        let mut logged = scenario.runs(11);
+        for run in &mut logged {
+            run.force_n.iter_mut().for_each(|f| *f *= gain);
+        }
+        let runs: Vec<_> = logged.iter().map(Logged::view).collect();
+        drag_report(&runs, &setup(&scenario)).unwrap()
+    };
+    assert_eq!(message(&of_gain(1.0), "methods-disagree"), "");
+    let told = of_gain(1.1);
+    let told = message(&told, "methods-disagree");
+    // A tenth of 20, less what the two differ by anyway.
+    assert!(
+        told.contains("force sensor and motor current differ by 1.") && told.contains("the sensor's gain"),
+        "{told}"
+    );
+}
+
+#[test]
 fn a_wet_run_without_its_dry_one_is_left_out_and_told() {
     let scenario = scenario();
     let report = report(&scenario, &setup(&scenario), |r| {

@@ -6,6 +6,7 @@ use froude_identify::reduce::{Reduced, reduce};
 use froude_identify::source::{asked_models, check_budget, laws};
 use froude_identify::{lint, validity};
 use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
+use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
@@ -167,6 +168,7 @@ fn campaign(path: &Path) -> Result<Inspection, Error> {
     let campaign = read_campaign(path)?;
     let mut facts = vec![("name".to_owned(), campaign.name.clone())];
     facts.extend(campaign.cite.iter().map(|work| ("cite".to_owned(), work.clone())));
+    facts.extend(campaign.carriage.iter().flat_map(driven));
     let (mut sources, mut findings) = (Vec::new(), Vec::new());
     for source in &campaign.sources {
         let (facts, found) = source_facts(&campaign, source)?;
@@ -175,6 +177,34 @@ fn campaign(path: &Path) -> Result<Inspection, Error> {
     }
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     Ok(Inspection { sources, ..Inspection::new("campaign", facts, findings) })
+}
+
+/// What a campaign drives and is to do; `froude run --check` has the runs one by one.
+fn driven(carriage: &CarriageCampaign) -> Vec<(String, String)> {
+    let rig = match &carriage.rig.kind {
+        RigKind::Twin { seed, truths } => format!("twin, seed {seed}, {} truths of its own", truths.len()),
+        RigKind::Serial { port, baud } => format!("board at {port}, {baud} baud"),
+    };
+    let [low, high] = carriage.rig.y.travel_m;
+    let mut facts = vec![("rig".to_owned(), format!("{rig}; long axis from {low} m to {high} m"))];
+    let Some(plan) = &carriage.plan else { return facts };
+    let mut fact = |name: &str, value: String| facts.push((name.to_owned(), value));
+    let speeds: Vec<String> = plan.speed_m_s.iter().map(f64::to_string).collect();
+    fact("tows", format!("axis {}, {} m/s over {} m", plan.axis.name(), speeds.join(", "), plan.distance_m));
+    let ways = if plan.directions == Directions::Both { "out and back" } else { "out" };
+    let ballast = if plan.is_ballasted { "ballasted" } else { "not ballasted" };
+    fact("pairs", format!("{} at each speed, {ways}; wet runs {ballast}", plan.repeats));
+    if let Some(sweep) = &plan.friction {
+        fact("friction sweep", format!("{} speeds, {} times", sweep.speed_m_s.len(), sweep.repeats));
+    }
+    if let Some(c) = &plan.calibration {
+        let weights: Vec<String> = c.weights_n.iter().map(f64::to_string).collect();
+        fact("calibration", format!("{} N over a pulley, {} times", weights.join(", "), c.repeats));
+    }
+    if let Some(part) = plan.stop_at_relative_half_width {
+        fact("stops early", format!("when D_d is known within {} %", 100.0 * part));
+    }
+    facts
 }
 
 fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Vec<Finding>), Error> {

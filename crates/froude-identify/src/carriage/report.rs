@@ -453,6 +453,7 @@ fn doubts(
             out.push(Finding::new(Severity::Note, "under-uncertainty", text));
         }
     }
+    out.extend(sensor_against_current(all));
     if let Some(a) = agreement
         && !a.is_within_band()
     {
@@ -473,6 +474,29 @@ fn doubts(
         ));
     }
     out
+}
+
+/// Force sensor and motor current measure one drag: a difference beyond both intervals (E_n > 1, ISO 13528:2022, 9.7) is a trouble
+/// that neither budget knows.
+fn sensor_against_current(all: &[Coefficient]) -> Option<Finding> {
+    let of = |method: Method| {
+        let c = all.iter().find(|c| c.method == method)?;
+        c.interval_95.map(|[low, high]| (c.value, 0.5 * (high - low)))
+    };
+    let ((sensor, its), (current, other)) = (of(Method::Fsm)?, of(Method::Mcd)?);
+    let apart = (sensor - current).abs();
+    let allowed = its.hypot(other);
+    (apart > allowed).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "methods-disagree",
+            format!(
+                "force sensor and motor current differ by {apart:.3} N s^2/m^2 ({:.1} %), their intervals allow {allowed:.3}: one of the \
+                 budgets misses something. Check the sensor's gain and alignment, the weights of the calibration, ballast and strut",
+                100.0 * apart / sensor.abs()
+            ),
+        )
+    })
 }
 
 /// What a constant force makes of D_d, as part of it: F₀ Σv²/Σv⁴ / D_d.

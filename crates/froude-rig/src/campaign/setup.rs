@@ -13,7 +13,7 @@ use froude_records::units::parse_unit;
 
 use crate::defaults::control_config;
 use crate::force_sensor::Drift;
-use crate::load::Load;
+use crate::load::{Load, Strut};
 use crate::parameters::AxisParameters;
 use crate::twin::{TICK_US, TwinConfig};
 
@@ -189,7 +189,11 @@ const TRUTHS: [Entry; 17] = [
     ("displaced_volume", "m^3", |_, l, v| l.body.displaced_m3 = v),
     ("water_density", "kg/m^3", |_, l, v| l.density_kg_m3 = v),
     ("pulley_friction", "1", |_, l, v| l.hung.pulley_friction = v),
-    ("strut_drag", "N s^2/m^2", |c, _, v| both(c, |p| p.strut_drag_n_s2_m2 = v)),
+    // Written, it is in the water with the body: the drag that is measured has it in it.
+    ("strut_drag", "N s^2/m^2", |c, l, v| {
+        l.strut = Strut::WithBody;
+        both(c, |p| p.strut_drag_n_s2_m2 = v);
+    }),
     ("friction_bump", "1", |c, _, v| both(c, |p| p.bump = v)),
     ("friction_asymmetry", "1", |c, _, v| both(c, |p| p.asymmetry = v)),
     ("rolling_coefficient", "1", |c, _, v| both(c, |p| p.rolling_coefficient = v)),
@@ -213,4 +217,24 @@ fn apply(truth: &TwinTruth, config: &mut TwinConfig, body: &mut Load) -> Result<
     let value = truth.quantity.expect(dimension).map_err(|e| bad(format!("`{}`: {e}", truth.name)))?;
     set(config, body, value);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The load of the example's twin with a truth more.
+    fn of_the_example(truth: &str) -> Load {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/towing-carriage/campaign.toml");
+        let text =
+            std::fs::read_to_string(path).unwrap().replace("pulley_friction", &format!("{truth}\npulley_friction"));
+        let campaign = froude_records::campaign::parse_campaign(std::path::Path::new("c.toml"), &text).unwrap();
+        twin(&campaign.carriage.unwrap(), Load::default()).unwrap().1
+    }
+
+    #[test]
+    fn a_strut_that_is_written_is_in_the_water_and_one_that_is_not_is_out() {
+        assert_eq!(of_the_example("").strut, Strut::Out);
+        assert_eq!(of_the_example("strut_drag = \"2 N s^2/m^2\"").strut, Strut::WithBody);
+    }
 }

@@ -71,6 +71,11 @@ pub fn calibrate(paths: &[PathBuf], campaign: Option<PathBuf>) -> Result<Calibra
         };
         findings.push(Finding::new(Severity::Error, "polarity", text));
     }
+    if calibration.is_none() && paths.iter().all(|p| p.is_file()) {
+        let text =
+            format!("{} runs were named and read; the folder {} may hold others", paths.len(), runs.folder.display());
+        findings.push(Finding::new(Severity::Note, "single-runs", text));
+    }
     if calibration.is_none() {
         findings.push(Finding::new(
             Severity::Warning,

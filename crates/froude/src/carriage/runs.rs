@@ -154,6 +154,29 @@ pub fn density_kg_m3(campaign: Option<&Campaign>) -> f64 {
     })
 }
 
+/// What rode on the carriage, for a heading: ", bare carriage", ", body dry and body wet"; empty where no run says.
+#[must_use]
+pub fn mounted(mounts: &[BodyState]) -> String {
+    let name = |body: &BodyState| match body {
+        BodyState::None => "bare carriage",
+        BodyState::Dry => "body dry",
+        BodyState::Wet => "body wet",
+    };
+    let names: Vec<&str> = mounts.iter().map(name).collect();
+    if names.is_empty() { String::new() } else { format!(", {}", names.join(" and ")) }
+}
+
+/// What rides on the carriage in these runs, each state once.
+pub(super) fn mounts<'a>(logs: impl IntoIterator<Item = &'a RunLog>) -> Vec<BodyState> {
+    let mut out: Vec<BodyState> = Vec::new();
+    for log in logs {
+        if !out.contains(&log.meta.body) {
+            out.push(log.meta.body);
+        }
+    }
+    out
+}
+
 /// Which way, in words.
 #[must_use]
 pub fn way(direction: Option<Direction>) -> &'static str {

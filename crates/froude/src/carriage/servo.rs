@@ -13,13 +13,13 @@ use froude_identify::servo::report::of_runs as of_several;
 use froude_identify::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
 use froude_identify::servo::{Chain, Friction, Gear, ServoCoefficient, ServoLog, ServoReport, identify_servo};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{AxisConstants, Declared, RunKind, RunLog, import_run};
+use froude_records::run::{AxisConstants, BodyState, Declared, RunKind, RunLog, import_run};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 
-use super::runs::{for_drag, read};
+use super::runs::{for_drag, mounted, mounts, read};
 use crate::Error;
 
 /// What to identify.
@@ -64,8 +64,12 @@ pub struct Repeatability {
 pub struct ServoOutcome {
     /// Rigid models.
     pub models: Vec<Model>,
+    /// What rode on the carriage in the runs that they are fitted to; none of a table.
+    pub rigid_mounts: Vec<BodyState>,
     /// Two masses, where there are pulses.
     pub flexible: Option<FlexibleReport>,
+    /// What rode on the carriage in the pulses.
+    pub two_mass_mounts: Vec<BodyState>,
     /// How well runs repeat.
     pub repeatability: Vec<Repeatability>,
     /// The drive, where it is declared.
@@ -136,7 +140,16 @@ fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<ServoOutcome, Error> 
         .map(|(name, friction)| Ok(Model { name: name.to_owned(), report: identify_servo(&servo, &chain(friction))? }))
         .collect::<Result<Vec<_>, Error>>()?;
     let findings = told(&models, imported.findings);
-    Ok(ServoOutcome { models, flexible: None, repeatability: Vec::new(), motor: None, findings, page: PathBuf::new() })
+    Ok(ServoOutcome {
+        models,
+        rigid_mounts: Vec::new(),
+        flexible: None,
+        two_mass_mounts: Vec::new(),
+        repeatability: Vec::new(),
+        motor: None,
+        findings,
+        page: PathBuf::new(),
+    })
 }
 
 fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
@@ -195,7 +208,16 @@ fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
         findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
     }
     let repeatability = repeatability(&slow, &motor)?;
-    Ok(ServoOutcome { models, flexible, repeatability, motor: Some(motor), findings, page: PathBuf::new() })
+    Ok(ServoOutcome {
+        models,
+        rigid_mounts: mounts(slow.iter().copied()),
+        flexible,
+        two_mass_mounts: mounts(pulses(&runs.logs)),
+        repeatability,
+        motor: Some(motor),
+        findings,
+        page: PathBuf::new(),
+    })
 }
 
 fn motor_of(constants: &AxisConstants) -> MotorSide {
@@ -207,10 +229,14 @@ fn motor_of(constants: &AxisConstants) -> MotorSide {
     }
 }
 
+/// The run that tells the two masses.
+fn pulses(logs: &[RunLog]) -> Option<&RunLog> {
+    logs.iter().find(|l| l.meta.kind == RunKind::Excitation)
+}
+
 /// Two masses and a chain from the first run with pulses; a finding where there is one that does not tell them.
 pub(crate) fn two_masses(logs: &[RunLog]) -> Result<(Option<FlexibleReport>, Option<Finding>), Error> {
-    let pulses = logs.iter().find(|l| l.meta.kind == RunKind::Excitation);
-    let Some((log, constants)) = pulses.and_then(|l| l.meta.moving_axis().map(|c| (l, c))) else {
+    let Some((log, constants)) = pulses(logs).and_then(|l| l.meta.moving_axis().map(|c| (l, c))) else {
         return Ok((None, None));
     };
     Ok(match identify_flexible(&servo_log(log)?, &flexible_options(motor_of(constants), constants)) {
@@ -285,13 +311,21 @@ fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<Se
 }
 
 /// Whether a constant friction stands for one that changes along the travel: its interval is then that of a mean, and of no place.
+/// `None` without both models.
 fn varies(models: &[Model]) -> Option<Finding> {
     let of = |name: &str| models.iter().find(|m| m.name == name).map(|m| &m.report);
     let constant = of(CONSTANT)?.coefficient("F_c")?;
     let map: Vec<&ServoCoefficient> =
         of(OVER_POSITION)?.coefficients.iter().filter(|c| c.name.starts_with("F_c(")).collect();
     if map.iter().all(|c| c.interval[0] <= constant.value && constant.value <= c.interval[1]) {
-        return None;
+        return Some(Finding::new(
+            Severity::Note,
+            "servo",
+            format!(
+                "friction is not shown to change along the travel: every knot of the map holds F_c = {:.2} N in its interval",
+                constant.value
+            ),
+        ));
     }
     let least = map.iter().min_by(|a, b| a.value.total_cmp(&b.value))?;
     let most = map.iter().max_by(|a, b| a.value.total_cmp(&b.value))?;
@@ -435,7 +469,7 @@ fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Docum
             ));
         }
         sections.push(DocumentSection {
-            title: format!("Rigid, friction {}", model.name),
+            title: format!("Rigid, friction {}{}", model.name, mounted(&outcome.rigid_mounts)),
             paragraphs,
             tables,
             charts: vec![force_chart(model)],
@@ -454,7 +488,7 @@ fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Docum
             )
         });
         sections.push(DocumentSection {
-            title: "Two masses".to_owned(),
+            title: format!("Two masses{}", mounted(&outcome.two_mass_mounts)),
             paragraphs: splits.collect(),
             tables: vec![flexible_table(f)],
             charts: Vec::new(),
