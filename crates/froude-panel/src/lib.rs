@@ -1,0 +1,30 @@
+//! Added mass of submerged bodies from potential flow.
+//!
+//! **Setting.** Rigid bodies, or chains of them, moving in an ideal fluid at rest far away: unbounded, or with mirror planes. Nothing here
+//! depends on frequency.
+//! **Frame.** That of the mesh; moments are about the origin that the caller names.
+//! **Units.** SI. A matrix over ρ has m³ (forces from motion), m⁴ (coupling), m⁵ (moments from turning).
+//!
+//! | module | what | source |
+//! | --- | --- | --- |
+//! | [`influence`] | potential and solid angle of a flat panel | Hess & Smith 1967; Van Oosterom & Strackee 1983 |
+//! | [`mirror`] | planes of the body, walls, free surface | images |
+//! | [`modes`] | normal velocity of a panel in rigid motion | Newman 1977, 4.13 |
+//! | [`dense`] | the plain solver: every panel on every other, LU | Green's third identity |
+//! | [`matrix`] | the 6 × 6 matrix, moved to another point, symmetric part | Newman 1977, 4.13 |
+//! | [`convergence`] | error of a value from three similar meshes | Richardson 1911; Roache 1994 |
+//!
+//! **Method.** Direct formulation. With the normal n into the fluid, G = 1/(4π|x − y|) and φ falling off far away, a point on a smooth
+//! surface has ½φ(x) = ∫ φ ∂G/∂n_y dS − ∫ G ∂φ/∂n dS, that is (½ I − K) φ = −S ∂φ/∂n. Potentials are constant over a panel and the equation
+//! holds at its centroid. One matrix serves all modes; A_ij = −ρ ∫ φ_j n_i dS. There are no irregular frequencies, and the spectrum of
+//! ½ I − K lies between 0 and 1 with a condition of 2 to 3 for bodies without deep recesses.
+//!
+//! Not here: waves, viscosity, lift.
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod convergence;
+pub mod dense;
+pub mod influence;
+pub mod matrix;
+pub mod mirror;
+pub mod modes;
