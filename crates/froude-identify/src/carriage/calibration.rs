@@ -25,8 +25,8 @@ use super::run::{DragRun, RunKind, Uncertain};
 use super::steady::{SteadySettings, mean, window};
 
 /// The pulley's loss where both directions with light weights do not measure it, and nobody declared it: a ball bearing
-/// with a thin cord loses some 0.5 to 1.5 %.
-pub const PULLEY_LOSS: Uncertain = Uncertain::new(0.01, 0.003);
+/// with a thin cord loses 0 to 2 %, taken as uniform.
+pub const PULLEY_LOSS: Uncertain = Uncertain::new(0.01, 0.00577);
 
 /// A weight that goes down counts as driven by the motor up to this part of the friction that the motor sees: up to half of that
 /// may be the motor's own.

@@ -114,7 +114,7 @@ pub trait Progress {
     fn say(&mut self, line: &str);
 }
 
-/// After a run: whether its campaign knows enough. The text says why.
+/// After a run, driven now or there already: whether its campaign knows enough. The text says why.
 pub type Enough<'a> = dyn FnMut(&Path, &PlannedRun) -> Option<String> + 'a;
 
 /// An approach that coasts too far even at this speed is none, m/s.
@@ -196,6 +196,9 @@ pub fn drive(
         }
         if is_complete(&setting.folder, &run.id)? {
             outcome.resumed += 1;
+            // What was known then is known now: a campaign that had stopped stays stopped.
+            let known = enough(&setting.folder.join(format!("{}.mcap", run.id)), run);
+            outcome.enough = outcome.enough.or(known);
             continue;
         }
         if let Some(step) = mounted.take()

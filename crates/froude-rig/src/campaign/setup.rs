@@ -189,9 +189,9 @@ const TRUTHS: [Entry; 17] = [
     ("displaced_volume", "m^3", |_, l, v| l.body.displaced_m3 = v),
     ("water_density", "kg/m^3", |_, l, v| l.density_kg_m3 = v),
     ("pulley_friction", "1", |_, l, v| l.hung.pulley_friction = v),
-    // Written, it is in the water with the body: the drag that is measured has it in it.
+    // Written, it is in the water with the body and hangs below the sensor: every method measures it along.
     ("strut_drag", "N s^2/m^2", |c, l, v| {
-        l.strut = Strut::WithBody;
+        (l.strut, l.is_strut_below_sensor) = (Strut::WithBody, true);
         both(c, |p| p.strut_drag_n_s2_m2 = v);
     }),
     ("friction_bump", "1", |c, _, v| both(c, |p| p.bump = v)),

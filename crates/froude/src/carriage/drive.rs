@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::carriage::calibration::{CalibrationSetup, calibrate};
-use froude_identify::carriage::detectability::{DryMean, predict};
+use froude_identify::carriage::detectability::DryMean;
 use froude_identify::carriage::online::OnLine;
 use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
@@ -19,7 +18,7 @@ use froude_rig::drive::twin::TwinRig;
 use froude_rig::load::{Load, TowedBody};
 use indexmap::IndexMap;
 
-use super::drag::{setup_of, weight_relative};
+use super::drag::{calibration_of, setup_of};
 use super::runs::{CAMPAIGN_COPY, density_kg_m3, for_drag};
 use crate::Error;
 
@@ -275,39 +274,42 @@ fn own_folder(folder: &Path, campaign: &Path) -> Result<(), Error> {
     }
 }
 
+/// What says in a folder of runs that its campaign stopped because it knew enough; in words.
+pub const STOPPED_EARLY: &str = "stopped-early.txt";
+
 /// D_d while the campaign runs: every wet run with its dry partner gives a point.
 struct Live {
     online: Option<OnLine>,
     setup: drag_run::DragSetup,
+    campaign: Campaign,
+    folder: PathBuf,
     waiting: Vec<RunLog>,
     calibration: Vec<RunLog>,
     is_calibrated: bool,
-    dry: Vec<DryMean>,
     /// Differences seen, whether they gave a point or not.
     differences: usize,
     per_pair: usize,
-    speeds: usize,
-    weight_relative: f64,
 }
 
 impl Live {
     fn new(prepared: &Prepared) -> Self {
         let asked = &prepared.asked;
-        let setup = setup_of(Some(&prepared.campaign), None);
-        let weight_relative = asked.calibration.as_ref().map_or(0.0, weight_relative);
-        let online = asked.stop_at_relative_half_width.map(|target| OnLine::new(target, 0.0, asked.repeats));
+        let constants = if asked.axis as usize == 0 {
+            Some(&prepared.carriage.rig.y.constants)
+        } else {
+            prepared.carriage.rig.x.as_ref().map(|x| &x.constants)
+        };
         let directions = if asked.directions == froude_records::carriage::Directions::Both { 2 } else { 1 };
         Self {
-            online,
-            setup,
+            online: asked.stop_at_relative_half_width.map(|target| OnLine::new(target, directions)),
+            setup: drag_run::DragSetup { looks: asked.repeats, ..setup_of(Some(&prepared.campaign), constants) },
+            campaign: prepared.campaign.clone(),
+            folder: prepared.folder.clone(),
             waiting: Vec::new(),
             calibration: Vec::new(),
             is_calibrated: false,
-            dry: Vec::new(),
             differences: 0,
             per_pair: asked.speed_m_s.len() * directions,
-            speeds: asked.speed_m_s.len(),
-            weight_relative,
         }
     }
 
@@ -323,8 +325,11 @@ impl Live {
             return None;
         }
         self.calibrate();
-        if let Ok(Some(run)) = for_drag(&log) {
-            self.dry.extend(DryMean::of(&run, &self.setup));
+        let online = self.online.as_mut()?;
+        if let Ok(Some(run)) = for_drag(&log)
+            && let Some(mean) = DryMean::of(&run, &self.setup)
+        {
+            online.push_dry(mean);
         }
         let partner = self.waiting.iter().position(|other| {
             other.meta.pair == log.meta.pair
@@ -338,63 +343,39 @@ impl Live {
         let other = self.waiting.swap_remove(partner);
         self.differences += 1;
         let (wet, dry) = if log.meta.body == BodyState::Wet { (&log, &other) } else { (&other, &log) };
-        let point = match (for_drag(wet), for_drag(dry)) {
-            (Ok(Some(wet)), Ok(Some(dry))) => {
-                mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady).ok()
-            }
-            _ => None,
-        };
-        let online = self.online.as_mut()?;
-        if let Some(point) = &point {
+        if let (Ok(Some(wet)), Ok(Some(dry))) = (for_drag(wet), for_drag(dry))
+            && let Ok(point) = mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady)
+        {
             online.push(point);
         }
         // A look is taken after whole pairs only, also where a run of them gave no point.
         if !self.differences.is_multiple_of(self.per_pair) {
             return None;
         }
-        // As many differences at each speed as one pair gives.
-        let per_speed = self.per_pair / self.speeds.max(1);
-        if let Some(promised) = predict(&self.dry, per_speed, 1, &self.setup) {
-            online.promise(promised.slope_n_s2_m2, promised.slope_dof);
+        let status = online.status(&self.setup)?;
+        if !status.may_stop {
+            return None;
         }
-        let status = online.status()?;
-        status.may_stop.then(|| {
-            format!(
-                "D_d = {:.2} ± {:.2} N s²/m² after {} pairs: its 95 % interval is as narrow as asked; the remaining pairs are left out",
-                status.value,
-                status.half_width.unwrap_or(f64::NAN),
-                status.pairs
-            )
-        })
+        let why = format!(
+            "D_d = {:.2} ± {:.2} N s²/m² after {} pairs: its 95 % interval is as narrow as asked; the remaining pairs are left out",
+            status.value,
+            status.half_width.unwrap_or(f64::NAN),
+            status.pairs
+        );
+        // A folder that cannot be written to has stopped the recorder long before; then the report does without.
+        let _ =
+            froude_records::write::write_atomically(&self.folder.join(STOPPED_EARLY), format!("{why}\n").as_bytes());
+        Some(why)
     }
 
+    /// Newtons a volt of the weights, as the report will take them, before the first look.
     fn calibrate(&mut self) {
-        if self.is_calibrated || self.calibration.is_empty() {
+        if self.is_calibrated {
             return;
         }
         self.is_calibrated = true;
         let runs: Vec<_> = self.calibration.iter().filter_map(|log| for_drag(log).ok().flatten()).collect();
-        let setup = CalibrationSetup {
-            ideal_force_per_volt_n: self.setup.ideal_force_per_volt_n,
-            weight_relative: self.weight_relative,
-            pulley_loss: froude_identify::carriage::calibration::PULLEY_LOSS,
-            steady: self.setup.steady,
-        };
-        if let Ok(calibration) = calibrate(&runs, &setup) {
-            self.setup.calibration = Some(calibration.force_per_volt);
-        }
-        let relative = self.setup.calibration.map_or_else(
-            || {
-                let efficiency = match self.setup.efficiency {
-                    drag_run::Efficiency::Declared(e) => e.relative(),
-                    drag_run::Efficiency::Undeclared => 0.15,
-                };
-                efficiency.hypot(self.setup.torque_constant_relative)
-            },
-            |c| c.force_per_volt_n.relative(),
-        );
-        if let Some(target) = self.online.take() {
-            self.online = Some(target.with_shared(relative));
-        }
+        let (calibration, _) = calibration_of(&runs, Some(&self.campaign), &self.setup);
+        self.setup.calibration = calibration.map(|c| c.force_per_volt);
     }
 }
