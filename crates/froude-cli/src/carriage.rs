@@ -119,7 +119,7 @@ fn preflight(prepared: &Prepared) {
             "coast [m]",
             "margin [m]",
             "drag [N]",
-            "pairs to see it",
+            "differences to see it",
             "runs",
         ]
         .map(str::to_owned)
@@ -134,7 +134,7 @@ fn preflight(prepared: &Prepared) {
     };
     print::text_table(&table);
     say!(
-        "\nOne wet/dry pair is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
+        "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
     );
     if let Some(few) = few_pairs(prepared, detectable_n) {
         say!("{few}");

@@ -127,6 +127,13 @@ pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calib
     // The declared loss is of the weight, the coefficient is in volts: it takes k from a first fit.
     let first = fitted(&driving, loss, setup.ideal_force_per_volt_n)?;
     let k = 1.0 / take(&first, 1)?.value;
+    if k <= 0.0 {
+        return Err(DragError::Calibration(format!(
+            "lifting up to {:.1} N takes no more command than lifting nothing: look whether the weights hung all the way (floor), and at \
+             counts_per_revolution, which says how far the carriage went",
+            weights[1]
+        )));
+    }
     let fitted = fitted(&driving, loss, k)?;
     let inverse = take(&fitted, 1)?;
     let k = 1.0 / inverse.value;

@@ -119,7 +119,9 @@ mod tests {
 
     fn after(points: &[Point], target: f64, setup: &DragSetup) -> Status {
         let mut live = OnLine::new(target, 2);
-        points.iter().for_each(|p| live.push(p.clone()));
+        for p in points {
+            live.push(p.clone());
+        }
         live.status(setup).unwrap()
     }
 

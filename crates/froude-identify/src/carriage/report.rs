@@ -99,6 +99,18 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let reference = by(Method::Fsm).or(current).or(coefficients.first()).map(|c| c.value);
     let recommended = recommended(&coefficients);
     findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agrees));
+    let added_mass = added_mass(runs, setup);
+    findings.extend(added_mass.as_ref().filter(|m| m.interval_95[1] < 0.0).map(|m| {
+        Finding::new(
+            Severity::Warning,
+            "negative-added-mass",
+            format!(
+                "the ramps say that {:.2} kg of water move along: no body has that. Look at the ballast (volume), at \
+                 counts_per_revolution, and whether dry and wet runs are what they are called",
+                m.mass_kg.value
+            ),
+        )
+    }));
     let is_swing = |why: &Rejected| matches!(why, Rejected::Swings { .. });
     findings.extend(swings(&rejected));
     findings.extend(
@@ -118,7 +130,7 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
         recommended,
         detectability,
         agreement: agrees,
-        added_mass: added_mass(runs, setup),
+        added_mass,
         rejected,
         findings,
         estimates,

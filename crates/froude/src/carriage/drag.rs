@@ -352,6 +352,10 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
             d.differences,
             number::significant(d.expanded_n, 2),
         ));
+        out.push(format!(
+            "Over all speeds together the smallest D_d that exceeds its scatter is {} N s²/m².",
+            number::significant(d.smallest_n_s2_m2, 2)
+        ));
         let speeds = report.coefficients.iter().flat_map(|c| c.points.iter().map(|p| p.speed_m_s.abs()));
         let slowest = speeds.fold(f64::INFINITY, f64::min);
         if let Some(c) = report.coefficients.iter().find(|c| c.method == Method::Mcd) {
