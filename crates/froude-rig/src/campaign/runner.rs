@@ -19,7 +19,7 @@ use indexmap::IndexMap;
 
 use froude_records::carriage::CarriagePlan;
 
-use super::plan::{Drive, OperatorStep, PlannedRun, Step};
+use super::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample};
 use crate::load::Load;
@@ -386,7 +386,7 @@ impl Session<'_> {
                 self.excite("the sweep", sweep, duration_s)?;
             }
             Drive::Jog { volts, distance_m } => {
-                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: 1.0 }, 1.0)?;
+                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?;
             }
         }
         self.event(EventKind::Phase, "the motion has ended")?;
