@@ -208,7 +208,7 @@ fn unhomed_that_fits(axis: usize, control: &Config) -> f64 {
     };
     let asked_m_s = control.axes.get(axis).map_or(0.0, |a| a.limits.unhomed_speed_m_s);
     let fastest = (1..=(1e3 * asked_m_s) as u32).take_while(|&mm_s| fits(mm_s)).last();
-    1e-3 * f64::from(fastest.unwrap_or(1))
+    f64::from(fastest.unwrap_or(1)) / 1e3
 }
 
 /// What of a declared friction a coast distance may count on: the lower end of its 95 % interval, at least a tenth.

@@ -247,6 +247,8 @@ fn rig_of(prepared: &Prepared) -> Result<Driven, Error> {
         RigKind::Twin { seed, .. } => {
             let (twin, load) = setup::twin(&prepared.carriage, prepared.load)?;
             let rig = TwinRig::new(&twin, prepared.control, *seed).map_err(runner::RunnerError::from)?;
+            // What the campaign does not declare is not there: a real rig would have nothing to record either.
+            let rig = if prepared.carriage.rig.force_sensor.is_some() { rig } else { rig.without_force_sensor() };
             Ok((Box::new(rig), load, Some(*seed)))
         }
         RigKind::Serial { port, baud } => {
