@@ -173,7 +173,7 @@ fn one_cause_of_many_refusals_is_told_by_kind_and_the_table_names_the_weights() 
         &[
             (
                 r#"speeds = ["0.3 m/s", "0.55 m/s"]"#,
-                r#"speeds = { start = "0.1 m/s", stop = "0.55 m/s", step = "0.05 m/s" }"#,
+                r#"speeds = { start = "0.1 m/s", stop = "0.55 m/s", step = "0.025 m/s" }"#,
             ),
             (r#"distance = "2.2 m""#, r#"distance = "4.7 m""#),
         ],

@@ -582,7 +582,7 @@ mod tests {
         let example = campaign(&[]);
         let loud = Experiments { sweep_v: 9.4, ..Experiments::default() };
         let steps = tuning(example.plan.as_ref().unwrap(), 1.35, &loud);
-        assert_eq!(kinds(&judged(&example, &steps, None).1, "sweep"), ["command", "heating"]);
+        assert_eq!(kinds(&judged(&example, &steps, None).1, "sweep"), ["command", "current", "heating"]);
     }
 
     #[test]
