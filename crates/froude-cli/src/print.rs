@@ -504,6 +504,9 @@ fn laid_out(text: &froude::report::document::TextTable, widest: usize) -> Table 
     out
 }
 
+/// A first column up to this is not wrapped.
+const LONGEST_NAME: usize = 24;
+
 /// A width for each column: that of its longest word, and what is left of the line to the columns that would be wrapped most.
 fn widths(text: &froude::report::document::TextTable, widest: usize) -> Vec<usize> {
     let columns = || 0..text.head.len();
@@ -514,6 +517,14 @@ fn widths(text: &froude::report::document::TextTable, widest: usize) -> Vec<usiz
         columns().map(|i| cells(i).flat_map(|c| c.split_whitespace()).map(length).max().unwrap_or(0)).collect();
     // A space on either side of each column.
     let mut left = widest.saturating_sub(out.iter().sum::<usize>() + 2 * out.len());
+    // What names the row stays on one line, where it is a name and not a sentence.
+    if let (Some(first), Some(&name)) = (out.first_mut(), whole.first())
+        && name <= LONGEST_NAME
+        && name - *first <= left
+    {
+        left -= name - *first;
+        *first = name;
+    }
     while left > 0 {
         let lines = |i: &usize| whole[*i] as f64 / out[*i].max(1) as f64;
         let Some(most) = columns().filter(|&i| out[i] < whole[i]).max_by(|a, b| lines(a).total_cmp(&lines(b))) else {
