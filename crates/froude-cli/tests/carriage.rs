@@ -155,8 +155,8 @@ fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported(
     let campaign = campaign(folder.path(), &changes);
     json(&["run", text(&campaign), "--yes", "--json"]);
     let runs = folder.path().join("campaign-runs");
-    let mcaps = std::fs::read_dir(&runs).unwrap().filter_map(Result::ok).map(|e| e.path());
-    let run = mcaps.filter(|p| p.extension().is_some_and(|e| e == "mcap")).next().unwrap();
+    let mut files = std::fs::read_dir(&runs).unwrap().filter_map(Result::ok).map(|e| e.path());
+    let run = files.find(|p| p.extension().is_some_and(|e| e == "mcap")).unwrap();
     let inside = json(&["inspect", text(&run), "--json"]);
     assert!(inside["columns"].as_array().unwrap().iter().all(|c| c["name"] != "force"), "{inside}");
     let record = json(&["carriage", "drag", text(&runs), "--json"]);

@@ -196,6 +196,7 @@ pub fn way(direction: Option<Direction>) -> &'static str {
 mod tests {
     use super::*;
     use froude_records::run::Axis;
+    use indexmap::IndexMap;
 
     #[test]
     fn a_run_that_was_never_closed_says_what_became_of_it() {
@@ -212,11 +213,11 @@ mod tests {
             body: BodyState::Wet,
             is_ballasted: false,
             hung_weight_n: None,
-            rig: Default::default(),
-            constants: Default::default(),
+            rig: IndexMap::default(),
+            constants: IndexMap::default(),
             status: RunStatus::Running,
             note: String::new(),
-            versions: Default::default(),
+            versions: IndexMap::default(),
             twin_seed: None,
             clock: None,
             log_rate_hz: 1e3,
