@@ -15,6 +15,7 @@ use froude::records::run::RunKind;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::report::document::TextTable;
 use froude::rig::campaign::plan::{PlannedRun, Step};
+use froude::rig::campaign::preflight::Objection;
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
 use froude::rig::drive::Sample;
@@ -89,7 +90,10 @@ fn preflight(prepared: &Prepared) {
         let pairs = f.drag_n.filter(|d| *d > 0.0);
         let pairs = pairs.map_or_else(|| "–".to_owned(), |d| format!("{:.0}", pairs_to_see(detectable_n, d)));
         let cells = vec![
-            run.kind.name().to_owned(),
+            match run.kind {
+                RunKind::Calibration => format!("{} {} N", run.kind.name(), run.hung_weight_n),
+                _ => run.kind.name().to_owned(),
+            },
             run.speed_m_s().map_or_else(|| "–".to_owned(), |v| format!("{v:.3}")),
             runs::way(run.direction()).to_owned(),
             format!("{:.1}", f.duration_s),
@@ -186,10 +190,28 @@ fn refused(prepared: &Prepared) -> Result<(), Error> {
             None => told.push((&o.id, &o.text, 0)),
         }
     }
-    let more = |n: usize| if n == 0 { String::new() } else { format!(" (and {n} more runs)") };
-    let lines: Vec<String> = told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n))).collect();
+    let more = |n: usize, what: &str| if n == 0 { String::new() } else { format!(" (and {n} more {what})") };
+    let mut lines: Vec<String> =
+        told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "runs"))).collect();
+    if told.len() > MOST_SENTENCES {
+        // One cause makes a sentence for every run: the first of each kind tells it.
+        let mut kinds: Vec<(&str, &Objection, usize)> = Vec::new();
+        for o in &prepared.objections {
+            match kinds.iter_mut().find(|k| k.0 == o.kind) {
+                Some(k) => k.2 += 1,
+                None => kinds.push((o.kind, o, 0)),
+            }
+        }
+        lines = kinds.iter().map(|(_, o, n)| format!("  {}{}: {}", o.id, more(*n, "like it"), o.text)).collect();
+        let is_refused = |run: &PlannedRun| prepared.objections.iter().any(|o| o.id == run.id);
+        let (refused, all) = (prepared.runs().filter(|r| is_refused(r)).count(), prepared.runs().count());
+        lines.push(format!("{refused} of {all} runs are refused; froude run --check --json has a sentence for each"));
+    }
     Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
 }
+
+/// More different objections than this are told by kind.
+const MOST_SENTENCES: usize = 10;
 
 fn preflight_json(prepared: &Prepared) -> serde_json::Value {
     let rows: Vec<_> = prepared
@@ -201,7 +223,8 @@ fn preflight_json(prepared: &Prepared) -> serde_json::Value {
                    "margin_m": f.margin_m.is_finite().then_some(f.margin_m), "drag_n": f.drag_n})
         })
         .collect();
-    let objections: Vec<_> = prepared.objections.iter().map(|o| json!({"run": o.id, "text": o.text})).collect();
+    let objections: Vec<_> =
+        prepared.objections.iter().map(|o| json!({"run": o.id, "kind": o.kind, "text": o.text})).collect();
     json!({"name": prepared.name(), "duration_s": prepared.duration_s, "runs": rows, "objections": objections,
            "detectable_n": prepared.detectable_n()})
 }

@@ -17,7 +17,7 @@ fn campaign(folder: &Path, changes: &[(&str, &str)]) -> PathBuf {
         ),
         ("repeats = 5  ", "repeats = 3  "),
         (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
-        (r#"still = "5 s""#, r#"still = "1 s""#),
+        (r#"still = "5 s""#, r#"still = "2 s""#),
         (
             r#"speeds = ["0.02 m/s", "0.05 m/s", "0.1 m/s", "0.2 m/s", "0.35 m/s", "0.55 m/s"]"#,
             r#"speeds = ["0.2 m/s", "0.4 m/s"]"#,
@@ -72,6 +72,15 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     assert!(position["high"].as_f64().unwrap() - position["low"].as_f64().unwrap() > 2.1, "{position}");
     assert!(inside["facts"].to_string().contains("the motion begins"), "{inside}");
 
+    // No short axis is declared, so none is recorded; the sidecar opens its run, the folder says what to do with it.
+    assert!(columns.iter().all(|c| !c["name"].as_str().unwrap().starts_with("x/")), "{inside}");
+    let sidecar = wet.with_extension("toml");
+    assert_eq!(json(&["inspect", text(&sidecar), "--json"])["facts"], inside["facts"]);
+    let folder_told = froude(&["inspect", text(&runs)]);
+    let error = String::from_utf8_lossy(&folder_told.stderr);
+    assert_eq!(folder_told.status.code(), Some(2));
+    assert!(error.contains(&format!("froude carriage drag {} reduces them together", text(&runs))), "{error}");
+
     let record = json(&["carriage", "drag", text(&runs), "--json"]);
     let estimates = record["estimates"].as_array().unwrap();
     for model in ["drag_fsm", "drag_mcd", "drag_mbdp_mapped"] {
@@ -124,6 +133,60 @@ fn the_preflight_tells_where_the_drag_is_too_small_to_be_seen_and_inspect_what_w
         ["twin, seed 1", "axis y, 0.05, 0.55 m/s over 2.2 m", "3 at each speed, out and back; wet runs ballasted"]
     {
         assert!(inside.contains(fact), "{fact}: {inside}");
+    }
+}
+
+/// Two pairs at one speed and nothing else.
+const BARE: [(&str, &str); 6] = [
+    (r#"speeds = ["0.3 m/s", "0.55 m/s"]"#, r#"speeds = ["0.5 m/s"]"#),
+    ("repeats = 3  ", "repeats = 2  "),
+    ("[carriage.warm_up]\nduration = \"10 s\"\nspeed = \"0.3 m/s\"\n", ""),
+    ("[carriage.friction_sweep]\nspeeds = [\"0.2 m/s\", \"0.4 m/s\"]\nrepeats = 2\n", ""),
+    ("duration = \"20 s\"", "duration = \"2 s\""),
+    ("[rig.force_sensor]\nrange = \"125 N\"\nresolution = \"0.0208333 N\"        # 1/48 N\nnoise = \"0.05 N\"", "#"),
+];
+
+#[test]
+fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut changes = BARE.to_vec();
+    changes.push(("drift = \"0.2 N\"\ngain_standard = \"0.2 %\"", "#"));
+    changes.push(("repeats = 6\n", "repeats = 1\n"));
+    let campaign = campaign(folder.path(), &changes);
+    json(&["run", text(&campaign), "--yes", "--json"]);
+    let runs = folder.path().join("campaign-runs");
+    let mut files = std::fs::read_dir(&runs).unwrap().filter_map(Result::ok).map(|e| e.path());
+    let run = files.find(|p| p.extension().is_some_and(|e| e == "mcap")).unwrap();
+    let inside = json(&["inspect", text(&run), "--json"]);
+    assert!(inside["columns"].as_array().unwrap().iter().all(|c| c["name"] != "force"), "{inside}");
+    let record = json(&["carriage", "drag", text(&runs), "--json"]);
+    let models: Vec<&str> =
+        record["estimates"].as_array().unwrap().iter().filter_map(|e| e["model"].as_str()).collect();
+    assert!(models.contains(&"drag_mcd") && !models.contains(&"drag_fsm"), "{models:?}");
+}
+
+#[test]
+fn one_cause_of_many_refusals_is_told_by_kind_and_the_table_names_the_weights() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(
+        folder.path(),
+        &[
+            (
+                r#"speeds = ["0.3 m/s", "0.55 m/s"]"#,
+                r#"speeds = { start = "0.1 m/s", stop = "0.55 m/s", step = "0.025 m/s" }"#,
+            ),
+            (r#"distance = "2.2 m""#, r#"distance = "4.7 m""#),
+        ],
+    );
+    let out = froude(&["run", text(&campaign), "--check"]);
+    assert_eq!(out.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(error.contains("003-warm-up-forward (and "), "{error}");
+    assert!(error.contains(" runs are refused; froude run --check --json has a sentence for each"), "{error}");
+    assert!(error.lines().count() < 10, "{error}");
+    let table = String::from_utf8_lossy(&out.stdout);
+    for word in ["calibration 10 N", "calibration 1.5 N", "calibration 0 N", "excitation"] {
+        assert!(table.contains(word), "{word}: {table}");
     }
 }
 

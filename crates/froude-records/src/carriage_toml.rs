@@ -144,11 +144,11 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
         efficiency_backward: efficiency(s, "efficiency_backward")?,
         is_calibrated: false,
     };
-    if let (true, Some(value)) = (constants.counts_per_revolution <= 0.0, s.get("counts_per_revolution")) {
+    if let (true, Some(value)) = (constants.counts_per_revolution == 0.0, s.get("counts_per_revolution")) {
         return Err(s.wrong(
             "counts_per_revolution",
             value,
-            format!("is {}; it must be larger than zero", found(value)),
+            "is zero; write 4000 for 1000 lines decoded fourfold, -4000 where the encoder counts backwards",
         ));
     }
     let controller = s.section("controller")?;

@@ -232,8 +232,9 @@ fn notes(
     if overhauled > 0 {
         out.push(format!(
             "{overhauled} runs were left out: the weight drove the gear or may have, and a gear loses differently that way; weights \
-             up to {:.1} N, half the friction, can be lowered under power",
-            SURELY_DRIVEN * friction_n
+             up to {:.2} N, half the friction, can be lowered under power",
+            // Rounded down: the most that is advised is not refused.
+            (1e2 * SURELY_DRIVEN * friction_n).floor() / 1e2
         ));
     }
     if (found.value - loss.value).abs() > DOUBTED * loss.standard {

@@ -139,6 +139,8 @@ pub enum Step {
 
 /// Way of the jog test, m: a reversed polarity is caught within it.
 const JOG_M: f64 = 0.01;
+/// It ends after this time in any case, s.
+pub(super) const JOG_S: f64 = 1.0;
 /// Its command, V: twice breakaway of the paper's rig.
 const JOG_V: f64 = 1.0;
 

@@ -19,7 +19,7 @@ use indexmap::IndexMap;
 
 use froude_records::carriage::CarriagePlan;
 
-use super::plan::{Drive, OperatorStep, PlannedRun, Step};
+use super::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample};
 use crate::load::Load;
@@ -291,6 +291,11 @@ impl Session<'_> {
         self.run.axis as usize
     }
 
+    /// Whether the short axis is recorded: it is declared, or it is the one that moves.
+    fn has_x(&self) -> bool {
+        self.setting.constants.contains_key("x") || self.run.axis == froude_records::run::Axis::X
+    }
+
     /// Enables and homes both axes.
     fn prepare(&mut self) -> Result<(), RunnerError> {
         for axis in [0, 1] {
@@ -389,7 +394,7 @@ impl Session<'_> {
                 self.excite("the sweep", sweep, duration_s)?;
             }
             Drive::Jog { volts, distance_m } => {
-                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: 1.0 }, 1.0)?;
+                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?;
             }
         }
         self.event(EventKind::Phase, "the motion has ended")?;
@@ -554,7 +559,7 @@ impl Session<'_> {
             start_unix_ns: setting.start_unix_ns,
         };
         let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };
-        let layout = Layout::carriage(probe.force_n.is_some(), truths)?;
+        let layout = Layout::carriage(self.has_x(), probe.force_n.is_some(), truths)?;
         self.recorder = Some(Recorder::create(&setting.folder, meta, layout, Packing::Lz4)?);
         self.tick = None;
         Ok(())
@@ -578,6 +583,7 @@ impl Session<'_> {
                 number as f64 / (self.rig.rate_hz() * self.rig.ticks_per_sample() as f64),
             );
         }
+        let has_x = self.has_x();
         let Some(recorder) = &mut self.recorder else { return Ok(()) };
         if !number.is_multiple_of(self.setting.decimation) {
             return Ok(());
@@ -597,7 +603,7 @@ impl Session<'_> {
                 fault: fault.map_or(0, |(f, _)| f as u8),
             }
         };
-        let row = CarriageSample { y: axis(0), x: axis(1), force_n: sample.force_n.unwrap_or(0.0) };
+        let row = CarriageSample { y: axis(0), x: has_x.then(|| axis(1)), force_n: sample.force_n.unwrap_or(0.0) };
         let mut truths = [0.0; TRUTHS.len()];
         let n = match &sample.truth {
             Some([y, _]) => {

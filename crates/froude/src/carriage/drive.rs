@@ -9,7 +9,7 @@ use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 use froude_records::run::{BodyState, RunKind, RunLog, read_run};
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
-use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check};
+use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check, check_campaign};
 use froude_rig::campaign::runner::{self, Operator, Progress, Setting};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::campaign::{runner::Outcome, setup};
@@ -130,7 +130,8 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
     let density_kg_m3 = density_kg_m3(Some(&campaign));
     // The body with its water and added mass: twice what it displaces, where nothing else is known; and the ballast, once that.
-    let displaced_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3).unwrap_or(TowedBody::CYLINDER.displaced_m3);
+    let volume_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3);
+    let displaced_m3 = volume_m3.unwrap_or(TowedBody::CYLINDER.displaced_m3);
     let displaced_kg = density_kg_m3 * displaced_m3;
     let towed_kg = if asked.is_ballasted { 3.0 } else { 2.0 } * displaced_kg;
     let control = setup::control(&carriage, towed_kg)?;
@@ -158,12 +159,13 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         wet_mass_kg: towed_kg,
         dry_mass_kg: displaced_kg,
         efficiency: spec.constants.efficiency_forward.map_or(1.0, |e| e.value),
+        assumed_volume_m3: volume_m3.is_none().then_some(displaced_m3),
     };
-    let (mut forecasts, mut objections) = (Vec::new(), Vec::new());
+    let (mut forecasts, mut objections) = (Vec::new(), check_campaign(&asked, &carriage.rig, &control));
     let mut duration_s = 0.0;
     for step in &steps {
         if let Step::Run(run) = step {
-            let (forecast, against) = check(run, asked.acceleration_m_s2, &axis, &expected);
+            let (forecast, against) = check(run, &asked, &control, &expected);
             duration_s += run.settle_s + 2.0 * asked.still_s + forecast.duration_s;
             // The way back to the start.
             duration_s += asked.distance_m / return_speed_m_s(&asked, &axis.limits);
@@ -244,6 +246,8 @@ fn rig_of(prepared: &Prepared) -> Result<Driven, Error> {
         RigKind::Twin { seed, .. } => {
             let (twin, load) = setup::twin(&prepared.carriage, prepared.load)?;
             let rig = TwinRig::new(&twin, prepared.control, *seed).map_err(runner::RunnerError::from)?;
+            // What the campaign does not declare is not there: a real rig would have nothing to record either.
+            let rig = if prepared.carriage.rig.force_sensor.is_some() { rig } else { rig.without_force_sensor() };
             Ok((Box::new(rig), load, Some(*seed)))
         }
         RigKind::Serial { port, baud } => {
