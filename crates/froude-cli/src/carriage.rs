@@ -140,6 +140,12 @@ fn preflight(prepared: &Prepared) {
     say!(
         "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
     );
+    if !prepared.is_shaped() {
+        say!(
+            "The reference is not shaped (shaped_mode): after each ramp the load swings on the chain, and runs in which it then drives the gear \
+             are left out of what the motor's current tells. froude carriage resonance finds the mode."
+        );
+    }
     if let Some(few) = few_pairs(prepared, detectable_n) {
         say!("{few}");
     }

@@ -128,6 +128,7 @@ fn the_preflight_tells_where_the_drag_is_too_small_to_be_seen_and_inspect_what_w
     // 2√2 of 2 % of 2.85 N are 0.16 N; the drag at 0.05 m/s is 0.05 N: ten differences and more, three pairs give six.
     assert!(told.contains("at 0.050 m/s, where 6 are planned (out and back count as two)"), "{told}");
     assert!(!told.contains("at 0.550 m/s, where"), "{told}");
+    assert!(!told.contains("is not shaped"), "{told}");
     let inside = json(&["inspect", text(&campaign), "--json"])["facts"].to_string();
     for fact in
         ["twin, seed 1", "axis y, 0.05, 0.55 m/s over 2.2 m", "3 at each speed, out and back; wet runs ballasted"]

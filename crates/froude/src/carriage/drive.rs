@@ -89,7 +89,13 @@ impl Prepared {
         self.steps.iter().filter_map(|s| if let Step::Run(r) = s { Some(r) } else { None })
     }
 
-    /// Smallest drag that one wet/dry pair is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
+    /// Whether the reference of the axis that tows is shaped for the load's mode.
+    #[must_use]
+    pub fn is_shaped(&self) -> bool {
+        self.control.axes[self.asked.axis as usize].mode_hz > 0.0
+    }
+
+    /// Smallest drag that one wet-less-dry difference is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
     /// run. The dry repeats replace it when they are there.
     #[must_use]
     pub fn detectable_n(&self) -> f64 {
