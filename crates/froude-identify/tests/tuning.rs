@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use froude_identify::tuning::gains::{Demand, shaped_on_response, ziegler_nichols};
+use froude_identify::tuning::gains::{Demand, Encoder, shaped_on_response, ziegler_nichols};
 use froude_identify::tuning::margins::margins;
 use froude_identify::tuning::relay::limit_cycle;
 use froude_identify::tuning::resonance::{Mode, shaper, two_mass_modes};
@@ -22,7 +22,7 @@ fn measured(n: usize, from_hz: f64, to_hz: f64, plant: impl Fn(Complex64) -> Com
 }
 
 fn proportional(gain: f64) -> LoopGains {
-    LoopGains { proportional_v_rad: gain, derivative_v_s_rad: 0.0, integral_v_rad_s: 0.0, derivative_filter_hz: 1e9 }
+    LoopGains { proportional_v_rad: gain, derivative_v_s_rad: 0.0, integral_v_rad_s: 0.0, derivative_filter_hz: 1e9, tick_s: 0.0 }
 }
 
 /// L = K/(s(s+1)²): −180° at ω = 1 rad/s where |L| = K/2, so the gain margin of K = 0.5 is exactly 4.
@@ -62,11 +62,11 @@ fn too_much_gain_gives_a_negative_phase_margin() {
 fn shaped_gains_keep_the_demand_and_a_slower_drive_gets_less_gain() {
     let demand = Demand::default();
     let plant = measured(400, 0.1, 200.0, |s| 600.0 / (s * (s + 0.3)) * (-s * 5e-4).exp());
-    let gains = shaped_on_response(&plant, &demand).unwrap();
+    let gains = shaped_on_response(&plant, &demand, &Encoder::IDEAL).unwrap();
     let m = margins(&plant, &gains);
     assert!(m.phase_rad.unwrap() >= demand.phase_rad && m.largest_sensitivity <= demand.sensitivity, "{m:?}");
     let slow = measured(400, 0.1, 200.0, |s| 600.0 / (s * (s + 0.3)) * (-s * 5e-3).exp());
-    let slower = shaped_on_response(&slow, &demand).unwrap();
+    let slower = shaped_on_response(&slow, &demand, &Encoder::IDEAL).unwrap();
     // Ten times the delay: a tenth of the crossover, a hundredth of the gain (P falls with the square).
     let ratio = slower.proportional_v_rad / gains.proportional_v_rad;
     assert!((0.007..0.014).contains(&ratio), "{ratio}, {gains:?}, {slower:?}");
@@ -200,7 +200,7 @@ fn a_relay_finds_the_ultimate_point() {
     let cycle = limit_cycle(rate_hz, 1.0, 0.0, &command, &angle).unwrap();
     assert!((cycle.period_s / TAU - 1.0).abs() < 0.03, "{cycle:?}");
     assert!((cycle.ultimate_gain_v_rad / 2.0 - 1.0).abs() < 0.05, "{cycle:?}");
-    let gains = ziegler_nichols(&cycle);
+    let gains = ziegler_nichols(&cycle, 0.0);
     assert!((gains.proportional_v_rad / (0.6 * cycle.ultimate_gain_v_rad) - 1.0).abs() < 1e-12);
     assert!((gains.derivative_v_s_rad / gains.proportional_v_rad - cycle.period_s / 8.0).abs() < 1e-12);
 }
