@@ -7,7 +7,9 @@ use froude::Error;
 use froude::carriage::drag::{DragJob, drag, methods_table, setup_of, summary};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
-use froude::carriage::tune::{candidates_table, find_resonance, modes_table, resonance_sentences, tune};
+use froude::carriage::tune::{
+    candidates_table, find_resonance, modes_table, resonance_sentences, tune, tune_sentences,
+};
 use froude::carriage::{calibrate, runs};
 use froude::identify::carriage::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
@@ -462,10 +464,11 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
                        "derivative_v_s_rad": c.gains.derivative_v_s_rad, "integral_v_rad_s": c.gains.integral_v_rad_s,
                        "derivative_filter_hz": c.gains.derivative_filter_hz, "crossover_hz": c.margins.crossover_hz,
                        "phase_margin_rad": c.margins.phase_rad, "gain_margin": c.margins.gain,
-                       "largest_sensitivity": c.margins.largest_sensitivity})
+                       "largest_sensitivity": c.margins.largest_sensitivity, "is_extended_by_model": c.is_extended,
+                       "following_error_m": c.following_error_m, "homing_speed_m_s": c.homing_m_s, "objections": c.objections})
             })
             .collect();
-        return print::json(&json!({"gains": rows, "report": outcome.page}));
+        return print::json(&json!({"gains": rows, "recommended": outcome.recommended, "report": outcome.page}));
     }
     match &outcome.cycle {
         Ok(c) => say!(
@@ -476,7 +479,11 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
         ),
         Err(error) => say!("relay: {error}"),
     }
-    print::text_table(&candidates_table(&outcome.candidates));
+    print::text_table(&candidates_table(&outcome));
+    say!("");
+    for sentence in tune_sentences(&outcome) {
+        say!("{sentence}");
+    }
     say!("\nReport with the Bode plot: {}", outcome.page.display());
     Ok(())
 }

@@ -22,7 +22,13 @@ fn measured(n: usize, from_hz: f64, to_hz: f64, plant: impl Fn(Complex64) -> Com
 }
 
 fn proportional(gain: f64) -> LoopGains {
-    LoopGains { proportional_v_rad: gain, derivative_v_s_rad: 0.0, integral_v_rad_s: 0.0, derivative_filter_hz: 1e9, tick_s: 0.0 }
+    LoopGains {
+        proportional_v_rad: gain,
+        derivative_v_s_rad: 0.0,
+        integral_v_rad_s: 0.0,
+        derivative_filter_hz: 1e9,
+        tick_s: 0.0,
+    }
 }
 
 /// L = K/(s(s+1)²): −180° at ω = 1 rad/s where |L| = K/2, so the gain margin of K = 0.5 is exactly 4.

@@ -143,7 +143,8 @@ impl TwoMassModes {
         };
         let first_hz = plant.first().map_or(low_hz, |p| p.frequency_hz);
         let last_hz = plant.last().map_or(low_hz, |p| p.frequency_hz);
-        let steps = |from_hz: f64, to_hz: f64| (1..).map(move |i| from_hz * STEP.powi(i)).take_while(move |f| *f < to_hz);
+        let steps =
+            |from_hz: f64, to_hz: f64| (1..).map(move |i| from_hz * STEP.powi(i)).take_while(move |f| *f < to_hz);
         let below: Vec<ResponsePoint> = steps(low_hz / STEP, first_hz).map(at).collect();
         below.into_iter().chain(plant.iter().copied()).chain(steps(last_hz, high_hz).map(at)).collect()
     }
@@ -159,8 +160,7 @@ impl TwoMassModes {
         // f² = (1 − η) f_l² + η f_a².
         let by_load = (1.0 - efficiency) * load.frequency_hz / free_hz * load.frequency_std_hz;
         let by_free = efficiency * apparent.frequency_hz / free_hz * apparent.frequency_std_hz;
-        let by_gear =
-            0.5 * (apparent.frequency_hz.powi(2) - load.frequency_hz.powi(2)) / free_hz * efficiency_std;
+        let by_gear = 0.5 * (apparent.frequency_hz.powi(2) - load.frequency_hz.powi(2)) / free_hz * efficiency_std;
         (free_hz, by_load.hypot(by_free).hypot(by_gear))
     }
 }
