@@ -8,7 +8,7 @@ use froude::carriage::drag::{DragJob, drag, methods_table, setup_of, summary};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
 use froude::carriage::tune::{
-    candidates_table, find_resonance, modes_table, resonance_sentences, tune, tune_sentences,
+    candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
 };
 use froude::carriage::{calibrate, runs};
 use froude::identify::carriage::Uncertain;
@@ -500,13 +500,14 @@ fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
             .map(|s| {
                 let modes = s.modes.as_ref().ok();
                 json!({"body": s.body, "load_hz": modes.map(|m| m.load.frequency_hz), "load_damping": modes.map(|m| m.load.damping),
-                       "free_hz": modes.map(|m| m.free.frequency_hz)})
+                       "free_seen_hz": modes.map(|m| m.free.frequency_hz),
+                       "free_hz": modes.and_then(|m| free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
             })
             .collect();
         return print::json(&json!({"states": rows, "shaped_mode_hz": outcome.proposed.map(|p| p.0),
                                    "shaped_damping": outcome.proposed.map(|p| p.1), "report": outcome.page}));
     }
-    print::text_table(&modes_table(&outcome.states));
+    print::text_table(&modes_table(&outcome));
     say!("");
     for sentence in resonance_sentences(&outcome) {
         say!("{sentence}");

@@ -81,6 +81,12 @@ impl LoopGains {
         count_rad * (self.proportional_v_rad + self.derivative_v_s_rad * slope_1_s)
     }
 
+    /// Below this the integral's lag is more than the derivative's lead, and a swing of the load is fed: √(K_i/K_d), Hz.
+    #[must_use]
+    pub fn feeding_hz(&self) -> f64 {
+        (self.integral_v_rad_s / self.derivative_v_s_rad).sqrt() / std::f64::consts::TAU
+    }
+
     /// Part of a new difference that the derivative's filter takes at once.
     pub(crate) fn filter_share(&self) -> f64 {
         1.0 - (-std::f64::consts::TAU * self.derivative_filter_hz * self.tick_s).exp()

@@ -54,23 +54,26 @@ impl Default for Demand {
 
 /// The fastest PID that keeps the demand on the measured response.
 ///
-/// The controller's form is fixed by its crossover f_c: derivative zero at f_c/3, integral at f_c/10, derivative filter at
-/// 10 f_c. Crossovers are tried from the highest measured frequency downwards; at each the gain makes |L(f_c)| = 1. A loop is taken only
-/// if all of it lies in the measured band, |L| above 1 at its low end and well below 1 at its high end: a chain's resonance alone
-/// crosses |L| = 1 too, in a loop that is too soft to hold anything.
+/// The controller's form is fixed by its crossover f_c: derivative zero at f_c/3, derivative filter at 10 f_c, integral at f_c/10 or
+/// lower: K_i ≤ K_d ω_l²/2 with ω_l = 2π `load_hz`, the lowest mode of any load on a motor that stands. Below √(K_i/K_d) the integral's
+/// lag is more than the derivative's lead, and a motor so controlled feeds a load's swing instead of damping it. Crossovers are tried
+/// from the highest measured frequency downwards; at each the gain makes |L(f_c)| = 1. A loop is taken only if all of it lies in the
+/// measured band, |L| above 1 at its low end and well below 1 at its high end: a chain's resonance alone crosses |L| = 1 too, in a loop
+/// that is too soft to hold anything.
 ///
 /// # Errors
 ///
 /// [`TuningError::NoCrossover`] when none keeps it.
 pub fn shaped_on_response(
     plant: &[ResponsePoint],
+    load_hz: f64,
     demand: &Demand,
     encoder: &Encoder,
 ) -> Result<LoopGains, TuningError> {
     plant
         .iter()
         .rev()
-        .map(|point| with_crossover(point, encoder.tick_s))
+        .map(|point| with_crossover(point, load_hz, encoder.tick_s))
         .filter(|gains| gains.volts_per_count(encoder.count_rad) <= encoder.most_v)
         .find(|gains| demand.is_kept(&margins(plant, gains)))
         .ok_or_else(|| TuningError::NoCrossover {
@@ -81,12 +84,13 @@ pub fn shaped_on_response(
         })
 }
 
-fn with_crossover(point: &ResponsePoint, tick_s: f64) -> LoopGains {
+fn with_crossover(point: &ResponsePoint, load_hz: f64, tick_s: f64) -> LoopGains {
     let crossover_rad_s = TAU * point.frequency_hz;
+    let derivative_s = 3.0 / crossover_rad_s;
     let unit = LoopGains {
         proportional_v_rad: 1.0,
-        derivative_v_s_rad: 3.0 / crossover_rad_s,
-        integral_v_rad_s: crossover_rad_s / 10.0,
+        derivative_v_s_rad: derivative_s,
+        integral_v_rad_s: (crossover_rad_s / 10.0).min(0.5 * derivative_s * (TAU * load_hz).powi(2)),
         derivative_filter_hz: 10.0 * point.frequency_hz,
         tick_s,
     };

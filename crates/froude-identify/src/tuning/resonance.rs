@@ -40,6 +40,8 @@ pub struct TwoMassModes {
     pub delay_s: f64,
     /// Root-mean-square relative residual of the response where its coherence is above 0.8.
     pub relative_residual: f64,
+    /// Its median: what is left at most points, dip, peak and harmonics aside.
+    pub median_residual: f64,
 }
 
 const PARAMETERS: usize = 7;
@@ -88,9 +90,12 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
     };
     // Only where the response was seen at all: at an antiresonance the encoder may see nothing.
     let seen: Vec<&ResponsePoint> = plant.iter().filter(|q| q.coherence > SEEN).collect();
-    let square: f64 = seen.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).sum();
-    let relative_residual = (square / seen.len() as f64).sqrt();
     let (load_hz, free_hz) = (p[2].exp(), p[4].exp());
+    let mut squares: Vec<f64> =
+        seen.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).collect();
+    let relative_residual = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    squares.sort_by(f64::total_cmp);
+    let median_residual = squares.get(squares.len() / 2).map_or(f64::NAN, |x| x.sqrt());
     let is_inside = |f: f64| (low_hz..=high_hz).contains(&f);
     // A comparison with NaN is false, so this also refuses a fit that ran away.
     if !(relative_residual < LARGEST_RESIDUAL && is_inside(load_hz) && is_inside(free_hz) && load_hz < free_hz) {
@@ -111,6 +116,7 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
         viscous_1_s: p[1].exp(),
         delay_s: p[6],
         relative_residual,
+        median_residual,
     })
 }
 
@@ -129,6 +135,26 @@ impl TwoMassModes {
             self.delay_s,
         ];
         model(&p, frequency_hz)
+    }
+
+    /// The same drive with another load: `factor` times the one that was identified.
+    #[must_use]
+    pub fn with_load(&self, factor: f64) -> Self {
+        let inertia_ratio = factor * self.inertia_ratio;
+        let load = self.load.frequency_hz / factor.sqrt();
+        let free = load * (1.0 + inertia_ratio).sqrt();
+        let mode = |m: Mode, frequency_hz: f64| {
+            // The chain's damper stays: the ratio goes with the frequency.
+            let part = frequency_hz / m.frequency_hz;
+            Mode { frequency_hz, frequency_std_hz: part * m.frequency_std_hz, damping: part * m.damping, ..m }
+        };
+        Self {
+            load: mode(self.load, load),
+            free: mode(self.free, free),
+            inertia_ratio,
+            viscous_1_s: self.viscous_1_s * (1.0 + self.inertia_ratio) / (1.0 + inertia_ratio),
+            ..*self
+        }
     }
 
     /// The measured points, and the model's where nothing was measured, from a lower to a higher frequency.

@@ -10,7 +10,7 @@
 use super::LoopGains;
 use super::resonance::TwoMassModes;
 
-/// A trapezoid of speed from rest to rest, on a drive that is known so far.
+/// A trapezoid of speed from rest to rest, and the friction that it meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ramp {
     /// Speed reached, rad/s.
@@ -19,8 +19,6 @@ pub struct Ramp {
     pub acceleration_rad_s2: f64,
     /// Time at the speed, and at rest afterwards, s.
     pub hold_s: f64,
-    /// Load over the load of the identified response (a body rides along).
-    pub load_factor: f64,
     /// Friction at the load, as the command that it takes, V.
     pub friction_v: f64,
 }
@@ -136,14 +134,14 @@ struct TwoMasses {
 
 impl TwoMasses {
     fn new(modes: &TwoMassModes, ramp: &Ramp) -> Self {
-        let ratio = modes.inertia_ratio * ramp.load_factor;
+        let ratio = modes.inertia_ratio;
         let load_rad_s = std::f64::consts::TAU * modes.load.frequency_hz;
         Self {
             gain: modes.gain_rad_s2_v,
             viscous_1_s: modes.viscous_1_s,
             ratio,
-            spring_1_s2: load_rad_s * load_rad_s / ramp.load_factor,
-            damper_1_s: 2.0 * modes.load.damping * load_rad_s / ramp.load_factor,
+            spring_1_s2: load_rad_s * load_rad_s,
+            damper_1_s: 2.0 * modes.load.damping * load_rad_s,
             friction_rad_s2: modes.gain_rad_s2_v * ramp.friction_v / ratio,
             motor_rad: 0.0,
             motor_rad_s: 0.0,

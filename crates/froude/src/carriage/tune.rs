@@ -15,7 +15,7 @@ use froude_identify::tuning::resonance::{Shaper, TwoMassModes, shaper, two_mass_
 use froude_identify::tuning::response::{Sweep, plant_response};
 use froude_identify::tuning::tracking::{Forward, Ramp, Tracking, follow};
 use froude_identify::tuning::{LoopGains, ResponsePoint, TuningError};
-use froude_records::run::{RunKind, RunLog};
+use froude_records::run::{Declared, RunKind, RunLog};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
@@ -53,6 +53,10 @@ pub struct Candidate {
     pub counts: CountGains,
     /// Margins on the measured response.
     pub margins: Margins,
+    /// Margins with the heaviest body, on the fitted two-mass model; `None` where there is none.
+    pub heaviest: Option<Margins>,
+    /// Lowest mode of a load on a held motor, Hz: that of the heaviest body.
+    pub lowest_load_hz: Option<f64>,
     /// The measured band did not hold the whole loop: beyond it the margins are the fitted two-mass model's.
     pub is_extended: bool,
     /// One encoder count moves the command by this much through the derivative, V.
@@ -100,6 +104,8 @@ pub struct StateModes {
 pub struct ResonanceOutcome {
     /// By state of the body.
     pub states: Vec<StateModes>,
+    /// Declared efficiency of the gear when the motor drives.
+    pub efficiency: Option<Declared>,
     /// Mode to shape for, Hz, and its damping: the middle of dry and wet.
     pub proposed: Option<(f64, f64)>,
     /// The robust shaper for it.
@@ -136,6 +142,7 @@ pub fn tune(
             cycle_of(log, axis, &experiments)
         });
     let bench = Bench::new(&prepared, &plant);
+    let load_hz = bench.heaviest().map_or(f64::INFINITY, |m| m.load.frequency_hz);
     let configured = axis.gains;
     let mut candidates = vec![bench.candidate(
         "as configured",
@@ -148,7 +155,7 @@ pub fn tune(
         },
     )];
     let mut unshaped = None;
-    match shaped_on_response(&plant, &Demand::default(), &bench.encoder) {
+    match shaped_on_response(&plant, load_hz, &Demand::default(), &bench.encoder) {
         Ok(gains) => candidates.push(bench.candidate("shaped on the response", gains)),
         Err(error) => unshaped = Some(error),
     }
@@ -203,7 +210,8 @@ pub fn find_resonance(
         let middle = towed.first()?.load;
         Some(shaper(&froude_identify::tuning::resonance::Mode { frequency_hz, damping, ..middle }, true))
     });
-    let mut outcome = ResonanceOutcome { states, proposed, shaper, page: PathBuf::new() };
+    let mut outcome =
+        ResonanceOutcome { states, efficiency: prepared.efficiency(), proposed, shaper, page: PathBuf::new() };
     outcome.page = write(&prepared.folder, &resonance_document(&outcome, &prepared, &job.date))?;
     Ok(outcome)
 }
@@ -277,7 +285,9 @@ struct Bench<'a> {
     axis: &'a AxisConfig,
     encoder: Encoder,
     forward: Forward,
-    ramps: Vec<(bool, Ramp)>,
+    /// The heaviest load over the bare one.
+    load_factor: f64,
+    ramps: Vec<(bool, f64, Ramp)>,
 }
 
 impl<'a> Bench<'a> {
@@ -301,8 +311,8 @@ impl<'a> Bench<'a> {
                     (false, fastest_m_s, acceleration_m_s2),
                 ] {
                     let (speed_rad_s, acceleration_rad_s2) = (speed_m_s * rad_m, acceleration_m_s2 * rad_m);
-                    let ramp = Ramp { speed_rad_s, acceleration_rad_s2, hold_s: HOLD_S, load_factor, friction_v };
-                    ramps.push((is_homing, ramp));
+                    let ramp = Ramp { speed_rad_s, acceleration_rad_s2, hold_s: HOLD_S, friction_v };
+                    ramps.push((is_homing, load_factor, ramp));
                 }
             }
         }
@@ -320,8 +330,19 @@ impl<'a> Bench<'a> {
                 count_rad,
                 speed_filter_hz: SPEED_FILTER_HZ,
             },
+            load_factor: heaviest,
             ramps,
         }
+    }
+
+    /// The model with the heaviest body.
+    fn heaviest(&self) -> Option<TwoMassModes> {
+        self.modes.as_ref().map(|m| m.with_load(self.load_factor))
+    }
+
+    /// From a decade below what was measured to half the sampling rate.
+    fn model_band_hz(&self) -> [f64; 2] {
+        [0.1 * self.plant[0].frequency_hz, 0.5 / self.encoder.tick_s]
     }
 
     fn candidate(&self, name: &str, gains: LoopGains) -> Candidate {
@@ -334,15 +355,18 @@ impl<'a> Bench<'a> {
         let mut found = margins(self.plant, &gains);
         let mut is_extended = false;
         if let Some(modes) = self.modes.as_ref().filter(|_| !found.is_whole()) {
-            // From a decade below to half the sampling rate.
-            let band_hz = [0.1 * self.plant[0].frequency_hz, 0.5 / self.encoder.tick_s];
-            (found, is_extended) = (margins(&modes.extended(self.plant, band_hz), &gains), true);
+            let extended = modes.extended(self.plant, self.model_band_hz());
+            (found, is_extended) = (margins(&extended, &gains), true);
         }
         let chain_m = self.axis.drive.sprocket_radius_m / self.axis.drive.gear_ratio;
         let worst = |is_asked: &dyn Fn(bool) -> bool| {
             let modes = self.modes.as_ref()?;
             let ramps = self.ramps.iter().filter(|r| is_asked(r.0));
-            Some(ramps.map(|r| follow(modes, &gains, &self.forward, &r.1)).fold(Tracking::default(), Tracking::or))
+            Some(
+                ramps
+                    .map(|r| follow(&modes.with_load(r.1), &gains, &self.forward, &r.2))
+                    .fold(Tracking::default(), Tracking::or),
+            )
         };
         let counts_per_revolution = self.axis.drive.counts_per_revolution;
         let tick_us = (1e6 * self.encoder.tick_s).round() as u32;
@@ -351,6 +375,8 @@ impl<'a> Bench<'a> {
             gains,
             counts: CountGains::from_si(&si, counts_per_revolution, tick_us, 1.0),
             margins: found,
+            lowest_load_hz: self.heaviest().map(|m| m.load.frequency_hz),
+            heaviest: self.heaviest().map(|m| margins(&m.extended(&[], self.model_band_hz()), &gains)),
             is_extended,
             volts_per_count: gains.volts_per_count(self.encoder.count_rad),
             following_error_m: worst(&|_| true).map(|t| t.error_rad * chain_m),
@@ -363,34 +389,14 @@ impl<'a> Bench<'a> {
 
     /// What the margins, the encoder and the campaign's ramps say against gains.
     fn objections(&self, c: &Candidate) -> Vec<String> {
-        let (m, demand, limits) = (&c.margins, Demand::default(), &self.axis.limits);
+        let limits = &self.axis.limits;
         let digits = |x: f64| number::significant(x, 3);
-        let mut out = Vec::new();
-        if !m.is_whole() {
-            out.push(format!(
-                "|L| is {} at the lowest and {} at the highest frequency known: what decides lies outside the band",
-                digits(m.end_moduli[0]),
-                digits(m.end_moduli[1])
-            ));
-        }
-        match m.phase_rad {
-            Some(phase) if phase < demand.phase_rad => out.push(format!(
-                "phase margin {:.0}°, {:.0}° are asked for",
-                phase.to_degrees(),
-                demand.phase_rad.to_degrees()
-            )),
-            None => out.push("no crossover: the loop holds nothing".to_owned()),
-            Some(_) => {}
-        }
-        if let Some(gain) = m.gain.filter(|&g| g < demand.gain) {
-            out.push(format!("gain margin {}, {} is asked for", digits(gain), digits(demand.gain)));
-        }
-        if let Some(gain) = m.gain_reduction.filter(|g| g * demand.gain > 1.0) {
-            out.push(format!("unstable already at {} of its gain", number::percent(gain)));
-        }
-        if m.largest_sensitivity > demand.sensitivity {
-            let (is, may) = (digits(m.largest_sensitivity), digits(demand.sensitivity));
-            out.push(format!("largest sensitivity {is}, {may} is allowed"));
+        let mut out = against_margins(&c.margins);
+        if let Some(heaviest) = &c.heaviest {
+            // Stable, no more: a light damping brings a stiff loop close to −1 at the load's mode, where it moves the motor by nothing.
+            if heaviest.phase_rad.is_none_or(|x| x <= 0.0) {
+                out.push("unstable with the heaviest body".to_owned());
+            }
         }
         if c.volts_per_count > self.encoder.most_v {
             out.push(format!(
@@ -424,11 +430,45 @@ impl<'a> Bench<'a> {
     }
 }
 
+/// What margins lack of what is asked for.
+fn against_margins(m: &Margins) -> Vec<String> {
+    let demand = Demand::default();
+    let digits = |x: f64| number::significant(x, 3);
+    let mut out = Vec::new();
+    if !m.is_whole() {
+        out.push(format!(
+            "|L| is {} at the lowest and {} at the highest frequency known: what decides lies outside the band",
+            digits(m.end_moduli[0]),
+            digits(m.end_moduli[1])
+        ));
+    }
+    match m.phase_rad {
+        Some(phase) if phase < demand.phase_rad => out.push(format!(
+            "phase margin {:.0}°, {:.0}° are asked for",
+            phase.to_degrees(),
+            demand.phase_rad.to_degrees()
+        )),
+        None => out.push("no crossover: the loop holds nothing".to_owned()),
+        Some(_) => {}
+    }
+    if let Some(gain) = m.gain.filter(|&g| g < demand.gain) {
+        out.push(format!("gain margin {}, {} is asked for", digits(gain), digits(demand.gain)));
+    }
+    if let Some(gain) = m.gain_reduction.filter(|g| g * demand.gain > 1.0) {
+        out.push(format!("unstable already at {} of its gain", number::percent(gain)));
+    }
+    if m.largest_sensitivity > demand.sensitivity {
+        let (is, may) = (digits(m.largest_sensitivity), digits(demand.sensitivity));
+        out.push(format!("largest sensitivity {is}, {may} is allowed"));
+    }
+    out
+}
+
 /// Gains, margins, what a count of the encoder does to the command, and the ramps; a column for each candidate.
 #[must_use]
 pub fn candidates_table(outcome: &TuneOutcome) -> TextTable {
     type Of = fn(&Candidate) -> Option<f64>;
-    let quantities: [(&str, Of); 17] = [
+    let quantities: [(&str, Of); 19] = [
         ("K_p [V/rad]", |c| Some(c.gains.proportional_v_rad)),
         ("K_d [V s/rad]", |c| Some(c.gains.derivative_v_s_rad)),
         ("K_i [V/(rad s)]", |c| Some(c.gains.integral_v_rad_s)),
@@ -443,6 +483,8 @@ pub fn candidates_table(outcome: &TuneOutcome) -> TextTable {
         ("gain may fall to [1]", |c| c.margins.gain_reduction),
         ("delay margin [ms]", |c| c.margins.delay_s.map(|s| 1e3 * s)),
         ("largest sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
+        ("phase margin, heaviest body [°]", |c| c.heaviest?.phase_rad.map(f64::to_degrees)),
+        ("integral feeds swings below [Hz]", |c| Some(c.gains.feeding_hz())),
         ("following error in ramps [mm]", |c| c.following_error_m.map(|m| 1e3 * m)),
         ("motor's speed in homing [mm/s]", |c| c.homing_m_s.map(|v| 1e3 * v)),
         ("objections", |c| Some(c.objections.len() as f64)),
@@ -478,6 +520,15 @@ pub fn tune_sentences(outcome: &TuneOutcome) -> Vec<String> {
             out.push(format!(
                 "{}: its loop is not whole within the measured {:.1} to {:.0} Hz; its margins beyond are the fitted two-mass model's.",
                 c.name, outcome.band_hz[0], outcome.band_hz[1]
+            ));
+        }
+        if let Some(load_hz) = c.lowest_load_hz.filter(|hz| *hz < c.gains.feeding_hz()) {
+            out.push(format!(
+                "{}: below {:.1} Hz the integral's lag is more than the derivative's lead, and the load with the heaviest body swings at \
+                 {load_hz:.1} Hz: the loop feeds that swing, friction alone damps it. K_i below {} V/(rad s) would not.",
+                c.name,
+                c.gains.feeding_hz(),
+                number::significant(c.gains.derivative_v_s_rad * (TAU * load_hz).powi(2), 2)
             ));
         }
         if !c.objections.is_empty() {
@@ -559,39 +610,55 @@ fn tune_document(outcome: &TuneOutcome, prepared: &Prepared, date: &str) -> Docu
     }
 }
 
+/// Free mode without the gear's loss, Hz, and its standard uncertainty; `None` where no efficiency is declared.
+#[must_use]
+pub fn free_without_loss(modes: &TwoMassModes, efficiency: Option<Declared>) -> Option<(f64, f64)> {
+    efficiency.map(|e| modes.free_through_gear(e.value, e.standard_uncertainty))
+}
+
 /// Modes by state of the body.
 #[must_use]
-pub fn modes_table(states: &[StateModes]) -> TextTable {
+pub fn modes_table(outcome: &ResonanceOutcome) -> TextTable {
     let missing = || number::MISSING.to_owned();
-    TextTable {
-        caption: "Modes from the motor's side: the load on a held motor (to shape for) and both masses free."
-            .to_owned(),
-        head: [
-            "body",
-            "load's mode [Hz]",
-            "damping [1]",
-            "free mode [Hz]",
-            "damping [1]",
-            "inertia ratio [1]",
-            "left unexplained",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: states
-            .iter()
-            .map(|s| match &s.modes {
-                Ok(m) => vec![
-                    s.body.clone(),
+    let mut rows: Vec<Vec<String>> = [
+        "load's mode [Hz]",
+        "its damping [1]",
+        "free mode, seen through the driving gear [Hz]",
+        "its damping [1]",
+        "free mode, the gear's loss taken out [Hz]",
+        "load over motor inertia, seen [1]",
+        "the same, the gear's loss taken out [1]",
+        "left unexplained of the response",
+        "the same, median of the points",
+    ]
+    .map(|name| vec![name.to_owned()])
+    .to_vec();
+    for s in &outcome.states {
+        let cells = s.modes.as_ref().map_or_else(
+            |_| vec![missing(); rows.len()],
+            |m| {
+                let without = free_without_loss(m, outcome.efficiency);
+                vec![
                     number::short_form(m.load.frequency_hz, m.load.frequency_std_hz),
                     number::short_form(m.load.damping, m.load.damping_std),
                     number::short_form(m.free.frequency_hz, m.free.frequency_std_hz),
                     number::short_form(m.free.damping, m.free.damping_std),
+                    without.map_or_else(missing, |(hz, std)| number::short_form(hz, std)),
                     number::plain(m.inertia_ratio, 3),
+                    outcome.efficiency.map_or_else(missing, |e| number::plain(e.value * m.inertia_ratio, 3)),
                     number::percent(m.relative_residual),
-                ],
-                Err(_) => std::iter::once(s.body.clone()).chain((0..6).map(|_| missing())).collect(),
-            })
-            .collect(),
+                    number::percent(m.median_residual),
+                ]
+            },
+        );
+        rows.iter_mut().zip(cells).for_each(|(row, cell)| row.push(cell));
+    }
+    let body = |s: &StateModes| if s.body == "none" { "bare".to_owned() } else { s.body.clone() };
+    TextTable {
+        caption: "Modes from the motor's side: the load on a held motor (to shape for) and both masses free."
+            .to_owned(),
+        head: std::iter::once("mode".to_owned()).chain(outcome.states.iter().map(body)).collect(),
+        rows,
     }
 }
 
@@ -621,6 +688,27 @@ pub fn resonance_sentences(outcome: &ResonanceOutcome) -> Vec<String> {
                 .to_owned(),
         );
     }
+    if outcome.states.iter().any(|s| s.modes.is_ok()) {
+        out.push(match outcome.efficiency {
+            Some(e) => format!(
+                "The free mode is seen through a gear that drives: the sweep rides on a steady motion, so that the motor feels the chain's force \
+                 over η, and f_a² = f_l² (1 + R/η). With the declared η = {} the loss is taken out, f² = f_l² (1 + η R_a); the uncertainty of η \
+                 is in its figure. The load's mode does not depend on η.",
+                number::short_form(e.value, e.standard_uncertainty)
+            ),
+            None => "The free mode is only apparent: the sweep rides on a steady motion, so that the motor feels the chain's force over the gear's \
+                     efficiency η, and f_a² = f_l² (1 + R/η). Declare `efficiency` in [rig.y] and the loss is taken out. The load's mode does \
+                     not depend on η."
+                .to_owned(),
+        });
+        out.push(
+            "Left unexplained is the root mean square of |model/measured − 1| over the points with a coherence above 0.8. Much of it lies in \
+             the dip, which friction fills, beside the peak, at the lower end of the band, and with a body at multiples of the load's mode, \
+             which the gear makes of its swing; most points are far better, as the median says. It makes the dampings and the depth \
+             of the dip uncertain, hardly the place of the dip, which is all that a shaper needs: it takes 10 % of frequency either way."
+                .to_owned(),
+        );
+    }
     out
 }
 
@@ -639,7 +727,7 @@ fn resonance_document(outcome: &ResonanceOutcome, prepared: &Prepared, date: &st
         sections: vec![DocumentSection {
             title: "Modes".to_owned(),
             paragraphs: resonance_sentences(outcome),
-            tables: vec![modes_table(&outcome.states)],
+            tables: vec![modes_table(outcome)],
             charts: vec![Chart {
                 name: "resonance".to_owned(),
                 title: "Acceleration response of the motor".to_owned(),
