@@ -314,8 +314,10 @@ fn a_loop_softer_than_its_chain_is_not_shaped_and_is_seen_to_swing_in_homing() {
     let encoder = Encoder { count_rad, most_v: 0.6, tick_s };
     let heaviest = modes.with_load(5.0);
     let stiff = shaped_on_response(&wide, heaviest.load.frequency_hz, &Demand::default(), &encoder).unwrap();
-    assert!(margins(&heaviest.extended(&[], [0.2, 2_000.0]), &stiff).phase_rad.unwrap() > 0.0);
-    assert!(stiff.proportional_v_rad > 5.0, "{stiff:?}");
+    let m = margins(&heaviest.extended(&[], [0.2, 2_000.0]), &stiff);
+    // Near the dip of a lightly damped load: positive is stable.
+    assert!(m.phase_rad.unwrap() > 0.0, "{m:?}, {stiff:?}, {heaviest:?}");
+    assert!(stiff.proportional_v_rad > 3.0, "{stiff:?}");
     let rad_m = 1.0 / LONG.radius_m;
     let forward = Forward {
         inertia_v_s2_rad: 1.502e-5 / LONG.torque_n_m_v,

@@ -54,7 +54,8 @@ impl Default for Demand {
 
 /// The fastest PID that keeps the demand on the measured response.
 ///
-/// The controller's form is fixed by its crossover f_c: derivative zero at f_c/3, derivative filter at 10 f_c, integral at f_c/10 or
+/// The controller's form is fixed by its crossover f_c: derivative zero at f_c/3 (or lower, down to f_c/12, where
+/// the dip of a lightly damped load asks for more lead), derivative filter at 10 f_c, integral at f_c/10 or
 /// lower: K_i ≤ K_d ω_l²/2 with ω_l = 2π `load_hz`, the lowest mode of any load on a motor that stands. Below √(K_i/K_d) the integral's
 /// lag is more than the derivative's lead, and a motor so controlled feeds a load's swing instead of damping it. Crossovers are tried
 /// from the highest measured frequency downwards; at each the gain makes |L(f_c)| = 1. A loop is taken only if all of it lies in the
@@ -73,7 +74,7 @@ pub fn shaped_on_response(
     plant
         .iter()
         .rev()
-        .map(|point| with_crossover(point, load_hz, encoder.tick_s))
+        .flat_map(|point| LEADS.map(|lead| with_crossover(point, lead, load_hz, encoder.tick_s)))
         .filter(|gains| gains.volts_per_count(encoder.count_rad) <= encoder.most_v)
         .find(|gains| demand.is_kept(&margins(plant, gains)))
         .ok_or_else(|| TuningError::NoCrossover {
@@ -84,9 +85,12 @@ pub fn shaped_on_response(
         })
 }
 
-fn with_crossover(point: &ResponsePoint, load_hz: f64, tick_s: f64) -> LoopGains {
+/// The derivative's zero below the crossover, least lead first.
+const LEADS: [f64; 4] = [3.0, 5.0, 8.0, 12.0];
+
+fn with_crossover(point: &ResponsePoint, lead: f64, load_hz: f64, tick_s: f64) -> LoopGains {
     let crossover_rad_s = TAU * point.frequency_hz;
-    let derivative_s = 3.0 / crossover_rad_s;
+    let derivative_s = lead / crossover_rad_s;
     let unit = LoopGains {
         proportional_v_rad: 1.0,
         derivative_v_s_rad: derivative_s,
