@@ -7,7 +7,9 @@ use froude::Error;
 use froude::carriage::drag::{DragJob, drag, methods_table, setup_of, summary};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
-use froude::carriage::tune::{candidates_table, find_resonance, modes_table, resonance_sentences, tune};
+use froude::carriage::tune::{
+    candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
+};
 use froude::carriage::{calibrate, runs};
 use froude::identify::carriage::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
@@ -491,10 +493,11 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
                        "derivative_v_s_rad": c.gains.derivative_v_s_rad, "integral_v_rad_s": c.gains.integral_v_rad_s,
                        "derivative_filter_hz": c.gains.derivative_filter_hz, "crossover_hz": c.margins.crossover_hz,
                        "phase_margin_rad": c.margins.phase_rad, "gain_margin": c.margins.gain,
-                       "largest_sensitivity": c.margins.largest_sensitivity})
+                       "largest_sensitivity": c.margins.largest_sensitivity, "is_extended_by_model": c.is_extended,
+                       "following_error_m": c.following_error_m, "homing_speed_m_s": c.homing_m_s, "objections": c.objections})
             })
             .collect();
-        return print::json(&json!({"gains": rows, "report": outcome.page}));
+        return print::json(&json!({"gains": rows, "recommended": outcome.recommended, "report": outcome.page}));
     }
     match &outcome.cycle {
         Ok(c) => say!(
@@ -505,7 +508,11 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
         ),
         Err(error) => say!("relay: {error}"),
     }
-    print::text_table(&candidates_table(&outcome.candidates));
+    print::text_table(&candidates_table(&outcome));
+    say!("");
+    for sentence in tune_sentences(&outcome) {
+        say!("{sentence}");
+    }
     say!("\nReport with the Bode plot: {}", outcome.page.display());
     Ok(())
 }
@@ -522,13 +529,14 @@ fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
             .map(|s| {
                 let modes = s.modes.as_ref().ok();
                 json!({"body": s.body, "load_hz": modes.map(|m| m.load.frequency_hz), "load_damping": modes.map(|m| m.load.damping),
-                       "free_hz": modes.map(|m| m.free.frequency_hz)})
+                       "free_seen_hz": modes.map(|m| m.free.frequency_hz),
+                       "free_hz": modes.and_then(|m| free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
             })
             .collect();
         return print::json(&json!({"states": rows, "shaped_mode_hz": outcome.proposed.map(|p| p.0),
                                    "shaped_damping": outcome.proposed.map(|p| p.1), "report": outcome.page}));
     }
-    print::text_table(&modes_table(&outcome.states));
+    print::text_table(&modes_table(&outcome));
     say!("");
     for sentence in resonance_sentences(&outcome) {
         say!("{sentence}");

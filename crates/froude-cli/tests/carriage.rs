@@ -236,6 +236,88 @@ fn nobody_confirms_for_a_real_rig_and_a_port_that_is_not_there_is_told() {
     assert!(error.contains("/dev/no-such-port"), "{error}");
 }
 
+/// The controller of the example, as the campaign writes it.
+const EXAMPLE_GAINS: [(&str, &str); 4] = [
+    ("proportional", "\"20.8 V/rad\""),
+    ("derivative", "\"0.132 V s/rad\""),
+    ("integral", "\"104 V/(rad s)\""),
+    ("derivative_filter", "\"300 Hz\""),
+];
+
+fn with_gains(folder: &Path, values: [String; 4]) -> PathBuf {
+    let pairs: Vec<(String, String)> = EXAMPLE_GAINS
+        .iter()
+        .zip(values)
+        .map(|((key, old), new)| (format!("{key} = {old}"), format!("{key} = {new}")))
+        .collect();
+    let mut changes: Vec<(&str, &str)> = pairs.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+    changes.push(("repeats = 3  ", "repeats = 1  "));
+    campaign(folder, &changes)
+}
+
+#[test]
+fn the_gains_that_tuning_recommends_drive_the_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = json(&["carriage", "tune", text(&campaign(folder.path(), &[])), "--yes", "--json"]);
+    let gains = found["gains"].as_array().unwrap();
+    assert_eq!(found["recommended"], 1, "{found}");
+    let (configured, shaped) = (&gains[0], &gains[1]);
+    let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
+    for row in [configured, shaped] {
+        // The usual demand: 45°, sensitivity 2; the measured band holds both crossovers.
+        assert!(number(row, "phase_margin_rad") >= 0.785 && number(row, "largest_sensitivity") <= 2.0, "{row}");
+        assert_eq!(row["is_extended_by_model"], false, "{row}");
+        assert_eq!(row["objections"].as_array().unwrap().len(), 0, "{row}");
+        // The controller's limits: following error 10 mm, over-speed in homing 1.5 · 18 + 5 mm/s.
+        assert!(number(row, "following_error_m") < 0.007 && number(row, "homing_speed_m_s") < 0.032, "{row}");
+    }
+    assert!(!gains[2]["objections"].as_array().unwrap().is_empty(), "Ziegler–Nichols: {}", gains[2]);
+    let driven = tempfile::tempdir().unwrap();
+    let value = |key: &str, unit: &str| format!("\"{:.4} {unit}\"", number(shaped, key));
+    let tuned = with_gains(
+        driven.path(),
+        [
+            value("proportional_v_rad", "V/rad"),
+            value("derivative_v_s_rad", "V s/rad"),
+            value("integral_v_rad_s", "V/(rad s)"),
+            value("derivative_filter_hz", "Hz"),
+        ],
+    );
+    // Homing, jogs, warm-up, pulses, friction, weights, tows dry and wet: every one without a fault.
+    let outcome = json(&["run", text(&tuned), "--yes", "--json"]);
+    assert!(outcome["driven"].as_u64().unwrap() > 20, "{outcome}");
+}
+
+/// What tuning once proposed: a loop that lets the motor swing on its chain cannot even home, and is told so.
+#[test]
+fn a_loop_softer_than_its_chain_faults_in_homing_and_not_in_the_run_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let soft = ["0.188 V/rad", "0.00615 V s/rad", "1.72 V/(rad s)", "300 Hz"].map(|v| format!("\"{v}\""));
+    let out = froude(&["run", text(&with_gains(folder.path(), soft)), "--yes"]);
+    assert!(!out.status.success());
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(
+        error.contains("fault before 001-jog-forward, in homing or on the way to its start: OverSpeed")
+            && error.contains("nothing was recorded"),
+        "{error}"
+    );
+}
+
+/// Truth: 13.0 Hz both masses free, 6.71 Hz the load on a held motor, M/m = 2.75, η = 0.8.
+#[test]
+fn the_free_mode_is_told_as_seen_and_without_the_gears_loss() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[]);
+    let found = json(&["carriage", "resonance", text(&campaign), "--yes", "--json"]);
+    let bare = &found["states"][0];
+    // Seen at 6.71 √(1 + 2.75/0.8) = 14.1 Hz; 2 % for friction in the dip and beside the peak.
+    assert!((bare["free_seen_hz"].as_f64().unwrap() / 14.1 - 1.0).abs() < 0.02, "{bare}");
+    assert!((bare["free_hz"].as_f64().unwrap() / 13.0 - 1.0).abs() < 0.02, "{bare}");
+    assert!((bare["load_hz"].as_f64().unwrap() / 6.71 - 1.0).abs() < 0.02, "{bare}");
+    let page = std::fs::read_to_string(folder.path().join("campaign-resonance/report.html")).unwrap();
+    assert!(page.contains("seen through a gear that drives") && page.contains("0.800(40)"));
+}
+
 #[test]
 fn anyones_servo_log_is_identified_with_intervals() {
     let folder = tempfile::tempdir().unwrap();

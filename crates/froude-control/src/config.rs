@@ -91,6 +91,14 @@ pub struct Limits {
     pub stuck_s: f64,
 }
 
+impl Limits {
+    /// Speed at which the over-speed fault comes, m/s: before homing, and in it, the cap is low.
+    #[must_use]
+    pub fn over_speed_m_s(&self, is_homed: bool) -> f64 {
+        over_speed_m_s(self, is_homed)
+    }
+}
+
 /// One axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisConfig {

@@ -53,6 +53,19 @@ pub enum RunnerError {
         /// How it was stopped.
         category: u8,
     },
+    /// A fault before the run itself: in homing, or on the way to its start.
+    #[error(
+        "fault before {run}, in homing or on the way to its start: {fault:?} (category {category} stop); nothing was recorded. Mend the \
+         cause (a loop softer than its chain lets the motor swing: froude carriage tune), then run the campaign again"
+    )]
+    FaultBefore {
+        /// The run.
+        run: String,
+        /// The fault.
+        fault: Fault,
+        /// How it was stopped.
+        category: u8,
+    },
     /// The controller refused a request.
     #[error("{run}: the controller refused to {what}: {refusal:?}")]
     Refused {
@@ -467,7 +480,12 @@ impl Session<'_> {
             let sentence = format!("{fault:?}: category {} stop", fault.category() as u8);
             self.event(EventKind::Fault, &sentence)?;
             self.until_rest()?;
-            return Err(RunnerError::Fault { run: self.run.id.clone(), fault, category: fault.category() as u8 });
+            let (run, category) = (self.run.id.clone(), fault.category() as u8);
+            return Err(if self.recorder.is_some() {
+                RunnerError::Fault { run, fault, category }
+            } else {
+                RunnerError::FaultBefore { run, fault, category }
+            });
         }
         match self.switch.asked() {
             Asked::Nothing => Ok(sample),

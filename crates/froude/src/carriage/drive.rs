@@ -78,6 +78,30 @@ impl Prepared {
         &self.control.axes[self.asked.axis as usize]
     }
 
+    /// The same, recorded at every tick of the controller whatever the campaign's log rate: frequencies near the loop's own count.
+    #[must_use]
+    pub fn logging_every_tick(mut self) -> Self {
+        self.carriage.rig.log_rate_hz = f64::INFINITY;
+        self
+    }
+
+    /// Fastest steady speed that the campaign asks for, m/s, and its acceleration, m/s².
+    #[must_use]
+    pub fn hardest_ramp(&self) -> (f64, f64) {
+        let fastest = |speeds: &[f64]| speeds.iter().copied().fold(0.0, f64::max);
+        let friction = self.asked.friction.as_ref().map_or(0.0, |f| fastest(&f.speed_m_s));
+        let warm_up = self.asked.warm_up.map_or(0.0, |w| w.speed_m_s);
+        (fastest(&self.asked.speed_m_s).max(friction).max(warm_up), self.asked.acceleration_m_s2)
+    }
+
+    /// Declared efficiency of the gear when the motor drives.
+    #[must_use]
+    pub fn efficiency(&self) -> Option<froude_records::run::Declared> {
+        let spec =
+            if self.asked.axis as usize == 0 { Some(&self.carriage.rig.y) } else { self.carriage.rig.x.as_ref() };
+        spec.and_then(|s| s.constants.efficiency_forward)
+    }
+
     /// The controller's tick, µs.
     #[must_use]
     pub fn tick_us(&self) -> u32 {
