@@ -35,7 +35,10 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
         preflight(&prepared);
     }
     if check {
-        return if is_json { print::json(&preflight_json(&prepared)) } else { refused(&prepared) };
+        if is_json {
+            print::json(&preflight_json(&prepared))?;
+        }
+        return refused(&prepared, is_json);
     }
     let (switch, mut operator, mut progress) = stage(&prepared, yes)?;
     let outcome = drive(&prepared, &switch, &mut operator, &mut progress);
@@ -185,9 +188,11 @@ fn pairs_to_see(detectable_n: f64, drag_n: f64) -> f64 {
     (detectable_n / drag_n).powi(2).ceil().max(1.0)
 }
 
-fn refused(prepared: &Prepared) -> Result<(), Error> {
+fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
     if prepared.objections.is_empty() {
-        say!("\nPre-flight passed. Nothing was moved.");
+        if !is_json {
+            say!("\nPre-flight passed. Nothing was moved.");
+        }
         return Ok(());
     }
     // The same sentence for many runs is told once, with how many.

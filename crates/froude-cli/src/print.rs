@@ -514,7 +514,7 @@ fn widths(text: &froude::report::document::TextTable, widest: usize) -> Vec<usiz
     let length = |t: &str| t.chars().count();
     let whole: Vec<usize> = columns().map(|i| cells(i).map(|c| length(c)).max().unwrap_or(0)).collect();
     let mut out: Vec<usize> =
-        columns().map(|i| cells(i).flat_map(|c| c.split_whitespace()).map(length).max().unwrap_or(0)).collect();
+        columns().map(|i| cells(i).flat_map(|c| words(c)).map(|w| length(&w)).max().unwrap_or(0)).collect();
     // A space on either side of each column.
     let mut left = widest.saturating_sub(out.iter().sum::<usize>() + 2 * out.len());
     // What names the row stays on one line, where it is a name and not a sentence.
@@ -536,10 +536,25 @@ fn widths(text: &froude::report::document::TextTable, widest: usize) -> Vec<usiz
     out
 }
 
+/// Words, of which an interval or a unit in brackets is one.
+fn words(text: &str) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match out.last_mut().filter(|last| last.starts_with('[') && !last.contains(']')) {
+            Some(open) => {
+                open.push(' ');
+                open.push_str(word);
+            }
+            None => out.push(word.to_owned()),
+        }
+    }
+    out
+}
+
 /// The text in lines of at most `width` characters, broken between words only.
 fn wrap(text: &str, width: usize) -> String {
     let (mut out, mut column) = (String::new(), 0);
-    for word in text.split_whitespace() {
+    for word in words(text) {
         let length = word.chars().count();
         if column > 0 && column + 1 + length > width {
             out.push('\n');
@@ -548,7 +563,7 @@ fn wrap(text: &str, width: usize) -> String {
             out.push(' ');
             column += 1;
         }
-        out += word;
+        out += &word;
         column += length;
     }
     out

@@ -118,6 +118,16 @@ fn a_campaign_beyond_the_travel_is_refused_with_its_numbers_before_anything_move
 }
 
 #[test]
+fn an_axis_that_is_not_described_does_not_tow() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[("axis = \"y\"", "axis = \"x\"")]);
+    let out = froude(&["run", text(&campaign), "--check", "--json"]);
+    assert_eq!(out.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(error.contains("write [rig.x]"), "{error}");
+}
+
+#[test]
 fn the_preflight_tells_where_the_drag_is_too_small_to_be_seen_and_inspect_what_will_be_driven() {
     let folder = tempfile::tempdir().unwrap();
     let slow = (r#"speeds = ["0.3 m/s", "0.55 m/s"]"#, r#"speeds = ["0.05 m/s", "0.55 m/s"]"#);

@@ -157,6 +157,12 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     let asked = carriage.plan.clone().ok_or_else(|| {
         Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do"))
     })?;
+    if asked.axis as usize == 1 && carriage.rig.x.is_none() {
+        return Err(Error::Nothing(format!(
+            "{}: axis = \"x\" tows along an axis that is not described: write [rig.x], with the keys of [rig.y]",
+            asked.place
+        )));
+    }
     let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
     let density_kg_m3 = density_kg_m3(Some(&campaign));
     // The body with its water and added mass: twice what it displaces, where nothing else is known; and the ballast, once that.
