@@ -7,7 +7,9 @@ use froude::Error;
 use froude::carriage::drag::{DragJob, drag, methods_table, setup_of, summary};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
-use froude::carriage::tune::{candidates_table, find_resonance, modes_table, resonance_sentences, tune};
+use froude::carriage::tune::{
+    candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
+};
 use froude::carriage::{calibrate, runs};
 use froude::identify::carriage::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
@@ -15,6 +17,7 @@ use froude::records::run::RunKind;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::report::document::TextTable;
 use froude::rig::campaign::plan::{PlannedRun, Step};
+use froude::rig::campaign::preflight::Objection;
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
 use froude::rig::drive::Sample;
@@ -32,7 +35,10 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
         preflight(&prepared);
     }
     if check {
-        return if is_json { print::json(&preflight_json(&prepared)) } else { refused(&prepared) };
+        if is_json {
+            print::json(&preflight_json(&prepared))?;
+        }
+        return refused(&prepared, is_json);
     }
     let (switch, mut operator, mut progress) = stage(&prepared, yes)?;
     let outcome = drive(&prepared, &switch, &mut operator, &mut progress);
@@ -89,7 +95,10 @@ fn preflight(prepared: &Prepared) {
         let pairs = f.drag_n.filter(|d| *d > 0.0);
         let pairs = pairs.map_or_else(|| "–".to_owned(), |d| format!("{:.0}", pairs_to_see(detectable_n, d)));
         let cells = vec![
-            run.kind.name().to_owned(),
+            match run.kind {
+                RunKind::Calibration => format!("{} {} N", run.kind.name(), run.hung_weight_n),
+                _ => run.kind.name().to_owned(),
+            },
             run.speed_m_s().map_or_else(|| "–".to_owned(), |v| format!("{v:.3}")),
             runs::way(run.direction()).to_owned(),
             format!("{:.1}", f.duration_s),
@@ -119,7 +128,7 @@ fn preflight(prepared: &Prepared) {
             "coast [m]",
             "margin [m]",
             "drag [N]",
-            "pairs to see it",
+            "differences to see it",
             "runs",
         ]
         .map(str::to_owned)
@@ -134,8 +143,14 @@ fn preflight(prepared: &Prepared) {
     };
     print::text_table(&table);
     say!(
-        "\nOne wet/dry pair is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
+        "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
     );
+    if !prepared.is_shaped() {
+        say!(
+            "The reference is not shaped (shaped_mode): after each ramp the load swings on the chain, and runs in which it then drives the gear \
+             are left out of what the motor's current tells. froude carriage resonance finds the mode."
+        );
+    }
     if let Some(few) = few_pairs(prepared, detectable_n) {
         say!("{few}");
     }
@@ -173,9 +188,11 @@ fn pairs_to_see(detectable_n: f64, drag_n: f64) -> f64 {
     (detectable_n / drag_n).powi(2).ceil().max(1.0)
 }
 
-fn refused(prepared: &Prepared) -> Result<(), Error> {
+fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
     if prepared.objections.is_empty() {
-        say!("\nPre-flight passed. Nothing was moved.");
+        if !is_json {
+            say!("\nPre-flight passed. Nothing was moved.");
+        }
         return Ok(());
     }
     // The same sentence for many runs is told once, with how many.
@@ -186,10 +203,28 @@ fn refused(prepared: &Prepared) -> Result<(), Error> {
             None => told.push((&o.id, &o.text, 0)),
         }
     }
-    let more = |n: usize| if n == 0 { String::new() } else { format!(" (and {n} more runs)") };
-    let lines: Vec<String> = told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n))).collect();
+    let more = |n: usize, what: &str| if n == 0 { String::new() } else { format!(" (and {n} more {what})") };
+    let mut lines: Vec<String> =
+        told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "runs"))).collect();
+    if told.len() > MOST_SENTENCES {
+        // One cause makes a sentence for every run: the first of each kind tells it.
+        let mut kinds: Vec<(&str, &Objection, usize)> = Vec::new();
+        for o in &prepared.objections {
+            match kinds.iter_mut().find(|k| k.0 == o.kind) {
+                Some(k) => k.2 += 1,
+                None => kinds.push((o.kind, o, 0)),
+            }
+        }
+        lines = kinds.iter().map(|(_, o, n)| format!("  {}{}: {}", o.id, more(*n, "like it"), o.text)).collect();
+        let is_refused = |run: &PlannedRun| prepared.objections.iter().any(|o| o.id == run.id);
+        let (refused, all) = (prepared.runs().filter(|r| is_refused(r)).count(), prepared.runs().count());
+        lines.push(format!("{refused} of {all} runs are refused; froude run --check --json has a sentence for each"));
+    }
     Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
 }
+
+/// More different objections than this are told by kind.
+const MOST_SENTENCES: usize = 10;
 
 fn preflight_json(prepared: &Prepared) -> serde_json::Value {
     let rows: Vec<_> = prepared
@@ -201,7 +236,8 @@ fn preflight_json(prepared: &Prepared) -> serde_json::Value {
                    "margin_m": f.margin_m.is_finite().then_some(f.margin_m), "drag_n": f.drag_n})
         })
         .collect();
-    let objections: Vec<_> = prepared.objections.iter().map(|o| json!({"run": o.id, "text": o.text})).collect();
+    let objections: Vec<_> =
+        prepared.objections.iter().map(|o| json!({"run": o.id, "kind": o.kind, "text": o.text})).collect();
     json!({"name": prepared.name(), "duration_s": prepared.duration_s, "runs": rows, "objections": objections,
            "detectable_n": prepared.detectable_n()})
 }
@@ -462,10 +498,11 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
                        "derivative_v_s_rad": c.gains.derivative_v_s_rad, "integral_v_rad_s": c.gains.integral_v_rad_s,
                        "derivative_filter_hz": c.gains.derivative_filter_hz, "crossover_hz": c.margins.crossover_hz,
                        "phase_margin_rad": c.margins.phase_rad, "gain_margin": c.margins.gain,
-                       "largest_sensitivity": c.margins.largest_sensitivity})
+                       "largest_sensitivity": c.margins.largest_sensitivity, "is_extended_by_model": c.is_extended,
+                       "following_error_m": c.following_error_m, "homing_speed_m_s": c.homing_m_s, "objections": c.objections})
             })
             .collect();
-        return print::json(&json!({"gains": rows, "report": outcome.page}));
+        return print::json(&json!({"gains": rows, "recommended": outcome.recommended, "report": outcome.page}));
     }
     match &outcome.cycle {
         Ok(c) => say!(
@@ -476,7 +513,11 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
         ),
         Err(error) => say!("relay: {error}"),
     }
-    print::text_table(&candidates_table(&outcome.candidates));
+    print::text_table(&candidates_table(&outcome));
+    say!("");
+    for sentence in tune_sentences(&outcome) {
+        say!("{sentence}");
+    }
     say!("\nReport with the Bode plot: {}", outcome.page.display());
     Ok(())
 }
@@ -493,13 +534,14 @@ fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
             .map(|s| {
                 let modes = s.modes.as_ref().ok();
                 json!({"body": s.body, "load_hz": modes.map(|m| m.load.frequency_hz), "load_damping": modes.map(|m| m.load.damping),
-                       "free_hz": modes.map(|m| m.free.frequency_hz)})
+                       "free_seen_hz": modes.map(|m| m.free.frequency_hz),
+                       "free_hz": modes.and_then(|m| free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
             })
             .collect();
         return print::json(&json!({"states": rows, "shaped_mode_hz": outcome.proposed.map(|p| p.0),
                                    "shaped_damping": outcome.proposed.map(|p| p.1), "report": outcome.page}));
     }
-    print::text_table(&modes_table(&outcome.states));
+    print::text_table(&modes_table(&outcome));
     say!("");
     for sentence in resonance_sentences(&outcome) {
         say!("{sentence}");

@@ -482,15 +482,128 @@ pub fn comparison_json(c: &Comparison) -> serde_json::Value {
     })
 }
 
-/// A table whose cells are written already; numbers to the right.
+/// A table whose cells are written already; numbers to the right. No word is broken: a table of long words is wider than [`WIDEST`].
 pub fn text_table(text: &froude::report::document::TextTable) {
-    let head: Vec<&str> = text.head.iter().map(String::as_str).collect();
-    let mut out = table(&head);
-    out.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
+    say!("{}", laid_out(text, usize::from(WIDEST)));
+}
+
+fn laid_out(text: &froude::report::document::TextTable, widest: usize) -> Table {
+    let widths = widths(text, widest);
+    let wrapped = |row: &[String]| -> Vec<String> {
+        row.iter().enumerate().map(|(i, cell)| wrap(cell, widths.get(i).copied().unwrap_or(usize::MAX))).collect()
+    };
+    let mut out = Table::new();
+    out.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()))
+        .set_content_arrangement(ContentArrangement::Disabled)
+        .set_header(wrapped(&text.head));
     for row in &text.rows {
-        out.add_row(row.iter().enumerate().map(|(i, cell)| {
+        out.add_row(wrapped(row).into_iter().enumerate().map(|(i, cell)| {
             Cell::new(cell).set_alignment(if i == 0 { CellAlignment::Left } else { CellAlignment::Right })
         }));
     }
-    say!("{out}");
+    out
+}
+
+/// A first column up to this is not wrapped.
+const LONGEST_NAME: usize = 24;
+
+/// A width for each column: that of its longest word, and what is left of the line to the columns that would be wrapped most.
+fn widths(text: &froude::report::document::TextTable, widest: usize) -> Vec<usize> {
+    let columns = || 0..text.head.len();
+    let cells = |i: usize| std::iter::once(&text.head).chain(&text.rows).filter_map(move |row| row.get(i));
+    let length = |t: &str| t.chars().count();
+    let whole: Vec<usize> = columns().map(|i| cells(i).map(|c| length(c)).max().unwrap_or(0)).collect();
+    let mut out: Vec<usize> =
+        columns().map(|i| cells(i).flat_map(|c| words(c)).map(|w| length(&w)).max().unwrap_or(0)).collect();
+    // A space on either side of each column.
+    let mut left = widest.saturating_sub(out.iter().sum::<usize>() + 2 * out.len());
+    // What names the row stays on one line, where it is a name and not a sentence.
+    if let (Some(first), Some(&name)) = (out.first_mut(), whole.first())
+        && name <= LONGEST_NAME
+        && name - *first <= left
+    {
+        left -= name - *first;
+        *first = name;
+    }
+    while left > 0 {
+        let lines = |i: &usize| whole[*i] as f64 / out[*i].max(1) as f64;
+        let Some(most) = columns().filter(|&i| out[i] < whole[i]).max_by(|a, b| lines(a).total_cmp(&lines(b))) else {
+            break;
+        };
+        out[most] += 1;
+        left -= 1;
+    }
+    out
+}
+
+/// Words, of which an interval or a unit in brackets is one.
+fn words(text: &str) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match out.last_mut().filter(|last| last.starts_with('[') && !last.contains(']')) {
+            Some(open) => {
+                open.push(' ');
+                open.push_str(word);
+            }
+            None => out.push(word.to_owned()),
+        }
+    }
+    out
+}
+
+/// The text in lines of at most `width` characters, broken between words only.
+fn wrap(text: &str, width: usize) -> String {
+    let (mut out, mut column) = (String::new(), 0);
+    for word in words(text) {
+        let length = word.chars().count();
+        if column > 0 && column + 1 + length > width {
+            out.push('\n');
+            column = 0;
+        } else if column > 0 {
+            out.push(' ');
+            column += 1;
+        }
+        out += &word;
+        column += length;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use froude::report::document::TextTable;
+
+    use super::*;
+
+    fn preflight() -> TextTable {
+        let texts = |cells: &[&str]| cells.iter().map(|c| (*c).to_owned()).collect::<Vec<_>>();
+        let head =
+            ["kind", "speed [m/s]", "way", "takes [s]", "steady [s]", "command [V]", "rms current [A]", "coast [m]"];
+        let row = ["excitation", "0.100", "backward", "123.4", "112.3", "12.34", "1.23", "0.123"];
+        let named = ["calibration 10 N", "measured response", "backward", "123.4", "112.3", "12.34", "1.23", "0.123"];
+        TextTable { caption: String::new(), head: texts(&head), rows: vec![texts(&row), texts(&named)] }
+    }
+
+    #[test]
+    fn no_word_of_a_table_is_broken_at_any_width() {
+        let table = preflight();
+        let words: Vec<&str> =
+            std::iter::once(&table.head).chain(&table.rows).flatten().flat_map(|c| c.split_whitespace()).collect();
+        for widest in [10, 60, 80, 100, 120] {
+            let printed = laid_out(&table, widest).to_string();
+            let found: Vec<&str> = printed.split_whitespace().collect();
+            for word in &words {
+                assert!(found.contains(word), "{word} at {widest} columns:\n{printed}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_table_is_as_wide_as_the_page_where_its_words_fit() {
+        for widest in [90, 100, 120] {
+            let printed = laid_out(&preflight(), widest).to_string();
+            let longest = printed.lines().map(|l| l.chars().count()).max().unwrap_or(0);
+            assert!(longest <= widest, "{longest} of {widest}:\n{printed}");
+        }
+    }
 }

@@ -17,7 +17,7 @@ fn campaign(folder: &Path, changes: &[(&str, &str)]) -> PathBuf {
         ),
         ("repeats = 5  ", "repeats = 3  "),
         (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
-        (r#"still = "5 s""#, r#"still = "1 s""#),
+        (r#"still = "5 s""#, r#"still = "2 s""#),
         (
             r#"speeds = ["0.02 m/s", "0.05 m/s", "0.1 m/s", "0.2 m/s", "0.35 m/s", "0.55 m/s"]"#,
             r#"speeds = ["0.2 m/s", "0.4 m/s"]"#,
@@ -72,6 +72,15 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     assert!(position["high"].as_f64().unwrap() - position["low"].as_f64().unwrap() > 2.1, "{position}");
     assert!(inside["facts"].to_string().contains("the motion begins"), "{inside}");
 
+    // No short axis is declared, so none is recorded; the sidecar opens its run, the folder says what to do with it.
+    assert!(columns.iter().all(|c| !c["name"].as_str().unwrap().starts_with("x/")), "{inside}");
+    let sidecar = wet.with_extension("toml");
+    assert_eq!(json(&["inspect", text(&sidecar), "--json"])["facts"], inside["facts"]);
+    let folder_told = froude(&["inspect", text(&runs)]);
+    let error = String::from_utf8_lossy(&folder_told.stderr);
+    assert_eq!(folder_told.status.code(), Some(2));
+    assert!(error.contains(&format!("froude carriage drag {} reduces them together", text(&runs))), "{error}");
+
     let record = json(&["carriage", "drag", text(&runs), "--json"]);
     let estimates = record["estimates"].as_array().unwrap();
     for model in ["drag_fsm", "drag_mcd", "drag_mbdp_mapped"] {
@@ -109,6 +118,16 @@ fn a_campaign_beyond_the_travel_is_refused_with_its_numbers_before_anything_move
 }
 
 #[test]
+fn an_axis_that_is_not_described_does_not_tow() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[("axis = \"y\"", "axis = \"x\"")]);
+    let out = froude(&["run", text(&campaign), "--check", "--json"]);
+    assert_eq!(out.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(error.contains("write [rig.x]"), "{error}");
+}
+
+#[test]
 fn the_preflight_tells_where_the_drag_is_too_small_to_be_seen_and_inspect_what_will_be_driven() {
     let folder = tempfile::tempdir().unwrap();
     let slow = (r#"speeds = ["0.3 m/s", "0.55 m/s"]"#, r#"speeds = ["0.05 m/s", "0.55 m/s"]"#);
@@ -119,11 +138,66 @@ fn the_preflight_tells_where_the_drag_is_too_small_to_be_seen_and_inspect_what_w
     // 2√2 of 2 % of 2.85 N are 0.16 N; the drag at 0.05 m/s is 0.05 N: ten differences and more, three pairs give six.
     assert!(told.contains("at 0.050 m/s, where 6 are planned (out and back count as two)"), "{told}");
     assert!(!told.contains("at 0.550 m/s, where"), "{told}");
+    assert!(!told.contains("is not shaped"), "{told}");
     let inside = json(&["inspect", text(&campaign), "--json"])["facts"].to_string();
     for fact in
         ["twin, seed 1", "axis y, 0.05, 0.55 m/s over 2.2 m", "3 at each speed, out and back; wet runs ballasted"]
     {
         assert!(inside.contains(fact), "{fact}: {inside}");
+    }
+}
+
+/// Two pairs at one speed and nothing else.
+const BARE: [(&str, &str); 6] = [
+    (r#"speeds = ["0.3 m/s", "0.55 m/s"]"#, r#"speeds = ["0.5 m/s"]"#),
+    ("repeats = 3  ", "repeats = 2  "),
+    ("[carriage.warm_up]\nduration = \"10 s\"\nspeed = \"0.3 m/s\"\n", ""),
+    ("[carriage.friction_sweep]\nspeeds = [\"0.2 m/s\", \"0.4 m/s\"]\nrepeats = 2\n", ""),
+    ("duration = \"20 s\"", "duration = \"2 s\""),
+    ("[rig.force_sensor]\nrange = \"125 N\"\nresolution = \"0.0208333 N\"        # 1/48 N\nnoise = \"0.05 N\"", "#"),
+];
+
+#[test]
+fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut changes = BARE.to_vec();
+    changes.push(("drift = \"0.2 N\"\ngain_standard = \"0.2 %\"", "#"));
+    changes.push(("repeats = 6\n", "repeats = 1\n"));
+    let campaign = campaign(folder.path(), &changes);
+    json(&["run", text(&campaign), "--yes", "--json"]);
+    let runs = folder.path().join("campaign-runs");
+    let mut files = std::fs::read_dir(&runs).unwrap().filter_map(Result::ok).map(|e| e.path());
+    let run = files.find(|p| p.extension().is_some_and(|e| e == "mcap")).unwrap();
+    let inside = json(&["inspect", text(&run), "--json"]);
+    assert!(inside["columns"].as_array().unwrap().iter().all(|c| c["name"] != "force"), "{inside}");
+    let record = json(&["carriage", "drag", text(&runs), "--json"]);
+    let models: Vec<&str> =
+        record["estimates"].as_array().unwrap().iter().filter_map(|e| e["model"].as_str()).collect();
+    assert!(models.contains(&"drag_mcd") && !models.contains(&"drag_fsm"), "{models:?}");
+}
+
+#[test]
+fn one_cause_of_many_refusals_is_told_by_kind_and_the_table_names_the_weights() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(
+        folder.path(),
+        &[
+            (
+                r#"speeds = ["0.3 m/s", "0.55 m/s"]"#,
+                r#"speeds = { start = "0.1 m/s", stop = "0.55 m/s", step = "0.025 m/s" }"#,
+            ),
+            (r#"distance = "2.2 m""#, r#"distance = "4.7 m""#),
+        ],
+    );
+    let out = froude(&["run", text(&campaign), "--check"]);
+    assert_eq!(out.status.code(), Some(2));
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(error.contains("003-warm-up-forward (and "), "{error}");
+    assert!(error.contains(" runs are refused; froude run --check --json has a sentence for each"), "{error}");
+    assert!(error.lines().count() < 10, "{error}");
+    let table = String::from_utf8_lossy(&out.stdout);
+    for word in ["calibration 10 N", "calibration 1.5 N", "calibration 0 N", "excitation"] {
+        assert!(table.contains(word), "{word}: {table}");
     }
 }
 
@@ -170,6 +244,88 @@ fn nobody_confirms_for_a_real_rig_and_a_port_that_is_not_there_is_told() {
     let error = String::from_utf8_lossy(&out.stderr);
     assert_eq!(out.status.code(), Some(1), "{error}");
     assert!(error.contains("/dev/no-such-port"), "{error}");
+}
+
+/// The controller of the example, as the campaign writes it.
+const EXAMPLE_GAINS: [(&str, &str); 4] = [
+    ("proportional", "\"20.8 V/rad\""),
+    ("derivative", "\"0.132 V s/rad\""),
+    ("integral", "\"104 V/(rad s)\""),
+    ("derivative_filter", "\"300 Hz\""),
+];
+
+fn with_gains(folder: &Path, values: [String; 4]) -> PathBuf {
+    let pairs: Vec<(String, String)> = EXAMPLE_GAINS
+        .iter()
+        .zip(values)
+        .map(|((key, old), new)| (format!("{key} = {old}"), format!("{key} = {new}")))
+        .collect();
+    let mut changes: Vec<(&str, &str)> = pairs.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect();
+    changes.push(("repeats = 3  ", "repeats = 1  "));
+    campaign(folder, &changes)
+}
+
+#[test]
+fn the_gains_that_tuning_recommends_drive_the_campaign() {
+    let folder = tempfile::tempdir().unwrap();
+    let found = json(&["carriage", "tune", text(&campaign(folder.path(), &[])), "--yes", "--json"]);
+    let gains = found["gains"].as_array().unwrap();
+    assert_eq!(found["recommended"], 1, "{found}");
+    let (configured, shaped) = (&gains[0], &gains[1]);
+    let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
+    for row in [configured, shaped] {
+        // The usual demand: 45°, sensitivity 2; the measured band holds both crossovers.
+        assert!(number(row, "phase_margin_rad") >= 0.785 && number(row, "largest_sensitivity") <= 2.0, "{row}");
+        assert_eq!(row["is_extended_by_model"], false, "{row}");
+        assert_eq!(row["objections"].as_array().unwrap().len(), 0, "{row}");
+        // The controller's limits: following error 10 mm, over-speed in homing 1.5 · 18 + 5 mm/s.
+        assert!(number(row, "following_error_m") < 0.007 && number(row, "homing_speed_m_s") < 0.032, "{row}");
+    }
+    assert!(!gains[2]["objections"].as_array().unwrap().is_empty(), "Ziegler–Nichols: {}", gains[2]);
+    let driven = tempfile::tempdir().unwrap();
+    let value = |key: &str, unit: &str| format!("\"{:.4} {unit}\"", number(shaped, key));
+    let tuned = with_gains(
+        driven.path(),
+        [
+            value("proportional_v_rad", "V/rad"),
+            value("derivative_v_s_rad", "V s/rad"),
+            value("integral_v_rad_s", "V/(rad s)"),
+            value("derivative_filter_hz", "Hz"),
+        ],
+    );
+    // Homing, jogs, warm-up, pulses, friction, weights, tows dry and wet: every one without a fault.
+    let outcome = json(&["run", text(&tuned), "--yes", "--json"]);
+    assert!(outcome["driven"].as_u64().unwrap() > 20, "{outcome}");
+}
+
+/// What tuning once proposed: a loop that lets the motor swing on its chain cannot even home, and is told so.
+#[test]
+fn a_loop_softer_than_its_chain_faults_in_homing_and_not_in_the_run_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let soft = ["0.188 V/rad", "0.00615 V s/rad", "1.72 V/(rad s)", "300 Hz"].map(|v| format!("\"{v}\""));
+    let out = froude(&["run", text(&with_gains(folder.path(), soft)), "--yes"]);
+    assert!(!out.status.success());
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert!(
+        error.contains("fault before 001-jog-forward, in homing or on the way to its start: OverSpeed")
+            && error.contains("nothing was recorded"),
+        "{error}"
+    );
+}
+
+/// Truth: 13.0 Hz both masses free, 6.71 Hz the load on a held motor, M/m = 2.75, η = 0.8.
+#[test]
+fn the_free_mode_is_told_as_seen_and_without_the_gears_loss() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), &[]);
+    let found = json(&["carriage", "resonance", text(&campaign), "--yes", "--json"]);
+    let bare = &found["states"][0];
+    // Seen at 6.71 √(1 + 2.75/0.8) = 14.1 Hz; 2 % for friction in the dip and beside the peak.
+    assert!((bare["free_seen_hz"].as_f64().unwrap() / 14.1 - 1.0).abs() < 0.02, "{bare}");
+    assert!((bare["free_hz"].as_f64().unwrap() / 13.0 - 1.0).abs() < 0.02, "{bare}");
+    assert!((bare["load_hz"].as_f64().unwrap() / 6.71 - 1.0).abs() < 0.02, "{bare}");
+    let page = std::fs::read_to_string(folder.path().join("campaign-resonance/report.html")).unwrap();
+    assert!(page.contains("seen through a gear that drives") && page.contains("0.800(40)"));
 }
 
 #[test]

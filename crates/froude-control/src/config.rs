@@ -4,6 +4,7 @@ use core::fmt;
 
 use crate::axis::over_speed_m_s;
 use crate::law::Law;
+use crate::shaper::Shaper;
 use crate::tick::AXES;
 
 /// Gains of eq. 6 in SI: v_c = K_p e + K_d ė + K_i ∫e dt over the motor angle.
@@ -88,6 +89,14 @@ pub struct Limits {
     pub polarity_m: f64,
     /// How long torque above breakaway without a count means a stuck encoder, s.
     pub stuck_s: f64,
+}
+
+impl Limits {
+    /// Speed at which the over-speed fault comes, m/s: before homing, and in it, the cap is low.
+    #[must_use]
+    pub fn over_speed_m_s(&self, is_homed: bool) -> f64 {
+        over_speed_m_s(self, is_homed)
+    }
 }
 
 /// One axis.
@@ -271,6 +280,18 @@ fn in_range(axis: usize, quantity: &'static str, found: f64, low: f64, high: f64
 }
 
 impl AxisConfig {
+    /// What a shaped reference goes through: none without a mode.
+    #[must_use]
+    pub fn shaper(&self) -> Shaper {
+        if self.mode_hz <= 0.0 {
+            Shaper::NONE
+        } else if self.is_robust_shaper {
+            Shaper::zvd(self.mode_hz, self.mode_damping)
+        } else {
+            Shaper::zv(self.mode_hz, self.mode_damping)
+        }
+    }
+
     fn check(&self, axis: usize, tick_us: u32, late_us: u32) -> Result<(), ConfigError> {
         let Self { gains, drive, limits, .. } = self;
         let nyquist_hz = 0.5e6 / f64::from(tick_us);

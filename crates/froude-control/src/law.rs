@@ -139,13 +139,7 @@ impl Law {
             },
             stopping: StoppingWay::new(coast, limits.acceleration_m_s2),
             coast,
-            shaper: if config.mode_hz <= 0.0 {
-                Shaper::NONE
-            } else if config.is_robust_shaper {
-                Shaper::zvd(config.mode_hz, config.mode_damping)
-            } else {
-                Shaper::zv(config.mode_hz, config.mode_damping)
-            },
+            shaper: config.shaper(),
             soft_low_m: libm::fmax(limits.hard_low_m, limits.low_switch_m) + limits.following_error_m,
             soft_high_m: libm::fmin(limits.hard_high_m, limits.high_switch_m) - limits.following_error_m,
         }

@@ -80,6 +80,13 @@ pub fn preflight(config: &Config, axis: &AxisConfig, start_m: f64, asked: &Move)
     foresee(&law, start_m, asked).0
 }
 
+/// Why the controller would refuse `asked` on a homed axis at rest at `start_m`; `None` where it would not.
+#[must_use]
+pub fn preflight_excitation(config: &Config, axis: &AxisConfig, start_m: f64, asked: &Excitation) -> Option<Refusal> {
+    let law = Law::new(axis, config.tick_us, config.late_us);
+    checked_excitation(&law, start_m, true, asked).err()
+}
+
 /// Checks a move from rest at `start_m` and plans it.
 pub(crate) fn checked_move(law: &Law, start_m: f64, asked: &Move) -> Result<ShapedProfile, Refusal> {
     let (preflight, shaped) = foresee(law, start_m, asked);

@@ -20,6 +20,8 @@ use crate::units::Dimension;
 
 /// Most values of one range of a plan: a million runs is a slip of the step.
 const MOST_STEPS: f64 = 100_000.0;
+/// A stop this part of a step beyond the last one is on it: the rounding of a step with a few digits.
+const ON_A_STEP: f64 = 1e-6;
 
 /// Kinds of covariance that can be asked for.
 const COVARIANCES: [&str; 3] = ["classical", "HC3", "cluster"];
@@ -335,7 +337,22 @@ pub(crate) fn series<'a>(
             "must go from start to stop in at most 100000 steps of the step's sign".to_owned(),
         ));
     }
-    let steps = (count + 1e-9).floor() as usize;
+    let steps = (count + ON_A_STEP).floor();
+    if count - steps > ON_A_STEP {
+        // A stop that is not reached is a value that somebody asked for and would not get.
+        let last = short(start.unit.from_si(start.value_si + steps * step.value_si));
+        let [one, other] = steps_that_fit((stop.value_si - start.value_si) / step.unit.factor, count);
+        let (first, unit) = (&start.unit, &step.unit);
+        return Err(s.wrong(
+            key,
+            value,
+            format!(
+                "goes from {start} in steps of {step} to {last} {first} and does not reach {stop}; write step = \"{one} {unit}\" or \
+                 \"{other} {unit}\", or another stop"
+            ),
+        ));
+    }
+    let steps = steps as usize;
     // In the written unit 0.02 + 49·0.02 is exactly what a person means; converted once.
     Ok((0..=steps)
         .map(|k| {
@@ -343,6 +360,25 @@ pub(crate) fn series<'a>(
             start.unit.to_si((value * 1e12).round() / 1e12)
         })
         .collect())
+}
+
+/// Two steps that divide `way` (of either sign), next to where `count` of them would: short numbers, where there are any.
+fn steps_that_fit(way: f64, count: f64) -> [f64; 2] {
+    let near = |a: &f64, b: &f64| (a - count).abs().total_cmp(&(b - count).abs());
+    let is_short = |n: &f64| {
+        let step = way / n;
+        format!("{step:.2e}").parse::<f64>().is_ok_and(|s| (s - step).abs() <= 1e-9 * step.abs())
+    };
+    let mut numbers: Vec<f64> = (1..=(4.0 * count + 4.0) as u32).map(f64::from).filter(is_short).collect();
+    numbers.sort_by(near);
+    numbers.extend([count.floor().max(1.0), count.floor().max(1.0) + 1.0]);
+    numbers.dedup();
+    [0, 1].map(|i| short(way / numbers[i]))
+}
+
+/// Ten digits: hides the rounding of a unit's factor.
+fn short(x: f64) -> f64 {
+    format!("{x:.9e}").parse().unwrap_or(x)
 }
 
 fn bound_kind(s: &Section<'_>, key: &str, value: &Spanned<DeValue<'_>>) -> Result<BoundKind, RecordError> {

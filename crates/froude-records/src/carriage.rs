@@ -195,6 +195,8 @@ pub struct CarriagePlan {
     pub stop_at_relative_half_width: Option<f64>,
     /// D_d to be expected, N s²/m², for the detectability of each speed.
     pub expected_drag_n_s2_m2: Option<f64>,
+    /// Drag of the strut, N s²/m², that is in the water with the body and measured along.
+    pub strut_drag_n_s2_m2: Option<Declared>,
     /// Where the section stands.
     pub place: Place,
 }
@@ -256,6 +258,8 @@ pub struct Calibration {
     pub weights_n: Vec<f64>,
     /// Standard uncertainty of each.
     pub weight_standard_n: f64,
+    /// What the pulley takes, as part of the weight; 1 % ± 0.6 % when not given and not measured.
+    pub pulley_loss: Option<Declared>,
     /// How fast they are lifted and lowered.
     pub speed_m_s: f64,
     /// How often each; 1 when not given.

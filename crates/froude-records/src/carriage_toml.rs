@@ -144,11 +144,11 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
         efficiency_backward: efficiency(s, "efficiency_backward")?,
         is_calibrated: false,
     };
-    if let (true, Some(value)) = (constants.counts_per_revolution <= 0.0, s.get("counts_per_revolution")) {
+    if let (true, Some(value)) = (constants.counts_per_revolution == 0.0, s.get("counts_per_revolution")) {
         return Err(s.wrong(
             "counts_per_revolution",
             value,
-            format!("is {}; it must be larger than zero", found(value)),
+            "is zero; write 4000 for 1000 lines decoded fourfold, -4000 where the encoder counts backwards",
         ));
     }
     let controller = s.section("controller")?;
@@ -277,6 +277,7 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         "ballasted",
         "stop_when",
         "expected_drag",
+        "strut_drag",
     ])?;
     let need = |key, dimension, advice: &str| s.positive(key, dimension)?.ok_or_else(|| s.missing(key, advice));
     let (settling_dry_s, settling_wet_s) = settling(s)?;
@@ -304,6 +305,7 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         is_ballasted: s.flag("ballasted")?.unwrap_or(false),
         stop_at_relative_half_width: fraction(s, "stop_when", "the relative half-width of D_d's 95 % interval")?,
         expected_drag_n_s2_m2: s.positive("expected_drag", DRAG)?,
+        strut_drag_n_s2_m2: positive_constant(s, "strut_drag", DRAG)?,
         place: s.place(),
     })
 }
@@ -375,13 +377,14 @@ fn friction_sweep(s: &Section<'_>) -> Result<FrictionSweep, RecordError> {
 }
 
 fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
-    s.only(&["weights", "standard", "speed", "repeats", "start", "distance", "floor"])?;
+    s.only(&["weights", "standard", "pulley_loss", "speed", "repeats", "start", "distance", "floor"])?;
     let value = s.get("weights");
     let value =
         value.ok_or_else(|| s.missing("weights", "write the weights as forces, [\"9.81 N\", \"19.62 N\"], say"))?;
     Ok(Calibration {
         weights_n: positive_series(s, "weights", value, Dimension::FORCE)?,
         weight_standard_n: s.positive("standard", Dimension::FORCE)?.unwrap_or(0.0),
+        pulley_loss: positive_constant(s, "pulley_loss", Dimension::ONE)?,
         speed_m_s: s
             .positive("speed", Dimension::SPEED)?
             .ok_or_else(|| s.missing("speed", "write how fast they are lifted, \"0.1 m/s\", say"))?,

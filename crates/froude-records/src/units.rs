@@ -382,6 +382,14 @@ pub enum UnitError {
         /// The same with a unit, in backquotes.
         example: String,
     },
+    /// A decimal comma.
+    #[error("`{text}` has a decimal comma; write a decimal point, `{point}`")]
+    DecimalComma {
+        /// As written.
+        text: String,
+        /// The same with a point.
+        point: String,
+    },
     /// A number beyond the range of a double.
     #[error("`{text}` is not a finite number")]
     NotFinite {
@@ -453,6 +461,10 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
         return Err(no_number());
     }
     let (number, unit) = text.split_at(end);
+    if unit.strip_prefix(',').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit())) {
+        let text = shorten(text);
+        return Err(UnitError::DecimalComma { point: text.replacen(',', ".", 1), text });
+    }
     let value: f64 = number.parse().map_err(|_| no_number())?;
     if !value.is_finite() {
         return Err(UnitError::NotFinite { text: shorten(text) });
@@ -789,7 +801,7 @@ fn advice(symbol: &str, dimension: Option<Dimension>) -> String {
         "C" | "Celsius" | "celsius" => "degC",
         "newton" | "newtons" | "Newton" => "N",
         "meter" | "meters" | "metre" | "metres" => "m",
-        "litre" | "liter" => "L",
+        "litre" | "litres" | "liter" | "liters" => "l",
         "kelvin" | "Kelvin" => "K",
         _ => "",
     };

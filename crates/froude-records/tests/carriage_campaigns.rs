@@ -164,6 +164,58 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
 }
 
 #[test]
+fn an_encoder_that_counts_backwards_is_declared_with_a_negative_number() {
+    let text = example().replace("counts_per_revolution = 4000 ", "counts_per_revolution = -4000 ");
+    let rig = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().rig;
+    assert_eq!(rig.y.constants.counts_per_revolution, -4000.0);
+    assert_eq!(
+        refused("counts_per_revolution = 4000 ", "counts_per_revolution = 0 "),
+        format!(
+            "{}:25: `counts_per_revolution` is zero; write 4000 for 1000 lines decoded fourfold, -4000 where the encoder counts backwards",
+            line("counts_per_revolution")
+        )
+    );
+}
+
+#[test]
+fn a_stop_that_the_steps_do_not_reach_is_refused_with_steps_that_do() {
+    let speeds = "speeds = [\"0.05 m/s\", \"0.15 m/s\", \"0.25 m/s\", \"0.35 m/s\", \"0.45 m/s\", \"0.55 m/s\"]";
+    let range =
+        |stop: &str, step: &str| format!("speeds = {{ start = \"0.1 m/s\", stop = \"{stop}\", step = \"{step}\" }}");
+    assert_eq!(
+        refused(speeds, &range("0.5 m/s", "0.15 m/s")),
+        format!(
+            "{}:10: `speeds` goes from 0.1 m/s in steps of 0.15 m/s to 0.4 m/s and does not reach 0.5 m/s; write step = \"0.2 m/s\" or \
+             \"0.1 m/s\", or another stop",
+            line("speeds = [\"0.05 m/s\", \"0.15")
+        )
+    );
+    // Larger than the range, and in another unit.
+    let wide = refused(speeds, &range("0.5 m/s", "70 cm/s"));
+    assert!(wide.contains("to 0.1 m/s and does not reach 0.5 m/s; write step = \"40 cm/s\" or \"20 cm/s\""), "{wide}");
+    // The steps that are advised are taken, also where they have no end.
+    let odd = refused(speeds, &range("0.8 m/s", "0.3 m/s"));
+    for part in odd.split("step = ").nth(1).unwrap().split(" m/s\"").take(2) {
+        let step: f64 = part.rsplit('"').next().unwrap().parse().unwrap();
+        let text = example().replace(speeds, &range("0.8 m/s", &format!("{step} m/s")));
+        let plan = parse_campaign(Path::new("c.toml"), &text).unwrap().carriage.unwrap().plan.unwrap();
+        assert!((plan.speed_m_s.last().unwrap() - 0.8).abs() < 1e-6, "{step}: {:?}", plan.speed_m_s);
+    }
+}
+
+#[test]
+fn litres_and_decimal_commas_are_told_as_what_they_are() {
+    let volume = "volume = \"6.283e-3 m^3\"";
+    let text = example().replace(volume, "volume = \"6.283 l\"");
+    let body = parse_campaign(Path::new("c.toml"), &text).unwrap().body.unwrap();
+    assert_eq!(body.volume_m3, Some(6.283e-3));
+    let comma = refused(volume, "volume = \"2,5 l\"");
+    assert!(comma.ends_with("`2,5 l` has a decimal comma; write a decimal point, `2.5 l`"), "{comma}");
+    let word = refused(volume, "volume = \"2.5 litres\"");
+    assert!(word.ends_with("unknown unit `litres`; did you mean `l`?"), "{word}");
+}
+
+#[test]
 fn a_carriage_without_a_rig_is_told_to_name_one() {
     let text = "schema = 1\nname = \"a\"\n[carriage]\nspeeds = [\"0.1 m/s\"]\ndistance = \"1 m\"\nacceleration = \"1 m/s^2\"\n";
     assert_eq!(

@@ -87,7 +87,7 @@ pub enum RigError {
         ours: String,
     },
     /// The controller does not take the configuration.
-    #[error("the controller does not take the configuration: {0:?}")]
+    #[error("the controller does not take the configuration: {0}")]
     Config(froude_control::config::ConfigError),
 }
 

@@ -36,6 +36,7 @@ fn asked() -> CarriagePlan {
         calibration: Some(Calibration {
             weights_n: vec![10.0],
             weight_standard_n: 0.01,
+            pulley_loss: None,
             speed_m_s: 0.2,
             repeats: 1,
             start_m: None,
@@ -46,6 +47,7 @@ fn asked() -> CarriagePlan {
         is_ballasted: true,
         stop_at_relative_half_width: None,
         expected_drag_n_s2_m2: Some(20.0),
+        strut_drag_n_s2_m2: None,
         place: Place::whole(Path::new("campaign.toml")),
     }
 }

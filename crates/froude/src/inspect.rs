@@ -10,7 +10,7 @@ use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
-use froude_records::run::read_run;
+use froude_records::run::{read_run, read_run_meta};
 use froude_records::table::{ColumnData, Table, read_table};
 
 use crate::Error;
@@ -99,19 +99,44 @@ impl Inspection {
     }
 }
 
-/// Inspects a table, a campaign, an estimate record or a run, by the ending of its name.
+/// Inspects a table, a campaign, an estimate record or a run, by the ending of its name; a run also by its sidecar.
 ///
 /// # Errors
 ///
 /// Whatever the reader of the format finds.
 pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error> {
+    if path.is_dir() {
+        return Err(folder(path));
+    }
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match ending.as_deref() {
+        // A run's sidecar lies beside it and says less than the run itself.
+        Some("toml") if read_run_meta(path).is_ok() && path.with_extension("mcap").is_file() => {
+            run(&path.with_extension("mcap"))
+        }
         Some("toml") => campaign(path),
         Some("json") => estimates(path),
         Some("mcap") => run(path),
         _ => table(path, sidecar),
     }
+}
+
+/// What to do with a folder: one of runs is reduced as a whole.
+fn folder(path: &Path) -> Error {
+    let entries = std::fs::read_dir(path).into_iter().flatten().filter_map(Result::ok);
+    let mut runs: Vec<_> = entries.map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "mcap")).collect();
+    runs.sort();
+    let shown = path.display();
+    Error::Nothing(match runs.first() {
+        Some(first) => format!(
+            "{shown} is a folder of {} runs: froude carriage drag {shown} reduces them together; froude inspect {} shows one",
+            runs.len(),
+            first.display()
+        ),
+        None => format!(
+            "{shown} is a folder without runs; name a table (.csv, .parquet), a campaign (.toml), a record (.json) or a run (.mcap)"
+        ),
+    })
 }
 
 fn table(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error> {

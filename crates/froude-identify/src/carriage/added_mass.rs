@@ -1,7 +1,7 @@
 //! Added mass from the ramps: what the wet carriage must be given more than the dry one to reach its speed.
 //!
 //! At one time of the same profile the inertia of motor, carriage and body is in both runs. The difference F of the two motor forces,
-//! integrated from the first sample in motion to the steady window (duration T, speed gained v), is
+//! integrated from the first sample in motion to a time T in the steady window (speed gained v), is
 //!
 //! ∫F dt = m v + D ∫u|u| dt + f T,
 //!
@@ -12,14 +12,15 @@
 //! m v = ∫F dt − F_s T + D (v|v| T − ∫u|u| dt).
 //!
 //! An integral does not ask when in the ramp the chain passed the force on: ripple of a flexible chain does not bias it, as it does
-//! a fit sample by sample. Braking is left out: through the gear it has another efficiency. Pairs are weighted by v²/T (friction that
+//! a fit sample by sample. The load still swings about the reference speed at any one T, alike in every pair, and would have that speed
+//! counted for its own; so m v is the mean over all T of the steady window, with the weights of its tapered mean, and so is F_s. Braking is left out: through the gear it has another efficiency. Pairs are weighted by v²/T (friction that
 //! wanders faster than a ramp); the jackknife over pairs gives the uncertainty. Source: impulse balance, our derivation.
 //!
 //! Valid from rest; flow history (start-up of the wake) is in the result.
 
 use super::coefficient::jackknife;
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind, Uncertain};
-use super::steady::{SteadySettings, window};
+use super::steady::{SteadySettings, driving_part, tapered, window};
 
 /// Water that moves along with the body.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,12 +43,12 @@ struct Ramp {
     speed_m_s: f64,
     /// What the speed has grown by since the first sample in motion, m/s.
     gained_m_s: f64,
-    /// T, s.
+    /// T, s: its mean over the window.
     duration_s: f64,
-    /// ∫F dt over the ramp, N s.
-    impulse_n_s: f64,
-    /// ∫u|u| dt over the ramp, m²/s.
-    squares_m2_s: f64,
+    /// ∫F dt − F_s T, its mean over T in the window, N s.
+    excess_n_s: f64,
+    /// v|v| T − ∫u|u| dt, the same for every T at constant speed, m²/s.
+    missing_m2_s: f64,
     /// F_s, N.
     steady_n: f64,
 }
@@ -59,8 +60,7 @@ impl Ramp {
 
     /// m v of this pair, N s.
     fn momentum(&self, drag_n_s2_m2: f64) -> f64 {
-        self.impulse_n_s - self.steady_n * self.duration_s
-            + drag_n_s2_m2 * (self.square() * self.duration_s - self.squares_m2_s)
+        self.excess_n_s + drag_n_s2_m2 * self.missing_m2_s
     }
 }
 
@@ -69,6 +69,13 @@ fn ramp(wet: &DragRun<'_>, dry: &DragRun<'_>, force_per_volt_n: f64, settings: S
     let start = |run: &DragRun<'_>| run.reference_speed_m_s.iter().position(|&v| v != 0.0);
     let (i, j) = (start(wet)?, start(dry)?);
     let (w, d) = (window(wet, settings).ok()?, window(dry, settings).ok()?);
+    // A swing that turns the chain's force around in the window has done so before it: the gear's loss is then in the impulse.
+    let friction_v = tapered(d.of(dry.command_v));
+    for (run, window) in [(wet, w), (dry, d)] {
+        if driving_part(run, window, friction_v, settings).ok()?.first != window.first {
+            return None;
+        }
+    }
     let step = wet.step_s();
     let first = (w.first - i).max(d.first - j);
     let end = (w.end - i).min(d.end - j);
@@ -78,18 +85,30 @@ fn ramp(wet: &DragRun<'_>, dry: &DragRun<'_>, force_per_volt_n: f64, settings: S
         return None;
     }
     let force_n = |k: usize| force_per_volt_n * (wet.command_v[i + k] - dry.command_v[j + k]);
-    let over = |of: &dyn Fn(usize) -> f64, from: usize, to: usize| {
-        (from..to).map(|k| 0.5 * (of(k) + of(k + 1))).sum::<f64>() * step
-    };
     let square = |k: usize| wet.reference_speed_m_s[i + k] * wet.reference_speed_m_s[i + k].abs();
+    let speed_m_s = wet.target_speed_m_s * wet.direction;
+    let (mut impulse_n_s, mut squares_m2_s) = (0.0, 0.0);
+    let (mut in_window, mut forces) = (Vec::new(), Vec::new());
+    for k in 1..end {
+        impulse_n_s += 0.5 * step * (force_n(k - 1) + force_n(k));
+        if k <= first {
+            squares_m2_s += 0.5 * step * (square(k - 1) + square(k));
+        }
+        if k >= first {
+            in_window.push((impulse_n_s, k as f64 * step));
+            forces.push(force_n(k));
+        }
+    }
+    let steady_n = tapered(&forces);
+    let excess: Vec<f64> = in_window.iter().map(|(impulse, t)| impulse - steady_n * t).collect();
     Some(Ramp {
         pair: wet.pair,
-        speed_m_s: wet.target_speed_m_s * wet.direction,
-        gained_m_s: wet.target_speed_m_s * wet.direction - wet.reference_speed_m_s[i],
-        duration_s: first as f64 * step,
-        impulse_n_s: over(&force_n, 0, first),
-        squares_m2_s: over(&square, 0, first),
-        steady_n: over(&force_n, first, end - 1) / ((end - 1 - first) as f64 * step),
+        speed_m_s,
+        gained_m_s: speed_m_s - wet.reference_speed_m_s[i],
+        duration_s: 0.5 * (first + end - 1) as f64 * step,
+        excess_n_s: tapered(&excess),
+        missing_m2_s: speed_m_s * speed_m_s.abs() * first as f64 * step - squares_m2_s,
+        steady_n,
     })
 }
 

@@ -25,8 +25,8 @@ use super::run::{DragRun, RunKind, Uncertain};
 use super::steady::{SteadySettings, mean, window};
 
 /// The pulley's loss where both directions with light weights do not measure it, and nobody declared it: a ball bearing
-/// with a thin cord loses some 0.5 to 1.5 %.
-pub const PULLEY_LOSS: Uncertain = Uncertain::new(0.01, 0.003);
+/// with a thin cord loses 0 to 2 %, taken as uniform.
+pub const PULLEY_LOSS: Uncertain = Uncertain::new(0.01, 0.00577);
 
 /// A weight that goes down counts as driven by the motor up to this part of the friction that the motor sees: up to half of that
 /// may be the motor's own.
@@ -127,6 +127,13 @@ pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calib
     // The declared loss is of the weight, the coefficient is in volts: it takes k from a first fit.
     let first = fitted(&driving, loss, setup.ideal_force_per_volt_n)?;
     let k = 1.0 / take(&first, 1)?.value;
+    if k <= 0.0 {
+        return Err(DragError::Calibration(format!(
+            "lifting up to {:.1} N takes no more command than lifting nothing: look whether the weights hung all the way (floor), and at \
+             counts_per_revolution, which says how far the carriage went",
+            weights[1]
+        )));
+    }
     let fitted = fitted(&driving, loss, k)?;
     let inverse = take(&fitted, 1)?;
     let k = 1.0 / inverse.value;
@@ -225,8 +232,9 @@ fn notes(
     if overhauled > 0 {
         out.push(format!(
             "{overhauled} runs were left out: the weight drove the gear or may have, and a gear loses differently that way; weights \
-             up to {:.1} N, half the friction, can be lowered under power",
-            SURELY_DRIVEN * friction_n
+             up to {:.2} N, half the friction, can be lowered under power",
+            // Rounded down: the most that is advised is not refused.
+            (1e2 * SURELY_DRIVEN * friction_n).floor() / 1e2
         ));
     }
     if (found.value - loss.value).abs() > DOUBTED * loss.standard {

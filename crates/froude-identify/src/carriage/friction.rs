@@ -3,14 +3,14 @@
 //! In volts of the drive command, as everything is before newtons a volt come in:
 //! v_c = C(y) sgn v + B v + b, with b what a tilted tank or an amplifier's offset adds (only with both directions).
 //! C is one number, or a broken line over position (hat functions on equal knots). Fitted by least squares to means
-//! over cells of one knot spacing of the steady windows.
+//! over cells of one knot spacing of the steady windows, each weighted by its part of the window's tapered mean.
 
 use froude_fit::faer::Mat;
 use froude_fit::{Options, Problem, fit};
 
 use super::fsm::reach;
 use super::run::DragRun;
-use super::steady::{SteadySettings, window};
+use super::steady::{SteadySettings, taper, window};
 
 /// Spacing of the knots of a map, m: 0.1 m resolves a bump that is half a metre wide to 2 % of its height.
 pub const KNOT_SPACING_M: f64 = 0.1;
@@ -43,6 +43,9 @@ pub struct Cell {
     pub direction: f64,
     /// Mean command, V.
     pub command_v: f64,
+    /// Its part of the window's tapered mean, over that of a cell of an even mean \[-\]: friction is identified with the weights that the
+    /// force of a wet run is taken with, so that a bump in mid-window is not taken for drag.
+    pub weight: f64,
 }
 
 impl Friction {
@@ -83,19 +86,20 @@ impl Friction {
         let mut design = Mat::zeros(cells.len(), columns);
         for (row, c) in cells.iter().enumerate() {
             let (i, part) = locate(c.position_m, range_m[0], spacing_m, knots);
-            design[(row, i)] = c.direction * (1.0 - part);
+            let w = c.weight.sqrt();
+            design[(row, i)] = w * c.direction * (1.0 - part);
             if part > 0.0 {
-                design[(row, i + 1)] = c.direction * part;
+                design[(row, i + 1)] = w * c.direction * part;
             }
             if has_viscous {
-                design[(row, knots)] = c.speed_m_s;
+                design[(row, knots)] = w * c.speed_m_s;
             }
             if has_bias {
-                design[(row, columns - 1)] = 1.0;
+                design[(row, columns - 1)] = w;
             }
         }
         let names = (0..columns).map(|j| format!("{j}")).collect();
-        let response = cells.iter().map(|c| c.command_v).collect();
+        let response = cells.iter().map(|c| c.weight.sqrt() * c.command_v).collect();
         let fitted = fit(&Problem::single(design, response, names), &Options::default()).ok()?;
         let value: Vec<f64> = fitted.coefficients.iter().map(|c| c.value).collect::<Option<_>>()?;
         Some(Self {
@@ -125,16 +129,20 @@ pub fn cells(run: &DragRun<'_>, settings: SteadySettings) -> Vec<Cell> {
     let speed_m_s = super::fsm::mean_speed(run, window);
     let travelled = (speed_m_s * window.len() as f64 * run.step_s()).abs();
     let count = ((travelled / KNOT_SPACING_M).round() as usize).clamp(1, window.len());
+    let weights: Vec<f64> = taper(window.len()).collect();
+    let even = weights.iter().sum::<f64>() / weights.len() as f64;
     (0..count)
         .map(|k| {
             let first = window.first + k * window.len() / count;
             let end = window.first + (k + 1) * window.len() / count;
-            let mean = |column: &[f64]| column[first..end].iter().sum::<f64>() / (end - first) as f64;
+            let of = |column: &[f64]| column.iter().sum::<f64>() / (end - first) as f64;
+            let mean = |column: &[f64]| of(&column[first..end]);
             Cell {
                 position_m: mean(run.position_m),
                 speed_m_s,
                 direction: run.direction,
                 command_v: mean(run.command_v),
+                weight: of(&weights[first - window.first..end - window.first]) / even,
             }
         })
         .collect()
@@ -173,7 +181,7 @@ mod tests {
 
     #[test]
     fn one_speed_alone_leaves_the_viscous_part_out() {
-        let cell = |position_m: f64| Cell { position_m, speed_m_s: 0.3, direction: 1.0, command_v: 0.5 };
+        let cell = |position_m: f64| Cell { position_m, speed_m_s: 0.3, direction: 1.0, command_v: 0.5, weight: 1.0 };
         let friction = Friction::identify(&[cell(1.0), cell(2.0)], false).unwrap();
         assert!((friction.coulomb_v[0] - 0.5).abs() < 1e-12 && friction.viscous_v_s_m == 0.0);
         assert!(Friction::identify(&[], true).is_none());

@@ -11,7 +11,7 @@ use super::coefficient::Point;
 use super::friction::Friction;
 use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
-use super::steady::{Rejected, SteadySettings, Window, mean, window};
+use super::steady::{Rejected, SteadySettings, Window, driving_part, mean, window};
 
 /// A map may be used this far beyond its ends, m.
 const BEYOND_M: f64 = 0.1;
@@ -73,6 +73,9 @@ pub fn flexible_point(
 /// The steady window, if the friction is known there.
 fn on_the_map(wet: &DragRun<'_>, friction: &Friction, settings: SteadySettings) -> Result<Window, Rejected> {
     let w = window(wet, settings)?;
+    let middle_m = wet.position_m[w.first + w.len() / 2];
+    let friction_v = friction.command_v(middle_m, wet.direction * wet.target_speed_m_s) - friction.bias_v;
+    let w = driving_part(wet, w, friction_v, settings)?;
     let [from_m, to_m] = reach(w.of(wet.position_m));
     let [low, high] = friction.range_m;
     if friction.coulomb_v.len() > 1 && (from_m < low - BEYOND_M || to_m > high + BEYOND_M) {

@@ -2,12 +2,12 @@
 //!
 //! Friction that depends on position is in both and cancels; what differs from run to run stays and is the scatter of
 //! the pairs. The difference is taken where both runs are steady, and from where it has settled: the wake of a body that starts
-//! needs several of its lengths, as for the force sensor.
+//! needs several of its lengths, as for the force sensor; and only where the motor drives the gear all the time.
 
 use super::coefficient::Point;
 use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
-use super::steady::{Rejected, SteadySettings, Window, mean, settled_part, window};
+use super::steady::{Rejected, SteadySettings, Window, driving_part, mean, settled_part, window};
 
 /// Shortest stretch of positions in common, as part of the wet window.
 const SHARED: f64 = 0.5;
@@ -25,8 +25,10 @@ pub fn point(
     force_per_volt_n: f64,
     settings: SteadySettings,
 ) -> Result<Point, Rejected> {
-    let in_wet = window(wet, settings)?;
     let in_dry = window(dry, settings)?;
+    let friction_v = mean(in_dry.of(dry.command_v), dry.step_s()).value;
+    let in_dry = driving_part(dry, in_dry, friction_v, settings)?;
+    let in_wet = driving_part(wet, window(wet, settings)?, friction_v, settings)?;
     let [wet_low, wet_high] = reach(in_wet.of(wet.position_m));
     let [dry_low, dry_high] = reach(in_dry.of(dry.position_m));
     let shared_m = wet_high.min(dry_high) - wet_low.max(dry_low);

@@ -7,7 +7,7 @@ use super::added_mass::{AddedMass, added_mass};
 use super::coefficient::{
     Coefficient, Method, Part, Point, Shape, TypeA, coefficient, each_alone, jackknife, pairs, scatter, slope, slope_of,
 };
-use super::detectability::{Agreement, Detectability, DryMean, agreement, pooled_scatter, predict, zero_change};
+use super::detectability::{Agreement, Detectability, DryMean, agreement, floored, predict, zero_change};
 use super::error::DragError;
 use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
@@ -80,11 +80,10 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let (mut detectability, mut agrees) = (None, None);
     if !dry.is_empty() {
         let points = keep(differences, Method::Mcd, &mut rejected);
-        detectability = predict(&means, differences_per_speed(&points), pairs(&points).len(), setup)
-            .map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
-        agrees = detectability.as_ref().and_then(|d| agreement(&points, d, setup));
-        let type_a = repeats(&points, detectability.as_ref(), agrees, setup);
-        coefficients.extend(coefficient(Method::Mcd, points, setup, type_a));
+        let of_pairs = predict(&means, differences_per_speed(&points), pairs(&points).len(), setup);
+        agrees = of_pairs.as_ref().and_then(|d| agreement(&points, d, setup));
+        coefficients.extend(of_differences(points, of_pairs.as_ref(), setup));
+        detectability = of_pairs.map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
     }
     let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
     let for_constant = if sweeps.is_empty() { &dry } else { &sweeps };
@@ -100,9 +99,24 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let reference = by(Method::Fsm).or(current).or(coefficients.first()).map(|c| c.value);
     let recommended = recommended(&coefficients);
     findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agrees));
+    let added_mass = added_mass(runs, setup);
+    findings.extend(added_mass.as_ref().filter(|m| m.interval_95[1] < 0.0).map(|m| {
+        Finding::new(
+            Severity::Warning,
+            "negative-added-mass",
+            format!(
+                "the ramps say that {:.2} kg of water move along: no body has that. Look at the ballast (volume), at \
+                 counts_per_revolution, and whether dry and wet runs are what they are called",
+                m.mass_kg.value
+            ),
+        )
+    }));
+    let is_swing = |why: &Rejected| matches!(why, Rejected::Swings { .. });
+    findings.extend(swings(&rejected));
     findings.extend(
         rejected
             .iter()
+            .filter(|(_, why)| !is_swing(why))
             .map(|(method, why)| Finding::new(Severity::Warning, "run-left-out", format!("{}: {why}", method.name()))),
     );
     let estimates =
@@ -116,7 +130,7 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
         recommended,
         detectability,
         agreement: agrees,
-        added_mass: added_mass(runs, setup),
+        added_mass,
         rejected,
         findings,
         estimates,
@@ -165,7 +179,7 @@ fn with_drift(mut c: Coefficient, wet: &[&DragRun<'_>], setup: &DragSetup, findi
             "zero-on-one-side",
             format!(
                 "fsm: {open} wet runs have no still window on one side of the tow; the declared drift of ± {:.2} N moves D_d by \
-                 up to {half:.2} N s^2/m^2. Log a second of standing still before and after",
+                 up to {half:.2} N s^2/m^2. Stand still for two seconds before and after",
                 setup.sensor.drift_half_width_n
             ),
         ));
@@ -241,9 +255,9 @@ fn model_based(
         let (mut xx, mut xy) = (0.0, 0.0);
         for (_, cells) in with_drag.iter().filter(|c| Cluster::Pair(c.0) != skip && groups.contains(&c.0)) {
             let x = cells.first().map_or(0.0, |c| c.speed_m_s * c.speed_m_s.abs());
-            let left = cells.iter().map(|c| c.command_v - without.command_v(c.position_m, c.speed_m_s)).sum::<f64>();
+            let left = cells.iter().map(|c| c.weight * (c.command_v - without.command_v(c.position_m, c.speed_m_s)));
             xx += x * x;
-            xy += x * k * left / cells.len().max(1) as f64;
+            xy += x * k * left.sum::<f64>() / cells.iter().map(|c| c.weight).sum::<f64>().max(f64::MIN_POSITIVE);
         }
         (xx > 0.0).then(|| xy / xx)
     };
@@ -252,8 +266,7 @@ fn model_based(
     sweeps.dedup();
     let of_pairs = jackknife(groups.len(), |g| without(Cluster::Pair(groups[g])));
     let of_sweeps = jackknife(sweeps.len(), |g| without(sweeps[g]));
-    // A wet run alone has half the variance of a difference; the friction it is taken from has its own part of that.
-    let share = 0.5 * (1.0 + groups.len() as f64 / clusters_in(&without_drag).max(1) as f64);
+    // A wet run alone has half the variance of a difference, and friction that is known exactly adds none.
     let promised = predict(
         &dry.iter().filter_map(|r| DryMean::of(r, setup)).collect::<Vec<_>>(),
         differences_per_speed(&points),
@@ -261,16 +274,23 @@ fn model_based(
         setup,
     );
     let of_repeats = of_pairs.map(|pairs| match &promised {
-        Some(d) => pooled_scatter(pairs, (share.sqrt() * d.slope_n_s2_m2, d.slope_dof), on_drag(&points, setup), None),
-        None => pairs,
+        Some(Detectability { floor_n_s2_m2: (rest, dof), .. }) => {
+            held(pairs, ((0.5_f64.sqrt() * rest).hypot(on_drag(&points, setup)), *dof))
+        }
+        None => TypeA { standard: pairs.0, dof: pairs.1, name: "scatter between pairs" },
     });
-    let type_a = of_repeats.map(|pairs| of_sweeps.map_or(pairs, |sweeps| together(pairs, sweeps)));
-    let named = type_a.map(|(standard, dof)| TypeA { standard, dof, name: "scatter of the repeats" });
+    let named = of_repeats.map(|a| match of_sweeps {
+        Some(sweeps) => {
+            let (standard, dof) = together((a.standard, a.dof), sweeps);
+            TypeA { standard, dof, name: "scatter of pairs and of friction runs" }
+        }
+        None => a,
+    });
     let mut out = coefficient(method, points, setup, named)?;
     // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
     let of_nothing: Vec<Point> = dry.iter().filter_map(|d| point(d).ok()).collect();
     if let Some(phantom) = slope(&of_nothing) {
-        let scatter = type_a.map_or(f64::INFINITY, |t| t.0);
+        let scatter = named.map_or(f64::INFINITY, |t| t.standard);
         if phantom.abs() > scatter {
             let from = friction.range_m;
             findings.push(Finding::new(
@@ -299,28 +319,30 @@ fn model_based(
     Some(out)
 }
 
-/// How many clusters there are.
-fn clusters_in(runs: &[(Cluster, Vec<Cell>)]) -> usize {
-    runs.iter().enumerate().filter(|(i, c)| !runs[..*i].iter().any(|o| o.0 == c.0)).count()
-}
-
 /// Two independent scatters: root of the sum of squares, degrees of freedom by Welch and Satterthwaite.
 fn together((u, dof): (f64, f64), (v, other): (f64, f64)) -> (f64, f64) {
     (u.hypot(v), froude_fit::propagate::effective_dof(&[(u * u, dof), (v * v, other)]))
 }
 
-/// Scatter of differences: of the wet repeats and of what the dry ones promise.
-fn repeats(
-    points: &[Point],
-    promised: Option<&Detectability>,
-    agrees: Option<Agreement>,
-    setup: &DragSetup,
-) -> Option<TypeA> {
-    let (u, dof, shared) = scatter(points)?;
-    let promised = promised.filter(|_| shared == "pair")?;
-    let on_drag = on_drag(points, setup);
-    let (standard, dof) = pooled_scatter((u, dof), (promised.slope_n_s2_m2, promised.slope_dof), on_drag, agrees);
-    Some(TypeA { standard, dof, name: "scatter of the repeats, wet and dry" })
+/// D_d from wet-less-dry differences, its scatter held against what the dry repeats show.
+#[must_use]
+pub fn of_differences(points: Vec<Point>, promised: Option<&Detectability>, setup: &DragSetup) -> Option<Coefficient> {
+    let type_a = scatter(&points).and_then(|(u, dof, shared)| {
+        let (rest, rest_dof) = promised.filter(|_| shared == "pair")?.floor_n_s2_m2;
+        Some(held((u, dof), (rest.hypot(on_drag(&points, setup)), rest_dof)))
+    });
+    coefficient(Method::Mcd, points, setup, type_a)
+}
+
+/// The scatter of pairs, or the floor under it.
+fn held(seen: (f64, f64), floor: (f64, f64)) -> TypeA {
+    let (standard, dof) = floored(seen, floor);
+    let name = if standard > seen.0 {
+        "scatter of the dry repeats (the pairs agree better than these allow)"
+    } else {
+        "scatter between pairs"
+    };
+    TypeA { standard, dof, name }
 }
 
 /// What K_T's drift from run to run does to D_d through the drag itself.
@@ -407,14 +429,14 @@ fn doubts(
         {
             out.push(finding);
         }
-        if c.pairs < FEW_PAIRS {
+        let scatter_dof = c.budget.iter().find(|p| p.kind == 'A').map_or(0.0, |p| p.dof);
+        if c.pairs < FEW_PAIRS && scatter_dof < FEW_PAIRS as f64 {
             out.push(Finding::new(
                 Severity::Warning,
                 "few-pairs",
                 format!(
-                    "{name}: {} pairs; the scatter has {} degrees of freedom and its interval is mostly Student's t",
-                    c.pairs,
-                    c.pairs.saturating_sub(1)
+                    "{name}: {} pairs; the scatter has {scatter_dof:.0} degrees of freedom and its interval is mostly Student's t",
+                    c.pairs
                 ),
             ));
         }
@@ -476,16 +498,36 @@ fn doubts(
     out
 }
 
+/// One sentence for all runs that a swinging load has spoiled: they have one cause.
+fn swings(rejected: &[(Method, Rejected)]) -> Option<Finding> {
+    let mut runs: Vec<&str> = Vec::new();
+    let mut first = None;
+    for (_, why) in rejected {
+        if let Rejected::Swings { run, .. } = why {
+            first = first.or(Some(why));
+            if !runs.contains(&run.as_str()) {
+                runs.push(run);
+            }
+        }
+    }
+    let more = if runs.len() > 1 { format!(" ({} more runs likewise)", runs.len() - 1) } else { String::new() };
+    first.map(|why| {
+        Finding::new(Severity::Warning, "load-swings", format!("left out by the motor's current{more}: {why}"))
+    })
+}
+
 /// Force sensor and motor current measure one drag: a difference beyond both intervals (E_n > 1, ISO 13528:2022, 9.7) is a trouble
 /// that neither budget knows.
 fn sensor_against_current(all: &[Coefficient]) -> Option<Finding> {
     let of = |method: Method| {
         let c = all.iter().find(|c| c.method == method)?;
-        c.interval_95.map(|[low, high]| (c.value, 0.5 * (high - low)))
+        c.interval_95.map(|interval| (c.value, interval))
     };
     let ((sensor, its), (current, other)) = (of(Method::Fsm)?, of(Method::Mcd)?);
     let apart = (sensor - current).abs();
-    let allowed = its.hypot(other);
+    // The arm that points to the other value: intervals with an undeclared efficiency or buoyancy reach to one side.
+    let arm = |value: f64, [low, high]: [f64; 2], to: f64| if to < value { value - low } else { high - value };
+    let allowed = arm(sensor, its, current).hypot(arm(current, other, sensor));
     (apart > allowed).then(|| {
         Finding::new(
             Severity::Warning,

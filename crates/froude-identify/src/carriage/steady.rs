@@ -89,6 +89,20 @@ pub enum Rejected {
         /// Dropped, s.
         dropped_s: f64,
     },
+    /// The load swings on the chain until the window ends.
+    #[error(
+        "run {run:?}: the load swings on the chain so far that the motor's command falls to {least:.0} % of what friction alone needs \
+         (less than {needed:.0} %): the gear is then driven by the load and loses otherwise. Shape the reference for the load's mode \
+         (froude carriage resonance), accelerate more gently, or tow further"
+    )]
+    Swings {
+        /// The run.
+        run: String,
+        /// Least command, in per cent of the friction's.
+        least: f64,
+        /// What is needed, in per cent.
+        needed: f64,
+    },
     /// No run to take the difference with.
     #[error("run {run:?}: no dry run of pair {pair} at {speed_m_s} m/s in this direction")]
     NoPartner {
@@ -300,6 +314,49 @@ pub fn settled_part(
     Ok(now)
 }
 
+/// A command that falls below this part of what friction alone needs tells a load that may drive the gear: the motor's own friction, which
+/// it never lets go of, is 0.35 of the paper's.
+const DRIVING: f64 = 0.5;
+/// Span over which a command is averaged for that, s: several times the encoder's steps, a fifth of the period of a load on its chain.
+const SWING_S: f64 = 0.04;
+
+/// The part of a steady window in which the motor drives the load throughout; `friction_v` is the mean command of a tow without drag.
+///
+/// A gear takes 1/η of the chain's force from a motor that drives and gives η_b of it to one that is driven. Over a swing in which the
+/// force changes its sign the mean command is therefore too large, by ½(1/η − η_b) of the mean |F| less |mean F|, wet and dry not alike.
+///
+/// # Errors
+///
+/// [`Rejected::Swings`] where too little is left.
+pub fn driving_part(
+    run: &DragRun<'_>,
+    from: Window,
+    friction_v: f64,
+    settings: SteadySettings,
+) -> Result<Window, Rejected> {
+    let command = from.of(run.command_v);
+    let span = ((SWING_S / run.step_s()).round() as usize).clamp(1, command.len());
+    let needed_v = DRIVING * friction_v.abs();
+    let mut sum: f64 = command[..span].iter().sum();
+    let (mut after, mut least_v) = (0, f64::INFINITY);
+    for end in span..=command.len() {
+        if end > span {
+            sum += command[end - 1] - command[end - 1 - span];
+        }
+        let here = run.direction * sum / span as f64;
+        least_v = least_v.min(here);
+        if here < needed_v {
+            after = end;
+        }
+    }
+    let left = Window { first: from.first + after, end: from.end };
+    if (left.len() as f64 * run.step_s()) < settings.shortest_s {
+        let percent = 100.0 / friction_v.abs();
+        return Err(Rejected::Swings { run: run.id.to_owned(), least: percent * least_v, needed: 100.0 * DRIVING });
+    }
+    Ok(left)
+}
+
 /// The stand-still before and after the tow, settling taken off; `None` where there is none long enough.
 #[must_use]
 pub fn still_windows(run: &DragRun<'_>, settings: SteadySettings) -> [Option<Window>; 2] {
@@ -404,17 +461,22 @@ pub fn mean(series: &[f64], step_s: f64) -> Mean {
 /// The body swings on the chain after a ramp, and what it is accelerated with is in the force: over a window that begins and ends
 /// anywhere in a period that does not average out, and it does so alike in every run. The taper leaves a tenth of it or less where the
 /// window holds six periods.
-fn tapered(series: &[f64]) -> f64 {
-    let n = series.len();
-    let ramp = n as f64 * TAPERED;
+pub(super) fn tapered(series: &[f64]) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
-    for (i, x) in series.iter().enumerate() {
-        let from_end = (i.min(n - 1 - i) as f64 + 0.5) / ramp;
-        let w = if from_end >= 1.0 { 1.0 } else { 0.5 * (1.0 - (std::f64::consts::PI * from_end).cos()) };
+    for (x, w) in series.iter().zip(taper(series.len())) {
         sum += w * x;
         weights += w;
     }
     sum / weights
+}
+
+/// The weights of such a mean over `n` samples.
+pub(super) fn taper(n: usize) -> impl Iterator<Item = f64> {
+    let ramp = n as f64 * TAPERED;
+    (0..n).map(move |i| {
+        let from_end = (i.min(n - 1 - i) as f64 + 0.5) / ramp;
+        if from_end >= 1.0 { 1.0 } else { 0.5 * (1.0 - (std::f64::consts::PI * from_end).cos()) }
+    })
 }
 
 /// Averages of blocks, at most [`MOST_BLOCKS`] of them; what does not fill the last block is left out.
@@ -515,6 +577,27 @@ mod tests {
         let time: Vec<f64> = (0..n).map(|i| i as f64 * 0.01).collect();
         let speed = time.iter().map(|&t| speed(t)).collect();
         (time, speed)
+    }
+
+    /// A swing of 4 Hz that decays in 1 s: the window begins where it is small enough that the motor drives all the time.
+    #[test]
+    fn a_window_in_which_the_load_drives_is_cut_or_refused() {
+        let (time, speed) = profile(5.0);
+        let held = window(&run(&time, &speed, &speed), SteadySettings::default()).unwrap();
+        let command = |amplitude: f64| -> Vec<f64> {
+            time.iter().map(|t| 1.0 + amplitude * (-(t - 2.0)).exp() * (25.1 * t).sin()).collect()
+        };
+        let part = |amplitude: f64| {
+            let command = command(amplitude);
+            driving_part(&run(&time, &speed, &command), held, 1.0, SteadySettings::default())
+        };
+        assert_eq!(part(0.4).unwrap(), held);
+        // 1 e^-t below 0.5 / 0.96 (what 0.04 s leave of 4 Hz) from t = 0.65 s on, that is from 2.65 s of the run.
+        let cut = part(1.0).unwrap();
+        assert_eq!(cut.end, held.end);
+        assert!((time[cut.first] - 2.65).abs() < 0.25, "{}", time[cut.first]);
+        let why = part(100.0).unwrap_err().to_string();
+        assert!(why.contains("the load swings on the chain") && why.contains("froude carriage resonance"), "{why}");
     }
 
     /// Wandering force of 0.05 N rms and 0.3 s over 4 s windows: the stated standard uncertainty is right.

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::margins::margins;
+use super::margins::{Margins, margins};
 use super::relay::LimitCycle;
 use super::{LoopGains, ResponsePoint, TuningError};
 
@@ -17,6 +17,34 @@ pub struct Demand {
     pub sensitivity: f64,
 }
 
+/// The encoder that the loop works with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Encoder {
+    /// One count, rad of the motor.
+    pub count_rad: f64,
+    /// Most that a count may move the command, V. Above friction's own command the loop at rest would knock through stiction at every count.
+    pub most_v: f64,
+    /// The controller's tick, s.
+    pub tick_s: f64,
+}
+
+impl Encoder {
+    /// Without counts or ticks.
+    pub const IDEAL: Self = Self { count_rad: 0.0, most_v: f64::INFINITY, tick_s: 0.0 };
+}
+
+impl Demand {
+    /// Whether the margins keep it, the whole loop lying in the band that they are of.
+    #[must_use]
+    pub fn is_kept(&self, m: &Margins) -> bool {
+        m.is_whole()
+            && m.phase_rad.is_some_and(|x| x >= self.phase_rad)
+            && m.gain.is_none_or(|x| x >= self.gain)
+            && m.gain_reduction.is_none_or(|x| x * self.gain <= 1.0)
+            && m.largest_sensitivity <= self.sensitivity
+    }
+}
+
 impl Default for Demand {
     /// 45°, 2 (6 dB), 2: the usual values (Åström & Hägglund 2006, §4.6).
     fn default() -> Self {
@@ -26,23 +54,29 @@ impl Default for Demand {
 
 /// The fastest PID that keeps the demand on the measured response.
 ///
-/// The controller's form is fixed by its crossover f_c: derivative zero at f_c/3, integral at f_c/10, derivative filter at
-/// 10 f_c. Crossovers are tried from the highest measured frequency downwards; at each the gain makes |L(f_c)| = 1.
+/// The controller's form is fixed by its crossover f_c: derivative zero at f_c/3 (or lower, down to f_c/12, where
+/// the dip of a lightly damped load asks for more lead), derivative filter at 10 f_c, integral at f_c/10 or
+/// lower: K_i ≤ K_d ω_l²/2 with ω_l = 2π `load_hz`, the lowest mode of any load on a motor that stands. Below √(K_i/K_d) the integral's
+/// lag is more than the derivative's lead, and a motor so controlled feeds a load's swing instead of damping it. Crossovers are tried
+/// from the highest measured frequency downwards; at each the gain makes |L(f_c)| = 1. A loop is taken only if all of it lies in the
+/// measured band, |L| above 1 at its low end and well below 1 at its high end: a chain's resonance alone crosses |L| = 1 too, in a loop
+/// that is too soft to hold anything.
 ///
 /// # Errors
 ///
 /// [`TuningError::NoCrossover`] when none keeps it.
-pub fn shaped_on_response(plant: &[ResponsePoint], demand: &Demand) -> Result<LoopGains, TuningError> {
+pub fn shaped_on_response(
+    plant: &[ResponsePoint],
+    load_hz: f64,
+    demand: &Demand,
+    encoder: &Encoder,
+) -> Result<LoopGains, TuningError> {
     plant
         .iter()
         .rev()
-        .map(with_crossover)
-        .find(|gains| {
-            let m = margins(plant, gains);
-            m.phase_rad.is_some_and(|x| x >= demand.phase_rad)
-                && m.gain.is_none_or(|x| x >= demand.gain)
-                && m.largest_sensitivity <= demand.sensitivity
-        })
+        .flat_map(|point| LEADS.map(|lead| with_crossover(point, lead, load_hz, encoder.tick_s)))
+        .filter(|gains| gains.volts_per_count(encoder.count_rad) <= encoder.most_v)
+        .find(|gains| demand.is_kept(&margins(plant, gains)))
         .ok_or_else(|| TuningError::NoCrossover {
             low_hz: plant.first().map_or(f64::NAN, |p| p.frequency_hz),
             high_hz: plant.last().map_or(f64::NAN, |p| p.frequency_hz),
@@ -51,20 +85,25 @@ pub fn shaped_on_response(plant: &[ResponsePoint], demand: &Demand) -> Result<Lo
         })
 }
 
-fn with_crossover(point: &ResponsePoint) -> LoopGains {
+/// The derivative's zero below the crossover, least lead first.
+const LEADS: [f64; 4] = [3.0, 5.0, 8.0, 12.0];
+
+fn with_crossover(point: &ResponsePoint, lead: f64, load_hz: f64, tick_s: f64) -> LoopGains {
     let crossover_rad_s = TAU * point.frequency_hz;
+    let derivative_s = lead / crossover_rad_s;
     let unit = LoopGains {
         proportional_v_rad: 1.0,
-        derivative_v_s_rad: 3.0 / crossover_rad_s,
-        integral_v_rad_s: crossover_rad_s / 10.0,
+        derivative_v_s_rad: derivative_s,
+        integral_v_rad_s: (crossover_rad_s / 10.0).min(0.5 * derivative_s * (TAU * load_hz).powi(2)),
         derivative_filter_hz: 10.0 * point.frequency_hz,
+        tick_s,
     };
     let gain = 1.0 / (unit.response_v_rad(point.frequency_hz) * point.plant_rad_v).norm();
     LoopGains {
         proportional_v_rad: gain,
         derivative_v_s_rad: gain * unit.derivative_v_s_rad,
         integral_v_rad_s: gain * unit.integral_v_rad_s,
-        derivative_filter_hz: unit.derivative_filter_hz,
+        ..unit
     }
 }
 
@@ -72,12 +111,13 @@ fn with_crossover(point: &ResponsePoint) -> LoopGains {
 ///
 /// For comparison: it was made for a quarter of decay from swing to swing, which leaves small margins.
 #[must_use]
-pub fn ziegler_nichols(cycle: &LimitCycle) -> LoopGains {
+pub fn ziegler_nichols(cycle: &LimitCycle, tick_s: f64) -> LoopGains {
     let proportional_v_rad = 0.6 * cycle.ultimate_gain_v_rad;
     LoopGains {
         proportional_v_rad,
         derivative_v_s_rad: proportional_v_rad * cycle.period_s / 8.0,
         integral_v_rad_s: proportional_v_rad * 2.0 / cycle.period_s,
         derivative_filter_hz: 10.0 / cycle.period_s,
+        tick_s,
     }
 }

@@ -25,6 +25,16 @@ pub struct Margins {
     pub delay_s: Option<f64>,
     /// Largest |1/(1 + L)| over the measured frequencies.
     pub largest_sensitivity: f64,
+    /// |L| at the first and the last frequency.
+    pub end_moduli: [f64; 2],
+}
+
+impl Margins {
+    /// Whether the band holds the whole loop: |L| above 1 at its low end, below 1/2 at its high end. Else what decides may lie outside.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.end_moduli[0] > 1.0 && self.end_moduli[1] < 0.5
+    }
 }
 
 /// A point of the open loop, ready for a Bode plot.
@@ -59,7 +69,8 @@ pub fn open_loop(plant: &[ResponsePoint], gains: &LoopGains) -> Vec<LoopPoint> {
 #[must_use]
 pub fn margins(plant: &[ResponsePoint], gains: &LoopGains) -> Margins {
     let points = open_loop(plant, gains);
-    let mut out = Margins::default();
+    let end = |p: Option<&LoopPoint>| p.map_or(f64::NAN, |p| p.modulus);
+    let mut out = Margins { end_moduli: [end(points.first()), end(points.last())], ..Margins::default() };
     for p in &points {
         let distance = (1.0 + Complex64::from_polar(p.modulus, p.phase_rad)).norm();
         out.largest_sensitivity = out.largest_sensitivity.max(1.0 / distance);

@@ -32,10 +32,16 @@ pub struct TwoMassModes {
     pub free: Mode,
     /// M (R/n)²/J_m = (ω_p/ω_a)² − 1.
     pub inertia_ratio: f64,
+    /// Acceleration of the motor alone per volt, rad/(s² V).
+    pub gain_rad_s2_v: f64,
+    /// Viscous decay of the whole, 1/s.
+    pub viscous_1_s: f64,
     /// Delay of the loop, s.
     pub delay_s: f64,
     /// Root-mean-square relative residual of the response where its coherence is above 0.8.
     pub relative_residual: f64,
+    /// Its median: what is left at most points, dip, peak and harmonics aside.
+    pub median_residual: f64,
 }
 
 const PARAMETERS: usize = 7;
@@ -84,9 +90,12 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
     };
     // Only where the response was seen at all: at an antiresonance the encoder may see nothing.
     let seen: Vec<&ResponsePoint> = plant.iter().filter(|q| q.coherence > SEEN).collect();
-    let square: f64 = seen.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).sum();
-    let relative_residual = (square / seen.len() as f64).sqrt();
     let (load_hz, free_hz) = (p[2].exp(), p[4].exp());
+    let mut squares: Vec<f64> =
+        seen.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).collect();
+    let relative_residual = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    squares.sort_by(f64::total_cmp);
+    let median_residual = squares.get(squares.len() / 2).map_or(f64::NAN, |x| x.sqrt());
     let is_inside = |f: f64| (low_hz..=high_hz).contains(&f);
     // A comparison with NaN is false, so this also refuses a fit that ran away.
     if !(relative_residual < LARGEST_RESIDUAL && is_inside(load_hz) && is_inside(free_hz) && load_hz < free_hz) {
@@ -103,9 +112,84 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
         load: mode(2, 3),
         free: mode(4, 5),
         inertia_ratio: (free_hz / load_hz).powi(2) - 1.0,
+        gain_rad_s2_v: p[0].exp(),
+        viscous_1_s: p[1].exp(),
         delay_s: p[6],
         relative_residual,
+        median_residual,
     })
+}
+
+impl TwoMassModes {
+    /// θ/v_c of the fitted model, rad/V.
+    #[must_use]
+    pub fn response_rad_v(&self, frequency_hz: f64) -> Complex64 {
+        let ln = f64::ln;
+        let p = [
+            ln(self.gain_rad_s2_v),
+            ln(self.viscous_1_s),
+            ln(self.load.frequency_hz),
+            self.load.damping,
+            ln(self.free.frequency_hz),
+            self.free.damping,
+            self.delay_s,
+        ];
+        model(&p, frequency_hz)
+    }
+
+    /// The same drive with another load: `factor` times the one that was identified.
+    #[must_use]
+    pub fn with_load(&self, factor: f64) -> Self {
+        let inertia_ratio = factor * self.inertia_ratio;
+        let load = self.load.frequency_hz / factor.sqrt();
+        let free = load * (1.0 + inertia_ratio).sqrt();
+        let mode = |m: Mode, frequency_hz: f64| {
+            // The chain's damper stays: the ratio goes with the frequency.
+            let part = frequency_hz / m.frequency_hz;
+            Mode { frequency_hz, frequency_std_hz: part * m.frequency_std_hz, damping: part * m.damping, ..m }
+        };
+        Self {
+            load: mode(self.load, load),
+            free: mode(self.free, free),
+            inertia_ratio,
+            viscous_1_s: self.viscous_1_s * (1.0 + self.inertia_ratio) / (1.0 + inertia_ratio),
+            ..*self
+        }
+    }
+
+    /// The measured points, and the model's where nothing was measured, from a lower to a higher frequency.
+    #[must_use]
+    pub fn extended(&self, plant: &[ResponsePoint], [low_hz, high_hz]: [f64; 2]) -> Vec<ResponsePoint> {
+        /// Far less than the width of a lightly damped dip, whose phase turns by half a turn.
+        const STEP: f64 = 1.002;
+        let at = |frequency_hz: f64| ResponsePoint {
+            frequency_hz,
+            plant_rad_v: self.response_rad_v(frequency_hz),
+            coherence: f64::NAN,
+            relative_std: f64::NAN,
+        };
+        let first_hz = plant.first().map_or(low_hz, |p| p.frequency_hz);
+        let last_hz = plant.last().map_or(low_hz, |p| p.frequency_hz);
+        let steps =
+            |from_hz: f64, to_hz: f64| (1..).map(move |i| from_hz * STEP.powi(i)).take_while(move |f| *f < to_hz);
+        let below: Vec<ResponsePoint> = steps(low_hz / STEP, first_hz).map(at).collect();
+        below.into_iter().chain(plant.iter().copied()).chain(steps(last_hz, high_hz).map(at)).collect()
+    }
+
+    /// Free mode without the gear's loss, Hz, and its standard uncertainty: f_l √(1 + ηR_a), R_a = (f_a/f_l)² − 1.
+    ///
+    /// A motor that drives feels the chain's force over the gear's efficiency η, so that its response has its peak at
+    /// f_a = f_l √(1 + R/η), R = M(R/n)²/J_m; the dip at f_l is the load's alone and does not move. Both frequencies count as independent.
+    #[must_use]
+    pub fn free_through_gear(&self, efficiency: f64, efficiency_std: f64) -> (f64, f64) {
+        let (load, apparent) = (self.load, self.free);
+        let free_hz = load.frequency_hz * (1.0 + efficiency * self.inertia_ratio).sqrt();
+        // f² = (1 − η) f_l² + η f_a².
+        let by_load = (1.0 - efficiency) * load.frequency_hz / free_hz * load.frequency_std_hz;
+        let by_free = efficiency * apparent.frequency_hz / free_hz * apparent.frequency_std_hz;
+        let by_gear = 0.5 * (apparent.frequency_hz.powi(2) - load.frequency_hz.powi(2)) / free_hz * efficiency_std;
+        (free_hz, by_load.hypot(by_free).hypot(by_gear))
+    }
 }
 
 /// A fit from one start.

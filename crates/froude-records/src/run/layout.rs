@@ -136,12 +136,12 @@ pub(crate) struct Field {
 }
 
 impl Layout {
-    /// The columns of a carriage: both axes, the force sensor where there is one, and a twin's truths (name, unit).
+    /// The columns of a carriage: the long axis, the short one and the force sensor where there are any, and a twin's truths (name, unit).
     ///
     /// # Errors
     ///
     /// A truth whose name does not begin with `truth/`, or as [`Layout::new`].
-    pub fn carriage(has_force: bool, truths: &[(&str, &str)]) -> Result<Self, RecordError> {
+    pub fn carriage(has_x: bool, has_force: bool, truths: &[(&str, &str)]) -> Result<Self, RecordError> {
         let axis = |axis: &'static str| {
             AXIS.iter().map(move |(name, unit, kind)| ChannelSpec {
                 name: format!("{axis}/{name}"),
@@ -156,7 +156,8 @@ impl Layout {
         }
         let force = has_force.then_some(("force", "N"));
         let others = force.into_iter().chain(truths.iter().copied()).map(number);
-        Self::new(axis("y").chain(axis("x")).chain(others).collect())
+        let short = has_x.then(|| axis("x")).into_iter().flatten();
+        Self::new(axis("y").chain(short).chain(others).collect())
     }
 
     /// Any columns.
@@ -338,8 +339,8 @@ pub struct AxisSample {
 pub struct CarriageSample {
     /// The long axis.
     pub y: AxisSample,
-    /// The short one.
-    pub x: AxisSample,
+    /// The short one; `None` where the layout has none.
+    pub x: Option<AxisSample>,
     /// What the water exerts against +y motion, N; left out where the layout has no sensor.
     pub force_n: f64,
 }
@@ -348,7 +349,7 @@ impl CarriageSample {
     /// The row that [`Layout::carriage`] describes, into a buffer that is used again.
     pub fn row(&self, has_force: bool, truths: &[f64], row: &mut Vec<f64>) {
         row.clear();
-        for axis in [&self.y, &self.x] {
+        for axis in [Some(&self.y), self.x.as_ref()].into_iter().flatten() {
             row.extend([
                 axis.encoder as f64,
                 axis.position_m,

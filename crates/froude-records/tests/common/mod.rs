@@ -15,7 +15,7 @@ pub const START_NS: u64 = 1_795_258_654_000_000_000;
 pub const TRUTHS: [(&str, &str); 2] = [("truth/y/load_position", "m"), ("truth/y/drag", "N")];
 
 pub fn layout() -> Layout {
-    Layout::carriage(true, &TRUTHS).unwrap()
+    Layout::carriage(true, true, &TRUTHS).unwrap()
 }
 
 pub fn meta(id: &str) -> RunMeta {
@@ -70,7 +70,7 @@ pub fn sample(tick: u64) -> (CarriageSample, [f64; 2]) {
         state: 2,
         fault: (tick % 19) as u8,
     };
-    (CarriageSample { y: axis(0.55), x: axis(-0.01), force_n: 6.05 + 0.01 * t }, [0.55 * t - 1e-4, 6.05])
+    (CarriageSample { y: axis(0.55), x: Some(axis(-0.01)), force_n: 6.05 + 0.01 * t }, [0.55 * t - 1e-4, 6.05])
 }
 
 pub fn row(tick: u64) -> Vec<f64> {

@@ -139,6 +139,8 @@ pub enum Step {
 
 /// Way of the jog test, m: a reversed polarity is caught within it.
 const JOG_M: f64 = 0.01;
+/// It ends after this time in any case, s.
+pub(super) const JOG_S: f64 = 1.0;
 /// Its command, V: twice breakaway of the paper's rig.
 const JOG_V: f64 = 1.0;
 
@@ -411,6 +413,7 @@ pub(crate) mod tests {
             calibration: Some(Calibration {
                 weights_n: vec![10.0],
                 weight_standard_n: 0.01,
+                pulley_loss: None,
                 speed_m_s: 0.1,
                 repeats: 1,
                 start_m: None,
@@ -421,6 +424,7 @@ pub(crate) mod tests {
             is_ballasted: true,
             stop_at_relative_half_width: None,
             expected_drag_n_s2_m2: Some(20.0),
+            strut_drag_n_s2_m2: None,
             place: Place::whole("campaign.toml".as_ref()),
         }
     }

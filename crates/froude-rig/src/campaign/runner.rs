@@ -19,7 +19,7 @@ use indexmap::IndexMap;
 
 use froude_records::carriage::CarriagePlan;
 
-use super::plan::{Drive, OperatorStep, PlannedRun, Step};
+use super::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample};
 use crate::load::Load;
@@ -46,6 +46,19 @@ pub enum RunnerError {
          again: it goes on from there"
     )]
     Fault {
+        /// The run.
+        run: String,
+        /// The fault.
+        fault: Fault,
+        /// How it was stopped.
+        category: u8,
+    },
+    /// A fault before the run itself: in homing, or on the way to its start.
+    #[error(
+        "fault before {run}, in homing or on the way to its start: {fault:?} (category {category} stop); nothing was recorded. Mend the \
+         cause (a loop softer than its chain lets the motor swing: froude carriage tune), then run the campaign again"
+    )]
+    FaultBefore {
         /// The run.
         run: String,
         /// The fault.
@@ -114,7 +127,7 @@ pub trait Progress {
     fn say(&mut self, line: &str);
 }
 
-/// After a run: whether its campaign knows enough. The text says why.
+/// After a run, driven now or there already: whether its campaign knows enough. The text says why.
 pub type Enough<'a> = dyn FnMut(&Path, &PlannedRun) -> Option<String> + 'a;
 
 /// An approach that coasts too far even at this speed is none, m/s.
@@ -196,6 +209,9 @@ pub fn drive(
         }
         if is_complete(&setting.folder, &run.id)? {
             outcome.resumed += 1;
+            // What was known then is known now: a campaign that had stopped stays stopped.
+            let known = enough(&setting.folder.join(format!("{}.mcap", run.id)), run);
+            outcome.enough = outcome.enough.or(known);
             continue;
         }
         if let Some(step) = mounted.take()
@@ -286,6 +302,11 @@ struct Session<'a> {
 impl Session<'_> {
     fn axis(&self) -> usize {
         self.run.axis as usize
+    }
+
+    /// Whether the short axis is recorded: it is declared, or it is the one that moves.
+    fn has_x(&self) -> bool {
+        self.setting.constants.contains_key("x") || self.run.axis == froude_records::run::Axis::X
     }
 
     /// Enables and homes both axes.
@@ -386,7 +407,7 @@ impl Session<'_> {
                 self.excite("the sweep", sweep, duration_s)?;
             }
             Drive::Jog { volts, distance_m } => {
-                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: 1.0 }, 1.0)?;
+                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?;
             }
         }
         self.event(EventKind::Phase, "the motion has ended")?;
@@ -459,7 +480,12 @@ impl Session<'_> {
             let sentence = format!("{fault:?}: category {} stop", fault.category() as u8);
             self.event(EventKind::Fault, &sentence)?;
             self.until_rest()?;
-            return Err(RunnerError::Fault { run: self.run.id.clone(), fault, category: fault.category() as u8 });
+            let (run, category) = (self.run.id.clone(), fault.category() as u8);
+            return Err(if self.recorder.is_some() {
+                RunnerError::Fault { run, fault, category }
+            } else {
+                RunnerError::FaultBefore { run, fault, category }
+            });
         }
         match self.switch.asked() {
             Asked::Nothing => Ok(sample),
@@ -551,7 +577,7 @@ impl Session<'_> {
             start_unix_ns: setting.start_unix_ns,
         };
         let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };
-        let layout = Layout::carriage(probe.force_n.is_some(), truths)?;
+        let layout = Layout::carriage(self.has_x(), probe.force_n.is_some(), truths)?;
         self.recorder = Some(Recorder::create(&setting.folder, meta, layout, Packing::Lz4)?);
         self.tick = None;
         Ok(())
@@ -575,6 +601,7 @@ impl Session<'_> {
                 number as f64 / (self.rig.rate_hz() * self.rig.ticks_per_sample() as f64),
             );
         }
+        let has_x = self.has_x();
         let Some(recorder) = &mut self.recorder else { return Ok(()) };
         if !number.is_multiple_of(self.setting.decimation) {
             return Ok(());
@@ -594,7 +621,7 @@ impl Session<'_> {
                 fault: fault.map_or(0, |(f, _)| f as u8),
             }
         };
-        let row = CarriageSample { y: axis(0), x: axis(1), force_n: sample.force_n.unwrap_or(0.0) };
+        let row = CarriageSample { y: axis(0), x: has_x.then(|| axis(1)), force_n: sample.force_n.unwrap_or(0.0) };
         let mut truths = [0.0; TRUTHS.len()];
         let n = match &sample.truth {
             Some([y, _]) => {

@@ -4,7 +4,7 @@
 //! overrides what it names. The two differ as they do in a laboratory: the gear's efficiency, for instance, is in the truth and in
 //! no declared friction.
 
-use froude_control::config::{AxisConfig, Config, Drive, Gains, Limits};
+use froude_control::config::{AxisConfig, Config, ConfigError, Drive, Gains, Limits};
 use froude_records::RecordError;
 use froude_records::carriage::{AxisSpec, CarriageCampaign, RigKind, TwinTruth};
 use froude_records::nearest::suggestion;
@@ -116,6 +116,101 @@ fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
     })
 }
 
+/// Keys of `[rig.y]` behind the controller's names, with the unit of the numbers.
+const KEYS: [(&str, &str, &str); 33] = [
+    ("gains.proportional_v_rad", "controller.proportional", " V/rad"),
+    ("gains.derivative_v_s_rad", "controller.derivative", " V s/rad"),
+    ("gains.integral_v_rad_s", "controller.integral", " V/(rad s)"),
+    ("gains.derivative_filter_hz", "controller.derivative_filter", " Hz"),
+    ("drive.inertia_kg_m2", "inertia", " kg m^2"),
+    ("drive.coast_inertia_kg_m2", "inertia with the body's", " kg m^2"),
+    ("drive.viscous_n_m_s_rad", "viscous_friction", " N m s"),
+    ("drive.viscous_lower_n_m_s_rad", "viscous_friction, its lower end,", " N m s"),
+    ("drive.coulomb_n_m", "coulomb_friction", " N m"),
+    ("drive.coulomb_lower_n_m", "coulomb_friction, its lower end,", " N m"),
+    ("drive.held_band", "efficiency", ""),
+    ("drive.torque_constant_n_m_a", "torque_constant", " N m/A"),
+    ("drive.amplifier_a_v", "amplifier", " A/V"),
+    ("drive.gear_ratio", "gear_ratio", ""),
+    ("drive.sprocket_radius_m", "sprocket_radius", " m"),
+    ("drive.counts_per_revolution", "counts_per_revolution", ""),
+    ("limits.hard_low_m", "travel", " m"),
+    ("limits.hard_high_m", "travel", " m"),
+    ("limits.low_switch_m", "travel, the low end switch 50 mm inside it,", " m"),
+    ("limits.high_switch_m", "travel, the high end switch 50 mm inside it,", " m"),
+    ("limits.speed_m_s", "speed_limit", " m/s"),
+    ("limits.unhomed_speed_m_s", "unhomed_speed_limit", " m/s"),
+    ("limits.acceleration_m_s2", "acceleration_limit", " m/s^2"),
+    ("limits.command_v", "command_limit", " V"),
+    ("limits.current_a", "current_limit", " A"),
+    ("limits.continuous_current_a", "continuous_current_limit", " A"),
+    ("limits.thermal_time_s", "thermal_time", " s"),
+    ("limits.following_error_m", "following_error_limit", " m"),
+    ("mode_hz", "controller.shaped_mode", " Hz"),
+    ("mode_damping", "controller.shaped_damping", ""),
+    ("tick_us", "the tick", " µs"),
+    ("late_us", "the late tick", " µs"),
+    ("host_silence_us", "the host's silence", " µs"),
+];
+
+/// Why the controller does not take a configuration, in the campaign's words: the section, and the sentence with the key to change.
+#[must_use]
+pub fn in_words(error: &ConfigError, control: &Config) -> (String, String) {
+    let section = |axis: usize| ["[rig.y]", "[rig.x]"].get(axis).map_or("[rig]", |s| s).to_owned();
+    match *error {
+        ConfigError::OutOfRange { axis, quantity, found, low, high } => {
+            let (key, unit) = KEYS.iter().find(|k| k.0 == quantity).map_or((quantity, ""), |k| (k.1, k.2));
+            (section(axis), format!("{key} is {found}{unit}; the controller takes {low}{unit} to {high}{unit}"))
+        }
+        ConfigError::NoFriction { axis } => (
+            section(axis),
+            "coulomb_friction may be zero within its `standard`: without friction no coast distance is known. Measure it, or declare a \
+             smaller `standard`"
+                .to_owned(),
+        ),
+        ConfigError::SwitchTooClose { axis, end, room_m, needed_m } => {
+            let asked_m_s = control.axes.get(axis).map_or(f64::NAN, |a| a.limits.unhomed_speed_m_s);
+            (
+                section(axis),
+                format!(
+                    "unhomed_speed_limit is {asked_m_s} m/s; from a fault at that speed the axis coasts up to {needed_m:.3} m, and the {end} end \
+                     switch opens {room_m:.3} m before its hard stop. Write unhomed_speed_limit = \"{} m/s\" or less",
+                    unhomed_that_fits(axis, control)
+                ),
+            )
+        }
+        ConfigError::TooWeak { axis, needed_v, available_v } => (
+            section(axis),
+            format!(
+                "acceleration_limit takes {needed_v:.2} V, and command_limit and current_limit allow {available_v:.2} V: lower \
+                 acceleration_limit"
+            ),
+        ),
+        ConfigError::NoTravel { axis, low_m, high_m } => (
+            section(axis),
+            format!(
+                "travel leaves nothing between its soft limits at {low_m:.3} and {high_m:.3} m, which lie 50 mm and following_error_limit \
+                 inside its ends: look at travel, or lower following_error_limit"
+            ),
+        ),
+        _ => ("[rig]".to_owned(), error.to_string()),
+    }
+}
+
+/// The largest speed before homing, in millimetres a second, from which the axis coasts to rest between switch and hard stop.
+fn unhomed_that_fits(axis: usize, control: &Config) -> f64 {
+    let fits = |mm_s: u32| {
+        let mut slower = *control;
+        if let Some(config) = slower.axes.get_mut(axis) {
+            config.limits.unhomed_speed_m_s = 1e-3 * f64::from(mm_s);
+        }
+        !matches!(slower.check(), Err(ConfigError::SwitchTooClose { axis: other, .. }) if other == axis)
+    };
+    let asked_m_s = control.axes.get(axis).map_or(0.0, |a| a.limits.unhomed_speed_m_s);
+    let fastest = (1..=(1e3 * asked_m_s) as u32).take_while(|&mm_s| fits(mm_s)).last();
+    f64::from(fastest.unwrap_or(1)) / 1e3
+}
+
 /// What of a declared friction a coast distance may count on: the lower end of its 95 % interval, at least a tenth.
 fn sure(friction: Declared) -> f64 {
     if friction.standard_uncertainty > 0.0 {
@@ -189,9 +284,9 @@ const TRUTHS: [Entry; 17] = [
     ("displaced_volume", "m^3", |_, l, v| l.body.displaced_m3 = v),
     ("water_density", "kg/m^3", |_, l, v| l.density_kg_m3 = v),
     ("pulley_friction", "1", |_, l, v| l.hung.pulley_friction = v),
-    // Written, it is in the water with the body: the drag that is measured has it in it.
+    // Written, it is in the water with the body and hangs below the sensor: every method measures it along.
     ("strut_drag", "N s^2/m^2", |c, l, v| {
-        l.strut = Strut::WithBody;
+        (l.strut, l.is_strut_below_sensor) = (Strut::WithBody, true);
         both(c, |p| p.strut_drag_n_s2_m2 = v);
     }),
     ("friction_bump", "1", |c, _, v| both(c, |p| p.bump = v)),

@@ -18,6 +18,7 @@ pub struct TwinRig {
     seed: u64,
     hung_n: f64,
     is_truth_told: bool,
+    has_force_sensor: bool,
 }
 
 /// Steps in which a weight is let down, and ticks of each: half a second.
@@ -38,7 +39,15 @@ impl TwinRig {
             seed,
             hung_n: 0.0,
             is_truth_told: true,
+            has_force_sensor: true,
         })
+    }
+
+    /// The same rig without its force sensor.
+    #[must_use]
+    pub fn without_force_sensor(mut self) -> Self {
+        self.has_force_sensor = false;
+        self
     }
 
     /// The plant, for injections and for what only it knows.
@@ -77,7 +86,7 @@ impl Rig for TwinRig {
         Ok(Sample {
             tick: self.twin.ticks(),
             axes,
-            force_n: Some(self.twin.force_n()),
+            force_n: self.has_force_sensor.then(|| self.twin.force_n()),
             fault: output.status.fault,
             refusal: output.status.refusal,
             truth: self.is_truth_told.then(|| [self.twin.truth(0), self.twin.truth(1)]),

@@ -1,8 +1,9 @@
 //! Drag read from a carriage: the pinned scenario observation by observation, and what the paper prints.
 
 use froude::fit::coverage::Count;
-use froude::identify::carriage::calibration::{CalibrationSetup, ForcePerVolt, PULLEY_LOSS, calibrate};
+use froude::identify::carriage::calibration::{CalibrationSetup, ForcePerVolt, calibrate};
 use froude::identify::carriage::coefficient::{Coefficient, Method, coefficient};
+use froude::identify::carriage::detectability::DryMean;
 use froude::identify::carriage::online::OnLine;
 use froude::identify::carriage::run::Ballast;
 use froude::identify::carriage::simulate::Scenario;
@@ -327,7 +328,7 @@ fn weights(claims: &mut Claims, seeds: usize) {
     let setup = CalibrationSetup {
         ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
         weight_relative: 0.0005,
-        pulley_loss: PULLEY_LOSS,
+        pulley_loss: DECLARED_PULLEY,
         steady: SteadySettings::default(),
     };
     for (name, weights, motor_coulomb_n) in [
@@ -340,7 +341,7 @@ fn weights(claims: &mut Claims, seeds: usize) {
             .filter_map(|seed| {
                 let mut rng = Pcg64::new(seed as u128, 78);
                 let mut scenario = Scenario { motor_coulomb_n, ..scenario.clone() };
-                scenario.pulley_loss = PULLEY_LOSS.value + PULLEY_LOSS.standard * normal(&mut rng);
+                scenario.pulley_loss = DECLARED_PULLEY.value + DECLARED_PULLEY.standard * normal(&mut rng);
                 let logged = scenario.calibration_runs(weights, 8, seed as u64);
                 let runs: Vec<DragRun<'_>> = logged.iter().map(|r| r.view()).collect();
                 calibrate(&runs, &setup).ok()
@@ -366,6 +367,9 @@ fn weights(claims: &mut Claims, seeds: usize) {
     }
 }
 
+/// What a pulley on a ball bearing loses, as its owner declares it.
+const DECLARED_PULLEY: Uncertain = Uncertain::new(0.01, 0.003);
+
 /// Stops at the first look whose interval is short enough, of up to ten pairs.
 fn early_stop(claims: &mut Claims, seeds: usize) {
     let d = 20.0;
@@ -376,24 +380,23 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
             let mut rng = Pcg64::new(seed as u128, 79);
             let logged = scenario.runs(seed as u64);
             let runs: Vec<DragRun<'_>> = logged.iter().map(|r| r.view()).collect();
-            let setup = DragSetup::of_the_paper();
             let k = scenario.force_per_volt_n() * (1.0 + CALIBRATED_TO * normal(&mut rng));
-            let mut live = OnLine::new(0.018, CALIBRATED_TO, 8);
+            let calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
+            let setup = DragSetup { calibration, speed_scale_relative: 0.0, looks: 8, ..DragSetup::of_the_paper() };
+            let mut live = OnLine::new(0.018, 2);
             let mut all = Vec::new();
             for pair in 1..=scenario.pairs {
                 for wet in runs.iter().filter(|r| r.pair == pair && r.body == BodyState::Wet) {
                     let dry = runs.iter().find(|r| r.body == BodyState::Dry && r.is_partner_of(wet))?;
                     let point = mcd::point(wet, dry, k, setup.steady).ok()?;
-                    live.push(&point);
+                    live.push(point.clone());
                     all.push(point);
+                    live.push_dry(DryMean::of(dry, &setup)?);
                 }
-                let status = live.status()?;
+                let status = live.status(&setup)?;
                 if status.may_stop || pair == scenario.pairs {
                     let shown = (status.value - d).abs() <= status.half_width?;
-                    let mut setup = setup.clone();
-                    setup.speed_scale_relative = 0.0;
-                    setup.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
-                    let plain = coefficient(Method::Mcd, all, &setup, None)?;
+                    let plain = coefficient(Method::Mcd, all, &DragSetup { looks: 1, ..setup }, None)?;
                     let [low, high] = plain.interval_95?;
                     return Some((pair, shown, (low..=high).contains(&d)));
                 }

@@ -18,6 +18,7 @@ use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 use indexmap::IndexMap;
 
+use super::drive::STOPPED_EARLY;
 use super::runs::{Runs, density_kg_m3, for_drag, read};
 use super::servo::two_masses;
 use crate::Error;
@@ -81,20 +82,11 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
     setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
     let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
-    let stopped = stopped_early(runs.campaign.as_ref(), &reduced);
-    // Fewer pairs than planned may also be a campaign that is not finished: it stopped early if its interval is short enough for it.
+    let stopped = stopped_early(&runs, &reduced);
     setup.looks = stopped.map_or(1, |s| s.planned);
     let mut report = drag_report(&reduced, &setup)?;
-    let stopped = stopped.filter(|s| {
-        let mcd = report.coefficients.iter().find(|c| c.method == Method::Mcd);
-        mcd.and_then(Coefficient::relative_half_width).is_some_and(|half| half <= SLACK * s.target)
-    });
-    if stopped.is_none() && setup.looks > 1 {
-        setup.looks = 1;
-        report = drag_report(&reduced, &setup)?;
-    }
     report.findings.extend(undeclared);
-    report.findings.extend(stopped.map(|EarlyStop { found, planned, .. }| {
+    report.findings.extend(stopped.map(|EarlyStop { found, planned }| {
         Finding::new(
             Severity::Note,
             "stopped-early",
@@ -124,26 +116,24 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     Ok(DragOutcome { report, calibration, file, estimate: written.estimate, page: written.report })
 }
 
-/// The interval that stopped a campaign, seen with the whole budget, may be this much wider.
-const SLACK: f64 = 1.25;
-
-/// A campaign with fewer pairs than planned that may stop at a short interval.
+/// A campaign that stopped because its interval was short enough.
 #[derive(Debug, Clone, Copy)]
 struct EarlyStop {
     found: usize,
     planned: usize,
-    /// Relative half-width that stops it.
-    target: f64,
 }
 
-fn stopped_early(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Option<EarlyStop> {
-    let plan = campaign?.carriage.as_ref()?.plan.as_ref()?;
-    let target = plan.stop_at_relative_half_width?;
-    let wet = runs.iter().filter(|r| r.body == drag_run::BodyState::Wet && r.kind == drag_run::RunKind::Tow);
+/// Whether the folder says that its campaign stopped early.
+fn stopped_early(runs: &Runs, reduced: &[DragRun<'_>]) -> Option<EarlyStop> {
+    let plan = runs.campaign.as_ref()?.carriage.as_ref()?.plan.as_ref()?;
+    if !runs.folder.join(STOPPED_EARLY).exists() {
+        return None;
+    }
+    let wet = reduced.iter().filter(|r| r.body == drag_run::BodyState::Wet && r.kind == drag_run::RunKind::Tow);
     let mut pairs: Vec<u32> = wet.map(|r| r.pair).collect();
     pairs.sort_unstable();
     pairs.dedup();
-    (pairs.len() < plan.repeats).then_some(EarlyStop { found: pairs.len(), planned: plan.repeats, target })
+    Some(EarlyStop { found: pairs.len(), planned: plan.repeats })
 }
 
 /// Declarations that the budget needs and the campaign lacks.
@@ -205,6 +195,8 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> Dr
     setup.sensor.gain_relative = declared.unwrap_or(UNDECLARED_GAIN);
     let displaced_kg =
         campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3).map(|v| setup.density_kg_m3 * v);
+    let strut = carriage.and_then(|c| c.plan.as_ref()).and_then(|p| p.strut_drag_n_s2_m2);
+    setup.strut_n_s2_m2 = strut.map(|s| Uncertain::new(s.value, s.standard_uncertainty));
     setup.ballast = match carriage.and_then(|c| c.plan.as_ref()).map(|p| p.is_ballasted) {
         Some(false) => Ballast::Unballasted { unloaded_n: G_M_S2 * displaced_kg.unwrap_or(0.0), rolling: None },
         _ => Ballast::Matched { carried_kg: displaced_kg.map(|kg| Uncertain::new(kg, BALLAST_RELATIVE * kg)) },
@@ -233,7 +225,9 @@ pub(crate) fn calibration_of(
     let asked = CalibrationSetup {
         ideal_force_per_volt_n: setup.ideal_force_per_volt_n,
         weight_relative,
-        pulley_loss: PULLEY_LOSS,
+        pulley_loss: declared
+            .and_then(|c| c.pulley_loss)
+            .map_or(PULLEY_LOSS, |p| Uncertain::new(p.value, p.standard_uncertainty)),
         steady: setup.steady,
     };
     match calibrate(runs, &asked) {
@@ -357,6 +351,10 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
             number::dof(d.dof),
             d.differences,
             number::significant(d.expanded_n, 2),
+        ));
+        out.push(format!(
+            "Over all speeds together the smallest D_d that exceeds its scatter is {} N s²/m².",
+            number::significant(d.smallest_n_s2_m2, 2)
         ));
         let speeds = report.coefficients.iter().flat_map(|c| c.points.iter().map(|p| p.speed_m_s.abs()));
         let slowest = speeds.fold(f64::INFINITY, f64::min);

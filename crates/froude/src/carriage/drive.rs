@@ -2,15 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::carriage::calibration::{CalibrationSetup, calibrate};
-use froude_identify::carriage::detectability::{DryMean, predict};
+use froude_identify::carriage::detectability::DryMean;
 use froude_identify::carriage::online::OnLine;
 use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 use froude_records::run::{BodyState, RunKind, RunLog, read_run};
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
-use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check};
+use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check, check_campaign};
 use froude_rig::campaign::runner::{self, Operator, Progress, Setting};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::campaign::{runner::Outcome, setup};
@@ -19,7 +18,7 @@ use froude_rig::drive::twin::TwinRig;
 use froude_rig::load::{Load, TowedBody};
 use indexmap::IndexMap;
 
-use super::drag::{setup_of, weight_relative};
+use super::drag::{calibration_of, setup_of};
 use super::runs::{CAMPAIGN_COPY, density_kg_m3, for_drag};
 use crate::Error;
 
@@ -79,6 +78,30 @@ impl Prepared {
         &self.control.axes[self.asked.axis as usize]
     }
 
+    /// The same, recorded at every tick of the controller whatever the campaign's log rate: frequencies near the loop's own count.
+    #[must_use]
+    pub fn logging_every_tick(mut self) -> Self {
+        self.carriage.rig.log_rate_hz = f64::INFINITY;
+        self
+    }
+
+    /// Fastest steady speed that the campaign asks for, m/s, and its acceleration, m/s².
+    #[must_use]
+    pub fn hardest_ramp(&self) -> (f64, f64) {
+        let fastest = |speeds: &[f64]| speeds.iter().copied().fold(0.0, f64::max);
+        let friction = self.asked.friction.as_ref().map_or(0.0, |f| fastest(&f.speed_m_s));
+        let warm_up = self.asked.warm_up.map_or(0.0, |w| w.speed_m_s);
+        (fastest(&self.asked.speed_m_s).max(friction).max(warm_up), self.asked.acceleration_m_s2)
+    }
+
+    /// Declared efficiency of the gear when the motor drives.
+    #[must_use]
+    pub fn efficiency(&self) -> Option<froude_records::run::Declared> {
+        let spec =
+            if self.asked.axis as usize == 0 { Some(&self.carriage.rig.y) } else { self.carriage.rig.x.as_ref() };
+        spec.and_then(|s| s.constants.efficiency_forward)
+    }
+
     /// The controller's tick, µs.
     #[must_use]
     pub fn tick_us(&self) -> u32 {
@@ -90,7 +113,13 @@ impl Prepared {
         self.steps.iter().filter_map(|s| if let Step::Run(r) = s { Some(r) } else { None })
     }
 
-    /// Smallest drag that one wet/dry pair is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
+    /// Whether the reference of the axis that tows is shaped for the load's mode.
+    #[must_use]
+    pub fn is_shaped(&self) -> bool {
+        self.control.axes[self.asked.axis as usize].mode_hz > 0.0
+    }
+
+    /// Smallest drag that one wet-less-dry difference is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
     /// run. The dry repeats replace it when they are there.
     #[must_use]
     pub fn detectable_n(&self) -> f64 {
@@ -128,10 +157,17 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     let asked = carriage.plan.clone().ok_or_else(|| {
         Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do"))
     })?;
+    if asked.axis as usize == 1 && carriage.rig.x.is_none() {
+        return Err(Error::Nothing(format!(
+            "{}: axis = \"x\" tows along an axis that is not described: write [rig.x], with the keys of [rig.y]",
+            asked.place
+        )));
+    }
     let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
     let density_kg_m3 = density_kg_m3(Some(&campaign));
     // The body with its water and added mass: twice what it displaces, where nothing else is known; and the ballast, once that.
-    let displaced_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3).unwrap_or(TowedBody::CYLINDER.displaced_m3);
+    let volume_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3);
+    let displaced_m3 = volume_m3.unwrap_or(TowedBody::CYLINDER.displaced_m3);
     let displaced_kg = density_kg_m3 * displaced_m3;
     let towed_kg = if asked.is_ballasted { 3.0 } else { 2.0 } * displaced_kg;
     let control = setup::control(&carriage, towed_kg)?;
@@ -159,12 +195,13 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         wet_mass_kg: towed_kg,
         dry_mass_kg: displaced_kg,
         efficiency: spec.constants.efficiency_forward.map_or(1.0, |e| e.value),
+        assumed_volume_m3: volume_m3.is_none().then_some(displaced_m3),
     };
-    let (mut forecasts, mut objections) = (Vec::new(), Vec::new());
+    let (mut forecasts, mut objections) = (Vec::new(), check_campaign(&asked, &carriage.rig, &control));
     let mut duration_s = 0.0;
     for step in &steps {
         if let Step::Run(run) = step {
-            let (forecast, against) = check(run, asked.acceleration_m_s2, &axis, &expected);
+            let (forecast, against) = check(run, &asked, &control, &expected);
             duration_s += run.settle_s + 2.0 * asked.still_s + forecast.duration_s;
             // The way back to the start.
             duration_s += asked.distance_m / return_speed_m_s(&asked, &axis.limits);
@@ -245,6 +282,8 @@ fn rig_of(prepared: &Prepared) -> Result<Driven, Error> {
         RigKind::Twin { seed, .. } => {
             let (twin, load) = setup::twin(&prepared.carriage, prepared.load)?;
             let rig = TwinRig::new(&twin, prepared.control, *seed).map_err(runner::RunnerError::from)?;
+            // What the campaign does not declare is not there: a real rig would have nothing to record either.
+            let rig = if prepared.carriage.rig.force_sensor.is_some() { rig } else { rig.without_force_sensor() };
             Ok((Box::new(rig), load, Some(*seed)))
         }
         RigKind::Serial { port, baud } => {
@@ -275,39 +314,42 @@ fn own_folder(folder: &Path, campaign: &Path) -> Result<(), Error> {
     }
 }
 
+/// What says in a folder of runs that its campaign stopped because it knew enough; in words.
+pub const STOPPED_EARLY: &str = "stopped-early.txt";
+
 /// D_d while the campaign runs: every wet run with its dry partner gives a point.
 struct Live {
     online: Option<OnLine>,
     setup: drag_run::DragSetup,
+    campaign: Campaign,
+    folder: PathBuf,
     waiting: Vec<RunLog>,
     calibration: Vec<RunLog>,
     is_calibrated: bool,
-    dry: Vec<DryMean>,
     /// Differences seen, whether they gave a point or not.
     differences: usize,
     per_pair: usize,
-    speeds: usize,
-    weight_relative: f64,
 }
 
 impl Live {
     fn new(prepared: &Prepared) -> Self {
         let asked = &prepared.asked;
-        let setup = setup_of(Some(&prepared.campaign), None);
-        let weight_relative = asked.calibration.as_ref().map_or(0.0, weight_relative);
-        let online = asked.stop_at_relative_half_width.map(|target| OnLine::new(target, 0.0, asked.repeats));
+        let constants = if asked.axis as usize == 0 {
+            Some(&prepared.carriage.rig.y.constants)
+        } else {
+            prepared.carriage.rig.x.as_ref().map(|x| &x.constants)
+        };
         let directions = if asked.directions == froude_records::carriage::Directions::Both { 2 } else { 1 };
         Self {
-            online,
-            setup,
+            online: asked.stop_at_relative_half_width.map(|target| OnLine::new(target, directions)),
+            setup: drag_run::DragSetup { looks: asked.repeats, ..setup_of(Some(&prepared.campaign), constants) },
+            campaign: prepared.campaign.clone(),
+            folder: prepared.folder.clone(),
             waiting: Vec::new(),
             calibration: Vec::new(),
             is_calibrated: false,
-            dry: Vec::new(),
             differences: 0,
             per_pair: asked.speed_m_s.len() * directions,
-            speeds: asked.speed_m_s.len(),
-            weight_relative,
         }
     }
 
@@ -323,8 +365,11 @@ impl Live {
             return None;
         }
         self.calibrate();
-        if let Ok(Some(run)) = for_drag(&log) {
-            self.dry.extend(DryMean::of(&run, &self.setup));
+        let online = self.online.as_mut()?;
+        if let Ok(Some(run)) = for_drag(&log)
+            && let Some(mean) = DryMean::of(&run, &self.setup)
+        {
+            online.push_dry(mean);
         }
         let partner = self.waiting.iter().position(|other| {
             other.meta.pair == log.meta.pair
@@ -338,63 +383,39 @@ impl Live {
         let other = self.waiting.swap_remove(partner);
         self.differences += 1;
         let (wet, dry) = if log.meta.body == BodyState::Wet { (&log, &other) } else { (&other, &log) };
-        let point = match (for_drag(wet), for_drag(dry)) {
-            (Ok(Some(wet)), Ok(Some(dry))) => {
-                mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady).ok()
-            }
-            _ => None,
-        };
-        let online = self.online.as_mut()?;
-        if let Some(point) = &point {
+        if let (Ok(Some(wet)), Ok(Some(dry))) = (for_drag(wet), for_drag(dry))
+            && let Ok(point) = mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady)
+        {
             online.push(point);
         }
         // A look is taken after whole pairs only, also where a run of them gave no point.
         if !self.differences.is_multiple_of(self.per_pair) {
             return None;
         }
-        // As many differences at each speed as one pair gives.
-        let per_speed = self.per_pair / self.speeds.max(1);
-        if let Some(promised) = predict(&self.dry, per_speed, 1, &self.setup) {
-            online.promise(promised.slope_n_s2_m2, promised.slope_dof);
+        let status = online.status(&self.setup)?;
+        if !status.may_stop {
+            return None;
         }
-        let status = online.status()?;
-        status.may_stop.then(|| {
-            format!(
-                "D_d = {:.2} ± {:.2} N s²/m² after {} pairs: its 95 % interval is as narrow as asked; the remaining pairs are left out",
-                status.value,
-                status.half_width.unwrap_or(f64::NAN),
-                status.pairs
-            )
-        })
+        let why = format!(
+            "D_d = {:.2} ± {:.2} N s²/m² after {} pairs: its 95 % interval is as narrow as asked; the remaining pairs are left out",
+            status.value,
+            status.half_width.unwrap_or(f64::NAN),
+            status.pairs
+        );
+        // A folder that cannot be written to has stopped the recorder long before; then the report does without.
+        let _ =
+            froude_records::write::write_atomically(&self.folder.join(STOPPED_EARLY), format!("{why}\n").as_bytes());
+        Some(why)
     }
 
+    /// Newtons a volt of the weights, as the report will take them, before the first look.
     fn calibrate(&mut self) {
-        if self.is_calibrated || self.calibration.is_empty() {
+        if self.is_calibrated {
             return;
         }
         self.is_calibrated = true;
         let runs: Vec<_> = self.calibration.iter().filter_map(|log| for_drag(log).ok().flatten()).collect();
-        let setup = CalibrationSetup {
-            ideal_force_per_volt_n: self.setup.ideal_force_per_volt_n,
-            weight_relative: self.weight_relative,
-            pulley_loss: froude_identify::carriage::calibration::PULLEY_LOSS,
-            steady: self.setup.steady,
-        };
-        if let Ok(calibration) = calibrate(&runs, &setup) {
-            self.setup.calibration = Some(calibration.force_per_volt);
-        }
-        let relative = self.setup.calibration.map_or_else(
-            || {
-                let efficiency = match self.setup.efficiency {
-                    drag_run::Efficiency::Declared(e) => e.relative(),
-                    drag_run::Efficiency::Undeclared => 0.15,
-                };
-                efficiency.hypot(self.setup.torque_constant_relative)
-            },
-            |c| c.force_per_volt_n.relative(),
-        );
-        if let Some(target) = self.online.take() {
-            self.online = Some(target.with_shared(relative));
-        }
+        let (calibration, _) = calibration_of(&runs, Some(&self.campaign), &self.setup);
+        self.setup.calibration = calibration.map(|c| c.force_per_volt);
     }
 }

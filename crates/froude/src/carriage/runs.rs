@@ -6,7 +6,7 @@ use froude_hydro::fluid::Water;
 use froude_identify::carriage::run as drag;
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{BodyState, Direction, RunKind, RunLog, RunReader, RunStatus, read_run_meta};
+use froude_records::run::{BodyState, Direction, RunKind, RunLog, RunMeta, RunReader, RunStatus, read_run_meta};
 use froude_records::units::Dimension;
 
 use crate::Error;
@@ -42,11 +42,7 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
                 continue;
             }
             if meta.status != RunStatus::Complete {
-                out.findings.push(Finding::new(
-                    Severity::Note,
-                    "run-left-out",
-                    format!("{} is {} and was left out: {}", meta.id, meta.status.name(), meta.note),
-                ));
+                out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&meta)));
                 continue;
             }
         }
@@ -74,6 +70,19 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
         )));
     }
     Ok(out)
+}
+
+/// Why a run that is not complete is left out. One that still says `running` was never closed.
+fn left_out(meta: &RunMeta) -> String {
+    let id = &meta.id;
+    match (meta.status, meta.note.as_str()) {
+        (RunStatus::Running, "") => format!(
+            "{id} has no end and was left out: it was interrupted without notice (program killed, power lost), or is being driven now; \
+             froude run drives it again"
+        ),
+        (status, "") => format!("{id} is {} and was left out; froude run drives it again", status.name()),
+        (status, note) => format!("{id} is {} and was left out: {note}", status.name()),
+    }
 }
 
 fn folder_of(paths: &[PathBuf]) -> PathBuf {
@@ -181,4 +190,44 @@ pub(super) fn mounts<'a>(logs: impl IntoIterator<Item = &'a RunLog>) -> Vec<Body
 #[must_use]
 pub fn way(direction: Option<Direction>) -> &'static str {
     direction.map_or("–", Direction::name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use froude_records::run::Axis;
+    use indexmap::IndexMap;
+
+    #[test]
+    fn a_run_that_was_never_closed_says_what_became_of_it() {
+        let mut meta = RunMeta {
+            campaign: "a".to_owned(),
+            id: "084-wet".to_owned(),
+            kind: RunKind::Wet,
+            set: None,
+            pair: None,
+            repeat: None,
+            axis: Axis::Y,
+            target_speed_m_s: None,
+            direction: None,
+            body: BodyState::Wet,
+            is_ballasted: false,
+            hung_weight_n: None,
+            rig: IndexMap::default(),
+            constants: IndexMap::default(),
+            status: RunStatus::Running,
+            note: String::new(),
+            versions: IndexMap::default(),
+            twin_seed: None,
+            clock: None,
+            log_rate_hz: 1e3,
+            date: String::new(),
+            start_unix_ns: 0,
+        };
+        let told = left_out(&meta);
+        assert!(told.contains("has no end and was left out: it was interrupted without notice"), "{told}");
+        meta.status = RunStatus::Interrupted;
+        "stopped by the operator".clone_into(&mut meta.note);
+        assert!(left_out(&meta).ends_with("is interrupted and was left out: stopped by the operator"));
+    }
 }

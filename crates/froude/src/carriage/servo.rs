@@ -193,6 +193,8 @@ fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
     }
     let mut findings = told(&models, runs.findings.clone());
     findings.extend(varies(&models));
+    let declared = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref()).and_then(|c| c.rig.y.coulomb_n_m);
+    findings.extend(declared.and_then(|d| contradicted(&models, &motor, d)));
     if !models.is_empty() {
         findings.push(Finding::new(
             Severity::Note,
@@ -338,6 +340,24 @@ fn varies(models: &[Model]) -> Option<Finding> {
             least.name, least.value, most.name, most.value, constant.value
         ),
     ))
+}
+
+/// Identified friction that is not the declared one, by more than bodies and bearings explain.
+fn contradicted(models: &[Model], motor: &MotorSide, declared: Declared) -> Option<Finding> {
+    let report = &models.iter().find(|m| m.name == CONSTANT)?.report;
+    let found = effective(report, motor).into_iter().find(|c| c.name == "C_eff")?;
+    let ratio = found.value / declared.value;
+    (!(0.5..=2.0).contains(&ratio)).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "declared-contradicted",
+            format!(
+                "C_eff is {:.2e} N m here and coulomb_friction is declared as {:.2e} N m: the coast distance and the watch for a stuck encoder \
+                 hang on the declared one. Write the identified one, or look at K_T, the amplifier's gain, gear ratio and counts_per_revolution",
+                found.value, declared.value
+            ),
+        )
+    })
 }
 
 /// Mean force of the steady windows by speed and direction, with the standard deviation over runs.

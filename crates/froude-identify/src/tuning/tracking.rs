@@ -1,0 +1,164 @@
+//! What a ramp does to the loop: following error and speed of the motor, on the two masses that the response showed.
+//!
+//! The margins say whether a loop is stable, not whether it holds. A soft loop lets the motor swing on its chain: the feed-forward for the
+//! inertia of both masses meets the motor alone first. So the ramps of homing and towing are run through the identified drive
+//! (MCD eq. 2 in units of the motor: acceleration k per volt, inertia ratio R, load's mode ω_l), friction at the load that sticks, a held
+//! command, counts, and the controller of MCD eq. 6 with feed-forward, tick by tick.
+//!
+//! **Units.** Motor angle, rad. Not here: drag of the body; a shaped reference, which only gets gentler.
+
+use super::LoopGains;
+use super::resonance::TwoMassModes;
+
+/// A trapezoid of speed from rest to rest, and the friction that it meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ramp {
+    /// Speed reached, rad/s.
+    pub speed_rad_s: f64,
+    /// Acceleration, rad/s².
+    pub acceleration_rad_s2: f64,
+    /// Time at the speed, and at rest afterwards, s.
+    pub hold_s: f64,
+    /// Friction at the load, as the command that it takes, V.
+    pub friction_v: f64,
+}
+
+/// What the controller is told, as command.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forward {
+    /// Inertia, V per rad/s².
+    pub inertia_v_s2_rad: f64,
+    /// Viscous friction, V per rad/s.
+    pub viscous_v_s_rad: f64,
+    /// Coulomb friction, V.
+    pub coulomb_v: f64,
+    /// Reference speed at which Coulomb friction is whole, rad/s.
+    pub full_friction_rad_s: f64,
+    /// Range of the command, V.
+    pub limit_v: f64,
+    /// One encoder count, rad.
+    pub count_rad: f64,
+    /// Corner of the speed estimate that the limits look at, Hz.
+    pub speed_filter_hz: f64,
+}
+
+/// The worst of a ramp.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tracking {
+    /// Largest following error, rad.
+    pub error_rad: f64,
+    /// Largest speed of the motor, as the limits see it, rad/s.
+    pub speed_rad_s: f64,
+}
+
+impl Tracking {
+    /// The worse of both.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self { error_rad: self.error_rad.max(other.error_rad), speed_rad_s: self.speed_rad_s.max(other.speed_rad_s) }
+    }
+}
+
+/// Steps of integration in a tick.
+const SUBSTEPS: usize = 5;
+
+/// Follows a ramp. Infinite where the loop runs away.
+#[must_use]
+pub fn follow(modes: &TwoMassModes, gains: &LoopGains, forward: &Forward, ramp: &Ramp) -> Tracking {
+    let mut drive = TwoMasses::new(modes, ramp);
+    let tick_s = gains.tick_s.max(1e-5);
+    let h = tick_s / SUBSTEPS as f64;
+    let ramp_s = ramp.speed_rad_s / ramp.acceleration_rad_s2;
+    let ticks = ((2.0 * (ramp_s + ramp.hold_s)) / tick_s).ceil() as usize;
+    // Half a tick of the delay is the held command's own.
+    let late = ((modes.delay_s / tick_s - 0.5).round().clamp(0.0, 8.0)) as usize;
+    let mut pending = vec![0.0; late];
+    let speed_share = 1.0 - (-std::f64::consts::TAU * forward.speed_filter_hz * tick_s).exp();
+    let (mut integral_v, mut slope_rad_s, mut last_error, mut last_counted) = (0.0, 0.0, 0.0, 0.0);
+    let (mut target_rad, mut seen_rad_s) = (0.0, 0.0);
+    let mut out = Tracking::default();
+    for i in 0..ticks {
+        let (speed, acceleration) = trapezoid(ramp, ramp_s, i as f64 * tick_s);
+        target_rad += speed * tick_s;
+        let counted = (drive.motor_rad / forward.count_rad).round() * forward.count_rad;
+        let error = target_rad - counted;
+        seen_rad_s += speed_share * ((counted - last_counted) / tick_s - seen_rad_s);
+        last_counted = counted;
+        out = out.or(Tracking { error_rad: error.abs(), speed_rad_s: seen_rad_s.abs() });
+        slope_rad_s += gains.filter_share() * ((error - last_error) / tick_s - slope_rad_s);
+        last_error = error;
+        integral_v += gains.integral_v_rad_s * tick_s * error;
+        let wanted = gains.proportional_v_rad * error
+            + gains.derivative_v_s_rad * slope_rad_s
+            + integral_v
+            + forward.inertia_v_s2_rad * acceleration
+            + forward.viscous_v_s_rad * speed
+            + forward.coulomb_v * (speed / forward.full_friction_rad_s).clamp(-1.0, 1.0);
+        pending.push(wanted.clamp(-forward.limit_v, forward.limit_v));
+        let volts = pending.remove(0);
+        (0..SUBSTEPS).for_each(|_| drive.step(volts, h));
+        if !drive.motor_rad.is_finite() {
+            return Tracking { error_rad: f64::INFINITY, speed_rad_s: f64::INFINITY };
+        }
+    }
+    out
+}
+
+/// Speed and acceleration of the reference.
+fn trapezoid(ramp: &Ramp, ramp_s: f64, t: f64) -> (f64, f64) {
+    let down_s = ramp_s + ramp.hold_s;
+    if t < ramp_s {
+        (ramp.acceleration_rad_s2 * t, ramp.acceleration_rad_s2)
+    } else if t < down_s {
+        (ramp.speed_rad_s, 0.0)
+    } else if t < down_s + ramp_s {
+        (ramp.speed_rad_s - ramp.acceleration_rad_s2 * (t - down_s), -ramp.acceleration_rad_s2)
+    } else {
+        (0.0, 0.0)
+    }
+}
+
+/// Both masses, as accelerations of the motor.
+struct TwoMasses {
+    gain: f64,
+    viscous_1_s: f64,
+    ratio: f64,
+    spring_1_s2: f64,
+    damper_1_s: f64,
+    friction_rad_s2: f64,
+    motor_rad: f64,
+    motor_rad_s: f64,
+    load_rad: f64,
+    load_rad_s: f64,
+}
+
+impl TwoMasses {
+    fn new(modes: &TwoMassModes, ramp: &Ramp) -> Self {
+        let ratio = modes.inertia_ratio;
+        let load_rad_s = std::f64::consts::TAU * modes.load.frequency_hz;
+        Self {
+            gain: modes.gain_rad_s2_v,
+            viscous_1_s: modes.viscous_1_s,
+            ratio,
+            spring_1_s2: load_rad_s * load_rad_s,
+            damper_1_s: 2.0 * modes.load.damping * load_rad_s,
+            friction_rad_s2: modes.gain_rad_s2_v * ramp.friction_v / ratio,
+            motor_rad: 0.0,
+            motor_rad_s: 0.0,
+            load_rad: 0.0,
+            load_rad_s: 0.0,
+        }
+    }
+
+    /// Half-implicit Euler; friction takes speed away and never turns it.
+    fn step(&mut self, volts: f64, h: f64) {
+        let pull = self.spring_1_s2 * (self.motor_rad - self.load_rad)
+            + self.damper_1_s * (self.motor_rad_s - self.load_rad_s);
+        self.motor_rad_s += h * (self.gain * volts - self.ratio * pull);
+        self.load_rad_s += h * (pull - self.viscous_1_s * self.load_rad_s);
+        let taken = (h * self.friction_rad_s2).min(self.load_rad_s.abs());
+        self.load_rad_s -= taken.copysign(self.load_rad_s);
+        self.motor_rad += h * self.motor_rad_s;
+        self.load_rad += h * self.load_rad_s;
+    }
+}
