@@ -77,6 +77,7 @@ fn tracking_is_within_table_3_dry_and_wet_and_its_position_within_a_tenth_of_it(
         for (speed_mm_s, position_mm, velocity_mm_s) in TABLE_3 {
             is_out = !is_out;
             let t = tracked(&mut rig, if is_out { 3.4 } else { 1.2 }, speed_mm_s * 1e-3);
+            println!("{mounting:?} {speed_mm_s} mm/s: {t:?}; Table III {position_mm} mm, {velocity_mm_s} mm/s");
             assert!(t.mean_position_mm <= 0.1 * position_mm, "{mounting:?} {speed_mm_s}: {t:?}");
             assert!(t.mean_speed_mm_s <= velocity_mm_s, "{mounting:?} {speed_mm_s}: {t:?}");
             assert!(t.peak_mm <= 0.25, "{mounting:?} {speed_mm_s}: {t:?}");
@@ -140,6 +141,10 @@ fn shaping_for_the_loads_mode_halves_the_ripple_at_equal_move_time_even_when_the
             // ZVD makes a ramp longer by one period of the mode that it is told.
             let shaped = mean_ripple_m_s(mounting, 0.0, Reference::Shaped(wrong * mode_hz));
             let plain = mean_ripple_m_s(mounting, 1.0 / (wrong * mode_hz), Reference::Plain);
+            println!(
+                "{mounting:?}, shaper for {wrong} of the mode: {:.3} of the ripple at equal move time",
+                shaped / plain
+            );
             assert!(shaped <= 0.5 * plain, "{mounting:?} {wrong}: {shaped} of {plain}");
         }
     }
@@ -154,6 +159,7 @@ fn shaping_for_the_motor_side_mode_leaves_most_of_the_loads_ripple() {
         let left = mean_ripple_m_s(mounting, 0.0, Reference::Shaped(motor_hz))
             / mean_ripple_m_s(mounting, 0.0, Reference::Plain);
         let expected = (0.5 * PI * mode_hz / motor_hz).cos().powi(2);
+        println!("{mounting:?}, shaper for the motor-side mode: {left:.3} of the ripple is left");
         // The load's breakaway at the start adds a vibration that no shaper takes away.
         assert!(left > 0.9 * expected, "{mounting:?}: {left}, expected {expected}");
     }

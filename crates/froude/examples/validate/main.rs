@@ -65,7 +65,7 @@ fn main() -> ExitCode {
             carriage::all(claims, if full { 400 } else { 60 });
         }
         if wants("dynamic") {
-            dynamic::all(claims, &root, if full { 200 } else { 8 })?;
+            dynamic::all(claims, &root, if full { 60 } else { 8 })?;
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;
