@@ -149,23 +149,28 @@ impl Board {
         }
     }
 
-    /// The first message that `wanted` takes, sending `message` again whenever 4 ms bring nothing, until it comes.
+    /// The first message that `wanted` takes, sending `message` again when 4 ms bring nothing, then 8, and so on, until it comes.
     ///
     /// # Errors
     ///
-    /// When the emulator is gone, or nothing comes for 10 s.
+    /// When the emulator is gone, or nothing comes for a minute.
     pub fn ask<T>(&mut self, message: &ToBoard, wanted: impl Fn(&FromBoard) -> Option<T>) -> io::Result<T> {
         let started = Instant::now();
-        while started.elapsed() < Duration::from_secs(10) {
+        // A busy host slows the emulator: asking again too soon would only bury the first question.
+        let mut patience = Duration::from_millis(4);
+        while started.elapsed() < Duration::from_mins(1) {
             self.send(message)?;
             let sent = Instant::now();
-            while sent.elapsed() < Duration::from_millis(100) {
-                match self.receive()?.as_ref().map(|received| wanted(&received.message)) {
-                    Some(Some(answer)) => return Ok(answer),
-                    Some(None) => {}
-                    None => break,
+            let mut heard = sent;
+            while heard.elapsed() < patience && sent.elapsed() < 25 * patience {
+                if let Some(received) = self.receive()? {
+                    if let Some(answer) = wanted(&received.message) {
+                        return Ok(answer);
+                    }
+                    heard = Instant::now();
                 }
             }
+            patience = (2 * patience).min(Duration::from_secs(2));
         }
         Err(io::Error::new(io::ErrorKind::TimedOut, format!("no answer to {message:?}")))
     }
