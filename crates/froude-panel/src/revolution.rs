@@ -14,6 +14,7 @@
 //!
 //! **Setting.** A smooth closed body (edges and flat ends are not for this module), unbounded fluid. **Frame.** z along the axis. **Units.** SI.
 
+use core::cmp::Ordering;
 use core::f64::consts::PI;
 
 use faer::Mat;
@@ -172,12 +173,10 @@ pub fn solve(panels: &[Stretch]) -> Revolution {
             let near = own.abs_diff(p) <= 1;
             let mut row = [[[0.0; NODES]; 2]; 2];
             if near {
-                let at = if *own == p {
-                    nodes[i].1
-                } else if *own < p {
-                    -1.0
-                } else {
-                    1.0
+                let at = match own.cmp(&p) {
+                    Ordering::Equal => nodes[i].1,
+                    Ordering::Less => -1.0,
+                    Ordering::Greater => 1.0,
                 };
                 rule.close(panel, x, at, *own == p, &mut row);
             } else {
@@ -392,12 +391,12 @@ mod tests {
             let n = 400;
             let mut expected = [[0.0; 2]; 2];
             for i in 0..n {
-                let alpha = 2.0 * PI * i as f64 / n as f64;
+                let alpha = 2.0 * PI * f64::from(i) / f64::from(n);
                 let d = [x.r_m - y.r_m * alpha.cos(), -y.r_m * alpha.sin(), x.z_m - y.z_m];
                 let r = d.iter().map(|c| c * c).sum::<f64>().sqrt();
                 let normal = [y.normal[0] * alpha.cos(), y.normal[0] * alpha.sin(), y.normal[1]];
                 let facing: f64 = normal.iter().zip(d).map(|(n, d)| n * d).sum();
-                let w = 2.0 * PI / n as f64 * y.r_m / (4.0 * PI);
+                let w = 2.0 * PI / f64::from(n) * y.r_m / (4.0 * PI);
                 for (m, e) in expected.iter_mut().enumerate() {
                     let c = (m as f64 * alpha).cos();
                     e[0] += w * c / r;
