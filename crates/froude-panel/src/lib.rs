@@ -11,6 +11,7 @@
 //! | [`mirror`] | planes of the body, walls, free surface | images |
 //! | [`modes`] | normal velocity of a panel in rigid motion | Newman 1977, 4.13 |
 //! | [`dense`] | the plain solver: every panel on every other, LU | Green's third identity |
+//! | [`revolution`], [`elliptic`] | bodies of revolution in azimuthal modes, to nine digits | our derivation; Abramowitz & Stegun 17.6 |
 //! | [`matrix`] | the 6 × 6 matrix, moved to another point, symmetric part | Newman 1977, 4.13 |
 //! | [`convergence`] | error of a value from three similar meshes | Richardson 1911; Roache 1994 |
 //!
@@ -24,7 +25,9 @@
 
 pub mod convergence;
 pub mod dense;
+pub mod elliptic;
 pub mod influence;
 pub mod matrix;
 pub mod mirror;
 pub mod modes;
+pub mod revolution;
