@@ -233,7 +233,7 @@ mod tests {
     use crate::sections::{Resolution, SectionBody};
 
     fn good() -> Mesh {
-        SectionBody::ellipsoid([2.0, 1.0, 1.0], 2).mesh(Resolution { along: 1, around: 8 }).mesh
+        SectionBody::ellipsoid([2.0, 1.0, 1.0], 2).mesh(Resolution { along: 1, around: 8 }).unwrap().mesh
     }
 
     #[test]

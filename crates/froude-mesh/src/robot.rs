@@ -105,7 +105,7 @@ mod tests {
         for links in [1, 3, 9] {
             let volume = |along: usize| {
                 let body = ModularRobot::NECKED_MAMBA.body(links, 0.03);
-                Measure::of(&body.mesh(Resolution { along, around: 24 * along }).mesh).volume_m3
+                Measure::of(&body.mesh(Resolution { along, around: 24 * along }).unwrap().mesh).volume_m3
             };
             let (coarse, fine) = (volume(2), volume(4));
             let limit = fine + (fine - coarse) / 3.0;

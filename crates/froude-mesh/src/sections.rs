@@ -176,20 +176,26 @@ impl SectionBody {
 
     /// The mesh at a resolution.
     ///
-    /// # Panics
+    /// # Errors
     ///
-    /// If the body has no piece, or pieces that do not meet.
-    #[must_use]
-    pub fn mesh(&self, resolution: Resolution) -> PartMesh {
-        let mut sections = vec![self.pieces[0].at(0.0)];
+    /// [`SectionError`] for a body without pieces, pieces that do not meet, or a resolution that encloses nothing.
+    pub fn mesh(&self, resolution: Resolution) -> Result<PartMesh, SectionError> {
+        let first = self.pieces.first().ok_or(SectionError::NoPiece)?;
+        if resolution.along == 0 || resolution.around < 3 {
+            return Err(SectionError::TooCoarse { resolution });
+        }
+        let mut last = first.ends[0];
+        let mut sections = vec![last];
         let mut part_of = Vec::new();
-        for piece in &self.pieces {
+        for (number, piece) in self.pieces.iter().enumerate() {
             let n = piece.cells * resolution.along;
-            let last = sections[sections.len() - 1];
-            assert!(last == piece.ends[0], "a piece begins with {:?} after {last:?}", piece.ends[0]);
+            if last != piece.ends[0] || n == 0 {
+                return Err(SectionError::Apart { piece: number, begins: piece.ends[0], before: last, cells: n });
+            }
             for i in 1..=n {
-                let s = if i == n { 1.0 } else { piece.grading.at(i as f64 / n as f64) };
-                sections.push(if i == n { piece.ends[1] } else { piece.at(s) });
+                let s = piece.grading.at(i as f64 / n as f64);
+                last = if i == n { piece.ends[1] } else { piece.at(s) };
+                sections.push(last);
                 part_of.push(piece.part);
             }
         }
@@ -207,8 +213,37 @@ impl SectionBody {
             }
             before = Some(ring);
         }
-        out
+        Ok(out)
     }
+}
+
+/// Why a row of pieces is no body.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SectionError {
+    /// Nothing in it.
+    #[error("the body has no piece")]
+    NoPiece,
+    /// Too few cells to enclose anything.
+    #[error("{} cells for each of a piece and {} panels around enclose nothing; 1 and 3 at least", resolution.along, resolution.around)]
+    TooCoarse {
+        /// What was asked for.
+        resolution: Resolution,
+    },
+    /// A piece that begins elsewhere than the one before ends, or has no cell.
+    #[error(
+        "piece {piece} has {cells} cells and begins with {begins:?} where the one before ends with {before:?}; let them meet"
+    )]
+    Apart {
+        /// The piece, from 0.
+        piece: usize,
+        /// Its first section.
+        begins: Section,
+        /// The last section before it.
+        before: Section,
+        /// Its cells.
+        cells: usize,
+    },
 }
 
 /// Vertices of a section: as many as go around, or one.
@@ -260,7 +295,7 @@ mod tests {
             [(ellipsoid, 4.0 / 3.0 * PI * 6.0), (capsule, section * (4.0 + 4.0 / 3.0 * 0.7)), (cylinder, section * 4.0)]
         {
             let error = |along| {
-                let mesh = body.mesh(Resolution { along, around: 8 * along }).mesh;
+                let mesh = body.mesh(Resolution { along, around: 8 * along }).unwrap().mesh;
                 1.0 - Measure::of(&mesh).volume_m3 / exact
             };
             let (coarse, fine) = (error(4), error(8));
@@ -269,9 +304,23 @@ mod tests {
     }
 
     #[test]
+    fn pieces_that_do_not_meet_are_refused() {
+        let mut body = SectionBody::ellipsoid([3.0, 1.0, 2.0], 2);
+        let resolution = Resolution { along: 1, around: 8 };
+        assert_eq!(
+            body.mesh(Resolution { around: 2, ..resolution }).unwrap_err().to_string().split(' ').next(),
+            Some("1")
+        );
+        body.pieces[1].ends[0].x_m = 0.5;
+        assert!(body.mesh(resolution).unwrap_err().to_string().starts_with("piece 1 has 2 cells and begins with"));
+        body.pieces.clear();
+        assert_eq!(body.mesh(resolution), Err(SectionError::NoPiece));
+    }
+
+    #[test]
     fn the_vertices_of_a_coarse_mesh_are_among_those_of_the_fine_one() {
         let body = SectionBody::capsule(2.0, 0.5, 0.8, 0.7, [2, 4]);
-        let [coarse, fine] = [1, 2].map(|m| body.mesh(Resolution { along: m, around: 8 * m }).mesh);
+        let [coarse, fine] = [1, 2].map(|m| body.mesh(Resolution { along: m, around: 8 * m }).unwrap().mesh);
         for v in &coarse.vertices {
             assert!(fine.vertices.iter().any(|w| v.iter().zip(w).all(|(a, b)| (a - b).abs() < 1e-15)), "{v:?}");
         }

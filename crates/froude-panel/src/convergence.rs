@@ -3,14 +3,17 @@
 //! With cells of sizes h₁ < h₂ < h₃ and a method of second order, f_i = f + c h_i². The extrapolated value is f₁ + (f₁ − f₂)/(q² − 1),
 //! q = h₂/h₁. Its numerical uncertainty is three times the change of the extrapolated value from the coarser pair to the finer one. An
 //! observed order outside 1.5 to 2.5 says that the meshes are too coarse for that: then the fine value is taken, with three times its
-//! distance from the next.
+//! distance from the others.
+//!
+//! The factor is a rule, not yet a coverage: on spheroids of some 1,200 panels and more the error stays within the uncertainty, on a sphere of
+//! 512 (levels 2, 3, 4) the extrapolated axial value errs by 2.7 of it.
 
 /// A value with its numerical uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Converged {
     /// The value.
     pub value: f64,
-    /// Its numerical uncertainty: the error is smaller with a probability of some 95 %.
+    /// Its numerical uncertainty, in the value's unit; see the head of the module for how far it holds.
     pub uncertainty: f64,
     /// Order that the three values show; `None` where they do not fall in a row.
     pub order: Option<f64>,

@@ -15,7 +15,7 @@ use froude_panel::mirror::{Mirror, positive_part};
 const OCTANT: [Mirror; 3] = [Mirror::body(0), Mirror::body(1), Mirror::body(2)];
 
 fn mesh(body: &SectionBody, m: usize) -> Mesh {
-    body.mesh(Resolution { along: m, around: 8 * m }).mesh
+    body.mesh(Resolution { along: m, around: 8 * m }).unwrap().mesh
 }
 
 /// Sphere and spheroids: extrapolated values within their uncertainty of Lamb's, and second order.
@@ -59,7 +59,7 @@ fn mirrors_of_the_body_change_nothing_but_the_work() {
 #[test]
 fn a_mesh_with_a_panel_across_the_plane_is_refused() {
     let body = SectionBody::capsule(1.0, 0.5, 0.5, 0.5, [1, 3]);
-    let odd = body.mesh(Resolution { along: 1, around: 8 }).mesh;
+    let odd = body.mesh(Resolution { along: 1, around: 8 }).unwrap().mesh;
     let why = positive_part(&odd, &OCTANT).unwrap_err();
     assert_eq!(why.axis, 0);
     assert!((why.low_m + 0.5).abs() < 1e-12 && (why.high_m - 0.5).abs() < 1e-12, "{why}");

@@ -22,7 +22,7 @@ fn the_necked_robot_has_the_added_mass_that_another_code_found() {
     for (links, sway_kg, surge) in INDEPENDENT {
         let body = ModularRobot::NECKED_MAMBA.body(links, 0.04);
         let found = levels.map(|m| {
-            let mesh = body.mesh(Resolution { along: m, around: 8 * m }).mesh;
+            let mesh = body.mesh(Resolution { along: m, around: 8 * m }).unwrap().mesh;
             let a = solve(&positive_part(&mesh, &planes).unwrap(), &planes).added_mass.matrix;
             (DENSITY_KG_M3 * a[1][1], a[0][0], Measure::of(&mesh).volume_m3)
         });
