@@ -191,6 +191,8 @@ impl SerialRig {
                     });
                 }
                 Some(Verdict::NotNow) => self.quieten()?,
+                // The hello that was heard may have been the board's own, at its start, and ours lost: who does not greet is not heard.
+                None => self.send(&ToBoard::Hello)?,
                 _ => {}
             }
             if begun.elapsed() > GREETING {
