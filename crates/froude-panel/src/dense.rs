@@ -1,76 +1,64 @@
 //! The plain solver: every panel on every other in double precision, LU. The readable version that the fast ones are held against.
 //!
-//! With mirrors the unknowns are those of the mesh that is given; modes with the same signs on all images share a matrix.
+//! With mirrors the unknowns are those of the panels that are given; motions with the same signs on all images share a matrix.
 
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use froude_mesh::Mesh;
-use froude_mesh::panel::{Facet, facets};
 use froude_mesh::vector::Vec3;
 use rayon::prelude::*;
 
 use crate::influence::near;
-use crate::matrix::AddedMass;
-use crate::mirror::{Kind, Mirror, images, signs};
-use crate::modes::rigid;
+use crate::mirror::images;
+use crate::problem::{Problem, Report, Solution};
 
 /// 4π.
 const FOUR_PI: f64 = 4.0 * core::f64::consts::PI;
 
-/// Potentials of the six rigid motions.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
-    /// Panels that were given.
-    pub facets: Vec<Facet>,
-    /// φ over each of them for unit velocity of each mode about the origin of the mesh frame, m (m² for the rotations).
-    pub potentials: Vec<[f64; 6]>,
-    /// Matrix over ρ of the whole body about that origin.
-    pub added_mass: AddedMass,
-}
-
-/// Solves for a mesh: closed, or closed with its images in the body's planes.
+/// Solves for all motions.
 #[must_use]
-pub fn solve(mesh: &Mesh, mirrors: &[Mirror]) -> Solution {
-    let facets = facets(mesh);
-    let n = facets.len();
-    let velocities: Vec<[f64; 6]> = facets.iter().map(|f| rigid(f, [0.0; 3])).collect();
-    let mut potentials = vec![[0.0; 6]; n];
-    for (signs, modes) in classes(mirrors) {
+pub fn solve(problem: &Problem) -> Solution {
+    let n = problem.facets.len();
+    let columns = problem.columns();
+    let velocities: Vec<Vec<f64>> = (0..n).map(|p| (0..columns).map(|c| problem.velocity(p, c)).collect()).collect();
+    let mut potentials = vec![vec![0.0; columns]; n];
+    let area: f64 = problem.facets.iter().map(|f| f.area).sum();
+    for (signs, members) in classes(problem) {
         // Rows: ½ δ_ij − K_ij, and −S v.
-        let rows: Vec<(Vec<f64>, [f64; 6])> = facets
-            .par_iter()
-            .enumerate()
-            .map(|(i, target)| row(&facets, &velocities, i, &images(mirrors, target.centroid), &signs))
+        let rows: Vec<(Vec<f64>, Vec<f64>)> = (0..n)
+            .into_par_iter()
+            .map(|i| row(problem, &velocities, i, &images(&problem.mirrors, problem.facets[i].centroid), &signs))
             .collect();
-        let matrix = Mat::from_fn(n, n, |i, j| rows[i].0[j]);
-        let right = Mat::from_fn(n, modes.len(), |i, k| rows[i].1[modes[k]]);
+        // In an enclosed fluid the mean of φ is added to each row: it makes the matrix regular, and the mean zero.
+        let mean = |j: usize| if problem.is_enclosed { problem.facets[j].area / area } else { 0.0 };
+        let matrix = Mat::from_fn(n, n, |i, j| rows[i].0[j] + mean(j));
+        let right = Mat::from_fn(n, members.len(), |i, k| rows[i].1[members[k]]);
         let phi = PartialPivLu::new(matrix.as_ref()).solve(&right);
         for (i, p) in potentials.iter_mut().enumerate() {
-            for (k, &mode) in modes.iter().enumerate() {
-                p[mode] = phi[(i, k)];
+            for (k, &column) in members.iter().enumerate() {
+                p[column] = phi[(i, k)];
             }
         }
     }
-    let added_mass = AddedMass::of(forces(&facets, &velocities, &potentials, mirrors), [0.0; 3]);
-    Solution { facets, potentials, added_mass }
+    problem.solution(potentials, Report { unknowns: n, near_pairs: n * n, ..Report::default() })
 }
 
-/// Signs on the images, with the modes that have them.
-fn classes(mirrors: &[Mirror]) -> Vec<(Vec<f64>, Vec<usize>)> {
+/// Signs on the images, with the motions that have them.
+fn classes(problem: &Problem) -> Vec<(Vec<f64>, Vec<usize>)> {
     let mut out: Vec<(Vec<f64>, Vec<usize>)> = Vec::new();
-    for mode in 0..6 {
-        let signs = signs(mirrors, mode);
+    for column in 0..problem.columns() {
+        let signs = problem.signs(column);
         match out.iter_mut().find(|c| c.0 == signs) {
-            Some(class) => class.1.push(mode),
-            None => out.push((signs, vec![mode])),
+            Some(class) => class.1.push(column),
+            None => out.push((signs, vec![column])),
         }
     }
     out
 }
 
-fn row(facets: &[Facet], velocities: &[[f64; 6]], own: usize, points: &[Vec3], signs: &[f64]) -> (Vec<f64>, [f64; 6]) {
-    let mut right = [0.0; 6];
-    let row = facets
+fn row(problem: &Problem, velocities: &[Vec<f64>], own: usize, points: &[Vec3], signs: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let mut right = vec![0.0; problem.columns()];
+    let row = problem
+        .facets
         .iter()
         .zip(velocities)
         .enumerate()
@@ -87,20 +75,4 @@ fn row(facets: &[Facet], velocities: &[[f64; 6]], own: usize, points: &[Vec3], s
         })
         .collect();
     (row, right)
-}
-
-/// A_ij = −∫ φ_j n_i dS over the whole body: force in mode i from motion in mode j.
-fn forces(facets: &[Facet], velocities: &[[f64; 6]], potentials: &[[f64; 6]], mirrors: &[Mirror]) -> [[f64; 6]; 6] {
-    let own: Vec<Mirror> = mirrors.iter().copied().filter(|m| m.kind == Kind::Body).collect();
-    let parts: [Vec<f64>; 6] = core::array::from_fn(|mode| signs(&own, mode));
-    let mut out = [[0.0; 6]; 6];
-    for i in 0..6 {
-        for j in 0..6 {
-            // Images of different signs cancel.
-            let images: f64 = parts[i].iter().zip(&parts[j]).map(|(a, b)| a * b).sum();
-            let part = facets.iter().zip(velocities).zip(potentials).map(|((f, v), p)| f.area * v[i] * p[j]);
-            out[i][j] = -images * part.sum::<f64>();
-        }
-    }
-    out
 }

@@ -9,8 +9,9 @@
 //! | --- | --- | --- |
 //! | [`influence`] | potential and solid angle of a flat panel | Hess & Smith 1967; Van Oosterom & Strackee 1983 |
 //! | [`mirror`] | planes of the body, walls, free surface | images |
-//! | [`modes`] | normal velocity of a panel in rigid motion | Newman 1977, 4.13 |
+//! | [`problem`] | what moves, what stands, what mirrors; forces from potentials | Newman 1977, 4.13 |
 //! | [`dense`] | the plain solver: every panel on every other, LU | Green's third identity |
+//! | [`fast`] | near panels in closed form, far ones by expansion, iterations | Ying, Biros & Zorin 2004; Saad & Schultz 1986 |
 //! | [`revolution`], [`elliptic`] | bodies of revolution in azimuthal modes, to nine digits | our derivation; Abramowitz & Stegun 17.6 |
 //! | [`matrix`] | the 6 × 6 matrix, moved to another point, symmetric part | Newman 1977, 4.13 |
 //! | [`convergence`] | error of a value from three similar meshes | Richardson 1911; Roache 1994 |
@@ -23,11 +24,27 @@
 //! Not here: waves, viscosity, lift.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod closed;
 pub mod convergence;
 pub mod dense;
 pub mod elliptic;
+mod expansion;
+pub mod fast;
+mod gmres;
 pub mod influence;
 pub mod matrix;
 pub mod mirror;
-pub mod modes;
+pub mod problem;
 pub mod revolution;
+mod tree;
+
+use problem::{Problem, Solution};
+
+/// Unknowns up to which the plain solver is as quick as the fast one, and free of its 3e-7.
+pub const PLAIN_LIMIT: usize = 2500;
+
+/// Solves by the plain solver where it is quick, else by the fast one.
+#[must_use]
+pub fn solve(problem: &Problem) -> Solution {
+    if problem.facets.len() <= PLAIN_LIMIT { dense::solve(problem) } else { fast::solve(problem) }
+}

@@ -51,18 +51,20 @@ impl Mirror {
         };
         if is_odd { -1.0 } else { 1.0 }
     }
+}
 
-    fn image(&self, mut point: Vec3) -> Vec3 {
-        point[self.axis] = 2.0 * self.at_m - point[self.axis];
-        point
-    }
+/// Image of a point in one plane.
+#[must_use]
+pub fn image(mirror: &Mirror, mut point: Vec3) -> Vec3 {
+    point[mirror.axis] = 2.0 * mirror.at_m - point[mirror.axis];
+    point
 }
 
 /// Images of a point in all combinations of mirrors: the point itself, then for each bit of the index the mirror of that number.
 #[must_use]
 pub fn images(mirrors: &[Mirror], point: Vec3) -> Vec<Vec3> {
     (0..1_usize << mirrors.len())
-        .map(|set| mirrors.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1).fold(point, |p, (_, m)| m.image(p)))
+        .map(|set| mirrors.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1).fold(point, |p, (_, m)| image(m, p)))
         .collect()
 }
 

@@ -11,6 +11,7 @@ use froude_mesh::sections::{Resolution, SectionBody};
 use froude_panel::convergence::converged;
 use froude_panel::dense::solve;
 use froude_panel::mirror::{Mirror, positive_part};
+use froude_panel::problem::Problem;
 
 const OCTANT: [Mirror; 3] = [Mirror::body(0), Mirror::body(1), Mirror::body(2)];
 
@@ -30,8 +31,9 @@ fn spheroids_converge_to_lamb_with_the_second_order() {
             spheroid_rotary_coefficient(slenderness).unwrap() * volume * (slenderness * slenderness + 1.0) / 5.0,
         ];
         let levels = [6, 8, 10];
-        let values =
-            levels.map(|m| solve(&positive_part(&mesh(&body, m), &OCTANT).unwrap(), &OCTANT).added_mass.matrix);
+        let values = levels.map(|m| {
+            solve(&Problem::rigid(&positive_part(&mesh(&body, m), &OCTANT).unwrap(), &OCTANT)).added_mass(0).matrix
+        });
         for (k, exact) in [0, 1, 4].into_iter().zip(exact) {
             let c = converged(levels.map(|m| 1.0 / m as f64), [0, 1, 2].map(|l| values[l][k][k]));
             assert!((c.value - exact).abs() < c.uncertainty, "{slenderness} {k}: {c:?} {exact}");
@@ -44,9 +46,9 @@ fn spheroids_converge_to_lamb_with_the_second_order() {
 #[test]
 fn mirrors_of_the_body_change_nothing_but_the_work() {
     let whole = mesh(&SectionBody::ellipsoid([3.0, 1.0, 2.0], 2), 2);
-    let all = solve(&whole, &[]).added_mass.matrix;
+    let all = solve(&Problem::rigid(&whole, &[])).added_mass(0).matrix;
     for mirrors in [&OCTANT[..1], &OCTANT[1..], &OCTANT[..]] {
-        let part = solve(&positive_part(&whole, mirrors).unwrap(), mirrors).added_mass.matrix;
+        let part = solve(&Problem::rigid(&positive_part(&whole, mirrors).unwrap(), mirrors)).added_mass(0).matrix;
         for i in 0..6 {
             for j in 0..6 {
                 let size = (all[i][i] * all[j][j]).sqrt();
@@ -82,8 +84,8 @@ fn a_body_off_the_origin_has_the_matrix_moved_by_the_parallel_axes() {
     let here = mesh(&SectionBody::ellipsoid([3.0, 1.0, 2.0], 2), 1);
     let d = [0.7, -0.4, 1.1];
     let there = here.mapped(|v| [v[0] + d[0], v[1] + d[1], v[2] + d[2]]);
-    let moved = solve(&here, &[]).added_mass.about(d.map(|x| -x)).matrix;
-    let direct = solve(&there, &[]).added_mass.matrix;
+    let moved = solve(&Problem::rigid(&here, &[])).added_mass(0).about(d.map(|x| -x)).matrix;
+    let direct = solve(&Problem::rigid(&there, &[])).added_mass(0).matrix;
     let size = |i: usize| direct[i][i].sqrt();
     for i in 0..6 {
         for j in 0..6 {

@@ -7,6 +7,7 @@ use froude_mesh::sections::Resolution;
 use froude_panel::convergence::converged;
 use froude_panel::dense::solve;
 use froude_panel::mirror::{Mirror, positive_part};
+use froude_panel::problem::Problem;
 
 /// Sea water of the paper's Table 6, kg/m³.
 const DENSITY_KG_M3: f64 = 1025.0;
@@ -23,7 +24,7 @@ fn the_necked_robot_has_the_added_mass_that_another_code_found() {
         let body = ModularRobot::NECKED_MAMBA.body(links, 0.04);
         let found = levels.map(|m| {
             let mesh = body.mesh(Resolution { along: m, around: 8 * m }).unwrap().mesh;
-            let a = solve(&positive_part(&mesh, &planes).unwrap(), &planes).added_mass.matrix;
+            let a = solve(&Problem::rigid(&positive_part(&mesh, &planes).unwrap(), &planes)).added_mass(0).matrix;
             (DENSITY_KG_M3 * a[1][1], a[0][0], Measure::of(&mesh).volume_m3)
         });
         let sizes = levels.map(|m| 1.0 / f64::from(u8::try_from(m).unwrap()));
