@@ -8,12 +8,14 @@
 //! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`] |
 //! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
+//! | body (TOML)     | [`body`]                                   |
 //! | sidecar (TOML)  | [`sidecar`]                                |
 //! | run (MCAP)      | [`run`]                                    |
 //! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 mod assemble;
+pub mod body;
 pub mod campaign;
 mod campaign_toml;
 pub mod carriage;

@@ -1,0 +1,257 @@
+//! A body file: a shape by its dimensions, for potential flow.
+//!
+//! ```toml
+//! schema = 1
+//! name = "Mamba, necked stand-in"
+//!
+//! [fluid]
+//! density = "1025 kg/m^3"
+//!
+//! [body]
+//! shape = "robot"                    # robot, ellipsoid, capsule or cylinder
+//! link = { major_semi_axis = "58.8 mm", minor_semi_axis = "39.4 mm", half_length = "90 mm" }
+//! joint = { length = "60 mm", scale = 0.7, ramp = "4 mm" }   # without it the chain is smooth
+//! ends = { length = "31 mm" }
+//! ```
+//!
+//! The x axis runs along the body with the head to +x, y is lateral, z vertical; the origin is in the middle. The words are those of a
+//! campaign: the major semi-axis is the vertical one, `half_length` that of a link from joint to joint.
+
+use std::path::Path;
+
+use crate::campaign_toml::one_of;
+use crate::error::{RecordError, read_bytes, utf8};
+use crate::section::{Section, Source, parse};
+use crate::units::Dimension;
+
+/// Largest body file.
+const LIMIT: u64 = 1 << 20;
+
+/// A body by its dimensions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyFile {
+    /// What it is called.
+    pub name: String,
+    /// Density of the water, kg/m³; `None` where the file does not say.
+    pub density_kg_m3: Option<f64>,
+    /// Shape.
+    pub shape: Shape,
+}
+
+/// Half of a section's height and width, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SemiAxes {
+    /// Vertical.
+    pub major_m: f64,
+    /// Lateral.
+    pub minor_m: f64,
+}
+
+/// A shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// A modular robot: head, links, tail; their number is asked for elsewhere.
+    Robot {
+        /// Section of a link.
+        section: SemiAxes,
+        /// From joint to joint, m.
+        pitch_m: f64,
+        /// The narrower part at a joint; `None` for a smooth chain.
+        joint: Option<Joint>,
+        /// Half-ellipsoid at each end, m.
+        end_m: f64,
+    },
+    /// An ellipsoid: semi-axes along x, y, z, m.
+    Ellipsoid {
+        /// Semi-axes.
+        semi_axes_m: [f64; 3],
+    },
+    /// An elliptic cylinder between half-ellipsoids.
+    Capsule {
+        /// From tip to tip, m.
+        length_m: f64,
+        /// Section.
+        section: SemiAxes,
+        /// Of each end, m.
+        end_m: f64,
+    },
+    /// An elliptic cylinder with flat ends.
+    Cylinder {
+        /// Length, m.
+        length_m: f64,
+        /// Section.
+        section: SemiAxes,
+    },
+}
+
+/// The narrower part at a joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joint {
+    /// Its length with both ramps, m.
+    pub length_m: f64,
+    /// Its section over that of the link.
+    pub scale: f64,
+    /// Length of the ramp on each side, m.
+    pub ramp_m: f64,
+}
+
+/// Reads a body file.
+///
+/// # Errors
+///
+/// [`RecordError`] with line and column: not TOML, a key that is missing or unknown, a quantity of another kind, a shape that cannot be.
+pub fn read_body(path: &Path) -> Result<BodyFile, RecordError> {
+    let bytes = read_bytes(path, LIMIT, "a body")?;
+    parse_body(path, utf8(path, &bytes)?)
+}
+
+/// The same from text.
+///
+/// # Errors
+///
+/// As [`read_body`].
+pub fn parse_body(path: &Path, text: &str) -> Result<BodyFile, RecordError> {
+    let source = Source { path, text };
+    let document = parse(source)?;
+    let root = Section::new(source, "", document.get_ref(), 0);
+    root.schema("body")?;
+    root.only(&["schema", "name", "cite", "fluid", "body"])?;
+    let density_kg_m3 = match root.section("fluid")? {
+        Some(fluid) => {
+            fluid.only(&["density"])?;
+            fluid.positive("density", Dimension::DENSITY)?
+        }
+        None => None,
+    };
+    let body = root.section("body")?.ok_or_else(|| root.missing("body", "describe the shape in [body]"))?;
+    let name = root.text("name")?.unwrap_or("body").to_owned();
+    Ok(BodyFile { name, density_kg_m3, shape: shape(&body)? })
+}
+
+/// How a shape is read.
+type Reader = fn(&Section<'_>) -> Result<Shape, RecordError>;
+
+fn shape(s: &Section<'_>) -> Result<Shape, RecordError> {
+    let readers: [Reader; 4] = [robot, ellipsoid, capsule, cylinder];
+    let read = one_of(s, "shape", &["robot", "ellipsoid", "capsule", "cylinder"], &readers)?.ok_or_else(|| {
+        s.missing("shape", "write shape = \"robot\", \"ellipsoid\", \"capsule\" or \"cylinder\"; any other hull comes as a mesh")
+    })?;
+    read(s)
+}
+
+fn need(s: &Section<'_>, key: &'static str) -> Result<f64, RecordError> {
+    s.positive(key, Dimension::LENGTH)?.ok_or_else(|| s.missing(key, "write it with its unit: \"60 mm\""))
+}
+
+fn section_of(s: &Section<'_>) -> Result<SemiAxes, RecordError> {
+    Ok(SemiAxes { major_m: need(s, "major_semi_axis")?, minor_m: need(s, "minor_semi_axis")? })
+}
+
+fn end(s: &Section<'_>) -> Result<f64, RecordError> {
+    let ends = s.section("ends")?.ok_or_else(|| s.missing("ends", "write ends = { length = \"31 mm\" }"))?;
+    ends.only(&["length"])?;
+    need(&ends, "length")
+}
+
+fn robot(s: &Section<'_>) -> Result<Shape, RecordError> {
+    s.only(&["shape", "link", "joint", "ends"])?;
+    let link = s.section("link")?.ok_or_else(|| {
+        s.missing("link", "write link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }")
+    })?;
+    link.only(&["major_semi_axis", "minor_semi_axis", "half_length"])?;
+    let pitch_m = 2.0 * need(&link, "half_length")?;
+    let joint = s.section("joint")?.map(|j| joint(&j, pitch_m)).transpose()?;
+    Ok(Shape::Robot { section: section_of(&link)?, pitch_m, joint, end_m: end(s)? })
+}
+
+fn joint(j: &Section<'_>, pitch_m: f64) -> Result<Joint, RecordError> {
+    j.only(&["length", "scale", "ramp"])?;
+    let joint = Joint {
+        length_m: need(j, "length")?,
+        scale: j.number("scale")?.ok_or_else(|| j.missing("scale", "write its section over that of the link: scale = 0.7"))?,
+        ramp_m: need(j, "ramp")?,
+    };
+    let told = |key: &'static str, problem: String| match j.get(key) {
+        Some(value) => j.wrong(key, value, problem),
+        None => j.missing(key, "write it"),
+    };
+    if !(joint.scale > 0.0 && joint.scale <= 1.0) {
+        return Err(told("scale", format!("is {}; a joint's section lies between 0 and 1 of the link's", joint.scale)));
+    }
+    if 2.0 * joint.ramp_m >= joint.length_m {
+        return Err(told(
+            "ramp",
+            format!("is {} m; two of them must be shorter than the joint of {} m", joint.ramp_m, joint.length_m),
+        ));
+    }
+    if joint.length_m >= pitch_m {
+        return Err(told(
+            "length",
+            format!("is {} m; it must be shorter than the link from joint to joint, {pitch_m} m", joint.length_m),
+        ));
+    }
+    Ok(joint)
+}
+
+fn ellipsoid(s: &Section<'_>) -> Result<Shape, RecordError> {
+    s.only(&["shape", "semi_axis_x", "semi_axis_y", "semi_axis_z"])?;
+    Ok(Shape::Ellipsoid { semi_axes_m: [need(s, "semi_axis_x")?, need(s, "semi_axis_y")?, need(s, "semi_axis_z")?] })
+}
+
+fn capsule(s: &Section<'_>) -> Result<Shape, RecordError> {
+    s.only(&["shape", "length", "major_semi_axis", "minor_semi_axis", "ends"])?;
+    let (length_m, end_m) = (need(s, "length")?, end(s)?);
+    if 2.0 * end_m >= length_m {
+        let problem = format!("is {length_m} m from tip to tip; two ends of {end_m} m leave no cylinder; write shape = \"ellipsoid\"");
+        return Err(s.get("length").map_or_else(|| s.missing("length", "write it"), |v| s.wrong("length", v, problem)));
+    }
+    Ok(Shape::Capsule { length_m, section: section_of(s)?, end_m })
+}
+
+fn cylinder(s: &Section<'_>) -> Result<Shape, RecordError> {
+    s.only(&["shape", "length", "major_semi_axis", "minor_semi_axis"])?;
+    Ok(Shape::Cylinder { length_m: need(s, "length")?, section: section_of(s)? })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ROBOT: &str = r#"
+schema = 1
+name = "Mamba"
+[fluid]
+density = "1025 kg/m^3"
+[body]
+shape = "robot"
+link = { major_semi_axis = "58.8 mm", minor_semi_axis = "39.4 mm", half_length = "90 mm" }
+joint = { length = "60 mm", scale = 0.7, ramp = "4 mm" }
+ends = { length = "31 mm" }
+"#;
+
+    fn read(text: &str) -> Result<BodyFile, RecordError> {
+        parse_body(Path::new("body.toml"), text)
+    }
+
+    #[test]
+    fn a_robot_is_read() {
+        let body = read(ROBOT).unwrap();
+        let Shape::Robot { section, pitch_m, joint: Some(joint), end_m } = body.shape else { panic!("{body:?}") };
+        assert_eq!((body.density_kg_m3, pitch_m, end_m), (Some(1025.0), 0.18, 0.031));
+        assert_eq!((section.major_m, joint.scale), (0.0588, 0.7));
+    }
+
+    #[test]
+    fn what_cannot_be_is_told_with_its_place() {
+        let told = |from: &str, to: &str| read(&ROBOT.replace(from, to)).unwrap_err().to_string();
+        assert_eq!(
+            told("ramp = \"4 mm\"", "ramp = \"40 mm\""),
+            "body.toml:9:49: `ramp` is 0.04 m; two of them must be shorter than the joint of 0.06 m"
+        );
+        assert!(told("\"31 mm\"", "\"31 kg\"").contains("body.toml:10"));
+        assert!(told("shape = \"robot\"", "shape = \"robo\"").contains("\"robot\""));
+        assert!(told("scale = 0.7", "scale = 1.7").contains("between 0 and 1"));
+        assert!(told("shape = \"robot\"", "").contains("shape"));
+        assert!(told("ends = { length = \"31 mm\" }", "").contains("write ends"));
+    }
+}

@@ -1,0 +1,17 @@
+//! Added mass from potential flow: of a body file, of the modular robot with any number of links, of a mesh.
+//!
+//! | module | what |
+//! | --- | --- |
+//! | [`family`] | similar meshes of a body, each finer than the one before |
+//! | [`refine`] | finer and finer until the tolerance holds, told beforehand what it takes |
+//! | [`links`] | the robot with 1 to k links: the table, its least squares |
+//! | [`body`] | one body or mesh: checks, matrix, pressure, files |
+//! | [`record`] | a matrix as an estimate |
+//! | [`page`] | the report |
+
+pub mod body;
+pub mod family;
+pub mod links;
+pub mod page;
+pub mod record;
+pub mod refine;
