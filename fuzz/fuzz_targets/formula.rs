@@ -11,9 +11,7 @@ fuzz_target!(|text: &str| {
         "angle" | "n_links" => Some([0; 5]),
         _ => None,
     };
-    if let Ok(formula) =
-        Formula::parse("f_y", text, &channel, [1, 1, -2, 0, 0], &[("L".to_owned(), 2.0, [1, 0, 0, 0, 0])])
-    {
+    if let Ok(formula) = Formula::parse("f_y", text, &channel, [1, 1, -2, 0, 0], &[("L".to_owned(), 2.0, [1, 0, 0, 0, 0])]) {
         let values = vec![0.5; formula.channels.len()];
         let mut row = vec![0.0; formula.coefficients.len()];
         formula.regressor(&values, &mut row);

@@ -1,7 +1,8 @@
 //! Finer meshes of the same body: divided panels, quadrilaterals without warp, and facets rounded to the smooth body behind them.
 //!
 //! A family of divided meshes shows how the result depends on the panels; the difference between a mesh and the rounded one shows how
-//! it depends on the facets. Both have four panels for one, and the same vertices at the corners.
+//! it depends on the facets. Both have four panels for one, and the same vertices at the corners. Every corner of a panel must exist
+//! ([`mod@crate::check`]).
 //!
 //! **Rounding.** Each edge becomes a circular arc through its ends, and its middle a vertex. Inside a smooth region the arc is
 //! perpendicular to the normals of the vertices; they are weighted such that they are exact on a sphere. Along a crease, an edge whose

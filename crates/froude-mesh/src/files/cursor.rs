@@ -231,7 +231,8 @@ impl<'a> Cursor<'a> {
         ReadError::Ends { name: self.name.to_owned(), place, expected: expected.to_owned() }
     }
 
-    pub fn not_read(&self, at: usize, what: String, advice: &'static str) -> ReadError {
-        ReadError::NotRead { name: self.name.to_owned(), place: self.place(at), what, advice }
+    /// Sound, and not read here.
+    pub fn not_read(&self, place: Place, what: String, advice: &'static str) -> ReadError {
+        ReadError::NotRead { name: self.name.to_owned(), place, what, advice }
     }
 }

@@ -29,8 +29,8 @@ struct Head {
 
 fn head(cursor: &mut Cursor<'_>) -> Result<Head, ReadError> {
     cursor.line().ok_or_else(|| cursor.ends("a header line"))?;
-    cursor.number_of_line("the length ULEN")?;
-    let gravity = cursor.number_of_line("the gravity GRAV")?;
+    cursor.number("the length ULEN")?;
+    let gravity = cursor.number("the gravity GRAV")?;
     cursor.line();
     let mut symmetry = || cursor.whole(-1, 1, "-1, 0 or 1, the symmetries ISX and ISY,");
     let symmetry = [symmetry()?, symmetry()?];
@@ -38,7 +38,11 @@ fn head(cursor: &mut Cursor<'_>) -> Result<Head, ReadError> {
     let panels = cursor.whole(0, i64::from(u32::MAX), "the number of panels")?;
     if let Some(word) = cursor.word_of_line().filter(|word| word.whole().is_some()) {
         let what = format!("a file of higher order (IGDEF = {})", String::from_utf8_lossy(word.text));
-        return Err(cursor.not_read(word.at, what, "export panels of low order (ILOWGDF in WAMIT writes them)"));
+        return Err(cursor.not_read(
+            cursor.place(word.at),
+            what,
+            "export panels of low order (ILOWGDF in WAMIT writes them)",
+        ));
     }
     cursor.line();
     Ok(Head { gravity, symmetry, panels })

@@ -224,7 +224,9 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, ReadError> {
     let Some(format) = format else {
         return Err(ReadError::UnknownFormat { name: name.to_owned() });
     };
-    let cursor = Cursor::new(name, bytes);
+    // Some editors begin a text with the mark of its encoding.
+    let text = if format == Format::Stl { None } else { bytes.strip_prefix(b"\xEF\xBB\xBF") };
+    let cursor = Cursor::new(name, text.unwrap_or(bytes));
     let (mesh, notes) = match format {
         Format::Stl => stl::read(cursor),
         Format::Obj => obj::read(cursor),

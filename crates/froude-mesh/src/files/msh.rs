@@ -6,7 +6,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::cursor::Cursor;
-use super::{Read, ReadError, counted};
+use super::{Place, Read, ReadError, counted};
 use crate::mesh::{Mesh, Panel};
 use crate::vector::Vec3;
 
@@ -111,7 +111,7 @@ fn head(cursor: &mut Cursor<'_>) -> Result<(Version, bool), ReadError> {
         b"4.1" => Version::Four,
         other => {
             let what = format!("version {}", String::from_utf8_lossy(&other[..other.len().min(8)]));
-            return Err(cursor.not_read(word.at, what, SAVE_AS));
+            return Err(cursor.not_read(cursor.place(word.at), what, SAVE_AS));
         }
     };
     let is_binary = cursor.whole(0, 1, "0 for text or 1 for binary")? == 1;
@@ -264,12 +264,11 @@ impl Msh<'_> {
 
     /// Name and nodes of a type.
     fn kind(&self, at: usize, kind: i64) -> Result<(usize, &'static str), ReadError> {
-        match TYPES.iter().find(|(number, ..)| *number == kind) {
-            Some((_, nodes, name)) => Ok((*nodes, name)),
-            None => {
-                Err(self.cursor.not_read(at, format!("element type {kind}"), "save triangles and quadrilaterals only"))
-            }
+        if let Some((_, nodes, name)) = TYPES.iter().find(|(number, ..)| *number == kind) {
+            return Ok((*nodes, name));
         }
+        let place = if self.is_binary { Place::Byte(at) } else { self.cursor.place(at) };
+        Err(self.cursor.not_read(place, format!("element type {kind}"), "save triangles and quadrilaterals only"))
     }
 
     fn leave_out(&mut self, name: &'static str, count: u64) {

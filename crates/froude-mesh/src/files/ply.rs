@@ -2,6 +2,8 @@
 //!
 //! Of the element `vertex` x, y, z are read, of `face` the list `vertex_indices` (or `vertex_index`).
 
+use std::collections::HashSet;
+
 use super::cursor::Cursor;
 use super::{Polygons, Read, ReadError, counted};
 use crate::mesh::Mesh;
@@ -147,6 +149,7 @@ pub(super) fn read(mut cursor: Cursor<'_>) -> Read {
 fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(bool, Vec<Element<'a>>), ReadError> {
     let mut is_binary = None;
     let mut elements: Vec<Element<'a>> = Vec::new();
+    let mut names = HashSet::new();
     let first = cursor.line().ok_or_else(|| cursor.ends("ply"))?;
     if first.text != b"ply" {
         return Err(cursor.unexpected(first.at, &first.shown(), "ply"));
@@ -166,7 +169,7 @@ fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(bool, Vec<Element<'a>>), ReadE
             },
             [Some(b"element"), Some(name), Some(count), ..] => {
                 let count = number(count).ok_or_else(|| wrong("element, its name and its number"))?;
-                if elements.iter().any(|e| e.name == name) {
+                if !names.insert(name) {
                     return Err(wrong("an element that is not there yet"));
                 }
                 elements.push(Element { at: line.at, name, count, properties: Vec::new() });

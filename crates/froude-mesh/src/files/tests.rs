@@ -87,6 +87,8 @@ fn obj_is_read_with_its_ways_to_name_a_corner() {
     let file = good("cube.obj", text);
     is_unit_cube(&file.mesh);
     assert_eq!(file.notes, ["statements without panels left out: 1 mtllib, 1 vn, 1 vt"]);
+    let file = good("a.obj", "\u{feff}# marked\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    assert_eq!(file.mesh.panels.len(), 1);
     let fan = "v 0 0 0\nv 1 0 0\nv 2 1 0\nv 1 2 0\nv 0 1 0\nf 1 2 3 4 5";
     let file = good("a.obj", fan);
     assert_eq!(file.mesh.panels.len(), 3);
@@ -379,6 +381,8 @@ fn a_mistake_is_told_with_its_place_and_the_next_step() {
     let higher = "a.gdf, line 4, column 3: a file of higher order (IGDEF = 1) is not read; export panels of low order (ILOWGDF in WAMIT \
                   writes them)";
     assert_eq!(error("a.gdf", "box\n1 9.81\n0 0\n2 1\n"), higher);
+    let kind = "a.msh, line 6, column 3: element type 34 is not read; save triangles and quadrilaterals only";
+    assert_eq!(error("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n1\n1 34 0 1\n"), kind);
     let version = "a.msh, line 2, column 1: version 4.0 is not read; save it with gmsh -save -format msh41 or msh22";
     assert_eq!(error("a.msh", "$MeshFormat\n4.0 0 8\n"), version);
     let unknown = "hull.step: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension \
