@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use crate::measure::Measure;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Panel};
 use crate::panel::Facet;
 use crate::vector::{Vec3, norm, sub};
 
@@ -96,6 +96,64 @@ pub enum Trouble {
         /// The signed volume, m³.
         volume_m3: f64,
     },
+    /// A part that is inside out where others are not.
+    #[error(
+        "part {part} ({panels} panels, at {at:?} m) is inside out (its volume is {volume_m3:.4e} m³), others are not; turn its panels"
+    )]
+    PartInsideOut {
+        /// The part.
+        part: usize,
+        /// How many panels it has.
+        panels: usize,
+        /// A corner of its first panel.
+        at: Vec3,
+        /// Its signed volume, m³.
+        volume_m3: f64,
+    },
+    /// A closed surface inside another.
+    #[error(
+        "part {part} ({panels} panels, at {at:?} m, volume {volume_m3:.4e} m³) lies inside part {outer}: no water reaches it; take it out"
+    )]
+    Nested {
+        /// The inner part.
+        part: usize,
+        /// How many panels it has.
+        panels: usize,
+        /// A corner of its first panel.
+        at: Vec3,
+        /// Its signed volume, m³.
+        volume_m3: f64,
+        /// The part around it.
+        outer: usize,
+    },
+    /// Panels through or against one another.
+    #[error(
+        "{count} pairs of panels cross or touch without a common vertex there, the first {first} and {second} at {at:?} m; unite the bodies, or move them apart"
+    )]
+    Crossing {
+        /// How many pairs; counting ends at [`crate::crossing::MOST`].
+        count: usize,
+        /// The smaller number of the first pair.
+        first: usize,
+        /// The larger one.
+        second: usize,
+        /// A point of both.
+        at: Vec3,
+    },
+    /// Neighbours that lie on one another, or a panel that does so with itself.
+    #[error(
+        "{count} pairs of neighbours are folded onto one another, the first {first} and {second} at {at:?} m; take one out"
+    )]
+    Folded {
+        /// How many pairs.
+        count: usize,
+        /// The smaller number of the first pair; for a quadrilateral that crosses itself, both are one.
+        first: usize,
+        /// The larger one.
+        second: usize,
+        /// The middle of their common edge.
+        at: Vec3,
+    },
     /// Thin panels: the result may lose digits.
     #[error(
         "{count} panels are slivers, the thinnest is {panel} at {at:?} m with {ratio:.1e} of its longest edge squared"
@@ -166,6 +224,21 @@ pub fn check(mesh: &Mesh) -> Vec<Trouble> {
     out
 }
 
+/// Whether every coordinate is a number and every corner exists, in a mesh of one panel or more.
+pub(crate) fn is_readable(mesh: &Mesh) -> bool {
+    first_unreadable(mesh).is_none()
+}
+
+/// Why panels cannot be looked at.
+pub(crate) fn first_unreadable(mesh: &Mesh) -> Option<Trouble> {
+    unreadable(mesh).into_iter().next()
+}
+
+/// Whether a panel has no area in a mesh of that extent.
+pub(crate) fn has_no_area(mesh: &Mesh, panel: Panel, extent: f64) -> bool {
+    Facet::of(mesh, panel).area <= NOTHING * extent * extent
+}
+
 fn unreadable(mesh: &Mesh) -> Vec<Trouble> {
     let vertices = mesh.vertices.len();
     if mesh.panels.is_empty() {
@@ -229,7 +302,6 @@ fn edges(mesh: &Mesh) -> Vec<Trouble> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Panel;
     use crate::sections::{Resolution, SectionBody};
 
     fn good() -> Mesh {

@@ -10,19 +10,32 @@
 //! | [`mesh`] | vertices and panels, mirror images, motions |
 //! | [`panel`] | area, centroid, normal, second moments of a panel |
 //! | [`measure`] | volume, centre of buoyancy, inertia of the displaced water |
+//! | [`files`] | STL, OBJ, PLY, WAMIT, Nemoh, Gmsh read; STL, OBJ, VTP written |
 //! | [`check`] | closed, oriented, without slivers, copies and numbers that are none |
+//! | [`parts`] | what hangs together; a part that is inside out, or inside another |
+//! | [`crossing`] | panels through one another, or folded onto a neighbour |
+//! | [`repair`] | vertices merged, panels turned, what is superfluous taken out: each told |
+//! | [`plausible`] | doubts: drawn in millimetres, through the water's surface |
+//! | [`refine`] | panels divided, warp taken out, facets rounded |
 //! | [`sections`] | bodies of elliptic sections along a line: ellipsoids, capsules, cylinders, necks |
 //! | [`robot`] | the modular snake robot: ends, links, necks at its joints |
 //!
-//! Not here: volume meshes, curved panels.
+//! Not here: volume meshes, curved panels, holes closed.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod check;
+pub mod crossing;
+pub mod files;
 pub mod measure;
 pub mod mesh;
 pub mod panel;
+pub mod parts;
+pub mod plausible;
+pub mod refine;
+pub mod repair;
 pub mod robot;
 pub mod sections;
+mod topology;
 pub mod vector;
 
 pub use mesh::{Mesh, Panel};

@@ -40,6 +40,12 @@ impl Panel {
         }
     }
 
+    /// The same panel over vertices with other numbers.
+    #[must_use]
+    pub(crate) fn renumbered(&self, number: impl Fn(u32) -> u32) -> Self {
+        Self(self.0.map(number))
+    }
+
     /// The same panel of vertices whose numbers are larger by `offset`.
     #[must_use]
     pub fn moved_by(&self, offset: u32) -> Self {
@@ -78,6 +84,45 @@ impl Mesh {
         });
         out.panels.iter_mut().for_each(|p| *p = p.turned());
         out
+    }
+
+    /// A half with its mirror image in the plane where coordinate `axis` is zero; vertices on that plane belong to both.
+    #[must_use]
+    pub fn with_mirror_image(&self, axis: usize) -> Self {
+        let mut out = self.clone();
+        let images: Vec<u32> = (0..)
+            .zip(&self.vertices)
+            .map(|(number, vertex)| {
+                if vertex[axis] == 0.0 {
+                    return number;
+                }
+                let mut image = *vertex;
+                image[axis] = -image[axis];
+                out.vertices.push(image);
+                out.vertices.len() as u32 - 1
+            })
+            .collect();
+        out.panels.extend(self.panels.iter().map(|p| p.renumbered(|v| images[v as usize]).turned()));
+        out
+    }
+
+    /// Takes out the vertices that no panel uses; how many they were.
+    pub(crate) fn drop_unused_vertices(&mut self) -> usize {
+        let mut is_used = vec![false; self.vertices.len()];
+        self.panels.iter().flat_map(|p| p.0).for_each(|v| is_used[v as usize] = true);
+        let mut kept = 0;
+        let numbers: Vec<u32> = is_used
+            .iter()
+            .map(|is_used| {
+                kept += u32::from(*is_used);
+                kept.saturating_sub(1)
+            })
+            .collect();
+        let before = self.vertices.len();
+        let mut is_used = is_used.into_iter();
+        self.vertices.retain(|_| is_used.next().unwrap_or(true));
+        self.panels.iter_mut().for_each(|p| *p = p.renumbered(|v| numbers[v as usize]));
+        before - self.vertices.len()
     }
 
     /// Both meshes in one; vertices are not merged.

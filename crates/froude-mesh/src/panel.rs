@@ -77,6 +77,18 @@ impl Facet {
     }
 }
 
+/// Corners of the triangles that a panel is made of: itself, or two over the shorter diagonal.
+pub(crate) fn halves(mesh: &Mesh, panel: Panel) -> impl Iterator<Item = [u32; 3]> + use<> {
+    let point = |v: u32| mesh.vertices[v as usize];
+    let (first, second) = match *panel.corners() {
+        [a, b, c, d] if norm(sub(point(c), point(a))) <= norm(sub(point(d), point(b))) => ([a, b, c], Some([a, c, d])),
+        [a, b, c, d] => ([a, b, d], Some([b, c, d])),
+        [a, b, c] => ([a, b, c], None),
+        _ => ([0; 3], None),
+    };
+    core::iter::once(first).chain(second)
+}
+
 /// Order of the six moments.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 

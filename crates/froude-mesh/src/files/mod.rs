@@ -1,0 +1,312 @@
+//! Mesh files of other programs, read and written.
+//!
+//! **Units.** None is applied: coordinates come as the file has them. Whoever calls scales them, and [`crate::plausible`] says when a
+//! body is so large that it must have been drawn in millimetres.
+//!
+//! | format | extension | what is read | source |
+//! | --- | --- | --- | --- |
+//! | STL | `.stl` | ASCII and binary | 3D Systems, StereoLithography interface specification |
+//! | Wavefront OBJ | `.obj` | vertices and faces | Wavefront, Advanced Visualizer manual, appendix B |
+//! | PLY | `.ply` | ASCII, binary of both byte orders | Turk, The PLY polygon file format, 1994 |
+//! | WAMIT | `.gdf` | low order, with ISX and ISY | WAMIT manual 7, chapter 6 |
+//! | Nemoh | `.dat` | with its symmetry | Nemoh manual, mesh file |
+//! | Gmsh | `.msh` | 2.2 and 4.1, ASCII and binary | Gmsh manual, file formats |
+//!
+//! What a file has and a mesh has not (normals, colours, lines, volumes) is left out, and a note says so. What is wrong with the
+//! surface itself, with NaN and infinite coordinates, [`mod@crate::check`] tells; nothing is repaired here.
+//!
+//! **Why our own readers.** Those that the ecosystem has either lose the place of an error (tobj, stl\_io), read text as `f32` (stl\_io),
+//! refuse NaN (stl\_io), allocate by what a header claims or panic on an odd file (mshio, tobj's materials). Where they read a file,
+//! the tests hold ours against them.
+//!
+//! Memory is at most some twenty times the size of the file: a panel of twelve short numbers, mirrored twice.
+
+mod cursor;
+mod gdf;
+mod msh;
+mod nemoh;
+mod obj;
+mod ply;
+mod stl;
+pub mod vtk;
+mod write;
+
+use std::collections::HashMap;
+use std::fmt;
+
+use crate::mesh::{Mesh, Panel};
+use crate::vector::Vec3;
+pub use write::{write_obj, write_stl_binary};
+
+use cursor::Cursor;
+
+/// Largest file, bytes: the number of a vertex has 32 bits.
+const LARGEST: usize = u32::MAX as usize;
+
+/// A format that is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// STL, ASCII or binary.
+    Stl,
+    /// Wavefront OBJ.
+    Obj,
+    /// PLY, ASCII or binary.
+    Ply,
+    /// WAMIT, low order.
+    Gdf,
+    /// Nemoh.
+    Nemoh,
+    /// Gmsh 2.2 or 4.1, ASCII or binary.
+    Msh,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Stl => "STL",
+            Self::Obj => "OBJ",
+            Self::Ply => "PLY",
+            Self::Gdf => "WAMIT GDF",
+            Self::Nemoh => "Nemoh",
+            Self::Msh => "Gmsh",
+        })
+    }
+}
+
+impl Format {
+    fn of_extension(name: &str) -> Option<Self> {
+        let (_, extension) = name.rsplit_once('.')?;
+        Some(match extension.to_ascii_lowercase().as_str() {
+            "stl" => Self::Stl,
+            "obj" => Self::Obj,
+            "ply" => Self::Ply,
+            "gdf" => Self::Gdf,
+            "dat" => Self::Nemoh,
+            "msh" => Self::Msh,
+            _ => return None,
+        })
+    }
+
+    fn of_content(bytes: &[u8]) -> Option<Self> {
+        let looks: [(Self, fn(&[u8]) -> bool); 6] = [
+            (Self::Ply, |b| b.starts_with(b"ply\n") || b.starts_with(b"ply\r")),
+            (Self::Msh, |b| b.trim_ascii_start().starts_with(b"$MeshFormat")),
+            (Self::Stl, stl::looks_like),
+            (Self::Nemoh, nemoh::looks_like),
+            (Self::Gdf, gdf::looks_like),
+            (Self::Obj, obj::looks_like),
+        ];
+        looks.into_iter().find(|(_, is_such)| is_such(bytes)).map(|(format, _)| format)
+    }
+}
+
+/// What a file holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshFile {
+    /// The surface, in the file's own unit.
+    pub mesh: Mesh,
+    /// What it was read as.
+    pub format: Format,
+    /// What was left out, mirrored or divided, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Where in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// In text, both from 1; columns count bytes.
+    Line {
+        /// The line.
+        line: usize,
+        /// The column.
+        column: usize,
+    },
+    /// In binary data, from 0.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line { line, column } => write!(f, "line {line}, column {column}"),
+            Self::Byte(offset) => write!(f, "byte {offset}"),
+        }
+    }
+}
+
+/// Why a file is not read.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// Neither the extension nor the content says what it is.
+    #[error(
+        "{name}: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension of its format \
+         (.stl .obj .ply .gdf .dat .msh)"
+    )]
+    UnknownFormat {
+        /// The file.
+        name: String,
+    },
+    /// Something else than the format has there.
+    #[error("{name}, {place}: {found} where {expected} should be; {advice}")]
+    Unexpected {
+        /// The file.
+        name: String,
+        /// Where.
+        place: Place,
+        /// What is there.
+        found: String,
+        /// What should be.
+        expected: String,
+        /// The next step.
+        advice: &'static str,
+    },
+    /// It ends too early.
+    #[error("{name}, {place}: the file ends where {expected} should be; copy or export it again")]
+    Ends {
+        /// The file.
+        name: String,
+        /// Its end.
+        place: Place,
+        /// What should come.
+        expected: String,
+    },
+    /// The file is sound, and has something that is not read here.
+    #[error("{name}, {place}: {what} is not read; {advice}")]
+    NotRead {
+        /// The file.
+        name: String,
+        /// Where.
+        place: Place,
+        /// What it is.
+        what: String,
+        /// The next step.
+        advice: &'static str,
+    },
+    /// More than the numbers of vertices can count.
+    #[error("{name} has {bytes} bytes, the limit is {limit}; divide it, or make a coarser mesh")]
+    TooLarge {
+        /// The file.
+        name: String,
+        /// Its size.
+        bytes: usize,
+        /// The largest.
+        limit: usize,
+    },
+}
+
+/// Reads a mesh file; the extension of `name` says its format, else the content.
+///
+/// # Errors
+///
+/// [`ReadError`] with the place, what is there, what should be and what to do about it.
+///
+/// # Example
+///
+/// ```
+/// let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+/// let file = froude_mesh::files::read("hull.obj", text.as_bytes())?;
+/// assert_eq!((file.mesh.vertices.len(), file.mesh.panels.len()), (3, 1));
+///
+/// let error = froude_mesh::files::read("hull.obj", b"v 0 0\n").unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "hull.obj, line 1, column 6: the end of the line where a number, z of a vertex, should be; correct the line, or export the file again"
+/// );
+/// # Ok::<(), froude_mesh::files::ReadError>(())
+/// ```
+pub fn read(name: &str, bytes: &[u8]) -> Result<MeshFile, ReadError> {
+    if bytes.len() > LARGEST {
+        return Err(ReadError::TooLarge { name: name.to_owned(), bytes: bytes.len(), limit: LARGEST });
+    }
+    let format = Format::of_extension(name).or_else(|| Format::of_content(bytes));
+    let Some(format) = format else {
+        return Err(ReadError::UnknownFormat { name: name.to_owned() });
+    };
+    // Some editors begin a text with the mark of its encoding.
+    let text = if format == Format::Stl { None } else { bytes.strip_prefix(b"\xEF\xBB\xBF") };
+    let cursor = Cursor::new(name, text.unwrap_or(bytes));
+    let (mesh, notes) = match format {
+        Format::Stl => stl::read(cursor),
+        Format::Obj => obj::read(cursor),
+        Format::Ply => ply::read(cursor),
+        Format::Gdf => gdf::read(cursor),
+        Format::Nemoh => nemoh::read(cursor),
+        Format::Msh => msh::read(cursor),
+    }?;
+    Ok(MeshFile { mesh, format, notes })
+}
+
+/// What a reader returns: the mesh, and what it has to say.
+type Read = Result<(Mesh, Vec<String>), ReadError>;
+
+/// A mesh whose panels come as points: those that are the same to the bit are one vertex (0 and −0 are the same).
+#[derive(Default)]
+struct Soup {
+    mesh: Mesh,
+    numbers: HashMap<[u64; 3], u32>,
+}
+
+impl Soup {
+    fn vertex(&mut self, point: Vec3) -> u32 {
+        let next = self.mesh.vertices.len() as u32;
+        let number = *self.numbers.entry(bits(point)).or_insert(next);
+        if number == next {
+            self.mesh.vertices.push(point);
+        }
+        number
+    }
+}
+
+/// The bits of a point, the same for 0 and −0.
+pub(crate) fn bits(point: Vec3) -> [u64; 3] {
+    point.map(|x| (x + 0.0).to_bits())
+}
+
+/// Polygons become panels; those with more than four corners become triangles around their first corner.
+#[derive(Default)]
+struct Polygons {
+    panels: Vec<Panel>,
+    fans: usize,
+}
+
+impl Polygons {
+    /// Three corners at least; fewer are no polygon and are not taken.
+    fn push(&mut self, corners: &[u32]) {
+        match *corners {
+            [a, b, c] => self.panels.push(Panel::triangle(a, b, c)),
+            [a, b, c, d] => self.panels.push(Panel::quad(a, b, c, d)),
+            [a, ref rest @ ..] if rest.len() > 3 => {
+                self.fans += 1;
+                self.panels.extend(rest.windows(2).map(|pair| Panel::triangle(a, pair[0], pair[1])));
+            }
+            _ => {}
+        }
+    }
+
+    fn note(&self) -> Option<String> {
+        (self.fans > 0).then(|| {
+            format!("{} with more than four corners divided into triangles", counted(self.fans, "face", "faces"))
+        })
+    }
+}
+
+/// A half and its mirror image, with the note that says so.
+fn mirrored_whole(half: &Mesh, axis: usize, why: &str, notes: &mut Vec<String>) -> Mesh {
+    let letter = ["x", "y", "z"][axis.min(2)];
+    let has = |side: fn(&f64) -> bool| half.vertices.iter().any(|v| side(&v[axis]));
+    notes.push(format!("{why}: {} mirrored in the plane {letter} = 0", counted(half.panels.len(), "panel", "panels")));
+    if has(|c| *c > 0.0) && has(|c| *c < 0.0) {
+        notes.push(format!("the mirrored part lies on both sides of {letter} = 0: it and its image may overlap"));
+    }
+    half.with_mirror_image(axis)
+}
+
+/// "1 face", "2 faces".
+fn counted(count: usize, one: &str, more: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { more })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,467 @@
+//! Repairs that change no shape, each told: vertices merged, panels without area and copies taken out, panels turned.
+//!
+//! Holes are not closed, and what cannot be known is not decided: the outside of an open surface, and of one inside another.
+//!
+//! **Orientation.** From panel to panel over the edges that have two of them; the greater number of panels stays. A closed surface is
+//! turned outward when its volume is negative.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::check::{Trouble, extent, first_unreadable, has_no_area};
+use crate::mesh::{Mesh, Panel};
+use crate::parts::{holders, volume};
+use crate::topology::{by_edge, sides};
+use crate::vector::{Vec3, norm, sub};
+
+/// What was done, or could not be decided.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Repair {
+    /// Nothing: the mesh has numbers that are none.
+    #[error("nothing repaired: {0}")]
+    Nothing(Trouble),
+    /// Vertices at one place made one.
+    #[error("{count} vertices merged (closer than {weld_m} m), first at {at:?} m")]
+    Merged {
+        /// How many are gone.
+        count: usize,
+        /// How close they were at most.
+        weld_m: f64,
+        /// The first.
+        at: Vec3,
+    },
+    /// Panels without area taken out.
+    #[error("{count} panels without area taken out, first at {at:?} m")]
+    NoArea {
+        /// How many.
+        count: usize,
+        /// A corner of the first.
+        at: Vec3,
+    },
+    /// The later of two panels over the same corners taken out.
+    #[error("{count} copies of panels taken out, first at {at:?} m")]
+    Copies {
+        /// How many.
+        count: usize,
+        /// A corner of the first.
+        at: Vec3,
+    },
+    /// Vertices without panel taken out.
+    #[error("{count} vertices that no panel uses taken out")]
+    Unused {
+        /// How many.
+        count: usize,
+    },
+    /// Panels turned to run as their neighbours do.
+    #[error("{count} panels turned to run as most of their neighbours, first at {at:?} m")]
+    Turned {
+        /// How many.
+        count: usize,
+        /// A corner of the first.
+        at: Vec3,
+    },
+    /// A closed surface turned.
+    #[error("{panels} panels turned outward, at {at:?} m: they enclosed {volume_m3:.4e} m³")]
+    Outward {
+        /// How many.
+        panels: usize,
+        /// A corner of the first.
+        at: Vec3,
+        /// Signed volume before, m³.
+        volume_m3: f64,
+    },
+    /// Not decided: an open surface.
+    #[error("not decided: the outside of {panels} panels at {at:?} m, which are open; most of them keep their side")]
+    Open {
+        /// How many.
+        panels: usize,
+        /// A corner of the first.
+        at: Vec3,
+    },
+    /// Not decided: a surface inside another.
+    #[error(
+        "not decided: {panels} panels at {at:?} m, volume {volume_m3:.4e} m³, lie inside the surface at {outer:?} m; take out the one that \
+         the water does not touch"
+    )]
+    Nested {
+        /// How many.
+        panels: usize,
+        /// A corner of the first.
+        at: Vec3,
+        /// Signed volume, m³.
+        volume_m3: f64,
+        /// A corner of the outer surface.
+        outer: Vec3,
+    },
+    /// Not possible: one side only, as a Möbius band has.
+    #[error("not possible: {panels} panels at {at:?} m have no two sides; they are left as they were")]
+    OneSided {
+        /// How many.
+        panels: usize,
+        /// A corner of the first.
+        at: Vec3,
+    },
+}
+
+impl Repair {
+    /// Whether the mesh was changed; the others are for the user to decide.
+    #[must_use]
+    pub const fn is_change(&self) -> bool {
+        !matches!(self, Self::Nothing(_) | Self::Open { .. } | Self::Nested { .. } | Self::OneSided { .. })
+    }
+}
+
+/// A mesh repaired, and all that was done to it.
+///
+/// Vertices not farther than `weld_m` from an earlier one become that one; 0 merges those that are the same. Panels keep their order.
+#[must_use]
+pub fn repaired(mesh: &Mesh, weld_m: f64) -> (Mesh, Vec<Repair>) {
+    if let Some(trouble) = first_unreadable(mesh) {
+        return (mesh.clone(), vec![Repair::Nothing(trouble)]);
+    }
+    let mut told = Vec::new();
+    let mut out = welded(mesh, weld_m, &mut told);
+    take_out(&mut out, &mut told);
+    let count = out.drop_unused_vertices();
+    if count > 0 {
+        told.push(Repair::Unused { count });
+    }
+    orient(&mut out, &mut told);
+    (out, told)
+}
+
+fn corner(mesh: &Mesh, panel: usize) -> Vec3 {
+    mesh.vertices[mesh.panels[panel].corners()[0] as usize]
+}
+
+/// Each vertex becomes the first one near it; a grid of cells as large as the tolerance finds it.
+fn welded(mesh: &Mesh, weld_m: f64, told: &mut Vec<Repair>) -> Mesh {
+    let weld_m = if weld_m.is_finite() { weld_m.max(0.0) } else { 0.0 };
+    let low = |axis: usize| mesh.vertices.iter().map(|v| v[axis]).fold(f64::INFINITY, f64::min);
+    let low = [low(0), low(1), low(2)];
+    // Cells that are too small would not be counted by whole numbers.
+    let cell = weld_m.max(1e-12 * extent(mesh)).max(f64::MIN_POSITIVE);
+    let cell_of = |v: Vec3| [0, 1, 2].map(|i| ((v[i] - low[i]) / cell).floor() as i64);
+    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut out = Mesh::default();
+    let mut first = None;
+    let mut numbers = Vec::with_capacity(mesh.vertices.len());
+    for &vertex in &mesh.vertices {
+        let [i, j, k] = cell_of(vertex);
+        let around = (-1..=1).flat_map(|a| (-1..=1).flat_map(move |b| (-1..=1).map(move |c| [a, b, c])));
+        let near = around
+            .filter_map(|[a, b, c]| grid.get(&[i.saturating_add(a), j.saturating_add(b), k.saturating_add(c)]))
+            .flatten()
+            .copied()
+            .find(|kept| norm(sub(out.vertices[*kept as usize], vertex)) <= weld_m);
+        let number = near.unwrap_or(out.vertices.len() as u32);
+        if near.is_some() {
+            first.get_or_insert(vertex);
+        } else {
+            out.vertices.push(vertex);
+            grid.entry([i, j, k]).or_default().push(number);
+        }
+        numbers.push(number);
+    }
+    let renumbered = |panel: &Panel| match *panel.corners() {
+        [a, b, c] => Panel::triangle(numbers[a as usize], numbers[b as usize], numbers[c as usize]),
+        [a, b, c, d] => {
+            let [a, b, c, d] = [a, b, c, d].map(|v| numbers[v as usize]);
+            Panel::quad(a, b, c, d)
+        }
+        _ => *panel,
+    };
+    out.panels = mesh.panels.iter().map(renumbered).collect();
+    let count = mesh.vertices.len() - out.vertices.len();
+    if let Some(at) = first {
+        told.push(Repair::Merged { count, weld_m, at });
+    }
+    out
+}
+
+/// Takes out panels without area, and the later of two over the same corners.
+fn take_out(mesh: &mut Mesh, told: &mut Vec<Repair>) {
+    let extent = extent(mesh);
+    let mut seen = HashSet::new();
+    let (mut empty, mut copies) = ((0, None), (0, None));
+    let mut panels = Vec::with_capacity(mesh.panels.len());
+    for (number, panel) in mesh.panels.iter().enumerate() {
+        let mut key = panel.corners().to_vec();
+        key.sort_unstable();
+        let gone = if has_no_area(mesh, *panel, extent) {
+            &mut empty
+        } else if seen.insert(key) {
+            panels.push(*panel);
+            continue;
+        } else {
+            &mut copies
+        };
+        gone.0 += 1;
+        gone.1.get_or_insert_with(|| corner(mesh, number));
+    }
+    if let (count, Some(at)) = empty {
+        told.push(Repair::NoArea { count, at });
+    }
+    if let (count, Some(at)) = copies {
+        told.push(Repair::Copies { count, at });
+    }
+    mesh.panels = panels;
+}
+
+/// A piece of surface that hangs together over edges of two panels.
+struct Sheet {
+    panels: Vec<usize>,
+    is_two_sided: bool,
+    is_closed: bool,
+}
+
+fn orient(mesh: &mut Mesh, told: &mut Vec<Repair>) {
+    let (sheets, mut turned) = sheets(mesh);
+    let at = |mesh: &Mesh, sheet: &Sheet| corner(mesh, sheet.panels[0]);
+    for sheet in &sheets {
+        let count = sheet.panels.iter().filter(|p| turned[**p]).count();
+        if !sheet.is_two_sided {
+            sheet.panels.iter().for_each(|p| turned[*p] = false);
+            told.push(Repair::OneSided { panels: sheet.panels.len(), at: at(mesh, sheet) });
+        } else if 2 * count > sheet.panels.len() {
+            sheet.panels.iter().for_each(|p| turned[*p] = !turned[*p]);
+        }
+    }
+    let which: Vec<usize> = (0..turned.len()).filter(|p| turned[*p]).collect();
+    if let Some(first) = which.first() {
+        told.push(Repair::Turned { count: which.len(), at: corner(mesh, *first) });
+    }
+    for p in &which {
+        mesh.panels[*p] = mesh.panels[*p].turned();
+    }
+
+    let closed: Vec<Option<&[usize]>> =
+        sheets.iter().map(|s| (s.is_two_sided && s.is_closed).then_some(s.panels.as_slice())).collect();
+    let holders = holders(mesh, &closed);
+    for (sheet, holder) in sheets.iter().zip(&holders) {
+        let (panels, at) = (sheet.panels.len(), at(mesh, sheet));
+        if !sheet.is_two_sided {
+            continue;
+        }
+        if !sheet.is_closed {
+            told.push(Repair::Open { panels, at });
+            continue;
+        }
+        let volume_m3 = volume(mesh, &sheet.panels);
+        if let Some(outer) = holder {
+            let outer = corner(mesh, sheets[*outer].panels[0]);
+            told.push(Repair::Nested { panels, at, volume_m3, outer });
+        } else if volume_m3 < 0.0 {
+            sheet.panels.iter().for_each(|p| mesh.panels[*p] = mesh.panels[*p].turned());
+            told.push(Repair::Outward { panels, at, volume_m3 });
+        }
+    }
+}
+
+/// The sheets, and for each panel whether it must be turned to run as the first of its sheet.
+fn sheets(mesh: &Mesh) -> (Vec<Sheet>, Vec<bool>) {
+    let count = mesh.panels.len();
+    let sides = sides(mesh);
+    // Over each corner's edge: the neighbour, and whether it runs the other way than it should.
+    let mut over: Vec<[Option<(u32, bool)>; 4]> = vec![[None; 4]; count];
+    for edge in by_edge(&sides) {
+        if let [a, b] = edge
+            && a.panel != b.panel
+        {
+            let is_against = a.is_forward == b.is_forward;
+            over[a.panel as usize][usize::from(a.corner)] = Some((b.panel, is_against));
+            over[b.panel as usize][usize::from(b.corner)] = Some((a.panel, is_against));
+        }
+    }
+    let mut turned = vec![false; count];
+    let mut sheet_of = vec![usize::MAX; count];
+    let mut out: Vec<Sheet> = Vec::new();
+    for first in 0..count {
+        if sheet_of[first] != usize::MAX {
+            continue;
+        }
+        let number = out.len();
+        let mut sheet = Sheet { panels: Vec::new(), is_two_sided: true, is_closed: true };
+        sheet_of[first] = number;
+        let mut next = vec![first];
+        while let Some(panel) = next.pop() {
+            sheet.panels.push(panel);
+            for (neighbour, is_against) in over[panel].iter().flatten() {
+                let neighbour = *neighbour as usize;
+                let turn = turned[panel] != *is_against;
+                if sheet_of[neighbour] == usize::MAX {
+                    sheet_of[neighbour] = number;
+                    turned[neighbour] = turn;
+                    next.push(neighbour);
+                } else if turned[neighbour] != turn {
+                    sheet.is_two_sided = false;
+                }
+            }
+        }
+        sheet.panels.sort_unstable();
+        out.push(sheet);
+    }
+    // At an edge of more panels, two of one sheet that pass it each way close that sheet there.
+    for edge in by_edge(&sides) {
+        let way = |side: &crate::topology::Side| if side.is_forward == turned[side.panel as usize] { -1 } else { 1 };
+        for side in edge {
+            let number = sheet_of[side.panel as usize];
+            let of_sheet = edge.iter().filter(|s| sheet_of[s.panel as usize] == number);
+            let (there, sum) = of_sheet.fold((0, 0), |(n, sum), s| (n + 1, sum + way(s)));
+            out[number].is_closed &= there == 2 && sum == 0;
+        }
+    }
+    (out, turned)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::check::check;
+    use crate::files::{read, write_stl_binary};
+    use crate::measure::Measure;
+    use crate::sections::{Resolution, SectionBody};
+
+    fn ball(x_m: f64, radius_m: f64) -> Mesh {
+        let mesh = SectionBody::ellipsoid([radius_m; 3], 2).mesh(Resolution { along: 2, around: 8 }).unwrap().mesh;
+        mesh.mapped(|[x, y, z]| [x + x_m, y, z])
+    }
+
+    /// Each panel with vertices of its own.
+    fn torn(mesh: &Mesh) -> Mesh {
+        let mut out = Mesh::default();
+        for panel in &mesh.panels {
+            let first = out.vertices.len() as u32;
+            out.vertices.extend(mesh.corners(*panel));
+            out.panels.push(match panel.corners().len() {
+                3 => Panel::triangle(first, first + 1, first + 2),
+                _ => Panel::quad(first, first + 1, first + 2, first + 3),
+            });
+        }
+        out
+    }
+
+    fn told(repairs: &[Repair]) -> Vec<String> {
+        repairs.iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_good_mesh_stays_as_it_is() {
+        let mesh = ball(0.0, 1.0);
+        assert_eq!(repaired(&mesh, 1e-6), (mesh, Vec::new()));
+    }
+
+    #[test]
+    fn every_repair_is_told() {
+        let mut mesh = ball(0.0, 1.0);
+        mesh.vertices.push([-1.0, 5e-7, 0.0]);
+        let extra = mesh.vertices.len() as u32 - 1;
+        let first = *mesh.panels[0].corners().first().unwrap();
+        assert_eq!(mesh.vertices[first as usize], [-1.0, 0.0, 0.0]);
+        mesh.panels[0] = mesh.panels[0].renumbered(|v| if v == first { extra } else { v });
+        mesh.panels.push(mesh.panels[20]);
+        mesh.panels.push(Panel::triangle(0, 1, 0));
+        mesh.panels[30] = mesh.panels[30].turned();
+        mesh.vertices.push([9.0, 9.0, 9.0]);
+        let (out, repairs) = repaired(&mesh, 1e-6);
+        assert_eq!(check(&out), []);
+        let at = |v: Vec3| format!("{v:?} m");
+        let [copied, turned] = [20, 30].map(|p| at(mesh.corners(mesh.panels[p]).next().unwrap()));
+        let expected = [
+            "1 vertices merged (closer than 0.000001 m), first at [-1.0, 5e-7, 0.0] m".to_owned(),
+            "1 panels without area taken out, first at [-1.0, 0.0, 0.0] m".to_owned(),
+            format!("1 copies of panels taken out, first at {copied}"),
+            "1 vertices that no panel uses taken out".to_owned(),
+            format!("1 panels turned to run as most of their neighbours, first at {turned}"),
+        ];
+        assert_eq!(told(&repairs), expected);
+    }
+
+    #[test]
+    fn surfaces_that_are_inside_out_are_turned_and_nested_ones_are_not() {
+        let mut mesh = ball(0.0, 1.0).with(&ball(3.0, 0.5));
+        mesh.panels.iter_mut().for_each(|p| *p = p.turned());
+        let (out, repairs) = repaired(&mesh, 0.0);
+        assert!((Measure::of(&out).volume_m3 + Measure::of(&mesh).volume_m3).abs() < 1e-12);
+        assert_eq!(told(&repairs)[1], "64 panels turned outward, at [2.5, 0.0, 0.0] m: they enclosed -4.5346e-1 m³");
+
+        let nested = ball(0.0, 1.0).with(&ball(0.0, 0.5));
+        let (out, repairs) = repaired(&nested, 0.0);
+        assert_eq!(out, nested);
+        let sentence = "not decided: 64 panels at [-0.5, 0.0, 0.0] m, volume 4.5346e-1 m³, lie inside the surface at [-1.0, 0.0, 0.0] m; \
+                        take out the one that the water does not touch";
+        assert_eq!(told(&repairs), [sentence]);
+    }
+
+    #[test]
+    fn holes_stay_open_and_one_sided_surfaces_stay() {
+        let mut open = ball(0.0, 1.0);
+        open.panels.remove(0);
+        let (out, repairs) = repaired(&open, 1e-6);
+        assert_eq!(out, open);
+        assert!(told(&repairs)[0].starts_with("not decided: the outside of 63 panels"), "{repairs:?}");
+
+        // A band of quadrilaterals, joined with half a turn.
+        let vertices = (0..16).map(|i| {
+            let (s, c) = (f64::from(i / 2) * core::f64::consts::TAU / 8.0).sin_cos();
+            let (half_s, half_c) = (f64::from(i / 2) * core::f64::consts::PI / 8.0).sin_cos();
+            let w = 0.3 * f64::from(i % 2 * 2 - 1);
+            [(1.0 + w * half_c) * c, (1.0 + w * half_c) * s, w * half_s]
+        });
+        let quad = |i: u32| {
+            let [a, b] = [2 * i, 2 * i + 1];
+            let [c, d] = if i == 7 { [0, 1] } else { [2 * i + 3, 2 * i + 2] };
+            Panel::quad(a, b, c, d)
+        };
+        let band = Mesh { vertices: vertices.collect(), panels: (0..8).map(quad).collect() };
+        let (out, repairs) = repaired(&band, 0.0);
+        assert_eq!(out.panels, band.panels);
+        assert!(told(&repairs)[0].starts_with("not possible: 8 panels"), "{repairs:?}");
+    }
+
+    #[test]
+    fn bodies_that_touch_along_an_edge_are_two_closed_surfaces() {
+        let box_at = |x: f64, z: f64| {
+            let body = SectionBody::flat_cylinder(0.5, 0.5, 0.5, [1, 1]);
+            let turn = core::f64::consts::FRAC_1_SQRT_2;
+            let mesh = body.mesh(Resolution { along: 1, around: 4 }).unwrap().mesh;
+            mesh.mapped(|[a, b, c]| [a, x + turn * (b - c), z + turn * (b + c)])
+        };
+        let half = 0.5 * core::f64::consts::SQRT_2;
+        let mesh = box_at(0.0, 0.0).with(&box_at(half, half));
+        let (out, repairs) = repaired(&mesh, 1e-9);
+        assert_eq!(told(&repairs).len(), 1, "{repairs:?}");
+        assert!((Measure::of(&out).volume_m3 - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_torn_mesh_through_a_file_is_whole_again() {
+        let mesh = ball(0.3, 1.0);
+        let stl = read("a.stl", &write_stl_binary(&torn(&mesh))).unwrap().mesh;
+        let (out, repairs) = repaired(&torn(&stl), 1e-6);
+        assert_eq!((check(&out), repairs.len()), (Vec::new(), 1));
+    }
+
+    proptest! {
+        /// Torn apart, shaken within a third of the tolerance, with panels turned at random: the same body comes out.
+        #[test]
+        fn a_shaken_and_turned_body_comes_back(turns in prop::collection::vec(any::<bool>(), 64), shift in -0.3..0.3_f64) {
+            let mesh = ball(0.0, 1.0);
+            let mut broken = torn(&mesh);
+            for (i, v) in broken.vertices.iter_mut().enumerate() {
+                v[i % 3] += shift * 1e-4 * f64::from((i * 7919 % 101) as u32) / 101.0;
+            }
+            for (panel, turn) in broken.panels.iter_mut().zip(turns) {
+                if turn {
+                    *panel = panel.turned();
+                }
+            }
+            let (out, _) = repaired(&broken, 1e-4);
+            prop_assert_eq!(check(&out), []);
+            prop_assert_eq!(out.vertices.len(), mesh.vertices.len());
+            prop_assert!((Measure::of(&out).volume_m3 - Measure::of(&mesh).volume_m3).abs() < 1e-3);
+        }
+    }
+}
