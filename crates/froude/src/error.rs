@@ -34,6 +34,19 @@ pub enum Error {
     #[error(transparent)]
     Runner(#[from] froude_rig::campaign::runner::RunnerError),
 
+    /// A mesh file cannot be read.
+    #[error("{}: {source}", .path.display())]
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and where.
+        source: froude_mesh::files::ReadError,
+    },
+
+    /// The dimensions give no body.
+    #[error(transparent)]
+    Sections(#[from] froude_mesh::sections::SectionError),
+
     /// The report could not be drawn.
     #[error(transparent)]
     Report(#[from] froude_report::ReportError),
@@ -72,7 +85,9 @@ impl Error {
             | Self::Drag(_)
             | Self::Servo(_)
             | Self::Tuning(_)
-            | Self::Setup(_) => true,
+            | Self::Setup(_)
+            | Self::Mesh { .. }
+            | Self::Sections(_) => true,
             Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
         }
     }

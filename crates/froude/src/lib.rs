@@ -15,10 +15,13 @@ pub use froude_control as control;
 pub use froude_fit as fit;
 pub use froude_hydro as hydro;
 pub use froude_identify as identify;
+pub use froude_mesh as mesh;
+pub use froude_panel as panel;
 pub use froude_records as records;
 pub use froude_report as report;
 pub use froude_rig as rig;
 
+pub mod added_mass;
 pub mod carriage;
 pub mod demo;
 mod error;

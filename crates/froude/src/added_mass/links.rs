@@ -1,0 +1,214 @@
+//! The robot with 1 to k links: the table of the USR paper (Table 6), and its least squares (Table 7).
+//!
+//! Source: Kelasidi, Elgenes & Kilvær, eq. 15: μ = ρ V C_A, with V the volume of the configuration.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use froude_records::body::{Shape, read_body};
+use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, Estimate, EstimateFile};
+use froude_records::finding::{Finding, Severity};
+use froude_records::hash::sha256_of_file;
+use froude_records::write::write_atomically;
+use indexmap::IndexMap;
+
+use super::family::{Family, robot};
+use super::page;
+use super::record::{About, estimate};
+use super::refine::{Refined, Wanted, refine};
+use crate::Error;
+use crate::pipeline::{Job, identify};
+
+/// What to compute.
+#[derive(Debug, Clone)]
+pub struct LinksJob {
+    /// A body file of shape `robot`.
+    pub body: PathBuf,
+    /// Numbers of links.
+    pub links: Vec<usize>,
+    /// Density instead of the file's, kg/m³.
+    pub density_kg_m3: Option<f64>,
+    /// Origin, tolerance, limits.
+    pub wanted: Wanted,
+    /// Folder of the results; beside the body file, unless said.
+    pub out: Option<PathBuf>,
+    /// Date for the report.
+    pub date: Option<String>,
+}
+
+/// One configuration.
+#[derive(Debug, Clone)]
+pub struct Configuration {
+    /// Links.
+    pub links: usize,
+    /// `H3LT`.
+    pub name: String,
+    /// From tip to tip, m.
+    pub length_m: f64,
+    /// The matrix.
+    pub refined: Refined,
+}
+
+/// What came out.
+#[derive(Debug, Clone)]
+pub struct LinksOutcome {
+    /// Name of the body.
+    pub name: String,
+    /// Density, kg/m³.
+    pub density_kg_m3: f64,
+    /// The configurations.
+    pub configurations: Vec<Configuration>,
+    /// Least squares over them: `displaced_volume`, `per_link`, `affine`.
+    pub fits: Vec<Estimate>,
+    /// The record.
+    pub file: EstimateFile,
+    /// Where it lies.
+    pub estimate: PathBuf,
+    /// Where the page lies.
+    pub page: PathBuf,
+    /// The table of the configurations.
+    pub table: PathBuf,
+}
+
+/// Fewest configurations that the least squares make sense with.
+const FIT: usize = 3;
+
+/// Computes every configuration, fits them, writes `links.csv`, `campaign.toml`, `estimate.json` and `report.html`.
+///
+/// # Errors
+///
+/// See [`Error`].
+pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error> {
+    let body = read_body(&job.body)?;
+    let Shape::Robot { .. } = body.shape else {
+        return Err(Error::Nothing(format!(
+            "{}: --links counts the links of a body of shape \"robot\"; leave it out for another shape",
+            job.body.display()
+        )));
+    };
+    let density_kg_m3 = job.density_kg_m3.or(body.density_kg_m3).ok_or_else(|| no_density(&job.body))?;
+    let mut configurations = Vec::new();
+    for &links in &job.links {
+        let name = format!("H{links}LT");
+        let family = Family::of(&body.shape, links);
+        let refined = refine(&family, &job.wanted, &|step| told(&format!("{name}: {step}")))?;
+        let length_m = robot(&body.shape).length_m(links);
+        configurations.push(Configuration { links, name, length_m, refined });
+    }
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.body));
+    let made = |path: &Path, source| Error::Output { path: path.to_owned(), source };
+    std::fs::create_dir_all(&out).map_err(|e| made(&out, e))?;
+    let table = out.join("links.csv");
+    write_atomically(&table, csv(&configurations, density_kg_m3).as_bytes())?;
+    let campaign = out.join("campaign.toml");
+    write_atomically(&campaign, campaign_text(&body.name, density_kg_m3).as_bytes())?;
+    let mut findings = Vec::new();
+    let mut fits = Vec::new();
+    if configurations.len() >= FIT {
+        told("least squares over the configurations");
+        let done = identify(&Job { date: job.date.clone(), ..Job::new(&campaign) }, &|_| {})?;
+        fits.clone_from(&done.file.estimates);
+        findings.extend(done.file.findings);
+    }
+    findings.extend(configurations.iter().filter_map(|c| not_within(&c.name, &c.refined)));
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    let matrices = configurations.iter().map(|c| {
+        let about = About {
+            source: c.name.clone(),
+            density_kg_m3,
+            frame: "x forward along the body, y lateral, z vertical".to_owned(),
+            reference_point: page::point(job.wanted.origin_m, "the middle of the body"),
+            length_m: c.length_m,
+            surroundings: "unbounded water".to_owned(),
+        };
+        estimate(&c.refined, &about)
+    });
+    let file = EstimateFile {
+        schema: ESTIMATE_SCHEMA.to_owned(),
+        data: vec![DataFile { path: file_name(&job.body), sha256: sha256_of_file(&job.body)? }],
+        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
+        estimates: fits.iter().cloned().chain(matrices).collect(),
+        findings,
+    };
+    let page = page::links(&body.name, density_kg_m3, &configurations, &fits, &file, job.date.clone()).html()?;
+    let written = crate::results::write(&out, &file, &[], &[], &page)?;
+    Ok(LinksOutcome {
+        name: body.name,
+        density_kg_m3,
+        configurations,
+        fits,
+        file,
+        estimate: written.estimate,
+        page: written.report,
+        table,
+    })
+}
+
+/// Why nothing in kilograms can be said.
+pub(super) fn no_density(path: &Path) -> Error {
+    Error::Nothing(format!(
+        "{}: no density of the water; write --density \"1025 kg/m^3\", or [fluid] density in the body file",
+        path.display()
+    ))
+}
+
+/// A finding where the tolerance was not reached.
+pub(super) fn not_within(name: &str, refined: &Refined) -> Option<Finding> {
+    let why = refined.stopped.as_ref()?;
+    let message = format!(
+        "{name}: the numerical uncertainty is {:.2} % where less was asked for: {why}",
+        100.0 * refined.worst
+    );
+    Some(Finding::new(Severity::Warning, "not-converged", message))
+}
+
+/// `mamba/body.toml` → `mamba/body-added-mass`.
+pub(super) fn default_out(input: &Path) -> PathBuf {
+    let stem = input.file_stem().map_or_else(|| "body".to_owned(), |s| s.to_string_lossy().into_owned());
+    input.with_file_name(format!("{stem}-added-mass"))
+}
+
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
+}
+
+fn csv(configurations: &[Configuration], density_kg_m3: f64) -> String {
+    let mut out = "configuration,n_links [1],mu_x [kg],mu_y [kg],mu_z [kg],volume [m^3]\n".to_owned();
+    for c in configurations {
+        let mu = |i: usize| density_kg_m3 * c.refined.value[i][i];
+        let _ = writeln!(out, "{},{},{:.6},{:.6},{:.6},{:.7e}", c.name, c.links, mu(0), mu(1), mu(2), c.refined.volume_m3);
+    }
+    out
+}
+
+fn campaign_text(name: &str, density_kg_m3: f64) -> String {
+    format!(
+        r#"# Least squares over the configurations of links.csv, as Table 7 of the USR paper has them; made by `froude added-mass`.
+schema = 1
+name = {name:?}
+
+[fluid]
+density = "{density_kg_m3} kg/m^3"
+
+[[source]]
+name  = "potential flow"
+kind  = "potential"
+table = "links.csv"
+
+[identify]
+
+[[identify.model]]
+name = "displaced_volume"      # Table 7: mu = V rho C_A
+mu_x = "C_Ax*volume*density"
+mu_y = "C_Ay*volume*density"
+
+[[identify.model]]
+name = "per_link"              # through the origin, as eq. 24 has it
+mu_y = "m_link*n_links"
+
+[[identify.model]]
+name = "affine"
+mu_y = "m_link*n_links + m_ends"
+"#
+    )
+}

@@ -1,0 +1,308 @@
+//! The report of an added mass: matrix, convergence, configurations.
+
+use froude_mesh::Vec3;
+use froude_records::estimate::{Estimate, EstimateFile};
+use froude_report::chart::{Chart, ChartPanel, Mark, Scale, Series};
+use froude_report::document::{Document, DocumentSection, TextTable};
+use froude_report::number;
+
+use super::body::BodyOutcome;
+use super::links::Configuration;
+use super::record::{MOTIONS, unit};
+use super::refine::Refined;
+
+/// Sort of page.
+const SORT: &str = "Added mass · potential flow";
+
+/// A point in words.
+#[must_use]
+pub fn point(at_m: Vec3, origin: &str) -> String {
+    if at_m == [0.0; 3] {
+        origin.to_owned()
+    } else {
+        format!("({}, {}, {}) m from {origin}", at_m[0], at_m[1], at_m[2])
+    }
+}
+
+/// A value with its expanded uncertainty.
+#[must_use]
+pub fn with_uncertainty(value: f64, expanded: f64) -> String {
+    if expanded.is_finite() { number::plus_minus(value, expanded) } else { number::plain(value, 6) }
+}
+
+/// The matrix in kg, kg m, kg m², row by row.
+#[must_use]
+pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
+    let rows = (0..6)
+        .map(|i| {
+            let cells = (0..6).map(|j| {
+                let (value, u) = (density_kg_m3 * refined.value[i][j], density_kg_m3 * refined.uncertainty[i][j]);
+                // Below its uncertainty, and zero by symmetry to rounding.
+                if value.abs() <= u && value.abs() < 1e-9 * density_kg_m3 { "0".to_owned() } else { with_uncertainty(value, u) }
+            });
+            std::iter::once(MOTIONS[i].to_owned()).chain(cells).collect()
+        })
+        .collect();
+    TextTable {
+        caption: "Added mass: force (first three rows) and moment (last three) on the body are minus this times the acceleration. kg, kg m, \
+                  kg m²; ± is the numerical uncertainty, 95 %."
+            .to_owned(),
+        head: std::iter::once("").chain(MOTIONS).map(str::to_owned).collect(),
+        rows,
+    }
+}
+
+/// Diagonal without dimension: over ρV (ρVL² for rotations), and over ρLⁿ as WAMIT prints it.
+#[must_use]
+pub fn dimensionless_table(refined: &Refined, length_m: f64) -> TextTable {
+    let v = refined.volume_m3;
+    let rows = (0..6)
+        .map(|i| {
+            let [of_volume, of_length] = if i < 3 { [v, length_m.powi(3)] } else { [v * length_m.powi(2), length_m.powi(5)] };
+            let of = |size: f64| with_uncertainty(refined.value[i][i] / size, refined.uncertainty[i][i] / size);
+            vec![MOTIONS[i].to_owned(), of(of_volume), of(of_length)]
+        })
+        .collect();
+    TextTable {
+        caption: format!("Diagonal without dimension; V = {} m³, L = {} m.", number::plain(v, 6), number::plain(length_m, 6)),
+        head: ["", "A/(ρV), A/(ρVL²) [1]", "A/(ρL³), A/(ρL⁵) [1], as WAMIT with ULEN = L"].map(str::to_owned).to_vec(),
+        rows,
+    }
+}
+
+/// Meshes, work and what they gave.
+#[must_use]
+pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
+    let rows = refined
+        .steps
+        .iter()
+        .map(|s| {
+            let a = &s.added_mass.matrix;
+            let mut row =
+                vec![s.panels.to_string(), s.unknowns.to_string(), s.iterations.to_string(), number::plain(s.seconds, 2)];
+            row.extend((0..6).map(|i| number::plain(density_kg_m3 * a[i][i], 6)));
+            row.push(format!("{:.1e}", s.added_mass.asymmetry));
+            row
+        })
+        .collect();
+    let head = ["panels", "unknowns", "iterations", "time [s]"].map(str::to_owned).into_iter();
+    let masses = (0..6).map(|i| format!("A{0}{0} [{1}]", i + 1, unit(i, i).replace('*', " ").replace("^2", "²")));
+    TextTable {
+        caption: "Meshes from the coarsest on. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): a flag, no estimate \
+                  of the error."
+            .to_owned(),
+        head: head.chain(masses).chain(["asymmetry [1]".to_owned()]).collect(),
+        rows,
+    }
+}
+
+/// Distance of each mesh's diagonal from the value given, over panels.
+#[must_use]
+pub fn convergence_chart(refined: &Refined) -> Chart {
+    let panels: Vec<f64> = refined.steps.iter().map(|s| s.panels as f64).collect();
+    let mut series: Vec<Series> = (0..6)
+        .filter(|&i| refined.value[i][i].abs() > 1e-9 * refined.volume_m3)
+        .map(|i| Series {
+            name: MOTIONS[i].to_owned(),
+            x: panels.clone(),
+            y: refined.steps.iter().map(|s| (s.added_mass.matrix[i][i] / refined.value[i][i] - 1.0).abs()).collect(),
+            ..Series::default()
+        })
+        .collect();
+    if let (Some(first), Some(last), Some(top)) =
+        (panels.first(), panels.last(), series.iter().filter_map(|s| s.y.first()).copied().reduce(f64::max))
+    {
+        series.push(Series {
+            name: "second order: 1/panels".to_owned(),
+            mark: Mark::Dashed,
+            x: vec![*first, *last],
+            y: vec![top, top * first / last],
+            ..Series::default()
+        });
+    }
+    Chart {
+        name: "convergence".to_owned(),
+        title: "Convergence with the number of panels".to_owned(),
+        caption: "Distance of each mesh's diagonal from the value that is given, as part of it.".to_owned(),
+        x_label: "panels [1]".to_owned(),
+        x_scale: Scale::Logarithmic,
+        panels: vec![ChartPanel { y_label: "|A/A∞ − 1| [1]".to_owned(), y_scale: Scale::Logarithmic, series }],
+    }
+}
+
+/// How the value came about.
+#[must_use]
+pub fn convergence_words(refined: &Refined) -> Vec<String> {
+    let orders: Vec<String> = (0..6)
+        .filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?)))
+        .collect();
+    let mut out = vec![if orders.is_empty() {
+        "No order of convergence can be seen on these meshes: the value is that of the finest one, with three times its distance from the \
+         others."
+            .to_owned()
+    } else {
+        format!("Observed order of convergence: {}. Flat panels of constant potential have 2.", orders.join(", "))
+    }];
+    out.push(match &refined.stopped {
+        None => format!("The largest numerical uncertainty is {:.2} % of its entry.", 100.0 * refined.worst),
+        Some(why) => format!("The largest numerical uncertainty is {:.2} %, more than was asked for: {why}.", 100.0 * refined.worst),
+    });
+    out
+}
+
+/// The configurations as Table 6 has them.
+#[must_use]
+pub fn links_table(configurations: &[Configuration], density_kg_m3: f64) -> TextTable {
+    let rows = configurations
+        .iter()
+        .map(|c| {
+            let r = &c.refined;
+            let mass = |i: usize| with_uncertainty(density_kg_m3 * r.value[i][i], density_kg_m3 * r.uncertainty[i][i]);
+            let part = |i: usize| with_uncertainty(r.value[i][i] / r.volume_m3, r.uncertainty[i][i] / r.volume_m3);
+            let slender = number::plain(r.value[1][1] / c.length_m.powi(3), 4);
+            vec![
+                c.name.clone(),
+                number::plain(1e3 * r.volume_m3, 5),
+                mass(0),
+                mass(1),
+                mass(2),
+                part(0),
+                part(1),
+                part(2),
+                slender,
+            ]
+        })
+        .collect();
+    TextTable {
+        caption: "Added mass of the configurations, deeply submerged; C_A = μ/(ρV) (USR eq. 15), and the sway mass over ρL³ as WAMIT prints \
+                  it. ± is the numerical uncertainty, 95 %."
+            .to_owned(),
+        head: ["", "V [10⁻³ m³]", "μ_x [kg]", "μ_y [kg]", "μ_z [kg]", "C_Ax [1]", "C_Ay [1]", "C_Az [1]", "μ_y/(ρL³) [1]"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+    }
+}
+
+fn fits_table(fits: &[Estimate]) -> TextTable {
+    let rows = fits
+        .iter()
+        .flat_map(|e| {
+            e.coefficients.iter().map(|(name, c)| {
+                vec![
+                    e.model.clone(),
+                    name.clone(),
+                    c.unit.clone(),
+                    number::coefficient(c),
+                    if e.recommended { "recommended".to_owned() } else { String::new() },
+                ]
+            })
+        })
+        .collect();
+    TextTable {
+        caption: "Least squares over the configurations (Table 7: displaced_volume). The standard uncertainty is that of the scatter about \
+                  the law; the masses themselves are known far better."
+            .to_owned(),
+        head: ["model", "coefficient", "unit", "value", ""].map(str::to_owned).to_vec(),
+        rows,
+    }
+}
+
+fn links_chart(configurations: &[Configuration], density_kg_m3: f64) -> Chart {
+    let x: Vec<f64> = configurations.iter().map(|c| c.links as f64).collect();
+    let masses = |i: usize, name: &str| {
+        let y: Vec<f64> = configurations.iter().map(|c| density_kg_m3 * c.refined.value[i][i]).collect();
+        Series { name: name.to_owned(), mark: Mark::Points, x: x.clone(), y, ..Series::default() }
+    };
+    let panel = |y_label: &str, series| ChartPanel { y_label: y_label.to_owned(), y_scale: Scale::Linear, series };
+    Chart {
+        name: "links".to_owned(),
+        title: "Added mass against the number of links".to_owned(),
+        caption: "Lateral, vertical and axial added mass of the configurations.".to_owned(),
+        x_label: "links [1]".to_owned(),
+        x_scale: Scale::Linear,
+        panels: vec![
+            panel("μ_y, μ_z [kg]", vec![masses(1, "μ_y"), masses(2, "μ_z")]),
+            panel("μ_x [kg]", vec![masses(0, "μ_x")]),
+        ],
+    }
+}
+
+/// The report over configurations.
+#[must_use]
+pub fn links(
+    name: &str,
+    density_kg_m3: f64,
+    configurations: &[Configuration],
+    fits: &[Estimate],
+    file: &EstimateFile,
+    date: Option<String>,
+) -> Document {
+    let mut sections = vec![DocumentSection {
+        title: "Configurations".to_owned(),
+        paragraphs: vec![format!("Density {density_kg_m3} kg/m³. The x axis runs along the body, y is lateral, z vertical.")],
+        tables: vec![links_table(configurations, density_kg_m3)],
+        charts: vec![links_chart(configurations, density_kg_m3)],
+    }];
+    if !fits.is_empty() {
+        sections.push(DocumentSection {
+            title: "Least squares".to_owned(),
+            paragraphs: vec!["Details, residuals and the choice among the laws: campaign-results/report.html.".to_owned()],
+            tables: vec![fits_table(fits)],
+            ..DocumentSection::default()
+        });
+    }
+    for c in configurations {
+        sections.push(DocumentSection {
+            title: c.name.clone(),
+            paragraphs: convergence_words(&c.refined),
+            tables: vec![matrix_table(&c.refined, density_kg_m3), steps_table(&c.refined, density_kg_m3)],
+            charts: Vec::new(),
+        });
+    }
+    if let Some(last) = configurations.last() {
+        let chart = convergence_chart(&last.refined);
+        sections.push(DocumentSection { title: format!("Convergence of {}", last.name), charts: vec![chart], ..Default::default() });
+    }
+    Document {
+        sort: SORT.to_owned(),
+        title: name.to_owned(),
+        subtitle: "by number of links".to_owned(),
+        date,
+        sections,
+        findings: file.findings.clone(),
+    }
+}
+
+/// The report of one body.
+#[must_use]
+pub fn body(outcome: &BodyOutcome, date: Option<String>) -> Document {
+    let rho = outcome.density_kg_m3;
+    let mut sections = Vec::new();
+    for case in &outcome.cases {
+        sections.push(DocumentSection {
+            title: case.title.clone(),
+            paragraphs: convergence_words(&case.refined),
+            tables: vec![
+                matrix_table(&case.refined, rho),
+                dimensionless_table(&case.refined, outcome.length_m),
+                steps_table(&case.refined, rho),
+            ],
+            charts: vec![convergence_chart(&case.refined)],
+        });
+    }
+    sections.push(DocumentSection {
+        title: "Body".to_owned(),
+        paragraphs: outcome.notes.clone(),
+        tables: outcome.tables.clone(),
+        charts: Vec::new(),
+    });
+    Document {
+        sort: SORT.to_owned(),
+        title: outcome.name.clone(),
+        subtitle: String::new(),
+        date,
+        sections,
+        findings: outcome.file.findings.clone(),
+    }
+}

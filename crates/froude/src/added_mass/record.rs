@@ -1,0 +1,104 @@
+//! A matrix as an estimate.
+
+use froude_records::estimate::{Coefficient, Covariance, Diagnostics, Estimate, Law, Measured, Status};
+use indexmap::IndexMap;
+
+use super::refine::Refined;
+
+/// Coverage factor of a numerical uncertainty: it is stated as an interval of 95 %.
+const COVERAGE: f64 = 2.0;
+
+/// Motions in the order of the matrix.
+pub const MOTIONS: [&str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
+
+/// Unit of an entry in kg.
+#[must_use]
+pub const fn unit(i: usize, j: usize) -> &'static str {
+    match i / 3 + j / 3 {
+        0 => "kg",
+        1 => "kg*m",
+        _ => "kg*m^2",
+    }
+}
+
+/// What the record says beside the numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct About {
+    /// Source: the configuration, or the name of the body.
+    pub source: String,
+    /// Density, kg/m³.
+    pub density_kg_m3: f64,
+    /// Axes in words.
+    pub frame: String,
+    /// Point in words.
+    pub reference_point: String,
+    /// From end to end along x, m.
+    pub length_m: f64,
+    /// What surrounds the body, in words.
+    pub surroundings: String,
+}
+
+/// The estimate of model `added_mass_6x6`: entries A11 to A66 on and above the diagonal; the matrix is symmetric.
+#[must_use]
+pub fn estimate(refined: &Refined, about: &About) -> Estimate {
+    let rho = about.density_kg_m3;
+    let mut coefficients = IndexMap::new();
+    for i in 0..6 {
+        for j in i..6 {
+            let (value, expanded) = (rho * refined.value[i][j], rho * refined.uncertainty[i][j]);
+            let known = expanded.is_finite();
+            coefficients.insert(
+                format!("A{}{}", i + 1, j + 1),
+                Coefficient {
+                    value: Some(value),
+                    unit: unit(i, j).to_owned(),
+                    status: Status::Free,
+                    standard_uncertainty: known.then_some(expanded / COVERAGE),
+                    type_a: None,
+                    type_b: known.then_some(expanded / COVERAGE),
+                    interval_95: known.then_some([value - expanded, value + expanded]),
+                    effective_dof: None,
+                },
+            );
+        }
+    }
+    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
+    let steps = refined.steps.iter().map(|s| s.panels.to_string()).collect::<Vec<_>>().join(", ");
+    let covariance: Option<Covariance> = None;
+    Estimate {
+        id: format!("{}/added_mass_6x6", about.source),
+        source: about.source.clone(),
+        kind: "potential".to_owned(),
+        model: "added_mass_6x6".to_owned(),
+        law: Law { version: 1, ..Law::default() },
+        geometry: IndexMap::from([
+            ("volume".to_owned(), measured(refined.volume_m3, "m^3")),
+            ("length".to_owned(), measured(about.length_m, "m")),
+        ]),
+        density: Some(measured(rho, "kg/m^3")),
+        frame: about.frame.clone(),
+        reference_point: about.reference_point.clone(),
+        method: format!(
+            "potential flow, constant panels, direct formulation, {}; meshes of {steps} panels{}",
+            about.surroundings,
+            if refined.steps.len() > 2 { ", extrapolated" } else { "" }
+        ),
+        covariance_kind: "numerical uncertainty of each entry alone, 95 %".to_owned(),
+        dof: IndexMap::new(),
+        sigma: IndexMap::new(),
+        n_observations: refined.steps.len(),
+        coefficients,
+        covariance,
+        undetermined: Vec::new(),
+        validity: IndexMap::new(),
+        diagnostics: Diagnostics {
+            notes: vec![format!(
+                "raw asymmetry of the finest mesh {:.1e}; the symmetric part is given",
+                refined.steps.last().map_or(0.0, |s| s.added_mass.asymmetry)
+            )],
+            ..Diagnostics::default()
+        },
+        recommended: true,
+        reason: Some("the only model of its source".to_owned()),
+    }
+}

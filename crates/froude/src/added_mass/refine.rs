@@ -1,0 +1,262 @@
+//! Finer and finer until the tolerance holds, told beforehand what it takes.
+
+use std::time::Instant;
+
+use froude_mesh::Vec3;
+use froude_mesh::measure::Measure;
+use froude_mesh::sections::PartMesh;
+use froude_panel::convergence::{Converged, converged};
+use froude_panel::matrix::AddedMass;
+use froude_panel::mirror::{Mirror, positive_part};
+use froude_panel::problem::{Frame, Problem, Solution};
+use froude_panel::{PLAIN_LIMIT, fast, solve};
+
+use super::family::Family;
+use crate::Error;
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// The point that moments are about, m.
+    pub origin_m: Vec3,
+    /// Largest numerical uncertainty: of a diagonal entry as part of itself, of another as part of √(A_ii A_jj).
+    pub tolerance: f64,
+    /// Panels at most.
+    pub most_panels: usize,
+    /// Mirror planes that are not the body's: a wall, the water's surface.
+    pub mirrors: Vec<Mirror>,
+}
+
+impl Default for Wanted {
+    fn default() -> Self {
+        Self { origin_m: [0.0; 3], tolerance: 0.01, most_panels: 120_000, mirrors: Vec::new() }
+    }
+}
+
+/// One mesh and its result.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Step {
+    /// Panels of the whole body.
+    pub panels: usize,
+    /// Unknowns that were solved for, after the body's own mirror planes.
+    pub unknowns: usize,
+    /// Size of the cells over those of the coarsest mesh.
+    pub size: f64,
+    /// Iterations; 0 for a direct solution.
+    pub iterations: usize,
+    /// Time, s.
+    pub seconds: f64,
+    /// Matrix over ρ.
+    pub added_mass: AddedMass,
+    /// Volume, area, centre of buoyancy of this mesh.
+    pub measure: Measure,
+}
+
+/// A matrix with its numerical uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refined {
+    /// Entries over ρ, extrapolated where the meshes allow: m³, m⁴, m⁵.
+    pub value: [[f64; 6]; 6],
+    /// Their numerical uncertainty, as an expanded one; infinite where there is one mesh only.
+    pub uncertainty: [[f64; 6]; 6],
+    /// Observed order of convergence; `None` where the values do not fall in a row.
+    pub order: [[Option<f64>; 6]; 6],
+    /// Volume, extrapolated, m³.
+    pub volume_m3: f64,
+    /// From the coarsest on; all of them, not only those that the value is from.
+    pub steps: Vec<Step>,
+    /// Largest relative uncertainty, as the tolerance counts it.
+    pub worst: f64,
+    /// Whether it is within the tolerance.
+    pub is_within: bool,
+    /// Why it is not, where it is not.
+    pub stopped: Option<String>,
+    /// The finest mesh, and the potentials on it.
+    pub finest: (PartMesh, Solution),
+}
+
+/// Time and memory of a solution, before it starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Forecast {
+    /// Unknowns.
+    pub unknowns: usize,
+    /// Time, s, on as many threads as there are.
+    pub seconds: f64,
+    /// Memory, bytes.
+    pub memory_bytes: f64,
+}
+
+/// Time of a near pair and of a pair of boxes over a whole solution, one thread, s: as measured on a processor with AVX-512.
+const NEAR_S: f64 = 25e-9;
+const FAR_S: f64 = 40e-6;
+/// Time of a pair of panels in the plain solver, s.
+const PLAIN_S: f64 = 80e-9;
+/// Multiplications of the plain solver's factorisation a second.
+const PLAIN_PER_S: f64 = 2e10;
+/// Part of the free memory that may be asked for.
+const MEMORY_PART: f64 = 0.8;
+
+/// What a problem will take.
+#[must_use]
+pub fn forecast(problem: &Problem) -> Forecast {
+    let n = problem.facets.len() as f64;
+    let threads = std::thread::available_parallelism().map_or(1.0, |t| t.get() as f64);
+    if problem.facets.len() <= PLAIN_LIMIT {
+        // A matrix for each class of signs: a body with three planes has six.
+        let classes = if problem.mirrors.is_empty() { 1.0 } else { 6.0 };
+        let images = f64::from(1_u32 << problem.mirrors.len());
+        let seconds = classes * (n * n * images * PLAIN_S / threads + n.powi(3) / 1.5 / PLAIN_PER_S);
+        return Forecast { unknowns: problem.facets.len(), seconds, memory_bytes: 24.0 * n * n };
+    }
+    let cost = fast::cost(problem);
+    let blocks = problem.columns().div_ceil(8) as f64;
+    let seconds = blocks * (cost.near_pairs as f64 * NEAR_S + cost.far_pairs as f64 * FAR_S) / threads + 0.1;
+    Forecast { unknowns: cost.unknowns, seconds, memory_bytes: cost.memory_bytes as f64 }
+}
+
+/// Free memory of the machine, bytes; `None` where it cannot be known.
+#[must_use]
+pub fn free_memory_bytes() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = text.lines().find(|l| l.starts_with("MemAvailable:"))?;
+    line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|kib| 1024.0 * kib)
+}
+
+/// The problem of a mesh about the origin of its frame, and the body's own planes in it.
+fn problem(family: &Family, mesh: &PartMesh, wanted: &Wanted) -> Problem {
+    let frame = [Frame::at([0.0; 3])];
+    if let Family::Sections { planes, .. } = family {
+        let own = planes.iter().filter(|axis| wanted.mirrors.iter().all(|m| m.axis != **axis));
+        let mirrors: Vec<Mirror> = own.map(|axis| Mirror::body(*axis)).chain(wanted.mirrors.iter().copied()).collect();
+        if let Ok(part) = positive_part(&mesh.mesh, &mirrors) {
+            return Problem::of_parts(&part, &vec![0; part.panels.len()], &frame, &mirrors);
+        }
+    }
+    Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, &wanted.mirrors)
+}
+
+/// Refines until the tolerance holds, or panels, memory or members end; `told` hears of every step before it starts.
+///
+/// # Errors
+///
+/// Dimensions that give no body, and a mesh that does not fit into the memory even as it is, with the number of panels that would.
+pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
+    let mut steps: Vec<Step> = Vec::new();
+    let mut finest = None;
+    let mut stopped = None;
+    for number in 0..family.members() {
+        let panels = family.panels(number)?;
+        if panels > wanted.most_panels && !steps.is_empty() {
+            stopped = Some(format!("the next mesh has {panels} panels, and {} are allowed (--most-panels)", wanted.most_panels));
+            break;
+        }
+        let member = family.member(number)?;
+        let problem = problem(family, &member.mesh, wanted);
+        let forecast = forecast(&problem);
+        let free = free_memory_bytes().map_or(f64::INFINITY, |m| MEMORY_PART * m);
+        if forecast.memory_bytes > free {
+            let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
+            let why = format!(
+                "{panels} panels would take {:.1} GB of memory and {:.1} GB are free; some {fits} panels would fit",
+                forecast.memory_bytes / 1e9,
+                free / 1e9
+            );
+            if steps.is_empty() {
+                return Err(Error::Nothing(why));
+            }
+            stopped = Some(why);
+            break;
+        }
+        told(&format!(
+            "{panels} panels, {} unknowns: some {} and {:.0} MB",
+            forecast.unknowns,
+            duration(forecast.seconds),
+            forecast.memory_bytes / 1e6
+        ));
+        let started = Instant::now();
+        let solution = solve(&problem);
+        steps.push(Step {
+            panels: member.mesh.mesh.panels.len(),
+            unknowns: problem.facets.len(),
+            size: member.size,
+            iterations: solution.report.iterations,
+            seconds: started.elapsed().as_secs_f64(),
+            added_mass: solution.added_mass(0).about(wanted.origin_m),
+            measure: Measure::of(&member.mesh.mesh),
+        });
+        finest = Some((member.mesh, solution));
+        if steps.len() >= 3 && worst(&entries(&steps)) <= wanted.tolerance {
+            break;
+        }
+    }
+    let Some(finest) = finest else {
+        return Err(Error::Nothing("the body has no mesh".to_owned()));
+    };
+    let entries = entries(&steps);
+    let worst = worst(&entries);
+    let is_within = worst <= wanted.tolerance;
+    let volumes: Vec<f64> = steps.iter().map(|s| s.measure.volume_m3).collect();
+    if !is_within && stopped.is_none() {
+        stopped = Some("no finer mesh is made".to_owned());
+    }
+    Ok(Refined {
+        value: entries.map(|row| row.map(|e| e.value)),
+        uncertainty: entries.map(|row| row.map(|e| e.uncertainty)),
+        order: entries.map(|row| row.map(|e| e.order)),
+        volume_m3: last_three(&steps, &volumes).value,
+        steps,
+        worst,
+        is_within,
+        stopped: stopped.filter(|_| !is_within),
+        finest,
+    })
+}
+
+/// A value of the last three meshes; of two the finer with their distance, three times; of one no uncertainty.
+fn last_three(steps: &[Step], values: &[f64]) -> Converged {
+    let n = steps.len();
+    let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
+    match n {
+        0 => Converged { value: f64::NAN, uncertainty: f64::INFINITY, order: None },
+        1 => Converged { value: values[0], uncertainty: f64::INFINITY, order: None },
+        2 => Converged { value: values[1], uncertainty: 3.0 * (values[1] - values[0]).abs(), order: None },
+        _ => converged([sizes[n - 3], sizes[n - 2], sizes[n - 1]], [values[n - 3], values[n - 2], values[n - 1]]),
+    }
+}
+
+fn entries(steps: &[Step]) -> [[Converged; 6]; 6] {
+    core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            let values: Vec<f64> = steps.iter().map(|s| s.added_mass.matrix[i][j]).collect();
+            last_three(steps, &values)
+        })
+    })
+}
+
+/// Part of the largest entry of its kind below which a diagonal entry counts as zero: the roll of a body of revolution.
+const ZERO: f64 = 1e-3;
+
+/// Largest uncertainty of an entry over √(A_ii A_jj).
+fn worst(entries: &[[Converged; 6]; 6]) -> f64 {
+    let kind = |i: usize| (0..3).map(|k| entries[3 * (i / 3) + k][3 * (i / 3) + k].value.abs()).fold(0.0, f64::max);
+    let size = |i: usize| entries[i][i].value.abs().max(ZERO * kind(i));
+    let mut out = 0.0_f64;
+    for (i, row) in entries.iter().enumerate() {
+        for (j, entry) in row.iter().enumerate() {
+            out = out.max(entry.uncertainty / (size(i) * size(j)).sqrt());
+        }
+    }
+    out
+}
+
+/// A time as a person says it.
+#[must_use]
+pub fn duration(seconds: f64) -> String {
+    if seconds < 1.0 {
+        "less than a second".to_owned()
+    } else if seconds < 120.0 {
+        format!("{seconds:.0} s")
+    } else {
+        format!("{:.0} min", seconds / 60.0)
+    }
+}
