@@ -40,6 +40,7 @@ pub mod axes;
 pub mod closed_form;
 pub mod dissipation;
 pub mod drag;
+pub mod ellipsoid;
 pub mod fluid;
 pub mod geometry;
 pub mod link_parameters;
