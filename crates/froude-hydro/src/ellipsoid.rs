@@ -48,7 +48,8 @@ use core::f64::consts::PI;
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error(
     "semi-axes {:?} m are not those of an ellipsoid; all three must be finite and above 0, and the longest at most \
-     1e12 times the shortest", semi_axes_m
+     1e12 times the shortest",
+    semi_axes_m
 )]
 pub struct EllipsoidError {
     /// What was given.
@@ -79,7 +80,7 @@ pub fn ellipsoid_volume_m3(semi_axes_m: [f64; 3]) -> f64 {
 ///
 /// # Source
 ///
-/// Lamb (1932), §114, eq. 6: `α₀ = abc ∫₀^∞ dλ/((a²+λ)Δ)`.
+/// Lamb (1932), §114: `α₀ = abc ∫₀^∞ dλ/((a²+λ)Δ)`.
 pub fn lamb_integrals(semi_axes_m: [f64; 3]) -> Result<[f64; 3], EllipsoidError> {
     let axes = scaled(semi_axes_m)?.0;
     let product = axes[0] * axes[1] * axes[2];
@@ -201,7 +202,7 @@ impl Integrals {
         let mut this = Self { d: [0.0; 3], j: [0.0; 3], k: [0.0; 3] };
         for i in 0..3 {
             let own = [i, (i + 1) % 3, (i + 2) % 3].map(|axis| squares[axis]);
-            // ∫ t^(a′−1) Π (t + z_i)^(−b_i) dt = B(a, a′) R₋ₐ(b; z), a + a′ = Σ b (Carlson 1977, 6.8).
+            // ∫ t^(a′−1) Π (t + z_i)^(−b_i) dt = B(a, a′) R₋ₐ(b; z), a + a′ = Σ b (Carlson 1977).
             this.d[i] = 2.0 / 3.0 * carlson_r(3, [3, 1, 1], own);
             this.j[i] = 2.0 / 5.0 * carlson_r(5, [1, 3, 3], own);
             this.k[i] = 4.0 / 15.0 * carlson_r(3, [1, 3, 3], own);
@@ -213,7 +214,7 @@ impl Integrals {
 /// Carlson's `R₋ₐ(b; z)` for nearly equal `z`, by its series about their mean; `a` and `b` in halves.
 ///
 /// `R₋ₐ = A⁻ᵃ Σ (a)_N/(c)_N T_N`, with A the mean of `z` weighted by `b`, `c = Σ b` and
-/// `N T_N = Σ_k T_(N−k) Σ_i b_i (1 − z_i/A)^k` (Carlson 1995, §1, with power sums).
+/// `N T_N = Σ_k T_(N−k) Σ_i b_i (1 − z_i/A)^k` (Carlson 1995, with power sums for his symmetric functions).
 fn carlson_r(a_halves: u8, b_halves: [u8; 3], z: [f64; 3]) -> f64 {
     const ORDER: usize = 7;
     let (a, b) = (0.5 * f64::from(a_halves), b_halves.map(|b| 0.5 * f64::from(b)));

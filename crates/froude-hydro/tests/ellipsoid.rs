@@ -133,7 +133,8 @@ fn a_sphere_takes_half_its_mass_and_turns_freely() {
 
 #[test]
 fn what_is_no_ellipsoid_is_refused() {
-    for axes in [[0.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, f64::NAN, 1.0], [1.0, f64::INFINITY, 1.0], [1.0, 1.0, 1e-13]] {
+    for axes in [[0.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, f64::NAN, 1.0], [1.0, f64::INFINITY, 1.0], [1.0, 1.0, 1e-13]]
+    {
         assert!(ellipsoid_added_mass(axes).is_err(), "{axes:?}");
     }
     assert_eq!(
