@@ -172,7 +172,8 @@ pub fn sphere_near_plane(
 
 /// Added-mass coefficient of a sphere moving square to a plane \[-\], up to contact.
 ///
-/// Absolute error below 1e-13 from 1.000001 radii on and at contact, 1e-9 between. At contact `½ (3 ζ(3) − 2) = 0.8031` for a rigid plane, `½ (9/4 ζ(3) − 2) = 0.3523` for φ = 0.
+/// At contact `½ (3 ζ(3) − 2) = 0.8031` for a rigid plane, `½ (9/4 ζ(3) − 2) = 0.3523` for φ = 0. Absolute error below 1e-13
+/// there and from 1.000001 radii on, 1e-9 between.
 ///
 /// # Errors
 ///

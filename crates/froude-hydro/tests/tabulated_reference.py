@@ -2,7 +2,7 @@
 
 Plates: doublets constant over rectangles, spaced by cosines, no flow at their (cosine) middles; extrapolated from
 24 and 36 cells a side at second order. Prisms and cylinders: Capytaine, direct method, no free surface, three
-meshes, extrapolated at the order that they show. About 10 minutes.
+meshes, extrapolated at the order that they show. About two minutes.
 
     pip install numpy==2.4.6 scipy==1.17.1 capytaine==3.0.0 && python tabulated_reference.py
 """
