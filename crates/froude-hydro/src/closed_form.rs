@@ -17,7 +17,8 @@
 //! | sphere, drag                | [`sphere_stokes_drag_n`], [`sphere_drag_coefficient`] | Stokes 1851; Schiller & Naumann 1933 |
 //! | elliptic cylinder, per length | [`ellipse_added_mass_kg_m`]       | Lamb 1932, §71       |
 //!
-//! Not here: finite depth, free surface, oblate bodies.
+//! Not here: walls and free surface ([`near_wall`](crate::near_wall)), oblate bodies and those with three axes
+//! ([`ellipsoid`](crate::ellipsoid)).
 
 use core::f64::consts::PI;
 

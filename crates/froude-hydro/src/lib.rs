@@ -24,14 +24,19 @@
 //! | [`similarity`]      | Re, Fr, KC, blockage, ITTC-57                                | ITTC                           |
 //! | [`prime`]           | prime ↔ SI scaling of derivatives                            | SNAME 1950                     |
 //! | [`closed_form`]     | sphere, prolate spheroid, elliptic cylinder                  | Lamb, Stokes, Schiller–Naumann |
+//! | [`ellipsoid`]       | added mass of an ellipsoid with any three semi-axes          | Lamb 1932, Carlson 1995        |
+//! | [`strip`]           | 6×6 of a slender body from its elliptic sections             | Newman 1977                    |
+//! | [`tabulated`]       | plates, prisms, cylinders as printed                         | DNV-RP-C205                    |
+//! | [`near_wall`]       | sphere near a plane, in a shell; rigid or φ = 0              | Lamb 1932, our derivation      |
+//! | [`sloshing`]        | first modes of a tank, frequency number                      | Faltinsen & Timokha 2009       |
 //! | [`plausibility`]    | drag coefficients that bodies have                           | Hoerner 1965                   |
 //!
 //! USR is Kelasidi, Elgenes and Kilvær, "Fluid parameter identification for
 //! underwater snake robots"; MCD is "A low cost, sensor-less drag force
 //! estimation methodology via measuring of motor currents".
 //!
-//! Not here: time histories, multi-link dynamics, free surface, 6×6 added mass
-//! of arbitrary shapes.
+//! Not here: time histories, multi-link dynamics, waves, 6×6 added mass of
+//! arbitrary shapes.
 #![no_std]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
@@ -40,13 +45,18 @@ pub mod axes;
 pub mod closed_form;
 pub mod dissipation;
 pub mod drag;
+pub mod ellipsoid;
 pub mod fluid;
 pub mod geometry;
 pub mod link_parameters;
+pub mod near_wall;
 pub mod plausibility;
 pub mod power_law;
 pub mod prime;
 pub mod similarity;
+pub mod sloshing;
+pub mod strip;
+pub mod tabulated;
 
 pub use drag::{Axis, CoefficientInfo, CrossTerm, DragModel, Factor, MAX_COEFFICIENTS, Motion, Restrictions, Setting};
 pub use geometry::{Body, GeometryError, Link};

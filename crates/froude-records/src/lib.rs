@@ -12,8 +12,10 @@
 //! | sidecar (TOML)  | [`sidecar`]                                |
 //! | run (MCAP)      | [`run`]                                    |
 //! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |
+//! | added mass (WAMIT `.1`, NetCDF, CSV) | [`added_mass_files`] |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod added_mass_files;
 mod assemble;
 pub mod body;
 pub mod campaign;

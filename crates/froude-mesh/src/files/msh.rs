@@ -78,6 +78,10 @@ pub(super) fn read(mut cursor: Cursor<'_>) -> Read {
             (b"$Nodes", Version::Four) => msh.nodes_4()?,
             (b"$Elements", Version::Two) => msh.elements_2()?,
             (b"$Elements", Version::Four) => msh.elements_4()?,
+            (b"$ParametricNodes", _) => {
+                let (place, what) = (msh.cursor.place(word.at), "the section $ParametricNodes".to_owned());
+                return Err(msh.cursor.not_read(place, what, "save it without Mesh.SaveParametric, or as version 4.1"));
+            }
             ([b'$', name @ ..], _) => {
                 skip_section(&mut msh.cursor, name)?;
                 continue;

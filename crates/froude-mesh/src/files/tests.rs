@@ -383,6 +383,9 @@ fn a_mistake_is_told_with_its_place_and_the_next_step() {
     assert_eq!(error("a.gdf", "box\n1 9.81\n0 0\n2 1\n"), higher);
     let kind = "a.msh, line 6, column 3: element type 34 is not read; save triangles and quadrilaterals only";
     assert_eq!(error("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Elements\n1\n1 34 0 1\n"), kind);
+    let parameters = "a.msh, line 4, column 1: the section $ParametricNodes is not read; save it without Mesh.SaveParametric, or as \
+                      version 4.1";
+    assert_eq!(error("a.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$ParametricNodes\n1\n"), parameters);
     let version = "a.msh, line 2, column 1: version 4.0 is not read; save it with gmsh -save -format msh41 or msh22";
     assert_eq!(error("a.msh", "$MeshFormat\n4.0 0 8\n"), version);
     let unknown = "hull.step: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension \

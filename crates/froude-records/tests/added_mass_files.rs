@@ -1,0 +1,219 @@
+//! Added mass in WAMIT's, NetCDF's and CSV's form: bit-equal files, read back, and by others' readers.
+//!
+//! `golden/added_mass/read_back.py` reads the same files with xarray and Capytaine. `FROUDE_BLESS=1` writes them anew.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::path::{Path, PathBuf};
+
+use froude_records::added_mass_files::{AddedMassError, AddedMassFile, read_wamit};
+use froude_records::csv_table::read_csv;
+use froude_records::units::Dimension;
+use netcdf3::FileReader;
+use proptest::prelude::*;
+
+/// Elements that differ in every place; no added mass has these, but a transposed one shows.
+fn matrix(size: usize, limit: usize) -> Vec<Vec<f64>> {
+    let element = |i: usize, j: usize| 1000.0 * (1 + limit) as f64 + (20 * i + j) as f64 + 0.125;
+    (0..size).map(|i| (0..size).map(|j| element(i, j)).collect()).collect()
+}
+
+fn names(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&n| n.to_owned()).collect()
+}
+
+fn file<'a>(bodies: &'a [String], zero: &'a [Vec<f64>], infinite: &'a [Vec<f64>]) -> AddedMassFile<'a> {
+    AddedMassFile {
+        density_kg_m3: 1025.0,
+        gravity_m_s2: 9.80665,
+        length_m: 2.0,
+        bodies,
+        zero_frequency: Some(zero),
+        infinite_frequency: Some(infinite),
+    }
+}
+
+fn golden(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/added_mass").join(name)
+}
+
+#[test]
+fn files_are_bit_for_bit_those_that_others_have_read() {
+    let one = (names(&["hull"]), matrix(6, 0), matrix(6, 1));
+    let two = (names(&["head", "link 1"]), matrix(12, 0), matrix(12, 1));
+    let folder = tempfile::tempdir().unwrap();
+    for ((bodies, zero, infinite), stem) in [(&one, "one_body"), (&two, "two_bodies")] {
+        for extension in ["1", "nc", "csv"] {
+            let name = format!("{stem}.{extension}");
+            let path = folder.path().join(&name);
+            file(bodies, zero, infinite).write(&path).unwrap();
+            let written = std::fs::read(&path).unwrap();
+            if std::env::var_os("FROUDE_BLESS").is_some() {
+                std::fs::write(golden(&name), &written).unwrap();
+            }
+            assert!(written == std::fs::read(golden(&name)).unwrap(), "{name} differs from the one that was read");
+        }
+    }
+}
+
+#[test]
+fn netcdf_reads_back_with_a_reader_that_is_not_ours() {
+    let mut reader = FileReader::open(golden("two_bodies.nc")).unwrap();
+    assert_eq!(
+        reader.data_set().get_var("added_mass").unwrap().dim_names(),
+        ["omega", "influenced_dof", "radiating_dof"]
+    );
+    let expected: Vec<f64> = [matrix(12, 0), matrix(12, 1)].concat().concat();
+    assert_eq!(reader.read_var_f64("added_mass").unwrap(), expected);
+    assert_eq!(reader.read_var_f64("radiation_damping").unwrap(), vec![0.0; 288]);
+    assert_eq!(reader.read_var_f64("omega").unwrap(), [0.0, f64::INFINITY]);
+    assert_eq!(reader.read_var_f64("period").unwrap(), [f64::INFINITY, 0.0]);
+    assert_eq!(reader.read_var_f64("rho").unwrap(), [1025.0]);
+    let width = "link 1__Surge".len();
+    let text = reader.read_var_u8("radiating_dof").unwrap();
+    let dofs: Vec<_> =
+        text.chunks(width).map(|c| String::from_utf8_lossy(c).trim_end_matches('\0').to_owned()).collect();
+    assert_eq!((dofs.len(), dofs[1].as_str(), dofs[11].as_str()), (12, "head__Sway", "link 1__Yaw"));
+    assert_eq!(reader.data_set().get_var_attr_as_string("rho", "units").unwrap(), "kg/m^3");
+}
+
+#[test]
+fn one_limit_alone_makes_one_frequency() {
+    let (bodies, only) = (names(&["hull"]), matrix(6, 1));
+    let infinite = AddedMassFile { zero_frequency: None, ..file(&bodies, &[], &only) };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hull.nc");
+    infinite.write(&path).unwrap();
+    let mut reader = FileReader::open(&path).unwrap();
+    assert_eq!(reader.read_var_f64("omega").unwrap(), [f64::INFINITY]);
+    assert_eq!(reader.read_var_f64("added_mass").unwrap(), only.concat());
+    let path = folder.path().join("hull.1");
+    infinite.write(&path).unwrap();
+    let back = read_wamit(&path, 1025.0, 2.0).unwrap();
+    assert_eq!((back.zero_frequency, back.infinite_frequency.unwrap().len()), (None, 6));
+}
+
+/// WAMIT's table of scales: force by translation L³, mixed L⁴, moment by rotation L⁵; PER −1 is frequency zero.
+#[test]
+fn wamit_rows_are_over_density_and_length() {
+    let (bodies, zero, infinite) = (names(&["head", "link 1"]), matrix(12, 0), matrix(12, 1));
+    let text = file(&bodies, &zero, &infinite).wamit().unwrap();
+    let rows: Vec<Vec<f64>> =
+        text.lines().map(|l| l.split_whitespace().map(|c| c.parse().unwrap()).collect()).collect();
+    assert_eq!(rows.len(), 288);
+    assert_eq!(text.lines().next().unwrap(), " -1.0000000000000000E+00     1     1   1.2196646341463414E-01");
+    for (row, l) in [(0, 8.0), (5, 16.0), (6, 8.0), (12 * 3, 16.0), (12 * 3 + 4, 32.0), (12 * 9 + 10, 32.0)] {
+        let (i, j) = (row / 12, row % 12);
+        assert_eq!(rows[row][..3], [-1.0, (i + 1) as f64, (j + 1) as f64]);
+        assert!((rows[row][3] * 1025.0 * l / zero[i][j] - 1.0).abs() < 1e-15);
+        assert_eq!(rows[row + 144][..3], [0.0, (i + 1) as f64, (j + 1) as f64]);
+        assert!((rows[row + 144][3] * 1025.0 * l / infinite[i][j] - 1.0).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn csv_is_a_table_with_units_that_our_own_reader_takes() {
+    let table = read_csv(&golden("two_bodies.csv"), None).unwrap();
+    assert_eq!((table.n_rows, table.columns.len()), (8, 39));
+    assert_eq!(table.text("frequency").unwrap()[3..5], ["zero", "infinite"]);
+    assert_eq!(table.text("force_on").unwrap()[..4], ["head", "head", "link 1", "link 1"]);
+    assert_eq!(table.text("motion_of").unwrap()[..4], ["head", "link 1", "head", "link 1"]);
+    // Force on the second body's sway (row 7) by the first one's yaw (column 5).
+    assert_eq!(table.number("A26", Dimension { kg: 1, m: 1, ..Dimension::ONE }).unwrap()[2], matrix(12, 0)[7][5]);
+    assert_eq!(table.number("A66", Dimension { kg: 1, m: 2, ..Dimension::ONE }).unwrap()[7], matrix(12, 1)[11][11]);
+}
+
+/// A file as WAMIT writes it: header, vanishing elements left out, seven digits, periods with damping between.
+#[test]
+fn wamits_own_file_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sphere.1");
+    let text = " WAMIT Numeric Output -- Filename: sphere.1\n -0.100000E+01     1     1  0.200000E+01\n \
+                -0.100000E+01     5     1  0.500000D+00\n  0.000000E+00     1     1  0.190000E+01\n  \
+                0.800000E+01     1     1  0.210000E+01  0.100000E-02\n\n";
+    std::fs::write(&path, text).unwrap();
+    let back = read_wamit(&path, 1000.0, 10.0).unwrap();
+    let zero = back.zero_frequency.unwrap();
+    assert_eq!((zero.len(), zero[0][0], zero[4][0], zero[3][3]), (6, 2e6, 5e6, 0.0));
+    assert_eq!((back.infinite_frequency.unwrap()[0][0], back.n_other_rows), (1.9e6, 1));
+}
+
+#[test]
+fn what_is_no_row_is_told_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.1");
+    let told = |text: &str| {
+        std::fs::write(&path, text).unwrap();
+        let told = read_wamit(&path, 1000.0, 1.0).unwrap_err().to_string();
+        told.rsplit('/').next().unwrap().to_owned()
+    };
+    assert_eq!(told("-1 1 1 2\n-1 1 2\n"), "a.1:2: the row has 3 numbers; PER, I, J and ABAR are needed");
+    assert_eq!(told("-1 1 1 2\n0 1 1 2\n-1 1 1 3\n"), "a.1:3: element 1, 1 stands in line 1 already; delete one");
+    assert_eq!(told("-1 0 1 2\n"), "a.1:1: `0` is no index; they go from 1 to 5994");
+    assert_eq!(told("-1 1 1 2\n-1 1 2 NaN\n"), "a.1:2: `NaN` is not a finite number");
+    assert!(
+        read_wamit(&path, 0.0, 1.0).unwrap_err().to_string().contains("density is 0; it must be finite and above 0")
+    );
+}
+
+#[test]
+fn what_no_format_can_hold_is_refused_and_the_old_file_stays() {
+    let (bodies, six) = (names(&["hull"]), matrix(6, 0));
+    let good = file(&bodies, &six, &six);
+    let told = |f: &AddedMassFile| f.csv().unwrap_err().to_string();
+    assert_eq!(
+        told(&AddedMassFile { zero_frequency: None, infinite_frequency: None, ..good }),
+        "there is neither an added mass at zero nor one at infinite frequency; at least one is needed"
+    );
+    assert_eq!(
+        told(&AddedMassFile { infinite_frequency: Some(&six[..5]), ..good }),
+        "added mass at infinite frequency: rows: 5; 6 are needed, 6 a body"
+    );
+    let mut broken = six.clone();
+    broken[2][4] = f64::NAN;
+    assert_eq!(
+        told(&AddedMassFile { zero_frequency: Some(&broken), ..good }),
+        "added mass at zero frequency: element 3, 5 is NaN, not a finite number"
+    );
+    assert_eq!(
+        told(&AddedMassFile { bodies: &names(&["a__b"]), ..good }),
+        "the name \"a__b\" of body 1 has more than letters, digits, blanks, `-`, `.` and single `_`"
+    );
+    assert_eq!(told(&AddedMassFile { length_m: 0.0, ..good }), "reference length is 0; it must be finite and above 0");
+    assert_eq!(told(&AddedMassFile { bodies: &[], ..good }), "0 bodies; a file holds 1 to 999");
+    assert!(matches!(
+        AddedMassFile { bodies: &names(&["a", "a"]), ..good }.netcdf(),
+        Err(AddedMassError::BodyName { body: 2, problem: "appears twice", .. })
+    ));
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("hull.csv");
+    std::fs::write(&path, "old").unwrap();
+    let error = AddedMassFile { zero_frequency: Some(&broken), ..good }.write(&path).unwrap_err().to_string();
+    assert!(error.ends_with("is NaN, not a finite number; nothing was changed"), "{error}");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "old");
+    let error = good.write(&folder.path().join("hull.txt")).unwrap_err().to_string();
+    assert!(
+        error.ends_with("the name of the file ends in none of .1 (WAMIT), .nc (NetCDF), .csv; nothing was changed")
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// `A/(ρLᵏ)` is rounded once and multiplied back: two or three roundings.
+    #[test]
+    fn wamit_reads_back_what_it_wrote(
+        elements in prop::collection::vec(prop::collection::vec(-1e6..1e6_f64, 12), 12), length_m in 0.01..300.0_f64,
+    ) {
+        let bodies = names(&["a", "b"]);
+        let written = AddedMassFile { length_m, ..file(&bodies, &elements, &elements) };
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.1");
+        written.write(&path).unwrap();
+        let back = read_wamit(&path, 1025.0, length_m).unwrap();
+        prop_assert_eq!(&back.zero_frequency, &back.infinite_frequency);
+        for (found, expected) in back.zero_frequency.unwrap().concat().iter().zip(elements.concat()) {
+            prop_assert!((found - expected).abs() <= 1e-15 * expected.abs());
+        }
+    }
+}
