@@ -78,6 +78,8 @@ pub enum Verb {
         #[arg(long)]
         yes: bool,
     },
+    /// Added mass from potential flow: of a mesh, of a shape by its dimensions, of the robot with any number of links.
+    AddedMass(AddedMassArgs),
     /// Know a carriage and read drag from its motor current.
     Carriage {
         /// What to do.
@@ -150,4 +152,82 @@ pub struct Experiment {
     /// Take the operator's steps as done; on the twin only.
     #[arg(long)]
     pub yes: bool,
+}
+
+/// What `froude added-mass` takes.
+#[derive(Debug, clap::Args)]
+pub struct AddedMassArgs {
+    /// A body file (.toml), or a closed mesh: STL, OBJ, PLY, WAMIT .gdf, Nemoh .dat, Gmsh .msh.
+    pub input: PathBuf,
+    /// Links of a robot: 3, or 1..9 for a table with its least squares, or 1,3,6.
+    #[arg(long, value_name = "K|A..B|K,K")]
+    pub links: Option<String>,
+    /// Density of the water, with its unit [default: the body file's].
+    #[arg(long, value_name = "QUANTITY")]
+    pub density: Option<String>,
+    /// The point that moments are about, in the axes of the mesh: "0 m, 0 m, -0.2 m", or "buoyancy" [default: its origin].
+    #[arg(long, value_name = "POINT", allow_hyphen_values = true)]
+    pub origin: Option<String>,
+    /// Unit of a mesh that says none: m, mm, cm, in.
+    #[arg(long)]
+    pub unit: Option<String>,
+    /// Where z points in the mesh.
+    #[arg(long, value_enum, default_value_t = Vertical::Up)]
+    pub z: Vertical,
+    /// Largest numerical uncertainty of an entry: "1 %".
+    #[arg(long, default_value = "1 %", value_name = "QUANTITY")]
+    pub tolerance: String,
+    /// Panels at most.
+    #[arg(long, default_value_t = 120_000)]
+    pub most_panels: usize,
+    /// Height of the water's surface over the origin of the mesh; both limits of frequency are computed.
+    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
+    pub surface: Option<String>,
+    /// A closed tank, length along x, breadth along y, depth of water, with the origin of the mesh in its middle: "1.5 m x 0.9 m x 1 m".
+    #[arg(long, value_name = "L x B x D", requires = "surface")]
+    pub tank: Option<String>,
+    /// Angle of the joints about z: the chain's link-by-link matrix.
+    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
+    pub joint_angle: Option<String>,
+    /// The link-by-link matrix of the straight chain.
+    #[arg(long)]
+    pub chain: bool,
+    /// Take the parts of a mesh that do not hang together as bodies of their own.
+    #[arg(long)]
+    pub apart: bool,
+    /// Files to write beside the record: wamit, capytaine, csv.
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub export: Vec<Export>,
+    /// Only check the mesh and say what each resolution would take.
+    #[arg(long)]
+    pub check: bool,
+    /// Write a mesh with what can be decided put right to this file (.obj or .stl), and compute nothing.
+    #[arg(long, value_name = "FILE")]
+    pub repair: Option<PathBuf>,
+    /// Vertices closer than this are one, in a repair [default: a millionth of the mesh's extent].
+    #[arg(long, value_name = "QUANTITY", requires = "repair")]
+    pub weld: Option<String>,
+    /// Folder of the results [default: INPUT-added-mass beside the input].
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+}
+
+/// Where an axis points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Vertical {
+    /// Against gravity.
+    Up,
+    /// With gravity.
+    Down,
+}
+
+/// A format of other programs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Export {
+    /// WAMIT's `.1`, ULEN 1 m.
+    Wamit,
+    /// NetCDF as Capytaine writes it.
+    Capytaine,
+    /// CSV with a unit in every head.
+    Csv,
 }

@@ -3,6 +3,7 @@
 //! Exit code 0: done. 1: failed. 2: bad input. With `--json` the result goes to
 //! standard output as one JSON document; progress and messages go to standard error.
 
+mod added_mass;
 mod args;
 mod carriage;
 mod out;
@@ -80,6 +81,7 @@ fn run(cli: Cli) -> Result<(), Error> {
         }
         Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,
         Verb::Carriage { job } => carriage::job(job, cli.json)?,
+        Verb::AddedMass(args) => added_mass::added_mass(args, cli.json)?,
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
     Ok(())

@@ -10,8 +10,10 @@
 //! | [`page`] | the report |
 
 pub mod body;
+mod cross_checks;
 pub mod family;
 pub mod links;
 pub mod page;
 pub mod record;
 pub mod refine;
+pub mod repair;

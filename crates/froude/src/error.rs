@@ -35,13 +35,8 @@ pub enum Error {
     Runner(#[from] froude_rig::campaign::runner::RunnerError),
 
     /// A mesh file cannot be read.
-    #[error("{}: {source}", .path.display())]
-    Mesh {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it, and where.
-        source: froude_mesh::files::ReadError,
-    },
+    #[error(transparent)]
+    Mesh(#[from] froude_mesh::files::ReadError),
 
     /// The dimensions give no body.
     #[error(transparent)]
@@ -86,7 +81,7 @@ impl Error {
             | Self::Servo(_)
             | Self::Tuning(_)
             | Self::Setup(_)
-            | Self::Mesh { .. }
+            | Self::Mesh(_)
             | Self::Sections(_) => true,
             Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
         }

@@ -184,7 +184,9 @@ pub fn links_table(configurations: &[Configuration], density_kg_m3: f64) -> Text
     }
 }
 
-fn fits_table(fits: &[Estimate]) -> TextTable {
+/// Least squares over the configurations.
+#[must_use]
+pub fn fits_table(fits: &[Estimate]) -> TextTable {
     let rows = fits
         .iter()
         .flat_map(|e| {

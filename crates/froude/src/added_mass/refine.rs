@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use froude_mesh::Vec3;
+use froude_mesh::{Mesh, Vec3};
 use froude_mesh::measure::Measure;
 use froude_mesh::sections::PartMesh;
 use froude_panel::convergence::{Converged, converged};
@@ -71,8 +71,19 @@ pub struct Refined {
     pub is_within: bool,
     /// Why it is not, where it is not.
     pub stopped: Option<String>,
-    /// The finest mesh, and the potentials on it.
-    pub finest: (PartMesh, Solution),
+    /// The finest mesh that was solved on.
+    pub finest: Finest,
+}
+
+/// The finest mesh and its potentials.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finest {
+    /// Panels that were solved for: on the positive side of the body's own planes.
+    pub mesh: Mesh,
+    /// Those planes, and any other mirrors.
+    pub mirrors: Vec<Mirror>,
+    /// Potentials about the origin of the mesh.
+    pub solution: Solution,
 }
 
 /// Time and memory of a solution, before it starts.
@@ -123,16 +134,18 @@ pub fn free_memory_bytes() -> Option<f64> {
 }
 
 /// The problem of a mesh about the origin of its frame, and the body's own planes in it.
-fn problem(family: &Family, mesh: &PartMesh, wanted: &Wanted) -> Problem {
+fn problem(family: &Family, mesh: &PartMesh, wanted: &Wanted) -> (Mesh, Problem) {
     let frame = [Frame::at([0.0; 3])];
     if let Family::Sections { planes, .. } = family {
         let own = planes.iter().filter(|axis| wanted.mirrors.iter().all(|m| m.axis != **axis));
         let mirrors: Vec<Mirror> = own.map(|axis| Mirror::body(*axis)).chain(wanted.mirrors.iter().copied()).collect();
         if let Ok(part) = positive_part(&mesh.mesh, &mirrors) {
-            return Problem::of_parts(&part, &vec![0; part.panels.len()], &frame, &mirrors);
+            let problem = Problem::of_parts(&part, &vec![0; part.panels.len()], &frame, &mirrors);
+            return (part, problem);
         }
     }
-    Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, &wanted.mirrors)
+    let problem = Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, &wanted.mirrors);
+    (mesh.mesh.clone(), problem)
 }
 
 /// Refines until the tolerance holds, or panels, memory or members end; `told` hears of every step before it starts.
@@ -151,7 +164,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             break;
         }
         let member = family.member(number)?;
-        let problem = problem(family, &member.mesh, wanted);
+        let (solved, problem) = problem(family, &member.mesh, wanted);
         let forecast = forecast(&problem);
         let free = free_memory_bytes().map_or(f64::INFINITY, |m| MEMORY_PART * m);
         if forecast.memory_bytes > free {
@@ -184,7 +197,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             added_mass: solution.added_mass(0).about(wanted.origin_m),
             measure: Measure::of(&member.mesh.mesh),
         });
-        finest = Some((member.mesh, solution));
+        finest = Some(Finest { mesh: solved, mirrors: problem.mirrors, solution });
         if steps.len() >= 3 && worst(&entries(&steps)) <= wanted.tolerance {
             break;
         }
@@ -210,6 +223,23 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         stopped: stopped.filter(|_| !is_within),
         finest,
     })
+}
+
+/// What each mesh would take, up to the panels allowed: panels of the body, and the forecast.
+///
+/// # Errors
+///
+/// Dimensions that give no body.
+pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, Error> {
+    let mut out = Vec::new();
+    for number in 0..family.members() {
+        let panels = family.panels(number)?;
+        if panels > wanted.most_panels && number > 0 {
+            break;
+        }
+        out.push((panels, forecast(&problem(family, &family.member(number)?.mesh, wanted).1)));
+    }
+    Ok(out)
 }
 
 /// A value of the last three meshes; of two the finer with their distance, three times; of one no uncertainty.

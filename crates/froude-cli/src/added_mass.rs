@@ -1,0 +1,212 @@
+//! `froude added-mass`: parse, call, print.
+
+use std::path::{Path, PathBuf};
+
+use froude::Error;
+use froude::added_mass::body::{self, BodyJob, BodyOutcome, Origin};
+use froude::added_mass::links::{LinksJob, LinksOutcome, links};
+use froude::added_mass::refine::{Wanted, duration};
+use froude::added_mass::{page, repair};
+use froude::records::units::{Dimension, parse_quantity, parse_unit};
+use froude::report::document::TextTable;
+
+use crate::args::{AddedMassArgs, Export, Vertical};
+use crate::out::say;
+use crate::print;
+
+/// Links at most: more are a slip of the keyboard.
+const MOST_LINKS: usize = 100;
+
+pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
+    if let Some(target) = &args.repair {
+        return put_right(&args, target, json);
+    }
+    let wanted = Wanted {
+        tolerance: ratio("--tolerance", &args.tolerance)?,
+        most_panels: args.most_panels,
+        ..Wanted::default()
+    };
+    let counted = args.links.as_deref().map(link_numbers).transpose()?;
+    let density_kg_m3 =
+        args.density.as_deref().map(|d| positive("--density", d, Dimension::DENSITY)).transpose()?;
+    if let Some(numbers) = counted.as_ref().filter(|n| n.len() > 1) {
+        let job = LinksJob {
+            body: args.input,
+            links: numbers.clone(),
+            density_kg_m3,
+            wanted,
+            out: args.out,
+            date: Some(crate::today()),
+        };
+        let bar = crate::spinner();
+        let outcome = links(&job, &|step| bar.set_message(step.to_owned()))?;
+        bar.finish_and_clear();
+        return if json { print::json(&outcome.file) } else { table_of_links(&outcome) };
+    }
+    let job = BodyJob {
+        input: args.input,
+        links: counted.map(|n| n[0]),
+        density_kg_m3,
+        origin: args.origin.as_deref().map_or(Ok(Origin::At([0.0; 3])), origin)?,
+        unit_m: args.unit.as_deref().map(unit).transpose()?,
+        is_z_up: args.z == Vertical::Up,
+        surface_m: args.surface.as_deref().map(|h| length("--surface", h)).transpose()?,
+        wanted,
+        export: args.export.iter().map(|e| extension(*e)).collect(),
+        out: args.out,
+        date: Some(crate::today()),
+    };
+    if args.check {
+        return check(&job);
+    }
+    let bar = crate::spinner();
+    let outcome = body::body(&job, &|step| bar.set_message(step.to_owned()))?;
+    bar.finish_and_clear();
+    if json { print::json(&outcome.file) } else { one_body(&outcome) }
+}
+
+const fn extension(format: Export) -> &'static str {
+    match format {
+        Export::Wamit => "1",
+        Export::Capytaine => "nc",
+        Export::Csv => "csv",
+    }
+}
+
+fn wrong(option: &str, text: &str, why: impl std::fmt::Display) -> Error {
+    Error::Nothing(format!("{option} {text:?}: {why}"))
+}
+
+fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error> {
+    let q = parse_quantity(text).map_err(|e| wrong(option, text, e))?;
+    q.expect(dimension).map_err(|e| wrong(option, text, e))
+}
+
+fn positive(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error> {
+    match quantity(option, text, dimension)? {
+        x if x > 0.0 => Ok(x),
+        _ => Err(wrong(option, text, "it must be larger than zero")),
+    }
+}
+
+fn length(option: &str, text: &str) -> Result<f64, Error> {
+    quantity(option, text, Dimension::LENGTH)
+}
+
+fn ratio(option: &str, text: &str) -> Result<f64, Error> {
+    match quantity(option, text, Dimension::ONE)? {
+        x if x > 0.0 && x < 1.0 => Ok(x),
+        _ => Err(wrong(option, text, "write a part above 0 and below 100 %: \"1 %\"")),
+    }
+}
+
+fn unit(text: &str) -> Result<f64, Error> {
+    let unit = parse_unit(text).map_err(|e| wrong("--unit", text, e))?;
+    if unit.dimension == Dimension::LENGTH { Ok(unit.to_si(1.0)) } else { Err(wrong("--unit", text, "write a unit of length: mm, cm, m, in")) }
+}
+
+/// `3`, `1..9` (both ends), `1,3,6`.
+fn link_numbers(text: &str) -> Result<Vec<usize>, Error> {
+    let bad = || wrong("--links", text, format!("write a number of links, \"1..9\" or \"1,3,6\", between 1 and {MOST_LINKS}"));
+    let one = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=MOST_LINKS).contains(n)).ok_or_else(bad);
+    if let Some((from, to)) = text.split_once("..") {
+        let (from, to) = (one(from)?, one(to.trim_start_matches('='))?);
+        return if from <= to { Ok((from..=to).collect()) } else { Err(bad()) };
+    }
+    let mut out = text.split(',').map(one).collect::<Result<Vec<_>, _>>()?;
+    out.sort_unstable();
+    out.dedup();
+    Ok(out)
+}
+
+/// Three lengths, or `buoyancy`.
+fn origin(text: &str) -> Result<Origin, Error> {
+    if text.trim() == "buoyancy" {
+        return Ok(Origin::Buoyancy);
+    }
+    let parts: Vec<&str> = text.split(',').collect();
+    let [x, y, z] = parts[..] else {
+        return Err(wrong("--origin", text, "write three lengths, \"0 m, 0 m, -0.2 m\", or \"buoyancy\""));
+    };
+    Ok(Origin::At([length("--origin", x.trim())?, length("--origin", y.trim())?, length("--origin", z.trim())?]))
+}
+
+fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Error> {
+    let unit_m = args.unit.as_deref().map(unit).transpose()?;
+    let weld_m = args.weld.as_deref().map(|w| positive("--weld", w, Dimension::LENGTH)).transpose()?;
+    let done = repair::repair(&args.input, unit_m, weld_m, target)?;
+    if json {
+        return print::json(&serde_json::json!({"written": target, "repairs": done.repairs, "left": done.left}));
+    }
+    for line in done.notes.iter().chain(&done.repairs) {
+        say!("  {line}");
+    }
+    if done.repairs.is_empty() {
+        say!("  nothing to put right");
+    }
+    say!("{}: {} panels, in metres", target.display(), done.panels);
+    for line in &done.left {
+        say!("  still: {line}");
+    }
+    if done.left.is_empty() {
+        say!("Next: froude added-mass {}", target.display());
+    }
+    Ok(())
+}
+
+fn check(job: &BodyJob) -> Result<(), Error> {
+    let (loaded, steps) = body::forecast(job)?;
+    say!("{}: fit for use", loaded.name);
+    for note in loaded.notes.iter().chain(loaded.findings.iter().map(|f| &f.message)) {
+        say!("  {note}");
+    }
+    let rows = steps
+        .iter()
+        .map(|(panels, f)| {
+            vec![panels.to_string(), f.unknowns.to_string(), duration(f.seconds), format!("{:.0}", f.memory_bytes / 1e6)]
+        })
+        .collect();
+    print::text_table(&TextTable {
+        caption: "What each mesh would take; the computation ends with the first that holds the tolerance.".to_owned(),
+        head: ["panels", "unknowns", "time", "memory [MB]"].map(str::to_owned).to_vec(),
+        rows,
+    });
+    Ok(())
+}
+
+fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
+    say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
+    print::text_table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
+    if !outcome.fits.is_empty() {
+        print::text_table(&page::fits_table(&outcome.fits));
+    }
+    print::findings(&outcome.file.findings);
+    say!("\n{}\n{}\n{}", outcome.table.display(), outcome.estimate.display(), outcome.page.display());
+    Ok(())
+}
+
+fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
+    say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
+    for case in &outcome.cases {
+        say!("\n{} ({})", case.title, case.surroundings);
+        print::text_table(&page::matrix_table(&case.refined, outcome.density_kg_m3));
+        print::text_table(&page::dimensionless_table(&case.refined, outcome.length_m));
+        print::text_table(&page::steps_table(&case.refined, outcome.density_kg_m3));
+        for line in page::convergence_words(&case.refined) {
+            say!("{line}");
+        }
+    }
+    for table in &outcome.tables {
+        print::text_table(table);
+    }
+    for note in &outcome.notes {
+        say!("{note}");
+    }
+    print::findings(&outcome.file.findings);
+    let paths: Vec<&PathBuf> = [&outcome.estimate, &outcome.page].into_iter().chain(&outcome.others).collect();
+    say!("");
+    for path in paths {
+        say!("{}", path.display());
+    }
+    Ok(())
+}

@@ -1,0 +1,489 @@
+//! One body or mesh: checks, matrix, pressure, files.
+
+use std::path::{Path, PathBuf};
+
+use froude_mesh::check::check;
+use froude_mesh::crossing::crossings;
+use froude_mesh::files::{self, vtk::vtp};
+use froude_mesh::measure::Measure;
+use froude_mesh::parts::part_troubles;
+use froude_mesh::plausible::{crosses, too_large};
+use froude_mesh::refine::{rounded, subdivided, without_warp};
+use froude_mesh::{Mesh, Vec3};
+use froude_panel::mirror::{Kind, Mirror, images, signs};
+use froude_records::added_mass_files::AddedMassFile;
+use froude_records::body::{Shape, read_body};
+use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
+use froude_records::finding::{Finding, Severity};
+use froude_records::hash::sha256_of_file;
+use froude_records::write::write_atomically;
+use froude_report::document::TextTable;
+use froude_report::number;
+use indexmap::IndexMap;
+
+use super::cross_checks;
+use super::family::Family;
+use super::links::{default_out, file_name, no_density, not_within};
+use super::page;
+use super::record::{About, MOTIONS, estimate};
+use super::refine::{Finest, Forecast, Refined, Wanted, plan, refine};
+use crate::Error;
+
+/// Where moments are taken about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Origin {
+    /// A point of the mesh frame, m.
+    At(Vec3),
+    /// The centre of buoyancy.
+    Buoyancy,
+}
+
+/// What to compute.
+#[derive(Debug, Clone)]
+pub struct BodyJob {
+    /// A body file (.toml) or a mesh.
+    pub input: PathBuf,
+    /// Links of a robot.
+    pub links: Option<usize>,
+    /// Density instead of the file's, kg/m³.
+    pub density_kg_m3: Option<f64>,
+    /// Where moments are taken about.
+    pub origin: Origin,
+    /// Metres for a unit of the mesh; `None` where nobody said.
+    pub unit_m: Option<f64>,
+    /// Whether the mesh's z axis points up.
+    pub is_z_up: bool,
+    /// Height of the water's surface over the origin of the mesh, m; `None`: deeply submerged.
+    pub surface_m: Option<f64>,
+    /// Tolerance and limits.
+    pub wanted: Wanted,
+    /// Files to write beside the record: `1`, `nc`, `csv`.
+    pub export: Vec<&'static str>,
+    /// Folder of the results; beside the input, unless said.
+    pub out: Option<PathBuf>,
+    /// Date for the report.
+    pub date: Option<String>,
+}
+
+/// A matrix in one surrounding.
+#[derive(Debug, Clone)]
+pub struct Case {
+    /// `Deeply submerged`.
+    pub title: String,
+    /// In a sentence.
+    pub surroundings: String,
+    /// Limit of frequency that it stands for: `1` in the name of a file.
+    pub is_lid: Option<bool>,
+    /// The matrix.
+    pub refined: Refined,
+}
+
+/// What came out.
+#[derive(Debug, Clone)]
+pub struct BodyOutcome {
+    /// Name.
+    pub name: String,
+    /// Density, kg/m³.
+    pub density_kg_m3: f64,
+    /// From end to end along x, m.
+    pub length_m: f64,
+    /// Matrices.
+    pub cases: Vec<Case>,
+    /// What is known about body and mesh, a sentence each.
+    pub notes: Vec<String>,
+    /// Cross-checks and hydrostatics.
+    pub tables: Vec<TextTable>,
+    /// The record.
+    pub file: EstimateFile,
+    /// Where it lies.
+    pub estimate: PathBuf,
+    /// Where the page lies.
+    pub page: PathBuf,
+    /// The pressure on the body, and exports.
+    pub others: Vec<PathBuf>,
+}
+
+/// A body that was read, with everything that was found.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    /// Name.
+    pub name: String,
+    /// Its meshes.
+    pub family: Family,
+    /// Its dimensions, where a body file gives them.
+    pub shape: Option<Shape>,
+    /// Density that the file gives, kg/m³.
+    pub density_kg_m3: Option<f64>,
+    /// What was found, a sentence each.
+    pub notes: Vec<String>,
+    /// Doubts.
+    pub findings: Vec<Finding>,
+}
+
+/// Warp of a quadrilateral, as part of its radius, from which it is divided into triangles.
+const WARP: f64 = 1e-6;
+/// Angle between facets from which an edge is an edge of the body, rad: 30°.
+const CREASE_RAD: f64 = core::f64::consts::FRAC_PI_6;
+/// Largest mesh file, bytes.
+const LARGEST_FILE: u64 = 4 << 30;
+/// Standard acceleration of gravity, m/s².
+const G_M_S2: f64 = 9.80665;
+
+/// Whether a path is a body file and not a mesh.
+#[must_use]
+pub fn is_body_file(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+/// Reads a mesh as it is, in metres.
+///
+/// # Errors
+///
+/// A file that cannot be read.
+pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>), Error> {
+    let bytes = froude_records::read::whole(path, LARGEST_FILE, "a mesh")?;
+    let file = files::read(&path.display().to_string(), &bytes)?;
+    let unit_m = unit_m.unwrap_or(1.0);
+    let mesh = if unit_m == 1.0 { file.mesh } else { file.mesh.mapped(|v| v.map(|x| unit_m * x)) };
+    Ok((mesh, file.notes))
+}
+
+/// Reads and checks.
+///
+/// # Errors
+///
+/// A file that cannot be read, and a mesh that potential flow cannot be computed on, with everything that is wrong with it.
+pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
+    if is_body_file(&job.input) {
+        let body = read_body(&job.input)?;
+        let links = match (&body.shape, job.links) {
+            (Shape::Robot { .. }, Some(links)) => links,
+            (Shape::Robot { .. }, None) => {
+                return Err(Error::Nothing(format!(
+                    "{}: a robot has links; say how many: --links 3, or --links 1..9 for a table",
+                    job.input.display()
+                )));
+            }
+            (_, Some(_)) => {
+                return Err(Error::Nothing(format!(
+                    "{}: --links counts the links of a body of shape \"robot\"; leave it out for another shape",
+                    job.input.display()
+                )));
+            }
+            (_, None) => 0,
+        };
+        let name = if job.links.is_some() { format!("{}, H{links}LT", body.name) } else { body.name };
+        let family = Family::of(&body.shape, links);
+        let notes = vec!["Meshes from the dimensions; every mesh is similar to the others.".to_owned()];
+        let density_kg_m3 = body.density_kg_m3;
+        return Ok(Loaded { name, family, shape: Some(body.shape), density_kg_m3, notes, findings: Vec::new() });
+    }
+    let (mesh, mut notes) = read_mesh(&job.input, job.unit_m)?;
+    let mut findings = Vec::new();
+    let mut wrong = Vec::new();
+    let mut troubles = check(&mesh);
+    if !troubles.iter().any(froude_mesh::check::Trouble::is_fatal) {
+        troubles.extend(part_troubles(&mesh));
+        troubles.extend(crossings(&mesh));
+    }
+    for trouble in troubles {
+        if trouble.is_fatal() {
+            wrong.push(format!("  {trouble}"));
+        } else {
+            findings.push(Finding::new(Severity::Warning, "mesh", trouble.to_string()));
+        }
+    }
+    if !wrong.is_empty() {
+        let rest = wrong.len().saturating_sub(MOST_TOLD);
+        wrong.truncate(MOST_TOLD);
+        if rest > 0 {
+            wrong.push(format!("  and {rest} more"));
+        }
+        return Err(Error::Nothing(format!(
+            "{}: potential flow cannot be computed on this mesh:\n{}\n  froude added-mass {} --repair repaired.obj writes a mesh with what can \
+             be decided put right",
+            job.input.display(),
+            wrong.join("\n"),
+            job.input.display()
+        )));
+    }
+    if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
+        return Err(Error::Nothing(format!("{}: {doubt}", job.input.display())));
+    }
+    let flat = without_warp(&mesh, WARP);
+    if flat.panels.len() > mesh.panels.len() {
+        notes.push(format!(
+            "{} quadrilaterals whose corners do not lie in one plane were divided into triangles.",
+            flat.panels.len() - mesh.panels.len()
+        ));
+    }
+    notes.push(format!("z points {} in the mesh; the matrix is in its axes.", if job.is_z_up { "up" } else { "down" }));
+    let name = file_name(&job.input);
+    Ok(Loaded { name, family: Family::Mesh(flat), shape: None, density_kg_m3: None, notes, findings })
+}
+
+/// Troubles of a mesh that are told one by one.
+const MOST_TOLD: usize = 12;
+
+/// What each mesh would take, with nothing computed.
+///
+/// # Errors
+///
+/// As [`body`].
+pub fn forecast(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Error> {
+    let loaded = load(job)?;
+    let steps = plan(&loaded.family, &job.wanted)?;
+    Ok((loaded, steps))
+}
+
+/// Computes, and writes `estimate.json`, `report.html`, `pressure.vtp` and what else is asked for.
+///
+/// # Errors
+///
+/// See [`Error`].
+pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
+    let loaded = load(job)?;
+    let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
+    let coarse = loaded.family.member(0)?.mesh.mesh;
+    let measure = Measure::of(&coarse);
+    let origin_m = match job.origin {
+        Origin::At(at) => at,
+        Origin::Buoyancy => measure.centroid_m,
+    };
+    let reference = match job.origin {
+        Origin::At(_) => page::point(origin_m, "the origin of the mesh"),
+        Origin::Buoyancy => format!("{} (the centre of buoyancy)", page::point(origin_m, "the origin of the mesh")),
+    };
+    let mut findings = loaded.findings.clone();
+    let mut cases = Vec::new();
+    for (title, surroundings, is_lid, mirrors) in surroundings(job, &coarse)? {
+        let wanted = Wanted { origin_m, mirrors, ..job.wanted.clone() };
+        let refined = refine(&loaded.family, &wanted, &|step| told(&format!("{title}: {step}")))?;
+        findings.extend(not_within(&title, &refined));
+        cases.push(Case { title, surroundings, is_lid, refined });
+    }
+    let length_m = extent_along_x(&coarse);
+    let mut tables = vec![hydrostatics(&cases[0].refined, density_kg_m3, origin_m)];
+    tables.extend(cross_checks::table(loaded.shape.as_ref(), &coarse, &cases[0].refined, density_kg_m3, origin_m));
+    if let Family::Mesh(mesh) = &loaded.family {
+        told("the same with facets rounded");
+        tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3)?);
+    }
+    let estimates = cases.iter().map(|case| {
+        let source = if cases.len() == 1 { loaded.name.clone() } else { format!("{}, {}", loaded.name, case.title.to_lowercase()) };
+        let about = About {
+            source,
+            density_kg_m3,
+            frame: format!("axes of the mesh, z {}", if job.is_z_up { "up" } else { "down" }),
+            reference_point: reference.clone(),
+            length_m,
+            surroundings: case.surroundings.clone(),
+        };
+        estimate(&case.refined, &about)
+    });
+    let file = EstimateFile {
+        schema: ESTIMATE_SCHEMA.to_owned(),
+        data: vec![DataFile { path: file_name(&job.input), sha256: sha256_of_file(&job.input)? }],
+        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
+        estimates: estimates.collect(),
+        findings,
+    };
+    let mut notes = loaded.notes;
+    notes.push(format!("Moments are about {reference}. Nothing here depends on frequency: no waves are computed."));
+    let mut outcome = BodyOutcome {
+        name: loaded.name,
+        density_kg_m3,
+        length_m,
+        cases,
+        notes,
+        tables,
+        file,
+        estimate: PathBuf::new(),
+        page: PathBuf::new(),
+        others: Vec::new(),
+    };
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
+    let html = page::body(&outcome, job.date.clone()).html()?;
+    let written = crate::results::write(&out, &outcome.file, &[], &[], &html)?;
+    outcome.estimate = written.estimate;
+    outcome.page = written.report;
+    outcome.others = extras(&outcome, job, &out, origin_m)?;
+    Ok(outcome)
+}
+
+/// Title, sentence, limit, mirrors of each case.
+type Surrounding = (String, String, Option<bool>, Vec<Mirror>);
+
+fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding>, Error> {
+    let Some(surface_m) = job.surface_m else {
+        return Ok(vec![("Deeply submerged".to_owned(), "unbounded water".to_owned(), None, Vec::new())]);
+    };
+    let at_m = if job.is_z_up { surface_m } else { -surface_m };
+    if let Some(crossing) = crosses(mesh, 2, at_m) {
+        return Err(Error::Nothing(format!(
+            "{}: {crossing}: the body pierces the water's surface; bodies that float are not computed here, submerge it",
+            job.input.display()
+        )));
+    }
+    let is_above = mesh.vertices.iter().any(|v| if job.is_z_up { v[2] > at_m } else { v[2] < at_m });
+    if is_above {
+        return Err(Error::Nothing(format!(
+            "{}: the body lies above the water's surface at z = {at_m} m; give --surface the height of the surface over the origin of the mesh, \
+             and --z up or down as the mesh has it",
+            job.input.display()
+        )));
+    }
+    let mirror = |kind| vec![Mirror { axis: 2, at_m, kind }];
+    Ok(vec![
+        (
+            "Slow motion: rigid lid".to_owned(),
+            format!("water's surface {surface_m} m over the origin, rigid: ω²d/g → 0"),
+            Some(true),
+            mirror(Kind::Wall),
+        ),
+        (
+            "Fast motion: φ = 0".to_owned(),
+            format!("water's surface {surface_m} m over the origin, φ = 0 there: ω²d/g → ∞"),
+            Some(false),
+            mirror(Kind::FreeSurface),
+        ),
+    ])
+}
+
+fn extent_along_x(mesh: &Mesh) -> f64 {
+    let x = mesh.vertices.iter().map(|v| v[0]);
+    let (low, high) = x.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    high - low
+}
+
+/// Volume, centre of buoyancy, displaced mass and its inertia.
+fn hydrostatics(refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> TextTable {
+    let finest = refined.steps.last().map(|s| s.measure);
+    let mut rows = vec![
+        vec!["volume".to_owned(), format!("{} m³", number::plain(refined.volume_m3, 6))],
+        vec!["displaced mass".to_owned(), format!("{} kg", number::plain(density_kg_m3 * refined.volume_m3, 6))],
+    ];
+    if let Some(m) = finest {
+        let list = |v: Vec3, digits| v.map(|x| number::plain(if x.abs() < 1e-12 { 0.0 } else { x }, digits)).join(", ");
+        rows.push(vec!["wetted area".to_owned(), format!("{} m²", number::plain(m.area_m2, 6))]);
+        rows.push(vec!["centre of buoyancy".to_owned(), format!("({}) m", list(m.centroid_m, 5))]);
+        let shift = |i: usize| {
+            // About another point: Huygens–Steiner, with the distances of the centre from both.
+            let (c, o) = (m.centroid_m, origin_m);
+            let square = |p: Vec3| (0..3).filter(|k| *k != i).map(|k| p[k] * p[k]).sum::<f64>();
+            let d: Vec3 = core::array::from_fn(|k| c[k] - o[k]);
+            m.inertia_m5()[i][i] + m.volume_m3 * (square(d) - square(c))
+        };
+        let inertia: Vec3 = core::array::from_fn(|i| density_kg_m3 * shift(i));
+        rows.push(vec![
+            "inertia of the displaced water about the origin asked for, xx, yy, zz".to_owned(),
+            format!("({}) kg m²", list(inertia, 5)),
+        ]);
+    }
+    TextTable { caption: "Hydrostatics.".to_owned(), head: vec![String::new(), "value".to_owned()], rows }
+}
+
+/// What the facets of a mesh may hide: its difference from the smooth body that they stand for.
+fn geometry(mesh: &Mesh, case: &Case, job: &BodyJob, origin_m: Vec3, density_kg_m3: f64) -> Result<Option<TextTable>, Error> {
+    if 4 * mesh.panels.len() > job.wanted.most_panels {
+        return Ok(None);
+    }
+    let round = rounded(mesh, CREASE_RAD);
+    let flat = subdivided(mesh);
+    let matrix = |mesh: &Mesh| {
+        let mirrors: &[Mirror] = &case.refined.finest.mirrors;
+        let problem = froude_panel::problem::Problem::rigid(mesh, mirrors);
+        froude_panel::solve(&problem).added_mass(0).about(origin_m).matrix
+    };
+    let (round, flat) = (matrix(&without_warp(&round, WARP)), matrix(&flat));
+    let rows = (0..6)
+        .map(|i| {
+            // Rounding once takes three quarters of the distance to the smooth body away.
+            let apart = 4.0 / 3.0 * (round[i][i] - flat[i][i]);
+            let value = case.refined.value[i][i];
+            vec![
+                MOTIONS[i].to_owned(),
+                number::plain(density_kg_m3 * value, 6),
+                percent_of(case.refined.uncertainty[i][i], value),
+                percent_of(apart, value),
+            ]
+        })
+        .collect();
+    Ok(Some(TextTable {
+        caption: format!(
+            "Two uncertainties, never one: that of the panels (the matrix of the polyhedron that was given), and how far a smooth body with \
+             these corners lies from it, should the facets stand for one. Edges of more than {:.0}° count as edges of the body.",
+            CREASE_RAD.to_degrees()
+        ),
+        head: ["", "value [kg, kg m²]", "numerical uncertainty", "smooth body minus polyhedron"].map(str::to_owned).to_vec(),
+        rows,
+    }))
+}
+
+fn percent_of(part: f64, whole: f64) -> String {
+    if whole.abs() > 0.0 && part.is_finite() { format!("{:+.2} %", 100.0 * part / whole.abs()) } else { "–".to_owned() }
+}
+
+/// The pressure on the body, and the files that were asked for.
+fn extras(outcome: &BodyOutcome, job: &BodyJob, out: &Path, origin_m: Vec3) -> Result<Vec<PathBuf>, Error> {
+    let mut paths = Vec::new();
+    let path = out.join("pressure.vtp");
+    write_atomically(&path, pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, origin_m).as_bytes())?;
+    paths.push(path);
+    let rows = |case: &Case| -> Vec<Vec<f64>> {
+        case.refined.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect()
+    };
+    // Deeply submerged both limits are the same.
+    let limit = |is_lid: bool| outcome.cases.iter().find(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
+    let (zero, infinite) = (limit(true), limit(false));
+    let body = outcome.name.chars().map(|c| if c.is_ascii_alphanumeric() || " -.".contains(c) { c } else { '-' }).collect();
+    let bodies = [body];
+    let file = AddedMassFile {
+        density_kg_m3: outcome.density_kg_m3,
+        gravity_m_s2: G_M_S2,
+        length_m: 1.0,
+        bodies: &bodies,
+        zero_frequency: zero.as_deref(),
+        infinite_frequency: infinite.as_deref(),
+    };
+    for extension in &job.export {
+        let path = out.join(format!("added-mass.{extension}"));
+        file.write(&path)?;
+        paths.push(path);
+    }
+    Ok(paths)
+}
+
+/// Pressure over unit acceleration on the whole body, −ρ φ, for each motion about the origin asked for.
+fn pressure(finest: &Finest, density_kg_m3: f64, origin_m: Vec3) -> String {
+    let own: Vec<Mirror> = finest.mirrors.iter().copied().filter(|m| m.kind == Kind::Body).collect();
+    let mut whole = Mesh::default();
+    let mut values: Vec<Vec<f64>> = vec![Vec::new(); 6];
+    for set in 0..1_usize << own.len() {
+        let mirrored = own.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1);
+        let part = mirrored.fold(finest.mesh.clone(), |mesh, (_, m)| mesh.mirrored(m.axis));
+        whole = whole.with(&part);
+        for phi in &finest.solution.potentials {
+            let phi: [f64; 6] = core::array::from_fn(|mode| signs(&own, mode)[set] * phi[mode]);
+            for (mode, values) in values.iter_mut().enumerate() {
+                // Turning about the origin asked for is turning about that of the mesh, and moving: −(e × o).
+                let o = origin_m;
+                let carried = match mode {
+                    3 => -o[2] * phi[1] + o[1] * phi[2],
+                    4 => o[2] * phi[0] - o[0] * phi[2],
+                    5 => -o[1] * phi[0] + o[0] * phi[1],
+                    _ => 0.0,
+                };
+                values.push(-density_kg_m3 * (phi[mode] - carried));
+            }
+        }
+    }
+    debug_assert_eq!(images(&own, [1.0; 3]).len(), 1 << own.len());
+    let names: Vec<String> = MOTIONS
+        .iter()
+        .enumerate()
+        .map(|(i, m)| format!("pressure {m} [Pa/({}/s^2)]", if i < 3 { "m" } else { "rad" }))
+        .collect();
+    let scalars: Vec<(&str, &[f64])> = names.iter().map(String::as_str).zip(values.iter().map(Vec::as_slice)).collect();
+    vtp(&whole, &scalars)
+}

@@ -1,0 +1,75 @@
+//! The matrix beside what closed forms, strips and printed tables give for the same or a like body.
+
+use froude_hydro::ellipsoid::ellipsoid_added_mass;
+use froude_hydro::strip::{Station, strip_added_mass};
+use froude_hydro::tabulated::circular_cylinder_added_mass_m3;
+use froude_mesh::{Mesh, Vec3};
+use froude_panel::matrix::AddedMass;
+use froude_records::body::Shape;
+use froude_report::document::TextTable;
+use froude_report::number;
+
+use super::refine::Refined;
+
+/// Differences along x that count as one station, as part of the length.
+const SAME: f64 = 1e-9;
+
+/// The table; `None` where there is nothing to compare with.
+#[must_use]
+pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> Option<TextTable> {
+    let line = |name: &str, diagonal: [Option<f64>; 6]| {
+        let cells = diagonal.map(|a| a.map_or_else(|| "–".to_owned(), |a| number::plain(density_kg_m3 * a, 5)));
+        std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
+    };
+    let mut rows = vec![line("this result", core::array::from_fn(|i| Some(refined.value[i][i])))];
+    let (low, high) = bounds(mesh);
+    let half: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] - low[a]));
+    let centre: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] + low[a]));
+    if let Ok(diagonal) = ellipsoid_added_mass(half) {
+        let mut matrix = [[0.0; 6]; 6];
+        (0..6).for_each(|i| matrix[i][i] = diagonal[i]);
+        let moved = AddedMass { matrix, asymmetry: 0.0, origin_m: centre }.about(origin_m).matrix;
+        let name = if matches!(shape, Some(Shape::Ellipsoid { .. })) { "ellipsoid, exact (Lamb)" } else { "ellipsoid of the same length, breadth and height (Lamb)" };
+        rows.push(line(name, core::array::from_fn(|i| Some(moved[i][i]))));
+    }
+    if shape.is_some()
+        && let Ok(strips) = strip_added_mass(&stations(mesh))
+    {
+        let matrix = AddedMass { matrix: strips, asymmetry: 0.0, origin_m: [0.0; 3] }.about(origin_m).matrix;
+        rows.push(line("strips of elliptic sections (Newman)", core::array::from_fn(|i| (i > 0).then_some(matrix[i][i]))));
+    }
+    if let Some(Shape::Cylinder { length_m, section }) = shape
+        && section.major_m == section.minor_m
+        && let Ok(across) = circular_cylinder_added_mass_m3(section.major_m, *length_m)
+    {
+        rows.push(line("circular cylinder (DNV-RP-C205)", [None, Some(across), Some(across), None, None, None]));
+    }
+    let head = ["", "A11 [kg]", "A22 [kg]", "A33 [kg]", "A44 [kg m²]", "A55 [kg m²]", "A66 [kg m²]"];
+    let caption = "Cross-checks in unbounded water. A body that is not the one named may differ by as much as it looks different.";
+    Some(TextTable { caption: caption.to_owned(), head: head.map(str::to_owned).to_vec(), rows })
+}
+
+fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {
+    mesh.vertices.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(low, high), v| {
+        (core::array::from_fn(|a| low[a].min(v[a])), core::array::from_fn(|a| high[a].max(v[a])))
+    })
+}
+
+/// Sections of a body of sections: the widest at each x.
+fn stations(mesh: &Mesh) -> Vec<Station> {
+    let mut points = mesh.vertices.clone();
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let (low, high) = bounds(mesh);
+    let mut out: Vec<Station> = Vec::new();
+    for p in points {
+        let is_new = out.last().is_none_or(|s| p[0] - s.x_m > SAME * (high[0] - low[0]));
+        if is_new {
+            out.push(Station { x_m: p[0], half_width_m: 0.0, half_height_m: 0.0 });
+        }
+        if let Some(s) = out.last_mut() {
+            s.half_width_m = s.half_width_m.max(p[1].abs());
+            s.half_height_m = s.half_height_m.max(p[2].abs());
+        }
+    }
+    out
+}

@@ -1,0 +1,51 @@
+//! A mesh with what can be decided put right, as a new file; the given one stays as it is.
+
+use std::path::Path;
+
+use froude_mesh::check::{check, extent};
+use froude_mesh::crossing::crossings;
+use froude_mesh::files::{write_obj, write_stl_binary};
+use froude_mesh::parts::part_troubles;
+use froude_mesh::repair::repaired;
+use froude_records::write::write_atomically;
+
+use super::body::read_mesh;
+use crate::Error;
+
+/// What was done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Repaired {
+    /// What the file's reader had to say.
+    pub notes: Vec<String>,
+    /// What was changed, or could not be decided, a sentence each.
+    pub repairs: Vec<String>,
+    /// What is still wrong.
+    pub left: Vec<String>,
+    /// Panels of the new mesh.
+    pub panels: usize,
+}
+
+/// Vertices closer than this part of the extent are one, unless another length is given.
+const WELD: f64 = 1e-6;
+
+/// Reads, repairs, writes: `.obj`, which keeps quadrilaterals, or binary `.stl`.
+///
+/// # Errors
+///
+/// A mesh that cannot be read, a target of another format or on top of the input, a disk that is full.
+pub fn repair(input: &Path, unit_m: Option<f64>, weld_m: Option<f64>, target: &Path) -> Result<Repaired, Error> {
+    let extension = target.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    if !matches!(extension.as_str(), "obj" | "stl") {
+        return Err(Error::Nothing(format!("{}: a repaired mesh is written as .obj or .stl", target.display())));
+    }
+    if input == target || (target.exists() && input.canonicalize().ok() == target.canonicalize().ok()) {
+        return Err(Error::Nothing(format!("{}: name another file than the input; it stays as it is", target.display())));
+    }
+    let (mesh, notes) = read_mesh(input, unit_m)?;
+    let (mesh, repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));
+    let mut left: Vec<String> = check(&mesh).iter().map(ToString::to_string).collect();
+    left.extend(part_troubles(&mesh).iter().chain(&crossings(&mesh)).map(ToString::to_string));
+    let content = if extension == "obj" { write_obj(&mesh).into_bytes() } else { write_stl_binary(&mesh) };
+    write_atomically(target, &content)?;
+    Ok(Repaired { notes, repairs: repairs.iter().map(ToString::to_string).collect(), left, panels: mesh.panels.len() })
+}
