@@ -175,7 +175,7 @@ struct Integrals {
 }
 
 impl Integrals {
-    /// From the squared semi-axes. About 5 + log₄(longest/shortest) steps.
+    /// From the squared semi-axes. Four to eight steps, up to 1e12 between the axes.
     fn of(squares: [f64; 3]) -> Self {
         let mean = squares.iter().sum::<f64>() / 3.0;
         let spread = squares.iter().fold(0.0_f64, |most, s| most.max((s - mean).abs()));

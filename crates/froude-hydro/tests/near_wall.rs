@@ -1,4 +1,7 @@
 //! Spheres near planes and in shells, and the first modes of tanks.
+//!
+//! Capytaine 3.0 (direct method, limits of frequency, 3,136 panels) gives the same from 1.2 radii on, both boundaries, to
+//! 7e-5 along and 1.6e-4 square to the plane; square to it the difference falls with the mesh.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use froude_hydro::near_wall::{

@@ -98,7 +98,8 @@ pub enum Trouble {
     },
     /// A part that is inside out where others are not.
     #[error(
-        "part {part} ({panels} panels, at {at:?} m) is inside out (its volume is {volume_m3:.4e} m³), others are not; turn its panels"
+        "part {part} ({panels} panels, at {at:?} m) is inside out (its volume is {volume_m3:.4e} m³), others are \
+         not; turn its panels"
     )]
     PartInsideOut {
         /// The part.
@@ -112,7 +113,8 @@ pub enum Trouble {
     },
     /// A closed surface inside another.
     #[error(
-        "part {part} ({panels} panels, at {at:?} m, volume {volume_m3:.4e} m³) lies inside part {outer}: no water reaches it; take it out"
+        "part {part} ({panels} panels, at {at:?} m, volume {volume_m3:.4e} m³) lies inside part {outer}: no water \
+         reaches it; take it out"
     )]
     Nested {
         /// The inner part.
@@ -128,7 +130,8 @@ pub enum Trouble {
     },
     /// Panels through or against one another.
     #[error(
-        "{count} pairs of panels cross or touch without a common vertex there, the first {first} and {second} at {at:?} m; unite the bodies, or move them apart"
+        "{count} pairs of panels cross or touch without a common vertex there, the first {first} and {second} at {at:?} m; unite the \
+         bodies, or move them apart"
     )]
     Crossing {
         /// How many pairs; counting ends at [`crate::crossing::MOST`].
