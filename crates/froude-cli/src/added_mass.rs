@@ -27,8 +27,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         ..Wanted::default()
     };
     let counted = args.links.as_deref().map(link_numbers).transpose()?;
-    let density_kg_m3 =
-        args.density.as_deref().map(|d| positive("--density", d, Dimension::DENSITY)).transpose()?;
+    let density_kg_m3 = args.density.as_deref().map(|d| positive("--density", d, Dimension::DENSITY)).transpose()?;
     if let Some(numbers) = counted.as_ref().filter(|n| n.len() > 1) {
         let job = LinksJob {
             body: args.input,
@@ -102,12 +101,18 @@ fn ratio(option: &str, text: &str) -> Result<f64, Error> {
 
 fn unit(text: &str) -> Result<f64, Error> {
     let unit = parse_unit(text).map_err(|e| wrong("--unit", text, e))?;
-    if unit.dimension == Dimension::LENGTH { Ok(unit.to_si(1.0)) } else { Err(wrong("--unit", text, "write a unit of length: mm, cm, m, in")) }
+    if unit.dimension == Dimension::LENGTH {
+        Ok(unit.to_si(1.0))
+    } else {
+        Err(wrong("--unit", text, "write a unit of length: mm, cm, m, in"))
+    }
 }
 
 /// `3`, `1..9` (both ends), `1,3,6`.
 fn link_numbers(text: &str) -> Result<Vec<usize>, Error> {
-    let bad = || wrong("--links", text, format!("write a number of links, \"1..9\" or \"1,3,6\", between 1 and {MOST_LINKS}"));
+    let bad = || {
+        wrong("--links", text, format!("write a number of links, \"1..9\" or \"1,3,6\", between 1 and {MOST_LINKS}"))
+    };
     let one = |t: &str| t.trim().parse::<usize>().ok().filter(|n| (1..=MOST_LINKS).contains(n)).ok_or_else(bad);
     if let Some((from, to)) = text.split_once("..") {
         let (from, to) = (one(from)?, one(to.trim_start_matches('='))?);
@@ -163,10 +168,15 @@ fn check(job: &BodyJob) -> Result<(), Error> {
     let rows = steps
         .iter()
         .map(|(panels, f)| {
-            vec![panels.to_string(), f.unknowns.to_string(), duration(f.seconds), format!("{:.0}", f.memory_bytes / 1e6)]
+            vec![
+                panels.to_string(),
+                f.unknowns.to_string(),
+                duration(f.seconds),
+                format!("{:.0}", f.memory_bytes / 1e6),
+            ]
         })
         .collect();
-    print::text_table(&TextTable {
+    table(&TextTable {
         caption: "What each mesh would take; the computation ends with the first that holds the tolerance.".to_owned(),
         head: ["panels", "unknowns", "time", "memory [MB]"].map(str::to_owned).to_vec(),
         rows,
@@ -174,11 +184,17 @@ fn check(job: &BodyJob) -> Result<(), Error> {
     Ok(())
 }
 
+/// A table below its caption.
+fn table(text: &TextTable) {
+    say!("\n{}", print::wrapped(&text.caption));
+    print::text_table(text);
+}
+
 fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
-    print::text_table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
+    table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
     if !outcome.fits.is_empty() {
-        print::text_table(&page::fits_table(&outcome.fits));
+        table(&page::fits_table(&outcome.fits));
     }
     print::findings(&outcome.file.findings);
     say!("\n{}\n{}\n{}", outcome.table.display(), outcome.estimate.display(), outcome.page.display());
@@ -189,15 +205,15 @@ fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     for case in &outcome.cases {
         say!("\n{} ({})", case.title, case.surroundings);
-        print::text_table(&page::matrix_table(&case.refined, outcome.density_kg_m3));
-        print::text_table(&page::dimensionless_table(&case.refined, outcome.length_m));
-        print::text_table(&page::steps_table(&case.refined, outcome.density_kg_m3));
+        table(&page::matrix_table(&case.refined, outcome.density_kg_m3));
+        table(&page::dimensionless_table(&case.refined, outcome.length_m));
+        table(&page::steps_table(&case.refined, outcome.density_kg_m3));
         for line in page::convergence_words(&case.refined) {
             say!("{line}");
         }
     }
-    for table in &outcome.tables {
-        print::text_table(table);
+    for text in &outcome.tables {
+        table(text);
     }
     for note in &outcome.notes {
         say!("{note}");

@@ -111,6 +111,11 @@ pub fn findings(findings: &[Finding]) {
     }
 }
 
+/// A text in lines of at most [`WIDEST`] characters.
+pub fn wrapped(text: &str) -> String {
+    wrap(text, usize::from(WIDEST))
+}
+
 /// Prints a sentence in lines of at most [`WIDEST`] characters, two spaces in.
 fn sentence(text: &str) {
     let mut line = " ".to_owned();

@@ -20,21 +20,18 @@ pub fn solve(problem: &Problem) -> Solution {
     let n = problem.facets.len();
     let columns = problem.columns();
     let velocities: Vec<Vec<f64>> = (0..n).map(|p| (0..columns).map(|c| problem.velocity(p, c)).collect()).collect();
-    let mut potentials = vec![vec![0.0; columns]; n];
     let area: f64 = problem.facets.iter().map(|f| f.area).sum();
-    for (signs, members) in classes(problem) {
-        // Rows: ½ δ_ij − K_ij, and −S v.
-        let rows: Vec<(Vec<f64>, Vec<f64>)> = (0..n)
-            .into_par_iter()
-            .map(|i| row(problem, &velocities, i, &images(&problem.mirrors, problem.facets[i].centroid), &signs))
-            .collect();
-        // In an enclosed fluid the mean of φ is added to each row: it makes the matrix regular, and the mean zero.
-        let mean = |j: usize| if problem.is_enclosed { problem.facets[j].area / area } else { 0.0 };
-        let matrix = Mat::from_fn(n, n, |i, j| rows[i].0[j] + mean(j));
-        let right = Mat::from_fn(n, members.len(), |i, k| rows[i].1[members[k]]);
+    // In an enclosed fluid the mean of φ is added to each row: it makes the matrix regular, and the mean zero.
+    let mean = |j: usize| if problem.is_enclosed { problem.facets[j].area / area } else { 0.0 };
+    let classes = classes(problem);
+    let rows: Vec<Vec<Row>> = (0..n).into_par_iter().map(|i| rows(problem, &velocities, i, &classes)).collect();
+    let mut potentials = vec![vec![0.0; columns]; n];
+    for (number, class) in classes.iter().enumerate() {
+        let matrix = Mat::from_fn(n, n, |i, j| rows[i][number].left[j] + mean(j));
+        let right = Mat::from_fn(n, class.columns.len(), |i, k| rows[i][number].right[k]);
         let phi = PartialPivLu::new(matrix.as_ref()).solve(&right);
         for (i, p) in potentials.iter_mut().enumerate() {
-            for (k, &column) in members.iter().enumerate() {
+            for (k, &column) in class.columns.iter().enumerate() {
                 p[column] = phi[(i, k)];
             }
         }
@@ -42,37 +39,50 @@ pub fn solve(problem: &Problem) -> Solution {
     problem.solution(potentials, Report { unknowns: n, near_pairs: n * n, ..Report::default() })
 }
 
-/// Signs on the images, with the motions that have them.
-fn classes(problem: &Problem) -> Vec<(Vec<f64>, Vec<usize>)> {
-    let mut out: Vec<(Vec<f64>, Vec<usize>)> = Vec::new();
+/// Motions with the same signs on the images: they share a matrix.
+struct Class {
+    signs: Vec<f64>,
+    columns: Vec<usize>,
+}
+
+fn classes(problem: &Problem) -> Vec<Class> {
+    let mut out: Vec<Class> = Vec::new();
     for column in 0..problem.columns() {
         let signs = problem.signs(column);
-        match out.iter_mut().find(|c| c.0 == signs) {
-            Some(class) => class.1.push(column),
-            None => out.push((signs, vec![column])),
+        match out.iter_mut().find(|c| c.signs == signs) {
+            Some(class) => class.columns.push(column),
+            None => out.push(Class { signs, columns: vec![column] }),
         }
     }
     out
 }
 
-fn row(problem: &Problem, velocities: &[Vec<f64>], own: usize, points: &[Vec3], signs: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let mut right = vec![0.0; problem.columns()];
-    let row = problem
-        .facets
-        .iter()
-        .zip(velocities)
-        .enumerate()
-        .map(|(j, (source, v))| {
-            let (mut s, mut k) = (0.0, 0.0);
-            for (image, (point, sign)) in points.iter().zip(signs).enumerate() {
-                let on = near(source, *point);
-                s += sign * on.source / FOUR_PI;
-                // A panel does not turn its own potential.
-                k += if image == 0 && j == own { 0.0 } else { sign * on.dipole / FOUR_PI };
+/// ½ δ_ij − K_ij over j, and −S v for the motions of a class.
+struct Row {
+    left: Vec<f64>,
+    right: Vec<f64>,
+}
+
+/// The row of a panel in the matrix of each class.
+fn rows(problem: &Problem, velocities: &[Vec<f64>], own: usize, classes: &[Class]) -> Vec<Row> {
+    let points: Vec<Vec3> = images(&problem.mirrors, problem.facets[own].centroid);
+    let n = problem.facets.len();
+    let mut out: Vec<Row> =
+        classes.iter().map(|c| Row { left: vec![0.0; n], right: vec![0.0; c.columns.len()] }).collect();
+    for (j, (source, v)) in problem.facets.iter().zip(velocities).enumerate() {
+        for (image, point) in points.iter().enumerate() {
+            let on = near(source, *point);
+            // A panel does not turn its own potential.
+            let turned = if image == 0 && j == own { 0.0 } else { on.dipole };
+            for (row, class) in out.iter_mut().zip(classes) {
+                let sign = class.signs[image] / FOUR_PI;
+                row.left[j] -= sign * turned;
+                for (r, column) in row.right.iter_mut().zip(&class.columns) {
+                    *r -= sign * on.source * v[*column];
+                }
             }
-            right.iter_mut().zip(v).for_each(|(r, v)| *r -= s * v);
-            if j == own { 0.5 - k } else { -k }
-        })
-        .collect();
-    (row, right)
+        }
+    }
+    out.iter_mut().for_each(|row| row.left[own] += 0.5);
+    out
 }

@@ -41,7 +41,7 @@ mod tree;
 use problem::{Problem, Solution};
 
 /// Unknowns up to which the plain solver is as quick as the fast one, and free of its 3e-7.
-pub const PLAIN_LIMIT: usize = 2500;
+pub const PLAIN_LIMIT: usize = 1500;
 
 /// Solves by the plain solver where it is quick, else by the fast one.
 #[must_use]

@@ -134,7 +134,10 @@ type Reader = fn(&Section<'_>) -> Result<Shape, RecordError>;
 fn shape(s: &Section<'_>) -> Result<Shape, RecordError> {
     let readers: [Reader; 4] = [robot, ellipsoid, capsule, cylinder];
     let read = one_of(s, "shape", &["robot", "ellipsoid", "capsule", "cylinder"], &readers)?.ok_or_else(|| {
-        s.missing("shape", "write shape = \"robot\", \"ellipsoid\", \"capsule\" or \"cylinder\"; any other hull comes as a mesh")
+        s.missing(
+            "shape",
+            "write shape = \"robot\", \"ellipsoid\", \"capsule\" or \"cylinder\"; any other hull comes as a mesh",
+        )
     })?;
     read(s)
 }
@@ -156,7 +159,10 @@ fn end(s: &Section<'_>) -> Result<f64, RecordError> {
 fn robot(s: &Section<'_>) -> Result<Shape, RecordError> {
     s.only(&["shape", "link", "joint", "ends"])?;
     let link = s.section("link")?.ok_or_else(|| {
-        s.missing("link", "write link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }")
+        s.missing(
+            "link",
+            "write link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }",
+        )
     })?;
     link.only(&["major_semi_axis", "minor_semi_axis", "half_length"])?;
     let pitch_m = 2.0 * need(&link, "half_length")?;
@@ -168,7 +174,9 @@ fn joint(j: &Section<'_>, pitch_m: f64) -> Result<Joint, RecordError> {
     j.only(&["length", "scale", "ramp"])?;
     let joint = Joint {
         length_m: need(j, "length")?,
-        scale: j.number("scale")?.ok_or_else(|| j.missing("scale", "write its section over that of the link: scale = 0.7"))?,
+        scale: j
+            .number("scale")?
+            .ok_or_else(|| j.missing("scale", "write its section over that of the link: scale = 0.7"))?,
         ramp_m: need(j, "ramp")?,
     };
     let told = |key: &'static str, problem: String| match j.get(key) {
@@ -202,7 +210,9 @@ fn capsule(s: &Section<'_>) -> Result<Shape, RecordError> {
     s.only(&["shape", "length", "major_semi_axis", "minor_semi_axis", "ends"])?;
     let (length_m, end_m) = (need(s, "length")?, end(s)?);
     if 2.0 * end_m >= length_m {
-        let problem = format!("is {length_m} m from tip to tip; two ends of {end_m} m leave no cylinder; write shape = \"ellipsoid\"");
+        let problem = format!(
+            "is {length_m} m from tip to tip; two ends of {end_m} m leave no cylinder; write shape = \"ellipsoid\""
+        );
         return Err(s.get("length").map_or_else(|| s.missing("length", "write it"), |v| s.wrong("length", v, problem)));
     }
     Ok(Shape::Capsule { length_m, section: section_of(s)?, end_m })

@@ -270,7 +270,11 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3)?);
     }
     let estimates = cases.iter().map(|case| {
-        let source = if cases.len() == 1 { loaded.name.clone() } else { format!("{}, {}", loaded.name, case.title.to_lowercase()) };
+        let source = if cases.len() == 1 {
+            loaded.name.clone()
+        } else {
+            format!("{}, {}", loaded.name, case.title.to_lowercase())
+        };
         let about = About {
             source,
             density_kg_m3,
@@ -384,7 +388,13 @@ fn hydrostatics(refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> TextTa
 }
 
 /// What the facets of a mesh may hide: its difference from the smooth body that they stand for.
-fn geometry(mesh: &Mesh, case: &Case, job: &BodyJob, origin_m: Vec3, density_kg_m3: f64) -> Result<Option<TextTable>, Error> {
+fn geometry(
+    mesh: &Mesh,
+    case: &Case,
+    job: &BodyJob,
+    origin_m: Vec3,
+    density_kg_m3: f64,
+) -> Result<Option<TextTable>, Error> {
     if 4 * mesh.panels.len() > job.wanted.most_panels {
         return Ok(None);
     }
@@ -415,13 +425,19 @@ fn geometry(mesh: &Mesh, case: &Case, job: &BodyJob, origin_m: Vec3, density_kg_
              these corners lies from it, should the facets stand for one. Edges of more than {:.0}° count as edges of the body.",
             CREASE_RAD.to_degrees()
         ),
-        head: ["", "value [kg, kg m²]", "numerical uncertainty", "smooth body minus polyhedron"].map(str::to_owned).to_vec(),
+        head: ["", "value [kg, kg m²]", "numerical uncertainty", "smooth body minus polyhedron"]
+            .map(str::to_owned)
+            .to_vec(),
         rows,
     }))
 }
 
 fn percent_of(part: f64, whole: f64) -> String {
-    if whole.abs() > 0.0 && part.is_finite() { format!("{:+.2} %", 100.0 * part / whole.abs()) } else { "–".to_owned() }
+    if whole.abs() > 0.0 && part.is_finite() {
+        format!("{:+.2} %", 100.0 * part / whole.abs())
+    } else {
+        "–".to_owned()
+    }
 }
 
 /// The pressure on the body, and the files that were asked for.
@@ -436,7 +452,8 @@ fn extras(outcome: &BodyOutcome, job: &BodyJob, out: &Path, origin_m: Vec3) -> R
     // Deeply submerged both limits are the same.
     let limit = |is_lid: bool| outcome.cases.iter().find(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
     let (zero, infinite) = (limit(true), limit(false));
-    let body = outcome.name.chars().map(|c| if c.is_ascii_alphanumeric() || " -.".contains(c) { c } else { '-' }).collect();
+    let body =
+        outcome.name.chars().map(|c| if c.is_ascii_alphanumeric() || " -.".contains(c) { c } else { '-' }).collect();
     let bodies = [body];
     let file = AddedMassFile {
         density_kg_m3: outcome.density_kg_m3,

@@ -16,7 +16,13 @@ const SAME: f64 = 1e-9;
 
 /// The table; `None` where there is nothing to compare with.
 #[must_use]
-pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> Option<TextTable> {
+pub fn table(
+    shape: Option<&Shape>,
+    mesh: &Mesh,
+    refined: &Refined,
+    density_kg_m3: f64,
+    origin_m: Vec3,
+) -> Option<TextTable> {
     let line = |name: &str, diagonal: [Option<f64>; 6]| {
         let cells = diagonal.map(|a| a.map_or_else(|| "–".to_owned(), |a| number::plain(density_kg_m3 * a, 5)));
         std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
@@ -29,14 +35,21 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
         let mut matrix = [[0.0; 6]; 6];
         (0..6).for_each(|i| matrix[i][i] = diagonal[i]);
         let moved = AddedMass { matrix, asymmetry: 0.0, origin_m: centre }.about(origin_m).matrix;
-        let name = if matches!(shape, Some(Shape::Ellipsoid { .. })) { "ellipsoid, exact (Lamb)" } else { "ellipsoid of the same length, breadth and height (Lamb)" };
+        let name = if matches!(shape, Some(Shape::Ellipsoid { .. })) {
+            "ellipsoid, exact (Lamb)"
+        } else {
+            "ellipsoid of the same length, breadth and height (Lamb)"
+        };
         rows.push(line(name, core::array::from_fn(|i| Some(moved[i][i]))));
     }
     if shape.is_some()
         && let Ok(strips) = strip_added_mass(&stations(mesh))
     {
         let matrix = AddedMass { matrix: strips, asymmetry: 0.0, origin_m: [0.0; 3] }.about(origin_m).matrix;
-        rows.push(line("strips of elliptic sections (Newman)", core::array::from_fn(|i| (i > 0).then_some(matrix[i][i]))));
+        rows.push(line(
+            "strips of elliptic sections (Newman)",
+            core::array::from_fn(|i| (i > 0).then_some(matrix[i][i])),
+        ));
     }
     if let Some(Shape::Cylinder { length_m, section }) = shape
         && section.major_m == section.minor_m

@@ -59,13 +59,19 @@ impl Family {
                 let middle = 0.5 * length_m - end_m;
                 let cells = |length: f64| (length / width).round().clamp(2.0, 60.0) as usize;
                 let along = 2 * cells(middle);
-                (SectionBody::capsule(middle, section.minor_m, section.major_m, end_m, [cells(1.5 * end_m), along]), vec![0, 1, 2])
+                (
+                    SectionBody::capsule(middle, section.minor_m, section.major_m, end_m, [cells(1.5 * end_m), along]),
+                    vec![0, 1, 2],
+                )
             }
             Shape::Cylinder { length_m, section } => {
                 let width = core::f64::consts::FRAC_PI_4 * (section.major_m + section.minor_m) / 2.0;
                 let along = 2 * (0.5 * length_m / width).round().clamp(2.0, 60.0) as usize;
                 let cells = ((section.major_m / width).round() as usize).max(2);
-                (SectionBody::flat_cylinder(0.5 * length_m, section.minor_m, section.major_m, [cells, along]), vec![0, 1, 2])
+                (
+                    SectionBody::flat_cylinder(0.5 * length_m, section.minor_m, section.major_m, [cells, along]),
+                    vec![0, 1, 2],
+                )
             }
         };
         Self::Sections { body, planes }

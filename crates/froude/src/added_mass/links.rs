@@ -155,10 +155,8 @@ pub(super) fn no_density(path: &Path) -> Error {
 /// A finding where the tolerance was not reached.
 pub(super) fn not_within(name: &str, refined: &Refined) -> Option<Finding> {
     let why = refined.stopped.as_ref()?;
-    let message = format!(
-        "{name}: the numerical uncertainty is {:.2} % where less was asked for: {why}",
-        100.0 * refined.worst
-    );
+    let message =
+        format!("{name}: the numerical uncertainty is {:.2} % where less was asked for: {why}", 100.0 * refined.worst);
     Some(Finding::new(Severity::Warning, "not-converged", message))
 }
 
@@ -176,7 +174,8 @@ fn csv(configurations: &[Configuration], density_kg_m3: f64) -> String {
     let mut out = "configuration,n_links [1],mu_x [kg],mu_y [kg],mu_z [kg],volume [m^3]\n".to_owned();
     for c in configurations {
         let mu = |i: usize| density_kg_m3 * c.refined.value[i][i];
-        let _ = writeln!(out, "{},{},{:.6},{:.6},{:.6},{:.7e}", c.name, c.links, mu(0), mu(1), mu(2), c.refined.volume_m3);
+        let _ =
+            writeln!(out, "{},{},{:.6},{:.6},{:.6},{:.7e}", c.name, c.links, mu(0), mu(1), mu(2), c.refined.volume_m3);
     }
     out
 }

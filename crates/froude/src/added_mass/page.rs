@@ -14,14 +14,15 @@ use super::refine::Refined;
 /// Sort of page.
 const SORT: &str = "Added mass · potential flow";
 
-/// A point in words.
+/// A point in words; what is less than a nanometre is nothing.
 #[must_use]
 pub fn point(at_m: Vec3, origin: &str) -> String {
-    if at_m == [0.0; 3] {
-        origin.to_owned()
-    } else {
-        format!("({}, {}, {}) m from {origin}", at_m[0], at_m[1], at_m[2])
+    let [x, y, z] = at_m.map(|x| if x.abs() < 1e-9 { 0.0 } else { x });
+    if [x, y, z] == [0.0; 3] {
+        return origin.to_owned();
     }
+    let [x, y, z] = [x, y, z].map(|x| number::plain(x, 6));
+    format!("({x}, {y}, {z}) m from {origin}")
 }
 
 /// A value with its expanded uncertainty.
@@ -38,7 +39,11 @@ pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
             let cells = (0..6).map(|j| {
                 let (value, u) = (density_kg_m3 * refined.value[i][j], density_kg_m3 * refined.uncertainty[i][j]);
                 // Below its uncertainty, and zero by symmetry to rounding.
-                if value.abs() <= u && value.abs() < 1e-9 * density_kg_m3 { "0".to_owned() } else { with_uncertainty(value, u) }
+                if value.abs() <= u && value.abs() < 1e-9 * density_kg_m3 {
+                    "0".to_owned()
+                } else {
+                    with_uncertainty(value, u)
+                }
             });
             std::iter::once(MOTIONS[i].to_owned()).chain(cells).collect()
         })
@@ -58,13 +63,18 @@ pub fn dimensionless_table(refined: &Refined, length_m: f64) -> TextTable {
     let v = refined.volume_m3;
     let rows = (0..6)
         .map(|i| {
-            let [of_volume, of_length] = if i < 3 { [v, length_m.powi(3)] } else { [v * length_m.powi(2), length_m.powi(5)] };
+            let [of_volume, of_length] =
+                if i < 3 { [v, length_m.powi(3)] } else { [v * length_m.powi(2), length_m.powi(5)] };
             let of = |size: f64| with_uncertainty(refined.value[i][i] / size, refined.uncertainty[i][i] / size);
             vec![MOTIONS[i].to_owned(), of(of_volume), of(of_length)]
         })
         .collect();
     TextTable {
-        caption: format!("Diagonal without dimension; V = {} m³, L = {} m.", number::plain(v, 6), number::plain(length_m, 6)),
+        caption: format!(
+            "Diagonal without dimension; V = {} m³, L = {} m.",
+            number::plain(v, 6),
+            number::plain(length_m, 6)
+        ),
         head: ["", "A/(ρV), A/(ρVL²) [1]", "A/(ρL³), A/(ρL⁵) [1], as WAMIT with ULEN = L"].map(str::to_owned).to_vec(),
         rows,
     }
@@ -78,8 +88,12 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
         .iter()
         .map(|s| {
             let a = &s.added_mass.matrix;
-            let mut row =
-                vec![s.panels.to_string(), s.unknowns.to_string(), s.iterations.to_string(), number::plain(s.seconds, 2)];
+            let mut row = vec![
+                s.panels.to_string(),
+                s.unknowns.to_string(),
+                s.iterations.to_string(),
+                number::plain(s.seconds, 2),
+            ];
             row.extend((0..6).map(|i| number::plain(density_kg_m3 * a[i][i], 6)));
             row.push(format!("{:.1e}", s.added_mass.asymmetry));
             row
@@ -133,9 +147,8 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
 /// How the value came about.
 #[must_use]
 pub fn convergence_words(refined: &Refined) -> Vec<String> {
-    let orders: Vec<String> = (0..6)
-        .filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?)))
-        .collect();
+    let orders: Vec<String> =
+        (0..6).filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?))).collect();
     let mut out = vec![if orders.is_empty() {
         "No order of convergence can be seen on these meshes: the value is that of the finest one, with three times its distance from the \
          others."
@@ -145,7 +158,10 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
     }];
     out.push(match &refined.stopped {
         None => format!("The largest numerical uncertainty is {:.2} % of its entry.", 100.0 * refined.worst),
-        Some(why) => format!("The largest numerical uncertainty is {:.2} %, more than was asked for: {why}.", 100.0 * refined.worst),
+        Some(why) => format!(
+            "The largest numerical uncertainty is {:.2} %, more than was asked for: {why}.",
+            100.0 * refined.worst
+        ),
     });
     out
 }
@@ -242,14 +258,18 @@ pub fn links(
 ) -> Document {
     let mut sections = vec![DocumentSection {
         title: "Configurations".to_owned(),
-        paragraphs: vec![format!("Density {density_kg_m3} kg/m³. The x axis runs along the body, y is lateral, z vertical.")],
+        paragraphs: vec![format!(
+            "Density {density_kg_m3} kg/m³. The x axis runs along the body, y is lateral, z vertical."
+        )],
         tables: vec![links_table(configurations, density_kg_m3)],
         charts: vec![links_chart(configurations, density_kg_m3)],
     }];
     if !fits.is_empty() {
         sections.push(DocumentSection {
             title: "Least squares".to_owned(),
-            paragraphs: vec!["Details, residuals and the choice among the laws: campaign-results/report.html.".to_owned()],
+            paragraphs: vec![
+                "Details, residuals and the choice among the laws: campaign-results/report.html.".to_owned(),
+            ],
             tables: vec![fits_table(fits)],
             ..DocumentSection::default()
         });
@@ -264,7 +284,11 @@ pub fn links(
     }
     if let Some(last) = configurations.last() {
         let chart = convergence_chart(&last.refined);
-        sections.push(DocumentSection { title: format!("Convergence of {}", last.name), charts: vec![chart], ..Default::default() });
+        sections.push(DocumentSection {
+            title: format!("Convergence of {}", last.name),
+            charts: vec![chart],
+            ..Default::default()
+        });
     }
     Document {
         sort: SORT.to_owned(),

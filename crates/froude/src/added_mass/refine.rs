@@ -2,9 +2,9 @@
 
 use std::time::Instant;
 
-use froude_mesh::{Mesh, Vec3};
 use froude_mesh::measure::Measure;
 use froude_mesh::sections::PartMesh;
+use froude_mesh::{Mesh, Vec3};
 use froude_panel::convergence::{Converged, converged};
 use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
@@ -116,8 +116,8 @@ pub fn forecast(problem: &Problem) -> Forecast {
         // A matrix for each class of signs: a body with three planes has six.
         let classes = if problem.mirrors.is_empty() { 1.0 } else { 6.0 };
         let images = f64::from(1_u32 << problem.mirrors.len());
-        let seconds = classes * (n * n * images * PLAIN_S / threads + n.powi(3) / 1.5 / PLAIN_PER_S);
-        return Forecast { unknowns: problem.facets.len(), seconds, memory_bytes: 24.0 * n * n };
+        let seconds = n * n * images * PLAIN_S / threads + classes * n.powi(3) / 1.5 / PLAIN_PER_S;
+        return Forecast { unknowns: problem.facets.len(), seconds, memory_bytes: 8.0 * (classes + 2.0) * n * n };
     }
     let cost = fast::cost(problem);
     let blocks = problem.columns().div_ceil(8) as f64;
@@ -160,7 +160,10 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     for number in 0..family.members() {
         let panels = family.panels(number)?;
         if panels > wanted.most_panels && !steps.is_empty() {
-            stopped = Some(format!("the next mesh has {panels} panels, and {} are allowed (--most-panels)", wanted.most_panels));
+            stopped = Some(format!(
+                "the next mesh has {panels} panels, and {} are allowed (--most-panels)",
+                wanted.most_panels
+            ));
             break;
         }
         let member = family.member(number)?;
@@ -263,8 +266,8 @@ fn entries(steps: &[Step]) -> [[Converged; 6]; 6] {
     })
 }
 
-/// Part of the largest entry of its kind below which a diagonal entry counts as zero: the roll of a body of revolution.
-const ZERO: f64 = 1e-3;
+/// A diagonal entry below this part of the largest of its kind is judged as if it were so large: the roll of a slender body.
+const ZERO: f64 = 1e-2;
 
 /// Largest uncertainty of an entry over √(A_ii A_jj).
 fn worst(entries: &[[Converged; 6]; 6]) -> f64 {

@@ -39,7 +39,10 @@ pub fn repair(input: &Path, unit_m: Option<f64>, weld_m: Option<f64>, target: &P
         return Err(Error::Nothing(format!("{}: a repaired mesh is written as .obj or .stl", target.display())));
     }
     if input == target || (target.exists() && input.canonicalize().ok() == target.canonicalize().ok()) {
-        return Err(Error::Nothing(format!("{}: name another file than the input; it stays as it is", target.display())));
+        return Err(Error::Nothing(format!(
+            "{}: name another file than the input; it stays as it is",
+            target.display()
+        )));
     }
     let (mesh, notes) = read_mesh(input, unit_m)?;
     let (mesh, repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));
