@@ -264,10 +264,10 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     }
     let length_m = extent_along_x(&coarse);
     let mut tables = vec![hydrostatics(&cases[0].refined, density_kg_m3, origin_m)];
-    tables.extend(cross_checks::table(loaded.shape.as_ref(), &coarse, &cases[0].refined, density_kg_m3, origin_m));
+    tables.push(cross_checks::table(loaded.shape.as_ref(), &coarse, &cases[0].refined, density_kg_m3, origin_m));
     if let Family::Mesh(mesh) = &loaded.family {
         told("the same with facets rounded");
-        tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3)?);
+        tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3));
     }
     let estimates = cases.iter().map(|case| {
         let source = if cases.len() == 1 {
@@ -388,15 +388,9 @@ fn hydrostatics(refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> TextTa
 }
 
 /// What the facets of a mesh may hide: its difference from the smooth body that they stand for.
-fn geometry(
-    mesh: &Mesh,
-    case: &Case,
-    job: &BodyJob,
-    origin_m: Vec3,
-    density_kg_m3: f64,
-) -> Result<Option<TextTable>, Error> {
+fn geometry(mesh: &Mesh, case: &Case, job: &BodyJob, origin_m: Vec3, density_kg_m3: f64) -> Option<TextTable> {
     if 4 * mesh.panels.len() > job.wanted.most_panels {
-        return Ok(None);
+        return None;
     }
     let round = rounded(mesh, CREASE_RAD);
     let flat = subdivided(mesh);
@@ -419,7 +413,7 @@ fn geometry(
             ]
         })
         .collect();
-    Ok(Some(TextTable {
+    Some(TextTable {
         caption: format!(
             "Two uncertainties, never one: that of the panels (the matrix of the polyhedron that was given), and how far a smooth body with \
              these corners lies from it, should the facets stand for one. Edges of more than {:.0}° count as edges of the body.",
@@ -429,7 +423,7 @@ fn geometry(
             .map(str::to_owned)
             .to_vec(),
         rows,
-    }))
+    })
 }
 
 fn percent_of(part: f64, whole: f64) -> String {
