@@ -40,7 +40,11 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         let bar = crate::spinner();
         let outcome = links(&job, &|step| bar.set_message(step.to_owned()))?;
         bar.finish_and_clear();
-        return if json { print::json(&outcome.file) } else { table_of_links(&outcome) };
+        if json {
+            return print::json(&outcome.file);
+        }
+        table_of_links(&outcome);
+        return Ok(());
     }
     let job = BodyJob {
         input: args.input,
@@ -61,7 +65,11 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     let bar = crate::spinner();
     let outcome = body::body(&job, &|step| bar.set_message(step.to_owned()))?;
     bar.finish_and_clear();
-    if json { print::json(&outcome.file) } else { one_body(&outcome) }
+    if json {
+        return print::json(&outcome.file);
+    }
+    one_body(&outcome);
+    Ok(())
 }
 
 const fn extension(format: Export) -> &'static str {
@@ -190,7 +198,7 @@ fn table(text: &TextTable) {
     print::text_table(text);
 }
 
-fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
+fn table_of_links(outcome: &LinksOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
     if !outcome.fits.is_empty() {
@@ -198,10 +206,9 @@ fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
     }
     print::findings(&outcome.file.findings);
     say!("\n{}\n{}\n{}", outcome.table.display(), outcome.estimate.display(), outcome.page.display());
-    Ok(())
 }
 
-fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
+fn one_body(outcome: &BodyOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     for case in &outcome.cases {
         say!("\n{} ({})", case.title, case.surroundings);
@@ -224,5 +231,4 @@ fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
     for path in paths {
         say!("{}", path.display());
     }
-    Ok(())
 }
