@@ -53,6 +53,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         origin: args.origin.as_deref().map_or(Ok(Origin::At([0.0; 3])), origin)?,
         unit_m: args.unit.as_deref().map(unit).transpose()?,
         is_z_up: args.z == Vertical::Up,
+        tank_m: args.tank.as_deref().map(tank).transpose()?,
         surface_m: args.surface.as_deref().map(|h| length("--surface", h)).transpose()?,
         wanted,
         export: args.export.iter().map(|e| extension(*e)).collect(),
@@ -142,6 +143,16 @@ fn origin(text: &str) -> Result<Origin, Error> {
         return Err(wrong("--origin", text, "write three lengths, \"0 m, 0 m, -0.2 m\", or \"buoyancy\""));
     };
     Ok(Origin::At([length("--origin", x.trim())?, length("--origin", y.trim())?, length("--origin", z.trim())?]))
+}
+
+/// Length, breadth, depth of water: `1.5 m x 0.9 m x 1 m`.
+fn tank(text: &str) -> Result<[f64; 3], Error> {
+    let sides: Vec<&str> = text.split(['x', '×']).collect();
+    let [l, b, d] = sides[..] else {
+        return Err(wrong("--tank", text, "write length, breadth and depth of water: \"1.5 m x 0.9 m x 1 m\""));
+    };
+    let side = |t: &str| positive("--tank", t.trim(), Dimension::LENGTH);
+    Ok([side(l)?, side(b)?, side(d)?])
 }
 
 fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Error> {
