@@ -40,7 +40,11 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         let bar = crate::spinner();
         let outcome = links(&job, &|step| bar.set_message(step.to_owned()))?;
         bar.finish_and_clear();
-        return if json { print::json(&outcome.file) } else { table_of_links(&outcome) };
+        if json {
+            return print::json(&outcome.file);
+        }
+        table_of_links(&outcome);
+        return Ok(());
     }
     let job = BodyJob {
         input: args.input,
@@ -49,6 +53,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         origin: args.origin.as_deref().map_or(Ok(Origin::At([0.0; 3])), origin)?,
         unit_m: args.unit.as_deref().map(unit).transpose()?,
         is_z_up: args.z == Vertical::Up,
+        tank_m: args.tank.as_deref().map(tank).transpose()?,
         surface_m: args.surface.as_deref().map(|h| length("--surface", h)).transpose()?,
         wanted,
         export: args.export.iter().map(|e| extension(*e)).collect(),
@@ -61,7 +66,11 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     let bar = crate::spinner();
     let outcome = body::body(&job, &|step| bar.set_message(step.to_owned()))?;
     bar.finish_and_clear();
-    if json { print::json(&outcome.file) } else { one_body(&outcome) }
+    if json {
+        return print::json(&outcome.file);
+    }
+    one_body(&outcome);
+    Ok(())
 }
 
 const fn extension(format: Export) -> &'static str {
@@ -136,6 +145,16 @@ fn origin(text: &str) -> Result<Origin, Error> {
     Ok(Origin::At([length("--origin", x.trim())?, length("--origin", y.trim())?, length("--origin", z.trim())?]))
 }
 
+/// Length, breadth, depth of water: `1.5 m x 0.9 m x 1 m`.
+fn tank(text: &str) -> Result<[f64; 3], Error> {
+    let sides: Vec<&str> = text.split(['x', '×']).collect();
+    let [l, b, d] = sides[..] else {
+        return Err(wrong("--tank", text, "write length, breadth and depth of water: \"1.5 m x 0.9 m x 1 m\""));
+    };
+    let side = |t: &str| positive("--tank", t.trim(), Dimension::LENGTH);
+    Ok([side(l)?, side(b)?, side(d)?])
+}
+
 fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Error> {
     let unit_m = args.unit.as_deref().map(unit).transpose()?;
     let weld_m = args.weld.as_deref().map(|w| positive("--weld", w, Dimension::LENGTH)).transpose()?;
@@ -190,7 +209,7 @@ fn table(text: &TextTable) {
     print::text_table(text);
 }
 
-fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
+fn table_of_links(outcome: &LinksOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
     if !outcome.fits.is_empty() {
@@ -198,10 +217,9 @@ fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
     }
     print::findings(&outcome.file.findings);
     say!("\n{}\n{}\n{}", outcome.table.display(), outcome.estimate.display(), outcome.page.display());
-    Ok(())
 }
 
-fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
+fn one_body(outcome: &BodyOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     for case in &outcome.cases {
         say!("\n{} ({})", case.title, case.surroundings);
@@ -224,5 +242,4 @@ fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
     for path in paths {
         say!("{}", path.display());
     }
-    Ok(())
 }

@@ -76,19 +76,21 @@ impl ModularRobot {
         // A quarter of an ellipse is longer than its axis.
         let arc = |l: f64| 1.5 * l;
         let neck = self.neck_m - 2.0 * self.ramp_m;
-        go(arc, &full, self.end_m, Curve::Elliptic, Grading::Even, 0);
+        // The shoulders of a neck are sharp: cells are finer towards them on both sides.
+        let [after, before] = if self.neck_m > 0.0 { [Grading::End, Grading::Start] } else { [Grading::Even; 2] };
+        go(arc, &full, self.end_m, Curve::Elliptic, after, 0);
         for joint in 0..=links {
-            go(whole, &narrow, self.ramp_m, Curve::Straight, Grading::Even, joint);
+            go(whole, &narrow, self.ramp_m, Curve::Straight, Grading::Both, joint);
             go(whole, &narrow, 0.5 * neck, Curve::Straight, Grading::Start, joint);
             go(whole, &narrow, 0.5 * neck, Curve::Straight, Grading::End, joint + 1);
-            go(whole, &full, self.ramp_m, Curve::Straight, Grading::Even, joint + 1);
+            go(whole, &full, self.ramp_m, Curve::Straight, Grading::Both, joint + 1);
             if joint < links {
                 let length_m = self.pitch_m - self.neck_m;
                 go(whole, &full, length_m, Curve::Straight, Grading::Both, joint + 1);
             }
         }
         let tip = |x_m| Section::new(x_m, 0.0, 0.0);
-        go(arc, &tip, self.end_m, Curve::Elliptic, Grading::Even, links + 1);
+        go(arc, &tip, self.end_m, Curve::Elliptic, before, links + 1);
         SectionBody { pieces }
     }
 }

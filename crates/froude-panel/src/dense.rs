@@ -83,6 +83,8 @@ fn rows(problem: &Problem, velocities: &[Vec<f64>], own: usize, classes: &[Class
             }
         }
     }
-    out.iter_mut().for_each(|row| row.left[own] += 0.5);
+    for row in &mut out {
+        row.left[own] += 0.5;
+    }
     out
 }

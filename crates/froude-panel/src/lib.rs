@@ -14,7 +14,10 @@
 //! | [`fast`] | near panels in closed form, far ones by expansion, iterations | Ying, Biros & Zorin 2004; Saad & Schultz 1986 |
 //! | [`revolution`], [`elliptic`] | bodies of revolution in azimuthal modes, to nine digits | our derivation; Abramowitz & Stegun 17.6 |
 //! | [`matrix`] | the 6 × 6 matrix, moved to another point, symmetric part | Newman 1977, 4.13 |
-//! | [`convergence`] | error of a value from three similar meshes | Richardson 1911; Roache 1994 |
+//! | [`convergence`] | error of a value from similar meshes | Richardson 1911; Roache 1994 |
+//! | [`study`] | the matrices of similar meshes put together | |
+//! | [`tank`] | a body between walls, under both limits of the water surface | images |
+//! | [`chain`] | all links of a robot, straight or bent; error of a diagonal form | our derivation |
 //!
 //! **Method.** Direct formulation. With the normal n into the fluid, G = 1/(4π|x − y|) and φ falling off far away, a point on a smooth
 //! surface has ½φ(x) = ∫ φ ∂G/∂n_y dS − ∫ G ∂φ/∂n dS, that is (½ I − K) φ = −S ∂φ/∂n. Potentials are constant over a panel and the equation
@@ -24,6 +27,7 @@
 //! Not here: waves, viscosity, lift.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod chain;
 mod closed;
 pub mod convergence;
 pub mod dense;
@@ -36,6 +40,8 @@ pub mod matrix;
 pub mod mirror;
 pub mod problem;
 pub mod revolution;
+pub mod study;
+pub mod tank;
 mod tree;
 
 use problem::{Problem, Solution};

@@ -12,6 +12,7 @@
 pub mod body;
 mod cross_checks;
 pub mod family;
+mod limits;
 pub mod links;
 pub mod page;
 pub mod record;

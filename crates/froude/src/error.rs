@@ -38,6 +38,14 @@ pub enum Error {
     #[error(transparent)]
     Mesh(#[from] froude_mesh::files::ReadError),
 
+    /// The body does not fit into the tank.
+    #[error(transparent)]
+    Tank(#[from] froude_panel::tank::TankError),
+
+    /// The chain cannot be bent so.
+    #[error(transparent)]
+    Chain(#[from] froude_panel::chain::ChainError),
+
     /// The dimensions give no body.
     #[error(transparent)]
     Sections(#[from] froude_mesh::sections::SectionError),
@@ -82,7 +90,9 @@ impl Error {
             | Self::Tuning(_)
             | Self::Setup(_)
             | Self::Mesh(_)
-            | Self::Sections(_) => true,
+            | Self::Sections(_)
+            | Self::Tank(_)
+            | Self::Chain(_) => true,
             Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
         }
     }

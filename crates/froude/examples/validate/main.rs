@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, dynamic, coverage); no page is
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, dynamic, potential, coverage); no page is
 //! written then. A line that misses its bar fails the run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
 
@@ -13,6 +13,7 @@ mod eiv;
 mod emps;
 mod flexible;
 mod kvlcc2;
+mod potential;
 mod rm2;
 mod snake;
 mod sweeps;
@@ -66,6 +67,9 @@ fn main() -> ExitCode {
         }
         if wants("dynamic") {
             dynamic::all(claims, &root, if full { 60 } else { 8 })?;
+        }
+        if wants("potential") {
+            potential::all(claims, &root, full)?;
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;

@@ -10,7 +10,8 @@ use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::{crosses, too_large};
 use froude_mesh::refine::{rounded, subdivided, without_warp};
 use froude_mesh::{Mesh, Vec3};
-use froude_panel::mirror::{Kind, Mirror, images, signs};
+use froude_panel::mirror::{Kind, Mirror, signs};
+use froude_panel::tank::{Surface, Tank};
 use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
@@ -22,11 +23,12 @@ use froude_report::number;
 use indexmap::IndexMap;
 
 use super::cross_checks;
+use super::limits;
 use super::family::Family;
 use super::links::{default_out, file_name, no_density, not_within};
 use super::page;
 use super::record::{About, MOTIONS, estimate};
-use super::refine::{Finest, Forecast, Refined, Wanted, plan, refine};
+use super::refine::{Finest, Forecast, Placed, Refined, Wanted, plan, refine};
 use crate::Error;
 
 /// Where moments are taken about.
@@ -55,6 +57,8 @@ pub struct BodyJob {
     pub is_z_up: bool,
     /// Height of the water's surface over the origin of the mesh, m; `None`: deeply submerged.
     pub surface_m: Option<f64>,
+    /// Length, breadth and depth of water of a tank with the origin in the middle of its plan, m.
+    pub tank_m: Option<[f64; 3]>,
     /// Tolerance and limits.
     pub wanted: Wanted,
     /// Files to write beside the record: `1`, `nc`, `csv`.
@@ -256,19 +260,20 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     };
     let mut findings = loaded.findings.clone();
     let mut cases = Vec::new();
-    for (title, surroundings, is_lid, mirrors) in surroundings(job, &coarse)? {
-        let wanted = Wanted { origin_m, mirrors, ..job.wanted.clone() };
-        let refined = refine(&loaded.family, &wanted, &|step| told(&format!("{title}: {step}")))?;
-        findings.extend(not_within(&title, &refined));
-        cases.push(Case { title, surroundings, is_lid, refined });
+    for s in surroundings(job, &coarse)? {
+        let wanted = Wanted { origin_m, mirrors: s.mirrors, tank: s.tank, ..job.wanted.clone() };
+        let refined = refine(&loaded.family, &wanted, &|step| told(&format!("{}: {step}", s.title)))?;
+        findings.extend(not_within(&s.title, &refined));
+        cases.push(Case { title: s.title, surroundings: s.words, is_lid: s.is_lid, refined });
     }
     let length_m = extent_along_x(&coarse);
     let mut tables = vec![hydrostatics(&cases[0].refined, density_kg_m3, origin_m)];
-    tables.extend(cross_checks::table(loaded.shape.as_ref(), &coarse, &cases[0].refined, density_kg_m3, origin_m));
+    tables.push(cross_checks::table(loaded.shape.as_ref(), &coarse, &cases[0].refined, density_kg_m3, origin_m));
     if let Family::Mesh(mesh) = &loaded.family {
         told("the same with facets rounded");
-        tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3)?);
+        tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3));
     }
+    tables.extend(limits::table(&cases, density_kg_m3));
     let estimates = cases.iter().map(|case| {
         let source = if cases.len() == 1 {
             loaded.name.clone()
@@ -293,6 +298,7 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         findings,
     };
     let mut notes = loaded.notes;
+    notes.extend(limits::words(job.surface_m, job.tank_m));
     notes.push(format!("Moments are about {reference}. Nothing here depends on frequency: no waves are computed."));
     let mut outcome = BodyOutcome {
         name: loaded.name,
@@ -315,13 +321,24 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     Ok(outcome)
 }
 
-/// Title, sentence, limit, mirrors of each case.
-type Surrounding = (String, String, Option<bool>, Vec<Mirror>);
+/// What is around the body in one case.
+struct Surrounding {
+    title: String,
+    words: String,
+    is_lid: Option<bool>,
+    mirrors: Vec<Mirror>,
+    tank: Option<Placed>,
+}
 
 fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding>, Error> {
-    let Some(surface_m) = job.surface_m else {
-        return Ok(vec![("Deeply submerged".to_owned(), "unbounded water".to_owned(), None, Vec::new())]);
+    let deep = Surrounding {
+        title: "Deeply submerged".to_owned(),
+        words: "unbounded water".to_owned(),
+        is_lid: None,
+        mirrors: Vec::new(),
+        tank: None,
     };
+    let Some(surface_m) = job.surface_m else { return Ok(vec![deep]) };
     let at_m = if job.is_z_up { surface_m } else { -surface_m };
     if let Some(crossing) = crosses(mesh, 2, at_m) {
         return Err(Error::Nothing(format!(
@@ -337,20 +354,29 @@ fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding>, Error> {
             job.input.display()
         )));
     }
-    let mirror = |kind| vec![Mirror { axis: 2, at_m, kind }];
+    if job.tank_m.is_some() && !job.is_z_up {
+        return Err(Error::Nothing(format!(
+            "{}: in a tank z must point up; turn the mesh over, or leave --z out for a body file",
+            job.input.display()
+        )));
+    }
+    let place = match job.tank_m {
+        Some([l, b, d]) => format!("tank {l} × {b} × {d} m (length, breadth, depth of water), surface {surface_m} m over the origin"),
+        None => format!("water's surface {surface_m} m over the origin"),
+    };
+    let case = |title: &str, limit: &str, is_lid: bool, kind, surface| {
+        let tank = job.tank_m.map(|[length_m, width_m, depth_m]| Placed {
+            tank: Tank { length_m, width_m, depth_m },
+            surface,
+            over_origin_m: surface_m,
+        });
+        let mirrors = if tank.is_some() { Vec::new() } else { vec![Mirror { axis: 2, at_m, kind }] };
+        Surrounding { title: title.to_owned(), words: format!("{place}, {limit}"), is_lid: Some(is_lid), mirrors, tank }
+    };
     Ok(vec![
-        (
-            "Slow motion: rigid lid".to_owned(),
-            format!("water's surface {surface_m} m over the origin, rigid: ω²d/g → 0"),
-            Some(true),
-            mirror(Kind::Wall),
-        ),
-        (
-            "Fast motion: φ = 0".to_owned(),
-            format!("water's surface {surface_m} m over the origin, φ = 0 there: ω²d/g → ∞"),
-            Some(false),
-            mirror(Kind::FreeSurface),
-        ),
+        deep,
+        case("Slow motion: rigid lid", "rigid: ω²d/g → 0", true, Kind::Wall, Surface::Lid),
+        case("Fast motion: φ = 0", "φ = 0 there: ω²d/g → ∞", false, Kind::FreeSurface, Surface::Free),
     ])
 }
 
@@ -388,15 +414,9 @@ fn hydrostatics(refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> TextTa
 }
 
 /// What the facets of a mesh may hide: its difference from the smooth body that they stand for.
-fn geometry(
-    mesh: &Mesh,
-    case: &Case,
-    job: &BodyJob,
-    origin_m: Vec3,
-    density_kg_m3: f64,
-) -> Result<Option<TextTable>, Error> {
+fn geometry(mesh: &Mesh, case: &Case, job: &BodyJob, origin_m: Vec3, density_kg_m3: f64) -> Option<TextTable> {
     if 4 * mesh.panels.len() > job.wanted.most_panels {
-        return Ok(None);
+        return None;
     }
     let round = rounded(mesh, CREASE_RAD);
     let flat = subdivided(mesh);
@@ -419,7 +439,7 @@ fn geometry(
             ]
         })
         .collect();
-    Ok(Some(TextTable {
+    Some(TextTable {
         caption: format!(
             "Two uncertainties, never one: that of the panels (the matrix of the polyhedron that was given), and how far a smooth body with \
              these corners lies from it, should the facets stand for one. Edges of more than {:.0}° count as edges of the body.",
@@ -429,7 +449,7 @@ fn geometry(
             .map(str::to_owned)
             .to_vec(),
         rows,
-    }))
+    })
 }
 
 fn percent_of(part: f64, whole: f64) -> String {
@@ -450,7 +470,7 @@ fn extras(outcome: &BodyOutcome, job: &BodyJob, out: &Path, origin_m: Vec3) -> R
         case.refined.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect()
     };
     // Deeply submerged both limits are the same.
-    let limit = |is_lid: bool| outcome.cases.iter().find(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
+    let limit = |is_lid: bool| outcome.cases.iter().rfind(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
     let (zero, infinite) = (limit(true), limit(false));
     let body =
         outcome.name.chars().map(|c| if c.is_ascii_alphanumeric() || " -.".contains(c) { c } else { '-' }).collect();
@@ -495,7 +515,6 @@ fn pressure(finest: &Finest, density_kg_m3: f64, origin_m: Vec3) -> String {
             }
         }
     }
-    debug_assert_eq!(images(&own, [1.0; 3]).len(), 1 << own.len());
     let names: Vec<String> = MOTIONS
         .iter()
         .enumerate()

@@ -37,6 +37,8 @@ pub struct Member {
     pub mesh: PartMesh,
     /// Size of its cells over those of the coarsest.
     pub size: f64,
+    /// Whole number that the cells of anything similar are multiplied by.
+    pub multiple: usize,
 }
 
 impl Family {
@@ -111,12 +113,16 @@ impl Family {
             Self::Sections { body, .. } => {
                 let along = MULTIPLES[number];
                 let mesh = body.mesh(Resolution { along, around: AROUND * along })?;
-                Ok(Member { mesh, size: MULTIPLES[0] as f64 / along as f64 })
+                Ok(Member { mesh, size: MULTIPLES[0] as f64 / along as f64, multiple: along })
             }
             Self::Mesh(mesh) => {
                 let finer = (0..number).fold(mesh.clone(), |m, _| subdivided(&m));
                 let parts = vec![0; finer.panels.len()];
-                Ok(Member { mesh: PartMesh { mesh: finer, parts }, size: 0.5_f64.powi(number as i32) })
+                Ok(Member {
+                    mesh: PartMesh { mesh: finer, parts },
+                    size: 0.5_f64.powi(number as i32),
+                    multiple: 2 << number,
+                })
             }
         }
     }

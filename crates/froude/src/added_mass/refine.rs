@@ -3,15 +3,15 @@
 use std::time::Instant;
 
 use froude_mesh::measure::Measure;
-use froude_mesh::sections::PartMesh;
 use froude_mesh::{Mesh, Vec3};
-use froude_panel::convergence::{Converged, converged};
+use froude_panel::convergence::converged;
 use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
 use froude_panel::problem::{Frame, Problem, Solution};
+use froude_panel::tank::{Surface, Tank};
 use froude_panel::{PLAIN_LIMIT, fast, solve};
 
-use super::family::Family;
+use super::family::{Family, Member};
 use crate::Error;
 
 /// What is asked for.
@@ -25,11 +25,24 @@ pub struct Wanted {
     pub most_panels: usize,
     /// Mirror planes that are not the body's: a wall, the water's surface.
     pub mirrors: Vec<Mirror>,
+    /// A tank around the body, instead of mirrors.
+    pub tank: Option<Placed>,
+}
+
+/// A tank with a limit of its surface; the origin of the mesh lies in the middle of its plan, below the surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placed {
+    /// The tank.
+    pub tank: Tank,
+    /// The limit.
+    pub surface: Surface,
+    /// Height of the surface over the origin of the mesh, m.
+    pub over_origin_m: f64,
 }
 
 impl Default for Wanted {
     fn default() -> Self {
-        Self { origin_m: [0.0; 3], tolerance: 0.01, most_panels: 120_000, mirrors: Vec::new() }
+        Self { origin_m: [0.0; 3], tolerance: 0.01, most_panels: 120_000, mirrors: Vec::new(), tank: None }
     }
 }
 
@@ -97,6 +110,17 @@ pub struct Forecast {
     pub memory_bytes: f64,
 }
 
+/// An entry with its numerical uncertainty.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    value: f64,
+    uncertainty: f64,
+    order: Option<f64>,
+}
+
+/// Noise of the solvers, as part of √(A_ii A_jj).
+const PLAIN_NOISE: f64 = 1e-12;
+const FAST_NOISE: f64 = 5e-7;
 /// Time of a near pair and of a pair of boxes over a whole solution, one thread, s: as measured on a processor with AVX-512.
 const NEAR_S: f64 = 25e-9;
 const FAR_S: f64 = 40e-6;
@@ -133,19 +157,28 @@ pub fn free_memory_bytes() -> Option<f64> {
     line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|kib| 1024.0 * kib)
 }
 
-/// The problem of a mesh about the origin of its frame, and the body's own planes in it.
-fn problem(family: &Family, mesh: &PartMesh, wanted: &Wanted) -> (Mesh, Problem) {
+/// Cells of a tank's walls, as part of its shortest side, in a multiple of one.
+const WALL_CELL: f64 = 0.25;
+
+/// The problem of a mesh about the origin of its frame, and what is solved of the mesh: its part on the positive side of its own planes.
+fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, Problem), Error> {
+    let mesh = &member.mesh;
     let frame = [Frame::at([0.0; 3])];
+    let whole = |mirrors: &[Mirror]| Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, mirrors);
+    if let Some(Placed { tank, surface, over_origin_m }) = wanted.tank {
+        let cells = tank.cells(WALL_CELL * tank.length_m.min(tank.width_m).min(tank.depth_m)).map(|n| n * member.multiple);
+        let problem = tank.around(&whole(&[]), [0.0, 0.0, -over_origin_m], cells, surface)?;
+        return Ok((mesh.mesh.clone(), problem));
+    }
     if let Family::Sections { planes, .. } = family {
         let own = planes.iter().filter(|axis| wanted.mirrors.iter().all(|m| m.axis != **axis));
         let mirrors: Vec<Mirror> = own.map(|axis| Mirror::body(*axis)).chain(wanted.mirrors.iter().copied()).collect();
         if let Ok(part) = positive_part(&mesh.mesh, &mirrors) {
             let problem = Problem::of_parts(&part, &vec![0; part.panels.len()], &frame, &mirrors);
-            return (part, problem);
+            return Ok((part, problem));
         }
     }
-    let problem = Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, &wanted.mirrors);
-    (mesh.mesh.clone(), problem)
+    Ok((mesh.mesh.clone(), whole(&wanted.mirrors)))
 }
 
 /// Refines until the tolerance holds, or panels, memory or members end; `told` hears of every step before it starts.
@@ -167,7 +200,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             break;
         }
         let member = family.member(number)?;
-        let (solved, problem) = problem(family, &member.mesh, wanted);
+        let (solved, problem) = problem(family, &member, wanted)?;
         let forecast = forecast(&problem);
         let free = free_memory_bytes().map_or(f64::INFINITY, |m| MEMORY_PART * m);
         if forecast.memory_bytes > free {
@@ -219,7 +252,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         value: entries.map(|row| row.map(|e| e.value)),
         uncertainty: entries.map(|row| row.map(|e| e.uncertainty)),
         order: entries.map(|row| row.map(|e| e.order)),
-        volume_m3: last_three(&steps, &volumes).value,
+        volume_m3: last_three(&steps, &volumes, 0.0).value,
         steps,
         worst,
         is_within,
@@ -240,28 +273,28 @@ pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, 
         if panels > wanted.most_panels && number > 0 {
             break;
         }
-        out.push((panels, forecast(&problem(family, &family.member(number)?.mesh, wanted).1)));
+        out.push((panels, forecast(&problem(family, &family.member(number)?, wanted)?.1)));
     }
     Ok(out)
 }
 
-/// A value of the last three meshes; of two the finer with their distance, three times; of one no uncertainty.
-fn last_three(steps: &[Step], values: &[f64]) -> Converged {
-    let n = steps.len();
+/// A value of the last three meshes, or of two; of one no uncertainty. `size` is what the solver's noise is a part of.
+fn last_three(steps: &[Step], values: &[f64], size: f64) -> Entry {
     let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
-    match n {
-        0 => Converged { value: f64::NAN, uncertainty: f64::INFINITY, order: None },
-        1 => Converged { value: values[0], uncertainty: f64::INFINITY, order: None },
-        2 => Converged { value: values[1], uncertainty: 3.0 * (values[1] - values[0]).abs(), order: None },
-        _ => converged([sizes[n - 3], sizes[n - 2], sizes[n - 1]], [values[n - 3], values[n - 2], values[n - 1]]),
-    }
+    let Some(last) = steps.last().filter(|_| steps.len() > 1) else {
+        return Entry { value: values.first().copied().unwrap_or(f64::NAN), uncertainty: f64::INFINITY, order: None };
+    };
+    let noise = if last.iterations > 0 { FAST_NOISE } else { PLAIN_NOISE };
+    let c = converged(&sizes, values, noise * size);
+    Entry { value: c.extrapolated.value, uncertainty: c.extrapolated.uncertainty, order: c.order }
 }
 
-fn entries(steps: &[Step]) -> [[Converged; 6]; 6] {
+fn entries(steps: &[Step]) -> [[Entry; 6]; 6] {
+    let size = |i: usize| steps.last().map_or(0.0, |s| s.added_mass.matrix[i][i].abs());
     core::array::from_fn(|i| {
         core::array::from_fn(|j| {
             let values: Vec<f64> = steps.iter().map(|s| s.added_mass.matrix[i][j]).collect();
-            last_three(steps, &values)
+            last_three(steps, &values, (size(i) * size(j)).sqrt())
         })
     })
 }
@@ -270,7 +303,7 @@ fn entries(steps: &[Step]) -> [[Converged; 6]; 6] {
 const ZERO: f64 = 1e-2;
 
 /// Largest uncertainty of an entry over √(A_ii A_jj).
-fn worst(entries: &[[Converged; 6]; 6]) -> f64 {
+fn worst(entries: &[[Entry; 6]; 6]) -> f64 {
     let kind = |i: usize| (0..3).map(|k| entries[3 * (i / 3) + k][3 * (i / 3) + k].value.abs()).fold(0.0, f64::max);
     let size = |i: usize| entries[i][i].value.abs().max(ZERO * kind(i));
     let mut out = 0.0_f64;

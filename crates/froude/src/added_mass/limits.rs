@@ -1,0 +1,69 @@
+//! The two limits of the water's surface beside unbounded water, and which of them a motion is near.
+//!
+//! Sources: Newman 1977, ch. 6 (ω²d/g); Faltinsen & Timokha 2009, ch. 4 (sloshing).
+
+use froude_hydro::sloshing::rectangular_tank_modes_rad_s;
+use froude_report::document::TextTable;
+use froude_report::number;
+
+use super::body::Case;
+use super::record::MOTIONS;
+
+/// Standard acceleration of gravity, m/s².
+const G_M_S2: f64 = 9.80665;
+/// ω²d/g below which the lid, and above which φ = 0, is a fair picture.
+const SLOW: f64 = 0.1;
+const FAST: f64 = 10.0;
+
+/// Diagonals side by side; `None` with one case.
+#[must_use]
+pub fn table(cases: &[Case], density_kg_m3: f64) -> Option<TextTable> {
+    let (first, others) = cases.split_first().filter(|(_, others)| !others.is_empty())?;
+    let rows = (0..6)
+        .map(|i| {
+            let deep = first.refined.value[i][i];
+            let mut row = vec![MOTIONS[i].to_owned(), number::plain(density_kg_m3 * deep, 6)];
+            for case in others {
+                let value = case.refined.value[i][i];
+                row.push(number::plain(density_kg_m3 * value, 6));
+                row.push(format!("{:+.2} %", 100.0 * (value / deep - 1.0)));
+            }
+            row
+        })
+        .collect();
+    let mut head = vec![String::new(), "unbounded [kg, kg m²]".to_owned()];
+    for case in others {
+        head.extend([case.title.clone(), "change".to_owned()]);
+    }
+    Some(TextTable {
+        caption: "Limits of the water's surface: what a motion meets lies between them, but for resonance near a sloshing mode.".to_owned(),
+        head,
+        rows,
+    })
+}
+
+/// Where each limit holds.
+#[must_use]
+pub fn words(surface_m: Option<f64>, tank_m: Option<[f64; 3]>) -> Vec<String> {
+    let Some(depth_m) = surface_m.filter(|d| *d > 0.0) else { return Vec::new() };
+    let at = |number: f64| (number * G_M_S2 / depth_m).sqrt();
+    let mut out = vec![format!(
+        "With d = {depth_m} m of water over the origin, ω²d/g is {SLOW} at {:.2} rad/s ({:.2} Hz): slower motions are near the rigid lid; it \
+         is {FAST} at {:.2} rad/s ({:.2} Hz): faster ones are near φ = 0.",
+        at(SLOW),
+        at(SLOW) / core::f64::consts::TAU,
+        at(FAST),
+        at(FAST) / core::f64::consts::TAU,
+    )];
+    if let Some([l, b, d]) = tank_m
+        && let Ok([along, across]) = rectangular_tank_modes_rad_s(l, b, d, G_M_S2)
+    {
+        out.push(format!(
+            "The tank's first sloshing modes are {along:.2} rad/s ({:.2} Hz) along and {across:.2} rad/s ({:.2} Hz) across: near them neither \
+             limit holds; well below the first the lid does, well above φ = 0.",
+            along / core::f64::consts::TAU,
+            across / core::f64::consts::TAU,
+        ));
+    }
+    out
+}
