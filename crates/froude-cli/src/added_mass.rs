@@ -6,6 +6,7 @@ use froude::Error;
 use froude::added_mass::body::{self, BodyJob, BodyOutcome, Origin};
 use froude::added_mass::links::{LinksJob, LinksOutcome, links};
 use froude::added_mass::refine::{Wanted, duration};
+use froude::added_mass::several::{Apart, SeveralOutcome, several};
 use froude::added_mass::{page, repair};
 use froude::records::units::{Dimension, parse_quantity, parse_unit};
 use froude::report::document::TextTable;
@@ -62,6 +63,27 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     };
     if args.check {
         return check(&job);
+    }
+    let angle_rad = args.joint_angle.as_deref().map(|a| quantity("--joint-angle", a, Dimension::ANGLE)).transpose()?;
+    let apart = match (args.chain || angle_rad.is_some(), args.apart) {
+        (true, _) => Some(Apart::Links { joint_angle_rad: angle_rad.unwrap_or(0.0) }),
+        (false, true) => Some(Apart::Parts),
+        (false, false) => None,
+    };
+    if let Some(apart) = apart {
+        if job.surface_m.is_some() {
+            return Err(Error::Nothing(
+                "--surface and --tank go with one rigid body, not with --chain or --apart".to_owned(),
+            ));
+        }
+        let bar = crate::spinner();
+        let outcome = several(&job, apart, &|step| bar.set_message(step.to_owned()))?;
+        bar.finish_and_clear();
+        if json {
+            return print::json(&outcome.file);
+        }
+        parts(&outcome);
+        return Ok(());
     }
     let bar = crate::spinner();
     let outcome = body::body(&job, &|step| bar.set_message(step.to_owned()))?;
@@ -240,6 +262,21 @@ fn one_body(outcome: &BodyOutcome) {
     let paths: Vec<&PathBuf> = [&outcome.estimate, &outcome.page].into_iter().chain(&outcome.others).collect();
     say!("");
     for path in paths {
+        say!("{}", path.display());
+    }
+}
+
+fn parts(outcome: &SeveralOutcome) {
+    say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
+    for text in &outcome.tables {
+        table(text);
+    }
+    for note in &outcome.notes {
+        say!("{}", print::wrapped(note));
+    }
+    print::findings(&outcome.file.findings);
+    say!("");
+    for path in [&outcome.estimate, &outcome.page].into_iter().chain(&outcome.others) {
         say!("{}", path.display());
     }
 }

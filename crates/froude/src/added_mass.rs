@@ -6,6 +6,8 @@
 //! | [`refine`] | finer and finer until the tolerance holds, told beforehand what it takes |
 //! | [`links`] | the robot with 1 to k links: the table, its least squares |
 //! | [`body`] | one body or mesh: checks, matrix, pressure, files |
+//! | [`several`] | links of a chain, parts of a mesh: six rows and columns each |
+//! | [`repair`] | a mesh put right, as a new file |
 //! | [`record`] | a matrix as an estimate |
 //! | [`page`] | the report |
 
@@ -18,3 +20,4 @@ pub mod page;
 pub mod record;
 pub mod refine;
 pub mod repair;
+pub mod several;

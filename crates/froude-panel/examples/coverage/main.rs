@@ -43,26 +43,51 @@ fn main() {
         let mut exact = [[0.0; 6]; 6];
         match &body.reference {
             Reference::Ellipsoid(axes) => {
-                for (i, x) in exact::ellipsoid(*axes).into_iter().enumerate() { exact[i][i] = x; }
+                for (i, x) in exact::ellipsoid(*axes).into_iter().enumerate() {
+                    exact[i][i] = x;
+                }
             }
             Reference::Revolution(m) => {
                 let r = revolution::solve(m);
                 exact[0][0] = r.axial_m3;
-                exact[1][1] = r.transverse_m3; exact[2][2] = r.transverse_m3;
-                exact[4][4] = r.rotary_m5; exact[5][5] = r.rotary_m5;
+                exact[1][1] = r.transverse_m3;
+                exact[2][2] = r.transverse_m3;
+                exact[4][4] = r.rotary_m5;
+                exact[5][5] = r.rotary_m5;
                 // z of the meridian is our x; its x our z (pitch about y, sign) and y.
-                exact[1][5] = r.coupling_m4; exact[2][4] = -r.coupling_m4;
+                exact[1][5] = r.coupling_m4;
+                exact[2][4] = -r.coupling_m4;
             }
-            Reference::Finer => { refs = [12, 16].iter().map(|m| solve(&body, *m).0).collect();
-              for i in 0..6 { for j in 0..6 { let (c, f) = (refs[0][i][j], refs[1][i][j]); exact[i][j] = f + (f - c) / (16.0f64*16.0/144.0 - 1.0); } } }
+            Reference::Finer => {
+                refs = [12, 16].iter().map(|m| solve(&body, *m).0).collect();
+                for i in 0..6 {
+                    for j in 0..6 {
+                        let (c, f) = (refs[0][i][j], refs[1][i][j]);
+                        exact[i][j] = f + (f - c) / (16.0f64 * 16.0 / 144.0 - 1.0);
+                    }
+                }
+            }
         }
         let t2 = t.elapsed().as_secs_f64() - t1;
         for (i, j) in ENTRIES {
             let reach = |i: usize| if i < 3 { 1.0 } else { 0.5 * length };
             let norm = volume * reach(i) * reach(j);
             let r = refs.first().map_or(0.0, |r| r[i][j] / norm);
-            writeln!(out, "{} {} {} {i}{j} {:e} {:e} {:e} {:e} {:e} {:.2} {:.2}", k, class.name(), body.kind.replace(' ', "_"),
-                values[0].0[i][j] / norm, values[1].0[i][j] / norm, values[2].0[i][j] / norm, r, exact[i][j] / norm, t1, t2).unwrap();
+            writeln!(
+                out,
+                "{} {} {} {i}{j} {:e} {:e} {:e} {:e} {:e} {:.2} {:.2}",
+                k,
+                class.name(),
+                body.kind.replace(' ', "_"),
+                values[0].0[i][j] / norm,
+                values[1].0[i][j] / norm,
+                values[2].0[i][j] / norm,
+                r,
+                exact[i][j] / norm,
+                t1,
+                t2
+            )
+            .unwrap();
         }
     }
 }

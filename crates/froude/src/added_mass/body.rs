@@ -23,8 +23,8 @@ use froude_report::number;
 use indexmap::IndexMap;
 
 use super::cross_checks;
-use super::limits;
 use super::family::Family;
+use super::limits;
 use super::links::{default_out, file_name, no_density, not_within};
 use super::page;
 use super::record::{About, MOTIONS, estimate};
@@ -361,7 +361,9 @@ fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding>, Error> {
         )));
     }
     let place = match job.tank_m {
-        Some([l, b, d]) => format!("tank {l} × {b} × {d} m (length, breadth, depth of water), surface {surface_m} m over the origin"),
+        Some([l, b, d]) => {
+            format!("tank {l} × {b} × {d} m (length, breadth, depth of water), surface {surface_m} m over the origin")
+        }
         None => format!("water's surface {surface_m} m over the origin"),
     };
     let case = |title: &str, limit: &str, is_lid: bool, kind, surface| {

@@ -166,7 +166,8 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
     let frame = [Frame::at([0.0; 3])];
     let whole = |mirrors: &[Mirror]| Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, mirrors);
     if let Some(Placed { tank, surface, over_origin_m }) = wanted.tank {
-        let cells = tank.cells(WALL_CELL * tank.length_m.min(tank.width_m).min(tank.depth_m)).map(|n| n * member.multiple);
+        let cells =
+            tank.cells(WALL_CELL * tank.length_m.min(tank.width_m).min(tank.depth_m)).map(|n| n * member.multiple);
         let problem = tank.around(&whole(&[]), [0.0, 0.0, -over_origin_m], cells, surface)?;
         return Ok((mesh.mesh.clone(), problem));
     }

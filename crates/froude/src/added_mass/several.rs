@@ -1,0 +1,428 @@
+//! Several rigid parts in one flow: the links of the robot, straight or bent, or the parts of a mesh that do not hang together.
+//!
+//! The matrix has six rows and columns a part, in the part's own axes about its own point: force and moment on one part from the motion of
+//! another.
+
+use std::path::{Path, PathBuf};
+
+use froude_mesh::Mesh;
+use froude_mesh::measure::Measure;
+use froude_mesh::parts::parts;
+use froude_mesh::refine::subdivided;
+use froude_mesh::sections::Resolution;
+use froude_mesh::vector::{norm, sub};
+use froude_panel::chain::{Chain, DiagonalForm, diagonal_form, whole};
+use froude_panel::convergence::converged;
+use froude_panel::matrix::AddedMass;
+use froude_panel::problem::{Frame, Problem, Solution};
+use froude_panel::solve;
+use froude_records::added_mass_files::AddedMassFile;
+use froude_records::body::{Shape, read_body};
+use froude_records::estimate::{Coefficient, DataFile, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, Measured, Status};
+use froude_records::finding::{Finding, Severity};
+use froude_records::hash::sha256_of_file;
+use froude_report::document::{Document, DocumentSection, TextTable};
+use froude_report::number;
+use indexmap::IndexMap;
+
+use super::body::{BodyJob, is_body_file, load};
+use super::family::{Family, robot};
+use super::links::{default_out, file_name, no_density};
+use super::record::{MOTIONS, unit};
+use crate::Error;
+
+/// What moves apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Apart {
+    /// Links of a robot, its joints bent by this angle, rad.
+    Links {
+        /// About z, the same at every joint.
+        joint_angle_rad: f64,
+    },
+    /// Parts of a mesh that do not hang together.
+    Parts,
+}
+
+/// What came out.
+#[derive(Debug, Clone)]
+pub struct SeveralOutcome {
+    /// Name.
+    pub name: String,
+    /// Density, kg/m³.
+    pub density_kg_m3: f64,
+    /// Names of the parts, in the order of the matrix.
+    pub parts: Vec<String>,
+    /// Entries over ρ, `6n × 6n`.
+    pub value: Vec<Vec<f64>>,
+    /// Their numerical uncertainty.
+    pub uncertainty: Vec<Vec<f64>>,
+    /// Tables for the reader.
+    pub tables: Vec<TextTable>,
+    /// Sentences.
+    pub notes: Vec<String>,
+    /// The record.
+    pub file: EstimateFile,
+    /// Where it lies.
+    pub estimate: PathBuf,
+    /// Where the page lies.
+    pub page: PathBuf,
+    /// The matrix as a table, and exports.
+    pub others: Vec<PathBuf>,
+}
+
+/// Multiples of the coarsest cells: three similar meshes.
+const LEVELS: [usize; 3] = [2, 3, 4];
+/// Subdivisions of a mesh from elsewhere.
+const SUBDIVISIONS: usize = 3;
+/// Standard acceleration of gravity, m/s².
+const G_M_S2: f64 = 9.80665;
+
+/// One mesh of the family: its cells' size, its equations, panels of the whole.
+struct Level {
+    size: f64,
+    solution: Solution,
+}
+
+/// Computes, and writes `estimate.json`, `report.html`, `added-mass.csv` and what else is asked for.
+///
+/// # Errors
+///
+/// See [`Error`].
+pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<SeveralOutcome, Error> {
+    let loaded = match apart {
+        Apart::Links { joint_angle_rad } => links_of(job, joint_angle_rad)?,
+        Apart::Parts => parts_of(job)?,
+    };
+    let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
+    let mut levels = Vec::new();
+    for (size, problem) in loaded.problems {
+        told(&format!("{} panels, {} parts", problem.facets.len(), problem.frames.len()));
+        levels.push(Level { size, solution: solve(&problem) });
+    }
+    let Some(finest) = levels.last().map(|l| l.solution.clone()) else {
+        return Err(Error::Nothing(format!(
+            "{}: no mesh of it fits --most-panels {}",
+            job.input.display(),
+            job.wanted.most_panels
+        )));
+    };
+    let n = finest.matrix.len();
+    let symmetric = |m: &[Vec<f64>], i: usize, j: usize| 0.5 * (m[i][j] + m[j][i]);
+    let sizes: Vec<f64> = levels.iter().map(|l| l.size).collect();
+    let mut value = vec![vec![0.0; n]; n];
+    let mut uncertainty = vec![vec![f64::INFINITY; n]; n];
+    for i in 0..n {
+        for j in 0..n {
+            let values: Vec<f64> = levels.iter().map(|l| symmetric(&l.solution.matrix, i, j)).collect();
+            value[i][j] = values[values.len() - 1];
+            if values.len() > 1 {
+                let noise = 5e-7 * (finest.matrix[i][i] * finest.matrix[j][j]).abs().sqrt();
+                let c = converged(&sizes, &values, noise);
+                (value[i][j], uncertainty[i][j]) = (c.extrapolated.value, c.extrapolated.uncertainty);
+            }
+        }
+    }
+    let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
+    let mut notes = loaded.notes;
+    tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3));
+    let together = whole(&Solution { matrix: value.clone(), ..finest.clone() }, &Frame::at([0.0; 3]));
+    tables.push(whole_table(&together, density_kg_m3));
+    if let Apart::Links { .. } = apart {
+        let form = diagonal_form(&Solution { matrix: value.clone(), ..finest });
+        tables.push(diagonal_form_table(&form, density_kg_m3));
+        notes.push(
+            "Equation 4 of the USR paper gives every link the same added mass across itself and none along, and no coupling of one link with \
+             another."
+                .to_owned(),
+        );
+    }
+    let name = loaded.name;
+    let file = EstimateFile {
+        schema: ESTIMATE_SCHEMA.to_owned(),
+        data: vec![DataFile { path: file_name(&job.input), sha256: sha256_of_file(&job.input)? }],
+        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
+        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3)],
+        findings: loaded.findings,
+    };
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
+    let page = Document {
+        sort: "Added mass · potential flow".to_owned(),
+        title: name.clone(),
+        subtitle: "part by part".to_owned(),
+        date: job.date.clone(),
+        sections: vec![DocumentSection {
+            title: "Matrix".to_owned(),
+            paragraphs: notes.clone(),
+            tables: tables.clone(),
+            ..DocumentSection::default()
+        }],
+        findings: file.findings.clone(),
+    };
+    let written = crate::results::write(&out, &file, &[], &[], &page.html()?)?;
+    let mut outcome = SeveralOutcome {
+        name,
+        density_kg_m3,
+        parts: loaded.parts,
+        value,
+        uncertainty,
+        tables,
+        notes,
+        file,
+        estimate: written.estimate,
+        page: written.report,
+        others: Vec::new(),
+    };
+    outcome.others = exports(&outcome, job, &out)?;
+    Ok(outcome)
+}
+
+/// What is solved.
+struct Several {
+    name: String,
+    density_kg_m3: Option<f64>,
+    parts: Vec<String>,
+    problems: Vec<(f64, Problem)>,
+    notes: Vec<String>,
+    findings: Vec<Finding>,
+}
+
+fn links_of(job: &BodyJob, angle_rad: f64) -> Result<Several, Error> {
+    let why =
+        || Error::Nothing(format!("{}: a chain is a body file of shape \"robot\" with --links", job.input.display()));
+    if !is_body_file(&job.input) {
+        return Err(why());
+    }
+    let body = read_body(&job.input)?;
+    let (Shape::Robot { .. }, Some(links)) = (body.shape, job.links) else { return Err(why()) };
+    Ok(Several { density_kg_m3: body.density_kg_m3, ..chain(&body.name, &body.shape, links, angle_rad, job)? })
+}
+
+fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> Result<Several, Error> {
+    let robot = robot(shape);
+    let mut problems = Vec::new();
+    for along in LEVELS {
+        let resolution = Resolution { along, around: 8 * along };
+        let chain = Chain::new(&robot, links, &vec![angle; links + 1], robot.pitch_m / 4.0, resolution)?;
+        if chain.surface.mesh.panels.len() > job.wanted.most_panels {
+            break;
+        }
+        let problem = chain.problem(true).or_else(|_| chain.problem(false));
+        problems.push((LEVELS[0] as f64 / along as f64, problem.map_err(|e| Error::Nothing(e.to_string()))?));
+    }
+    let mut parts = vec!["tail".to_owned()];
+    parts.extend((1..=links).map(|k| format!("link {k}")));
+    parts.push("head".to_owned());
+    let notes = vec![format!(
+        "Joints bent by {} each about z; every part has its point half-way between its joints, x along it towards the head, z vertical. Links \
+         count from the tail.",
+        number::degrees(angle)
+    )];
+    let name = format!("{name}, H{links}LT, link by link");
+    Ok(Several { name, density_kg_m3: None, parts, problems, notes, findings: Vec::new() })
+}
+
+fn parts_of(job: &BodyJob) -> Result<Several, Error> {
+    let loaded = load(job)?;
+    let Family::Mesh(mesh) = loaded.family else {
+        return Err(Error::Nothing(format!("{}: --apart takes a mesh of several closed parts", job.input.display())));
+    };
+    let found = parts(&mesh);
+    if found.len() < 2 {
+        return Err(Error::Nothing(format!(
+            "{}: the mesh hangs together, it has one part; leave --apart out",
+            job.input.display()
+        )));
+    }
+    let mut problems = Vec::new();
+    let mut frames: Vec<Frame> = Vec::new();
+    let mut finer = mesh.clone();
+    for number in 0..SUBDIVISIONS {
+        if number > 0 {
+            finer = subdivided(&finer);
+        }
+        if finer.panels.len() > job.wanted.most_panels {
+            break;
+        }
+        let mut tags = vec![0; finer.panels.len()];
+        for (part, p) in parts(&finer).iter().enumerate() {
+            p.panels.iter().for_each(|panel| tags[*panel] = part);
+        }
+        if frames.is_empty() {
+            frames = (0..found.len()).map(|part| Frame::at(centroid(&finer, &tags, part))).collect();
+        }
+        problems.push((0.5_f64.powi(number as i32), Problem::of_parts(&finer, &tags, &frames, &[])));
+    }
+    let names = (1..=found.len()).map(|k| format!("part {k}")).collect();
+    let mut notes = loaded.notes;
+    for (k, frame) in frames.iter().enumerate() {
+        let [x, y, z] = frame.origin_m.map(|x| number::plain(x, 4));
+        notes
+            .push(format!("Part {}: about its centre of buoyancy, ({x}, {y}, {z}) m, in the axes of the mesh.", k + 1));
+    }
+    let mut findings = loaded.findings;
+    findings.extend(problems.first().and_then(|(_, p)| too_close(p)));
+    Ok(Several { name: loaded.name, density_kg_m3: None, parts: names, problems, notes, findings })
+}
+
+fn centroid(mesh: &Mesh, tags: &[usize], part: usize) -> [f64; 3] {
+    let panels = mesh.panels.iter().zip(tags).filter(|(_, t)| **t == part).map(|(p, _)| *p).collect();
+    Measure::of(&Mesh { vertices: mesh.vertices.clone(), panels }).centroid_m
+}
+
+/// A finding where parts are closer than their panels are large: constant panels do not see the flow through the gap.
+fn too_close(problem: &Problem) -> Option<Finding> {
+    let all: Vec<_> = problem.facets.iter().zip(&problem.parts).collect();
+    let mut closest: Option<(f64, f64)> = None;
+    for (i, (f, part)) in all.iter().enumerate() {
+        for (g, other) in &all[i + 1..] {
+            let gap = norm(sub(f.centroid, g.centroid));
+            if part != other && closest.is_none_or(|(least, _)| gap < least) {
+                closest = Some((gap, f.radius.max(g.radius)));
+            }
+        }
+    }
+    let (gap, radius) = closest.filter(|(gap, radius)| gap < radius)?;
+    let message = format!(
+        "parts come as close as {} m where panels have a radius of {} m: the flow through the gap is not resolved and the equations are nearly \
+         singular there; give finer panels, or a gap of a panel's size",
+        number::plain(gap, 3),
+        number::plain(radius, 3)
+    );
+    Some(Finding::new(Severity::Warning, "parts-touch", message))
+}
+
+fn diagonal_table(parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>], density_kg_m3: f64) -> TextTable {
+    let rows = parts
+        .iter()
+        .enumerate()
+        .map(|(p, name)| {
+            let cell = |i: usize| {
+                super::page::with_uncertainty(
+                    density_kg_m3 * value[6 * p + i][6 * p + i],
+                    density_kg_m3 * uncertainty[6 * p + i][6 * p + i],
+                )
+            };
+            std::iter::once(name.clone()).chain((0..6).map(cell)).collect()
+        })
+        .collect();
+    TextTable {
+        caption:
+            "Each part moving alone, the others held: added mass in its own motions. ± is the numerical uncertainty."
+                .to_owned(),
+        head: ["", "surge [kg]", "sway [kg]", "heave [kg]", "roll [kg m²]", "pitch [kg m²]", "yaw [kg m²]"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+    }
+}
+
+/// Parts of which all pairs are told.
+const MOST_PARTS: usize = 12;
+
+fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> Option<TextTable> {
+    (parts.len() <= MOST_PARTS).then(|| TextTable {
+        caption: "Sway of each part (column) felt by each part in sway (row), kg.".to_owned(),
+        head: std::iter::once(String::new()).chain(parts.iter().cloned()).collect(),
+        rows: parts
+            .iter()
+            .enumerate()
+            .map(|(p, name)| {
+                let cell = |q: usize| number::plain(density_kg_m3 * value[6 * p + 1][6 * q + 1], 4);
+                std::iter::once(name.clone()).chain((0..parts.len()).map(cell)).collect()
+            })
+            .collect(),
+    })
+}
+
+fn whole_table(together: &AddedMass, density_kg_m3: f64) -> TextTable {
+    let row = (0..6).map(|i| number::plain(density_kg_m3 * together.matrix[i][i], 6));
+    TextTable {
+        caption: "All parts as one rigid body about the origin of the mesh, from the matrix: kg, kg m².".to_owned(),
+        head: std::iter::once(String::new()).chain(MOTIONS.map(str::to_owned)).collect(),
+        rows: vec![std::iter::once("whole".to_owned()).chain(row).collect()],
+    }
+}
+
+fn diagonal_form_table(form: &DiagonalForm, density_kg_m3: f64) -> TextTable {
+    let percent = |x: f64| format!("{:.1} %", 100.0 * x);
+    let rows =
+        [("all alike", form.alike), ("neighbours opposed", form.alternating), ("a travelling wave", form.travelling)]
+            .map(|(name, e)| vec![name.to_owned(), percent(e.largest), percent(e.rms)])
+            .to_vec();
+    TextTable {
+        caption: format!(
+            "Error of the diagonal form of equation 4 with {} kg a link (the mean force on a link when all sway alike), by how the links sway.",
+            number::plain(density_kg_m3 * form.per_link_m3, 5)
+        ),
+        head: ["", "largest error of a link's force", "root mean square"].map(str::to_owned).to_vec(),
+        rows,
+    }
+}
+
+fn record(name: &str, parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>], density_kg_m3: f64) -> Estimate {
+    let mut coefficients = IndexMap::new();
+    for i in 0..value.len() {
+        for j in i..value.len() {
+            let (a, u) = (density_kg_m3 * value[i][j], density_kg_m3 * uncertainty[i][j]);
+            let known = u.is_finite();
+            coefficients.insert(
+                format!("A{}_{}", i + 1, j + 1),
+                Coefficient {
+                    value: Some(a),
+                    unit: unit(i % 6, j % 6).to_owned(),
+                    status: Status::Free,
+                    standard_uncertainty: known.then_some(0.5 * u),
+                    type_a: None,
+                    type_b: known.then_some(0.5 * u),
+                    interval_95: known.then_some([a - u, a + u]),
+                    effective_dof: None,
+                },
+            );
+        }
+    }
+    Estimate {
+        id: format!("{name}/added_mass_parts"),
+        source: name.to_owned(),
+        kind: "potential".to_owned(),
+        model: "added_mass_parts".to_owned(),
+        law: Law { version: 1, ..Law::default() },
+        geometry: IndexMap::new(),
+        density: Some(Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() }),
+        frame: "each part's own axes".to_owned(),
+        reference_point: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
+        method: "potential flow, constant panels, direct formulation, unbounded water, extrapolated".to_owned(),
+        covariance_kind: "numerical uncertainty of each entry alone, 95 %".to_owned(),
+        dof: IndexMap::new(),
+        sigma: IndexMap::new(),
+        n_observations: LEVELS.len(),
+        coefficients,
+        covariance: None,
+        undetermined: Vec::new(),
+        validity: IndexMap::new(),
+        diagnostics: froude_records::estimate::Diagnostics::default(),
+        recommended: true,
+        reason: Some("the only model of its source".to_owned()),
+    }
+}
+
+fn exports(outcome: &SeveralOutcome, job: &BodyJob, out: &Path) -> Result<Vec<PathBuf>, Error> {
+    let rows: Vec<Vec<f64>> =
+        outcome.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect();
+    let file = AddedMassFile {
+        density_kg_m3: outcome.density_kg_m3,
+        gravity_m_s2: G_M_S2,
+        length_m: 1.0,
+        bodies: &outcome.parts,
+        zero_frequency: Some(&rows),
+        infinite_frequency: Some(&rows),
+    };
+    let mut formats = vec!["csv"];
+    formats.extend(job.export.iter().filter(|e| **e != "csv"));
+    let mut paths = Vec::new();
+    for extension in formats {
+        let path = out.join(format!("added-mass.{extension}"));
+        file.write(&path)?;
+        paths.push(path);
+    }
+    Ok(paths)
+}
