@@ -6,7 +6,7 @@
 //!
 //! | meshes | observed order | finest mesh, f₁ | extrapolated, x₂₁ |
 //! | --- | --- | --- | --- |
-//! | three | 1.5 to 2.5 | U = 1.5 \|f₁ − x₂₁\| | U = 3 \|x₂₁ − x₃₂\|, no less than 0.005 \|f₁ − x₂₁\| |
+//! | three | 1.5 to 2.5 | U = 1.5 \|f₁ − x₂₁\| | U = 3 \|x₂₁ − x₃₂\|, no less than 0.03 \|f₁ − x₂₁\| |
 //! | three | other, or none | U = 2.5 \|f₁ − x\|, no less than ⅔ \|x₂₁ − x₃₂\| | the same |
 //! | two | unknown | U = 3 \|f₁ − x₂₁\| | U = \|f₁ − x₂₁\| |
 //!
@@ -54,7 +54,7 @@ const FINE: f64 = 1.5;
 /// Factor on the change of the extrapolated value.
 const SAFETY: f64 = 3.0;
 /// Part of what the extrapolation takes off, below which the change of the extrapolated value is small by chance.
-const CHANCE: f64 = 0.005;
+const CHANCE: f64 = 0.03;
 /// Factors where the order is another: on the distance from the value without both powers, and on the change.
 const OTHER: [f64; 2] = [2.5, 2.0 / 3.0];
 

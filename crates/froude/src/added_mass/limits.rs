@@ -36,7 +36,7 @@ pub fn table(cases: &[Case], density_kg_m3: f64) -> Option<TextTable> {
         head.extend([case.title.clone(), "change".to_owned()]);
     }
     Some(TextTable {
-        caption: "Limits of the water's surface: what a motion meets lies between them, but for resonance near a sloshing mode.".to_owned(),
+        caption: "Limits of the water's surface, for slow and for fast motion. They are no bounds: between them waves, and in a tank sloshing, may lead outside.".to_owned(),
         head,
         rows,
     })

@@ -71,7 +71,7 @@ pub struct SeveralOutcome {
 }
 
 /// Multiples of the coarsest cells: three similar meshes.
-const LEVELS: [usize; 3] = [2, 3, 4];
+const LEVELS: [usize; 3] = [3, 4, 6];
 /// Subdivisions of a mesh from elsewhere.
 const SUBDIVISIONS: usize = 3;
 /// Standard acceleration of gravity, m/s².
