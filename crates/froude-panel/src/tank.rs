@@ -95,7 +95,8 @@ impl Tank {
             for corner in &facet.corners[..facet.count] {
                 let point_m = [0, 1, 2].map(|i| corner[i] + origin_m[i]);
                 for axis in 0..3 {
-                    for (side, out_m) in [low[axis] - point_m[axis], point_m[axis] - high[axis]].into_iter().enumerate() {
+                    for (side, out_m) in [low[axis] - point_m[axis], point_m[axis] - high[axis]].into_iter().enumerate()
+                    {
                         if out_m >= 0.0 && furthest.as_ref().is_none_or(|f| f.0 < out_m) {
                             let boundary = BOUNDARIES[axis][side];
                             furthest = Some((out_m, TankError::Outside { panel, point_m, boundary }));
@@ -132,11 +133,8 @@ impl Tank {
 }
 
 /// What lies at the low and the high end of x, y, z.
-const BOUNDARIES: [[&str; 2]; 3] = [
-    ["the wall at -x", "the wall at +x"],
-    ["the wall at -y", "the wall at +y"],
-    ["the bottom", "the water surface"],
-];
+const BOUNDARIES: [[&str; 2]; 3] =
+    [["the wall at -x", "the wall at +x"], ["the wall at -y", "the wall at +y"], ["the bottom", "the water surface"]];
 
 /// A rectangle in cells, its normal along the first edge times the second.
 fn rectangle(corner: Vec3, first: Vec3, second: Vec3, [n, m]: [usize; 2]) -> Mesh {

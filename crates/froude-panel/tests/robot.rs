@@ -30,8 +30,7 @@ fn the_necked_robot_has_the_added_mass_that_another_code_found() {
         let sizes = levels.map(|m| 1.0 / f64::from(u8::try_from(m).unwrap()));
         let limit = |values: [f64; 3]| converged(&sizes, &values, 0.0).extrapolated.value;
         let sway = limit(found.map(|f| f.0));
-        let [surge_m3, volume_m3] =
-            [limit(found.map(|f| f.1)), limit(found.map(|f| f.2))];
+        let [surge_m3, volume_m3] = [limit(found.map(|f| f.1)), limit(found.map(|f| f.2))];
         assert!((sway / sway_kg - 1.0).abs() < 0.005, "H{links}LT: {sway} kg, {sway_kg} by the other code");
         let c_ax = surge_m3 / volume_m3;
         assert!((c_ax / surge - 1.0).abs() < 0.01, "H{links}LT: C_Ax {c_ax}, {surge} by the other code");
