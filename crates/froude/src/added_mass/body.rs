@@ -23,7 +23,7 @@ use indexmap::IndexMap;
 
 use super::cross_checks;
 use super::family::Family;
-use super::links::{default_out, file_name, no_density, not_within};
+use super::links::{default_out, file_name, no_density, not_links, not_within};
 use super::page;
 use super::record::{About, MOTIONS, estimate};
 use super::refine::{Finest, Forecast, Refined, Wanted, plan, refine};
@@ -155,6 +155,12 @@ pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>)
 /// A file that cannot be read, and a mesh that potential flow cannot be computed on, with everything that is wrong with it.
 pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
     if is_body_file(&job.input) {
+        if job.unit_m.is_some() {
+            return Err(Error::Nothing(format!(
+                "{}: --unit is for a mesh; a body file has a unit at each length",
+                job.input.display()
+            )));
+        }
         let body = read_body(&job.input)?;
         let links = match (&body.shape, job.links) {
             (Shape::Robot { .. }, Some(links)) => links,
@@ -164,12 +170,7 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
                     job.input.display()
                 )));
             }
-            (_, Some(_)) => {
-                return Err(Error::Nothing(format!(
-                    "{}: --links counts the links of a body of shape \"robot\"; leave it out for another shape",
-                    job.input.display()
-                )));
-            }
+            (_, Some(_)) => return Err(not_links(&job.input)),
             (_, None) => 0,
         };
         let name = if job.links.is_some() { format!("{}, H{links}LT", body.name) } else { body.name };
@@ -177,6 +178,9 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         let notes = vec!["Meshes from the dimensions; every mesh is similar to the others.".to_owned()];
         let density_kg_m3 = body.density_kg_m3;
         return Ok(Loaded { name, family, shape: Some(body.shape), density_kg_m3, notes, findings: Vec::new() });
+    }
+    if job.links.is_some() {
+        return Err(not_links(&job.input));
     }
     let (mesh, mut notes) = read_mesh(&job.input, job.unit_m)?;
     let mut findings = Vec::new();
@@ -244,6 +248,8 @@ pub fn forecast(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Error
 pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     let loaded = load(job)?;
     let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
+    crate::results::can_be_written(&out)?;
     let coarse = loaded.family.member(0)?.mesh.mesh;
     let measure = Measure::of(&coarse);
     let origin_m = match job.origin {
@@ -293,6 +299,9 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         findings,
     };
     let mut notes = loaded.notes;
+    if !job.is_z_up && !job.export.is_empty() {
+        notes.push("The exported files have z up, as wave programs ask for: turned about x by 180°.".to_owned());
+    }
     notes.push(format!("Moments are about {reference}. Nothing here depends on frequency: no waves are computed."));
     let mut outcome = BodyOutcome {
         name: loaded.name,
@@ -306,12 +315,12 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         page: PathBuf::new(),
         others: Vec::new(),
     };
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
     let html = page::body(&outcome, job.date.clone()).html()?;
-    let written = crate::results::write(&out, &outcome.file, &[], &[], &html)?;
+    let also = |folder: &Path| extras(&outcome, job, folder, origin_m);
+    let written = crate::results::write_also(&out, &outcome.file, &[], &[], &html, &also)?;
     outcome.estimate = written.estimate;
     outcome.page = written.report;
-    outcome.others = extras(&outcome, job, &out, origin_m)?;
+    outcome.others = written.others;
     Ok(outcome)
 }
 
@@ -440,14 +449,16 @@ fn percent_of(part: f64, whole: f64) -> String {
     }
 }
 
-/// The pressure on the body, and the files that were asked for.
-fn extras(outcome: &BodyOutcome, job: &BodyJob, out: &Path, origin_m: Vec3) -> Result<Vec<PathBuf>, Error> {
-    let mut paths = Vec::new();
-    let path = out.join("pressure.vtp");
-    write_atomically(&path, pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, origin_m).as_bytes())?;
-    paths.push(path);
+/// The pressure on the body, and the files that were asked for; their names in the folder.
+fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path, origin_m: Vec3) -> Result<Vec<PathBuf>, Error> {
+    let mut names = vec![PathBuf::from("pressure.vtp")];
+    let pressure = pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, origin_m);
+    write_atomically(&folder.join(&names[0]), pressure.as_bytes())?;
+    // Wave programs have z up: a mesh with z down is turned about x by half a turn, and y and z change their signs.
+    let sign = |i: usize| if job.is_z_up || i % 3 == 0 { 1.0 } else { -1.0 };
     let rows = |case: &Case| -> Vec<Vec<f64>> {
-        case.refined.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect()
+        let entry = |i: usize, j: usize| sign(i) * sign(j) * outcome.density_kg_m3 * case.refined.value[i][j];
+        (0..6).map(|i| (0..6).map(|j| entry(i, j)).collect()).collect()
     };
     // Deeply submerged both limits are the same.
     let limit = |is_lid: bool| outcome.cases.iter().find(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
@@ -464,11 +475,11 @@ fn extras(outcome: &BodyOutcome, job: &BodyJob, out: &Path, origin_m: Vec3) -> R
         infinite_frequency: infinite.as_deref(),
     };
     for extension in &job.export {
-        let path = out.join(format!("added-mass.{extension}"));
-        file.write(&path)?;
-        paths.push(path);
+        let name = PathBuf::from(format!("added-mass.{extension}"));
+        file.write(&folder.join(&name))?;
+        names.push(name);
     }
-    Ok(paths)
+    Ok(names)
 }
 
 /// Pressure over unit acceleration on the whole body, −ρ φ, for each motion about the origin asked for.

@@ -34,12 +34,14 @@ pub fn with_uncertainty(value: f64, expanded: f64) -> String {
 /// The matrix in kg, kg m, kg m², row by row.
 #[must_use]
 pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
+    // Largest of its kind: of the translations, of the rotations.
+    let kind = |i: usize| (0..3).map(|k| refined.value[3 * (i / 3) + k][3 * (i / 3) + k].abs()).fold(0.0, f64::max);
     let rows = (0..6)
         .map(|i| {
             let cells = (0..6).map(|j| {
                 let (value, u) = (density_kg_m3 * refined.value[i][j], density_kg_m3 * refined.uncertainty[i][j]);
                 // Below its uncertainty, and zero by symmetry to rounding.
-                if value.abs() <= u && value.abs() < 1e-9 * density_kg_m3 {
+                if value.abs() <= u && value.abs() < 1e-9 * density_kg_m3 * (kind(i) * kind(j)).sqrt() {
                     "0".to_owned()
                 } else {
                     with_uncertainty(value, u)
@@ -149,7 +151,9 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
 pub fn convergence_words(refined: &Refined) -> Vec<String> {
     let orders: Vec<String> =
         (0..6).filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?))).collect();
-    let mut out = vec![if orders.is_empty() {
+    let mut out = vec![if refined.steps.len() == 1 {
+        "One mesh only: there is no numerical uncertainty; three meshes give one.".to_owned()
+    } else if orders.is_empty() {
         "No order of convergence can be seen on these meshes: the value is that of the finest one, with three times its distance from the \
          others."
             .to_owned()
@@ -158,6 +162,7 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
     }];
     out.push(match &refined.stopped {
         None => format!("The largest numerical uncertainty is {:.2} % of its entry.", 100.0 * refined.worst),
+        Some(why) if !refined.worst.is_finite() => format!("There is no finer one: {why}."),
         Some(why) => format!(
             "The largest numerical uncertainty is {:.2} %, more than was asked for: {why}.",
             100.0 * refined.worst

@@ -23,13 +23,15 @@ pub struct Wanted {
     pub tolerance: f64,
     /// Panels at most.
     pub most_panels: usize,
+    /// Memory at most, bytes; `None`: four fifths of what is free when each mesh begins.
+    pub memory_bytes: Option<f64>,
     /// Mirror planes that are not the body's: a wall, the water's surface.
     pub mirrors: Vec<Mirror>,
 }
 
 impl Default for Wanted {
     fn default() -> Self {
-        Self { origin_m: [0.0; 3], tolerance: 0.01, most_panels: 120_000, mirrors: Vec::new() }
+        Self { origin_m: [0.0; 3], tolerance: 0.01, most_panels: 120_000, memory_bytes: None, mirrors: Vec::new() }
     }
 }
 
@@ -152,14 +154,18 @@ fn problem(family: &Family, mesh: &PartMesh, wanted: &Wanted) -> (Mesh, Problem)
 ///
 /// # Errors
 ///
-/// Dimensions that give no body, and a mesh that does not fit into the memory even as it is, with the number of panels that would.
+/// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
+/// panels than are allowed.
 pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
     let mut steps: Vec<Step> = Vec::new();
     let mut finest = None;
     let mut stopped = None;
     for number in 0..family.members() {
         let panels = family.panels(number)?;
-        if panels > wanted.most_panels && !steps.is_empty() {
+        if panels > wanted.most_panels {
+            if steps.is_empty() {
+                return Err(too_fine(family, wanted)?);
+            }
             stopped = Some(format!(
                 "the next mesh has {panels} panels, and {} are allowed (--most-panels)",
                 wanted.most_panels
@@ -169,7 +175,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         let member = family.member(number)?;
         let (solved, problem) = problem(family, &member.mesh, wanted);
         let forecast = forecast(&problem);
-        let free = free_memory_bytes().map_or(f64::INFINITY, |m| MEMORY_PART * m);
+        let free = wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY);
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
             let why = format!(
@@ -228,16 +234,28 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     })
 }
 
+fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
+    let (coarsest, third) = (family.panels(0)?, family.panels(2)?);
+    Ok(Error::Nothing(format!(
+        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
+         three meshes, or {coarsest} for a value without",
+        wanted.most_panels
+    )))
+}
+
 /// What each mesh would take, up to the panels allowed: panels of the body, and the forecast.
 ///
 /// # Errors
 ///
-/// Dimensions that give no body.
+/// Dimensions that give no body, and a mesh of more panels than are allowed.
 pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, Error> {
     let mut out = Vec::new();
     for number in 0..family.members() {
         let panels = family.panels(number)?;
-        if panels > wanted.most_panels && number > 0 {
+        if panels > wanted.most_panels {
+            if out.is_empty() {
+                return Err(too_fine(family, wanted)?);
+            }
             break;
         }
         out.push((panels, forecast(&problem(family, &family.member(number)?.mesh, wanted).1)));
@@ -276,7 +294,9 @@ fn worst(entries: &[[Converged; 6]; 6]) -> f64 {
     let mut out = 0.0_f64;
     for (i, row) in entries.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {
-            out = out.max(entry.uncertainty / (size(i) * size(j)).sqrt());
+            let part = entry.uncertainty / (size(i) * size(j)).sqrt();
+            // `max` would pass over what is no number.
+            out = if part.is_nan() { f64::INFINITY } else { out.max(part) };
         }
     }
     out
