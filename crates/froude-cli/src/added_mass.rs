@@ -78,7 +78,12 @@ fn wrong(option: &str, text: &str, why: impl std::fmt::Display) -> Error {
 }
 
 fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error> {
-    let q = parse_quantity(text).map_err(|e| wrong(option, text, e))?;
+    let usual = match dimension {
+        Dimension::DENSITY => "kg/m^3",
+        Dimension::LENGTH => "m",
+        _ => "%",
+    };
+    let q = parse_quantity(text).map_err(|e| wrong(option, text, e.expecting(text, dimension, usual)))?;
     q.expect(dimension).map_err(|e| wrong(option, text, e))
 }
 
@@ -101,12 +106,9 @@ fn ratio(option: &str, text: &str) -> Result<f64, Error> {
 }
 
 fn unit(text: &str) -> Result<f64, Error> {
-    let unit = parse_unit(text).map_err(|e| wrong("--unit", text, e))?;
-    if unit.dimension == Dimension::LENGTH {
-        Ok(unit.to_si(1.0))
-    } else {
-        Err(wrong("--unit", text, "write a unit of length: mm, cm, m, in"))
-    }
+    let unit = parse_unit(text).ok().filter(|unit| unit.dimension == Dimension::LENGTH);
+    let unit = unit.ok_or_else(|| wrong("--unit", text, "write a unit of length: mm, cm, m, in"))?;
+    Ok(unit.to_si(1.0))
 }
 
 /// `3`, `1..9` (both ends), `1,3,6`.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_mesh::check::check;
+use froude_mesh::check::{Trouble, check, extent};
 use froude_mesh::crossing::crossings;
 use froude_mesh::files::{self, vtk::vtp};
 use froude_mesh::measure::Measure;
@@ -124,6 +124,8 @@ pub struct Loaded {
 const WARP: f64 = 1e-6;
 /// Angle between facets from which an edge is an edge of the body, rad: 30°.
 const CREASE_RAD: f64 = core::f64::consts::FRAC_PI_6;
+/// Distance from the water's surface that is none, as part of the body's extent.
+const ROUNDING: f64 = 1e-9;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 4 << 30;
 /// Standard acceleration of gravity, m/s².
@@ -186,10 +188,13 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
     let mut findings = Vec::new();
     let mut wrong = Vec::new();
     let mut troubles = check(&mesh);
-    if !troubles.iter().any(froude_mesh::check::Trouble::is_fatal) {
+    if !troubles.iter().any(Trouble::is_fatal) {
         troubles.extend(part_troubles(&mesh));
         troubles.extend(crossings(&mesh));
     }
+    let is_unreadable =
+        |t: &Trouble| matches!(t, Trouble::Empty | Trouble::NotFinite { .. } | Trouble::NoSuchVertex { .. });
+    let is_repairable = !troubles.iter().any(is_unreadable);
     for trouble in troubles {
         if trouble.is_fatal() {
             wrong.push(format!("  {trouble}"));
@@ -203,12 +208,16 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         if rest > 0 {
             wrong.push(format!("  and {rest} more"));
         }
+        if is_repairable {
+            wrong.push(format!(
+                "  froude added-mass {} --repair repaired.obj writes a mesh with what can be decided put right",
+                job.input.display()
+            ));
+        }
         return Err(Error::Nothing(format!(
-            "{}: potential flow cannot be computed on this mesh:\n{}\n  froude added-mass {} --repair repaired.obj writes a mesh with what can \
-             be decided put right",
+            "{}: potential flow cannot be computed on this mesh:\n{}",
             job.input.display(),
-            wrong.join("\n"),
-            job.input.display()
+            wrong.join("\n")
         )));
     }
     if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
@@ -270,7 +279,12 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     }
     let length_m = extent_along_x(&coarse);
     let mut tables = vec![hydrostatics(&cases[0].refined, density_kg_m3, origin_m)];
-    tables.extend(cross_checks::table(loaded.shape.as_ref(), &coarse, &cases[0].refined, density_kg_m3, origin_m));
+    let surroundings = match cases[0].is_lid {
+        Some(_) => cases[0].title.to_lowercase(),
+        None => cases[0].surroundings.clone(),
+    };
+    let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
+    tables.extend(cross_checks::table(shape, &coarse, refined, &surroundings, density_kg_m3, origin_m));
     if let Family::Mesh(mesh) = &loaded.family {
         told("the same with facets rounded");
         tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3)?);
@@ -343,6 +357,14 @@ fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding>, Error> {
         return Err(Error::Nothing(format!(
             "{}: the body lies above the water's surface at z = {at_m} m; give --surface the height of the surface over the origin of the mesh, \
              and --z up or down as the mesh has it",
+            job.input.display()
+        )));
+    }
+    let slack_m = ROUNDING * extent(mesh);
+    let touching = mesh.panels.iter().position(|p| mesh.corners(*p).all(|c| (c[2] - at_m).abs() <= slack_m));
+    if let Some(panel) = touching {
+        return Err(Error::Nothing(format!(
+            "{}: panel {panel} lies in the water's surface at z = {at_m} m: bodies that float are not computed here, submerge it",
             job.input.display()
         )));
     }

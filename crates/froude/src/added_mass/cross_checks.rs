@@ -20,6 +20,7 @@ pub fn table(
     shape: Option<&Shape>,
     mesh: &Mesh,
     refined: &Refined,
+    surroundings: &str,
     density_kg_m3: f64,
     origin_m: Vec3,
 ) -> Option<TextTable> {
@@ -27,7 +28,8 @@ pub fn table(
         let cells = diagonal.map(|a| a.map_or_else(|| "–".to_owned(), |a| number::plain(density_kg_m3 * a, 5)));
         std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
     };
-    let mut rows = vec![line("this result", core::array::from_fn(|i| Some(refined.value[i][i])))];
+    let mut rows =
+        vec![line(&format!("this result, {surroundings}"), core::array::from_fn(|i| Some(refined.value[i][i])))];
     let (low, high) = bounds(mesh);
     let half: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] - low[a]));
     let centre: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] + low[a]));
@@ -58,7 +60,7 @@ pub fn table(
         rows.push(line("circular cylinder (DNV-RP-C205)", [None, Some(across), Some(across), None, None, None]));
     }
     let head = ["", "A11 [kg]", "A22 [kg]", "A33 [kg]", "A44 [kg m²]", "A55 [kg m²]", "A66 [kg m²]"];
-    let caption = "Cross-checks in unbounded water. A body that is not the one named may differ by as much as it looks different.";
+    let caption = "This result beside others, which are in unbounded water. A body that is not the one named may differ by as much as it looks different.";
     Some(TextTable { caption: caption.to_owned(), head: head.map(str::to_owned).to_vec(), rows })
 }
 

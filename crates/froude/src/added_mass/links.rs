@@ -185,8 +185,16 @@ fn csv(configurations: &[Configuration], density_kg_m3: f64) -> String {
     let mut out = "configuration,n_links [1],mu_x [kg],mu_y [kg],mu_z [kg],volume [m^3]\n".to_owned();
     for c in configurations {
         let mu = |i: usize| density_kg_m3 * c.refined.value[i][i];
-        let _ =
-            writeln!(out, "{},{},{:.6},{:.6},{:.6},{:.7e}", c.name, c.links, mu(0), mu(1), mu(2), c.refined.volume_m3);
+        let _ = writeln!(
+            out,
+            "{},{},{:.7e},{:.7e},{:.7e},{:.7e}",
+            c.name,
+            c.links,
+            mu(0),
+            mu(1),
+            mu(2),
+            c.refined.volume_m3
+        );
     }
     out
 }

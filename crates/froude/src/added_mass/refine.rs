@@ -10,6 +10,7 @@ use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
 use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::{PLAIN_LIMIT, fast, solve};
+use froude_report::number;
 
 use super::family::Family;
 use crate::Error;
@@ -179,9 +180,9 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
             let why = format!(
-                "{panels} panels would take {:.1} GB of memory and {:.1} GB are free; some {fits} panels would fit",
-                forecast.memory_bytes / 1e9,
-                free / 1e9
+                "{panels} panels would take {} GB of memory and {} GB may be used; some {fits} panels would fit",
+                number::plain(forecast.memory_bytes / 1e9, 2),
+                number::plain(free / 1e9, 2)
             );
             if steps.is_empty() {
                 return Err(Error::Nothing(why));
