@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use froude::Error;
-use froude::added_mass::body::{self, BodyJob, BodyOutcome, Origin};
+use froude::added_mass::body::{self, BodyJob, BodyOutcome, Loaded, Origin};
 use froude::added_mass::links::{LinksJob, LinksOutcome, links};
-use froude::added_mass::refine::{Wanted, duration};
+use froude::added_mass::refine::{Forecast, Wanted, duration};
 use froude::added_mass::several::{Apart, SeveralOutcome, several};
 use froude::added_mass::{page, repair};
 use froude::records::units::{Dimension, parse_quantity, parse_unit};
@@ -29,7 +29,8 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     };
     let counted = args.links.as_deref().map(link_numbers).transpose()?;
     let density_kg_m3 = args.density.as_deref().map(|d| positive("--density", d, Dimension::DENSITY)).transpose()?;
-    if let Some(numbers) = counted.as_ref().filter(|n| n.len() > 1) {
+    if let Some(numbers) = counted.as_ref().filter(|n| n.len() > 1 && !args.check) {
+        only_one(&args)?;
         let job = LinksJob {
             body: args.input,
             links: numbers.clone(),
@@ -49,7 +50,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     }
     let job = BodyJob {
         input: args.input,
-        links: counted.map(|n| n[0]),
+        links: counted.as_ref().map(|n| n[0]),
         density_kg_m3,
         origin: args.origin.as_deref().map_or(Ok(Origin::At([0.0; 3])), origin)?,
         unit_m: args.unit.as_deref().map(unit).transpose()?,
@@ -62,7 +63,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         date: Some(crate::today()),
     };
     if args.check {
-        return check(&job);
+        return check(&job, counted.as_deref().unwrap_or_default(), json);
     }
     let angle_rad = args.joint_angle.as_deref().map(|a| quantity("--joint-angle", a, Dimension::ANGLE)).transpose()?;
     let apart = match (args.chain || angle_rad.is_some(), args.apart) {
@@ -108,7 +109,12 @@ fn wrong(option: &str, text: &str, why: impl std::fmt::Display) -> Error {
 }
 
 fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error> {
-    let q = parse_quantity(text).map_err(|e| wrong(option, text, e))?;
+    let usual = match dimension {
+        Dimension::DENSITY => "kg/m^3",
+        Dimension::LENGTH => "m",
+        _ => "%",
+    };
+    let q = parse_quantity(text).map_err(|e| wrong(option, text, e.expecting(text, dimension, usual)))?;
     q.expect(dimension).map_err(|e| wrong(option, text, e))
 }
 
@@ -131,12 +137,9 @@ fn ratio(option: &str, text: &str) -> Result<f64, Error> {
 }
 
 fn unit(text: &str) -> Result<f64, Error> {
-    let unit = parse_unit(text).map_err(|e| wrong("--unit", text, e))?;
-    if unit.dimension == Dimension::LENGTH {
-        Ok(unit.to_si(1.0))
-    } else {
-        Err(wrong("--unit", text, "write a unit of length: mm, cm, m, in"))
-    }
+    let unit = parse_unit(text).ok().filter(|unit| unit.dimension == Dimension::LENGTH);
+    let unit = unit.ok_or_else(|| wrong("--unit", text, "write a unit of length: mm, cm, m, in"))?;
+    Ok(unit.to_si(1.0))
 }
 
 /// `3`, `1..9` (both ends), `1,3,6`.
@@ -200,8 +203,50 @@ fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Erro
     Ok(())
 }
 
-fn check(job: &BodyJob) -> Result<(), Error> {
-    let (loaded, steps) = body::forecast(job)?;
+/// What has no meaning for several numbers of links is refused, not passed over.
+fn only_one(args: &AddedMassArgs) -> Result<(), Error> {
+    let given = [
+        ("--origin", args.origin.is_some()),
+        ("--unit", args.unit.is_some()),
+        ("--z", args.z == Vertical::Down),
+        ("--surface", args.surface.is_some()),
+        ("--export", !args.export.is_empty()),
+    ];
+    match given.into_iter().find(|(_, is_given)| *is_given) {
+        Some((option, _)) => {
+            Err(Error::Nothing(format!("{option} is for one body; give one number of links with it: --links 3")))
+        }
+        None => Ok(()),
+    }
+}
+
+/// Each number of links, or the one body where there is none.
+fn check(job: &BodyJob, links: &[usize], json: bool) -> Result<(), Error> {
+    let mut jobs: Vec<BodyJob> = links.iter().map(|n| BodyJob { links: Some(*n), ..job.clone() }).collect();
+    if jobs.is_empty() {
+        jobs.push(job.clone());
+    }
+    let checked = jobs.iter().map(body::forecast).collect::<Result<Vec<_>, _>>()?;
+    if json {
+        let bodies: Vec<_> = checked
+            .iter()
+            .map(|(loaded, steps)| {
+                let step = |(panels, f): &(usize, Forecast)| {
+                    serde_json::json!({"panels": panels, "unknowns": f.unknowns, "seconds": f.seconds, "memory_bytes": f.memory_bytes})
+                };
+                let meshes: Vec<_> = steps.iter().map(step).collect();
+                serde_json::json!({"name": loaded.name, "notes": loaded.notes, "findings": loaded.findings, "meshes": meshes})
+            })
+            .collect();
+        return print::json(&bodies);
+    }
+    for (loaded, steps) in &checked {
+        forecasts(loaded, steps);
+    }
+    Ok(())
+}
+
+fn forecasts(loaded: &Loaded, steps: &[(usize, Forecast)]) {
     say!("{}: fit for use", loaded.name);
     for note in loaded.notes.iter().chain(loaded.findings.iter().map(|f| &f.message)) {
         say!("  {note}");
@@ -222,7 +267,6 @@ fn check(job: &BodyJob) -> Result<(), Error> {
         head: ["panels", "unknowns", "time", "memory [MB]"].map(str::to_owned).to_vec(),
         rows,
     });
-    Ok(())
 }
 
 /// A table below its caption.

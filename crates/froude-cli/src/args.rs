@@ -163,7 +163,7 @@ pub struct AddedMassArgs {
     #[arg(long, value_name = "K|A..B|K,K")]
     pub links: Option<String>,
     /// Density of the water, with its unit [default: the body file's].
-    #[arg(long, value_name = "QUANTITY")]
+    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
     pub density: Option<String>,
     /// The point that moments are about, in the axes of the mesh: "0 m, 0 m, -0.2 m", or "buoyancy" [default: its origin].
     #[arg(long, value_name = "POINT", allow_hyphen_values = true)]
@@ -175,7 +175,7 @@ pub struct AddedMassArgs {
     #[arg(long, value_enum, default_value_t = Vertical::Up)]
     pub z: Vertical,
     /// Largest numerical uncertainty of an entry: "1 %".
-    #[arg(long, default_value = "1 %", value_name = "QUANTITY")]
+    #[arg(long, default_value = "1 %", value_name = "QUANTITY", allow_hyphen_values = true)]
     pub tolerance: String,
     /// Panels at most.
     #[arg(long, default_value_t = 120_000)]

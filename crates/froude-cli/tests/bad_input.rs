@@ -1,8 +1,12 @@
 //! What a user sees when the input is wrong: exit code 2, one message, nothing written.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod small_disk;
+
 use std::path::Path;
 use std::process::{Command, Output};
+
+use small_disk::SmallDisk;
 
 fn froude(folder: &Path, args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_froude")).args(args).current_dir(folder).output().unwrap()
@@ -327,33 +331,13 @@ fn radians_typed_into_a_column_of_degrees_are_suspected() {
     );
 }
 
-/// A small file system of its own, unmounted at the end; `None` where this user may not mount.
-struct SmallDisk(tempfile::TempDir);
-
-impl SmallDisk {
-    fn mount(size: &str) -> Option<Self> {
-        let folder = tempfile::tempdir().unwrap();
-        let done = Command::new("mount")
-            .args(["-t", "tmpfs", "-o", &format!("size={size}"), "tmpfs"])
-            .arg(folder.path())
-            .output();
-        done.is_ok_and(|o| o.status.success()).then_some(Self(folder))
-    }
-}
-
-impl Drop for SmallDisk {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg(self.0.path()).status();
-    }
-}
-
 #[test]
 fn a_full_disk_leaves_nothing_half_written() {
     let Some(disk) = SmallDisk::mount("40k") else {
         eprintln!("this user may not mount a small disk; the failing writer of froude-records is tested instead");
         return;
     };
-    let folder = disk.0.path();
+    let folder = disk.path();
     std::fs::write(folder.join("t.csv"), TABLE).unwrap();
     let output = froude(folder, &["identify", "t.csv"]);
     let said = String::from_utf8_lossy(&output.stderr);

@@ -768,7 +768,7 @@ impl UnitError {
     ///
     /// `text` is the quantity or unit as written, `usual` the unit that people write for it.
     #[must_use]
-    pub(crate) fn expecting(self, text: &str, dimension: Dimension, usual: &str) -> Self {
+    pub fn expecting(self, text: &str, dimension: Dimension, usual: &str) -> Self {
         match self {
             Self::Empty { .. } => Self::Empty { example: format!("`{usual}`") },
             Self::NoNumber { text, .. } => Self::NoNumber { text, unit: usual.to_owned() },

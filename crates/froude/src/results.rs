@@ -22,6 +22,23 @@ pub struct Written {
     pub figures: Vec<PathBuf>,
     /// A table of observations per fitted source.
     pub observations: Vec<PathBuf>,
+    /// What else the job makes.
+    pub others: Vec<PathBuf>,
+}
+
+/// Says before a long computation whether its results can be written; nothing is made.
+///
+/// # Errors
+///
+/// The folder is a file, or nothing can be written where it is or would be.
+pub fn can_be_written(out: &Path) -> Result<(), Error> {
+    let failed = |source| Error::Output { path: out.to_owned(), source };
+    let there = out.ancestors().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p }).find(|p| p.exists());
+    let there = there.unwrap_or(Path::new("."));
+    if !there.is_dir() {
+        return Err(failed(std::io::ErrorKind::NotADirectory.into()));
+    }
+    tempfile::tempfile_in(there).map(|_| ()).map_err(failed)
 }
 
 /// Writes record, observations, figures and report into `out`.
@@ -35,6 +52,22 @@ pub fn write(
     observations: &[Table],
     figures: &[Figure],
     html: &str,
+) -> Result<Written, Error> {
+    write_also(out, file, observations, figures, html, &|_| Ok(Vec::new()))
+}
+
+/// The same with files of the job's own: `also` writes them into the folder that it is given, and returns their names.
+///
+/// # Errors
+///
+/// As [`write`], and those of `also`.
+pub fn write_also(
+    out: &Path,
+    file: &EstimateFile,
+    observations: &[Table],
+    figures: &[Figure],
+    html: &str,
+    also: &dyn Fn(&Path) -> Result<Vec<PathBuf>, Error>,
 ) -> Result<Written, Error> {
     let failed = |path: &Path| {
         let path = path.to_owned();
@@ -63,7 +96,10 @@ pub fn write(
     }
     names.push(PathBuf::from("report.html"));
     write_atomically(&staged.path().join("report.html"), html.as_bytes())?;
-    std::fs::create_dir_all(out.join("figures")).map_err(failed(out))?;
+    let others = also(staged.path())?;
+    names.extend(others.iter().cloned());
+    let folder = if figures.is_empty() { out.to_owned() } else { out.join("figures") };
+    std::fs::create_dir_all(folder).map_err(failed(out))?;
     for name in &names {
         std::fs::rename(staged.path().join(name), out.join(name)).map_err(failed(out))?;
     }
@@ -72,5 +108,6 @@ pub fn write(
         report: out.join("report.html"),
         figures: names.iter().filter(|n| n.starts_with("figures")).map(|n| out.join(n)).collect(),
         observations: observations.iter().map(|t| out.join(&t.path)).collect(),
+        others: others.iter().map(|n| out.join(n)).collect(),
     })
 }

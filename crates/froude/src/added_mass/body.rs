@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_mesh::check::check;
+use froude_mesh::check::{Trouble, check, extent};
 use froude_mesh::crossing::crossings;
 use froude_mesh::files::{self, vtk::vtp};
 use froude_mesh::measure::Measure;
@@ -25,7 +25,7 @@ use indexmap::IndexMap;
 use super::cross_checks;
 use super::family::Family;
 use super::limits;
-use super::links::{default_out, file_name, no_density, not_within};
+use super::links::{default_out, file_name, no_density, not_links, not_within};
 use super::page;
 use super::record::{About, MOTIONS, estimate};
 use super::refine::{Finest, Forecast, Placed, Refined, Wanted, plan, refine};
@@ -128,6 +128,8 @@ pub struct Loaded {
 const WARP: f64 = 1e-6;
 /// Angle between facets from which an edge is an edge of the body, rad: 30°.
 const CREASE_RAD: f64 = core::f64::consts::FRAC_PI_6;
+/// Distance from the water's surface that is none, as part of the body's extent.
+const ROUNDING: f64 = 1e-9;
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 4 << 30;
 /// Standard acceleration of gravity, m/s².
@@ -159,6 +161,12 @@ pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>)
 /// A file that cannot be read, and a mesh that potential flow cannot be computed on, with everything that is wrong with it.
 pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
     if is_body_file(&job.input) {
+        if job.unit_m.is_some() {
+            return Err(Error::Nothing(format!(
+                "{}: --unit is for a mesh; a body file has a unit at each length",
+                job.input.display()
+            )));
+        }
         let body = read_body(&job.input)?;
         let links = match (&body.shape, job.links) {
             (Shape::Robot { .. }, Some(links)) => links,
@@ -168,12 +176,7 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
                     job.input.display()
                 )));
             }
-            (_, Some(_)) => {
-                return Err(Error::Nothing(format!(
-                    "{}: --links counts the links of a body of shape \"robot\"; leave it out for another shape",
-                    job.input.display()
-                )));
-            }
+            (_, Some(_)) => return Err(not_links(&job.input)),
             (_, None) => 0,
         };
         let name = if job.links.is_some() { format!("{}, H{links}LT", body.name) } else { body.name };
@@ -182,14 +185,20 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         let density_kg_m3 = body.density_kg_m3;
         return Ok(Loaded { name, family, shape: Some(body.shape), density_kg_m3, notes, findings: Vec::new() });
     }
+    if job.links.is_some() {
+        return Err(not_links(&job.input));
+    }
     let (mesh, mut notes) = read_mesh(&job.input, job.unit_m)?;
     let mut findings = Vec::new();
     let mut wrong = Vec::new();
     let mut troubles = check(&mesh);
-    if !troubles.iter().any(froude_mesh::check::Trouble::is_fatal) {
+    if !troubles.iter().any(Trouble::is_fatal) {
         troubles.extend(part_troubles(&mesh));
         troubles.extend(crossings(&mesh));
     }
+    let is_unreadable =
+        |t: &Trouble| matches!(t, Trouble::Empty | Trouble::NotFinite { .. } | Trouble::NoSuchVertex { .. });
+    let is_repairable = !troubles.iter().any(is_unreadable);
     for trouble in troubles {
         if trouble.is_fatal() {
             wrong.push(format!("  {trouble}"));
@@ -203,12 +212,16 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         if rest > 0 {
             wrong.push(format!("  and {rest} more"));
         }
+        if is_repairable {
+            wrong.push(format!(
+                "  froude added-mass {} --repair repaired.obj writes a mesh with what can be decided put right",
+                job.input.display()
+            ));
+        }
         return Err(Error::Nothing(format!(
-            "{}: potential flow cannot be computed on this mesh:\n{}\n  froude added-mass {} --repair repaired.obj writes a mesh with what can \
-             be decided put right",
+            "{}: potential flow cannot be computed on this mesh:\n{}",
             job.input.display(),
-            wrong.join("\n"),
-            job.input.display()
+            wrong.join("\n")
         )));
     }
     if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
@@ -248,6 +261,8 @@ pub fn forecast(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Error
 pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     let loaded = load(job)?;
     let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
+    crate::results::can_be_written(&out)?;
     let coarse = loaded.family.member(0)?.mesh.mesh;
     let measure = Measure::of(&coarse);
     let origin_m = match job.origin {
@@ -299,6 +314,9 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     };
     let mut notes = loaded.notes;
     notes.extend(limits::words(job.surface_m, job.tank_m));
+    if !job.is_z_up && !job.export.is_empty() {
+        notes.push("The exported files have z up, as wave programs ask for: turned about x by 180°.".to_owned());
+    }
     notes.push(format!("Moments are about {reference}. Nothing here depends on frequency: no waves are computed."));
     let mut outcome = BodyOutcome {
         name: loaded.name,
@@ -312,12 +330,12 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         page: PathBuf::new(),
         others: Vec::new(),
     };
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
     let html = page::body(&outcome, job.date.clone()).html()?;
-    let written = crate::results::write(&out, &outcome.file, &[], &[], &html)?;
+    let also = |folder: &Path| extras(&outcome, job, folder, origin_m);
+    let written = crate::results::write_also(&out, &outcome.file, &[], &[], &html, &also)?;
     outcome.estimate = written.estimate;
     outcome.page = written.report;
-    outcome.others = extras(&outcome, job, &out, origin_m)?;
+    outcome.others = written.others;
     Ok(outcome)
 }
 
@@ -351,6 +369,14 @@ fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding>, Error> {
         return Err(Error::Nothing(format!(
             "{}: the body lies above the water's surface at z = {at_m} m; give --surface the height of the surface over the origin of the mesh, \
              and --z up or down as the mesh has it",
+            job.input.display()
+        )));
+    }
+    let slack_m = ROUNDING * extent(mesh);
+    let touching = mesh.panels.iter().position(|p| mesh.corners(*p).all(|c| (c[2] - at_m).abs() <= slack_m));
+    if let Some(panel) = touching {
+        return Err(Error::Nothing(format!(
+            "{}: panel {panel} lies in the water's surface at z = {at_m} m: bodies that float are not computed here, submerge it",
             job.input.display()
         )));
     }
@@ -462,14 +488,16 @@ fn percent_of(part: f64, whole: f64) -> String {
     }
 }
 
-/// The pressure on the body, and the files that were asked for.
-fn extras(outcome: &BodyOutcome, job: &BodyJob, out: &Path, origin_m: Vec3) -> Result<Vec<PathBuf>, Error> {
-    let mut paths = Vec::new();
-    let path = out.join("pressure.vtp");
-    write_atomically(&path, pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, origin_m).as_bytes())?;
-    paths.push(path);
+/// The pressure on the body, and the files that were asked for; their names in the folder.
+fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path, origin_m: Vec3) -> Result<Vec<PathBuf>, Error> {
+    let mut names = vec![PathBuf::from("pressure.vtp")];
+    let pressure = pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, origin_m);
+    write_atomically(&folder.join(&names[0]), pressure.as_bytes())?;
+    // Wave programs have z up: a mesh with z down is turned about x by half a turn, and y and z change their signs.
+    let sign = |i: usize| if job.is_z_up || i % 3 == 0 { 1.0 } else { -1.0 };
     let rows = |case: &Case| -> Vec<Vec<f64>> {
-        case.refined.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect()
+        let entry = |i: usize, j: usize| sign(i) * sign(j) * outcome.density_kg_m3 * case.refined.value[i][j];
+        (0..6).map(|i| (0..6).map(|j| entry(i, j)).collect()).collect()
     };
     // Deeply submerged both limits are the same.
     let limit = |is_lid: bool| outcome.cases.iter().rfind(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
@@ -486,11 +514,11 @@ fn extras(outcome: &BodyOutcome, job: &BodyJob, out: &Path, origin_m: Vec3) -> R
         infinite_frequency: infinite.as_deref(),
     };
     for extension in &job.export {
-        let path = out.join(format!("added-mass.{extension}"));
-        file.write(&path)?;
-        paths.push(path);
+        let name = PathBuf::from(format!("added-mass.{extension}"));
+        file.write(&folder.join(&name))?;
+        names.push(name);
     }
-    Ok(paths)
+    Ok(names)
 }
 
 /// Pressure over unit acceleration on the whole body, −ρ φ, for each motion about the origin asked for.

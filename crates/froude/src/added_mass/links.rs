@@ -12,6 +12,7 @@ use froude_records::hash::sha256_of_file;
 use froude_records::write::write_atomically;
 use indexmap::IndexMap;
 
+use super::body::is_body_file;
 use super::family::{Family, robot};
 use super::page;
 use super::record::{About, estimate};
@@ -79,14 +80,14 @@ const FIT: usize = 3;
 ///
 /// See [`Error`].
 pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error> {
+    if !is_body_file(&job.body) {
+        return Err(not_links(&job.body));
+    }
     let body = read_body(&job.body)?;
-    let Shape::Robot { .. } = body.shape else {
-        return Err(Error::Nothing(format!(
-            "{}: --links counts the links of a body of shape \"robot\"; leave it out for another shape",
-            job.body.display()
-        )));
-    };
+    let Shape::Robot { .. } = body.shape else { return Err(not_links(&job.body)) };
     let density_kg_m3 = job.density_kg_m3.or(body.density_kg_m3).ok_or_else(|| no_density(&job.body))?;
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.body));
+    crate::results::can_be_written(&out)?;
     let mut configurations = Vec::new();
     for &links in &job.links {
         let name = format!("H{links}LT");
@@ -95,7 +96,6 @@ pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error>
         let length_m = robot(&body.shape).length_m(links);
         configurations.push(Configuration { links, name, length_m, refined });
     }
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.body));
     let made = |path: &Path, source| Error::Output { path: path.to_owned(), source };
     std::fs::create_dir_all(&out).map_err(|e| made(&out, e))?;
     let table = out.join("links.csv");
@@ -152,11 +152,22 @@ pub(super) fn no_density(path: &Path) -> Error {
     ))
 }
 
+/// Why a number of links says nothing here.
+pub(super) fn not_links(path: &Path) -> Error {
+    Error::Nothing(format!(
+        "{}: --links counts the links of a body file of shape \"robot\"; leave it out for another shape, or a mesh",
+        path.display()
+    ))
+}
+
 /// A finding where the tolerance was not reached.
 pub(super) fn not_within(name: &str, refined: &Refined) -> Option<Finding> {
     let why = refined.stopped.as_ref()?;
-    let message =
-        format!("{name}: the numerical uncertainty is {:.2} % where less was asked for: {why}", 100.0 * refined.worst);
+    let message = if refined.worst.is_finite() {
+        format!("{name}: the numerical uncertainty is {:.2} % where less was asked for: {why}", 100.0 * refined.worst)
+    } else {
+        format!("{name}: the numerical uncertainty is not known: {why}")
+    };
     Some(Finding::new(Severity::Warning, "not-converged", message))
 }
 
@@ -174,8 +185,16 @@ fn csv(configurations: &[Configuration], density_kg_m3: f64) -> String {
     let mut out = "configuration,n_links [1],mu_x [kg],mu_y [kg],mu_z [kg],volume [m^3]\n".to_owned();
     for c in configurations {
         let mu = |i: usize| density_kg_m3 * c.refined.value[i][i];
-        let _ =
-            writeln!(out, "{},{},{:.6},{:.6},{:.6},{:.7e}", c.name, c.links, mu(0), mu(1), mu(2), c.refined.volume_m3);
+        let _ = writeln!(
+            out,
+            "{},{},{:.7e},{:.7e},{:.7e},{:.7e}",
+            c.name,
+            c.links,
+            mu(0),
+            mu(1),
+            mu(2),
+            c.refined.volume_m3
+        );
     }
     out
 }

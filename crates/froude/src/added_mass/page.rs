@@ -31,6 +31,19 @@ pub fn with_uncertainty(value: f64, expanded: f64) -> String {
     if expanded.is_finite() { number::plus_minus(value, expanded) } else { number::plain(value, 6) }
 }
 
+/// Part of the largest of its kind below which an entry is that of a symmetry, and of rounding.
+const NOTHING: f64 = 1e-6;
+
+/// The largest diagonal entry of a kind: of the translations, of the rotations.
+fn kind(refined: &Refined, i: usize) -> f64 {
+    (0..3).map(|k| refined.value[3 * (i / 3) + k][3 * (i / 3) + k].abs()).fold(0.0, f64::max)
+}
+
+/// Motions that take water along: not the roll of a body of revolution.
+fn motions(refined: &Refined) -> impl Iterator<Item = usize> + '_ {
+    (0..6).filter(|&i| refined.value[i][i].abs() > NOTHING * kind(refined, i))
+}
+
 /// The matrix in kg, kg m, kg m², row by row.
 #[must_use]
 pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
@@ -39,7 +52,9 @@ pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
             let cells = (0..6).map(|j| {
                 let (value, u) = (density_kg_m3 * refined.value[i][j], density_kg_m3 * refined.uncertainty[i][j]);
                 // Below its uncertainty, and zero by symmetry to rounding.
-                if value.abs() <= u && value.abs() < 1e-9 * density_kg_m3 {
+                if value.abs() <= u
+                    && value.abs() < NOTHING * density_kg_m3 * (kind(refined, i) * kind(refined, j)).sqrt()
+                {
                     "0".to_owned()
                 } else {
                     with_uncertainty(value, u)
@@ -94,7 +109,8 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
                 s.iterations.to_string(),
                 number::plain(s.seconds, 2),
             ];
-            row.extend((0..6).map(|i| number::plain(density_kg_m3 * a[i][i], 6)));
+            let is_zero = |i: usize| a[i][i].abs() < 1e-12 * kind(refined, i);
+            row.extend((0..6).map(|i| number::plain(if is_zero(i) { 0.0 } else { density_kg_m3 * a[i][i] }, 6)));
             row.push(format!("{:.1e}", s.added_mass.asymmetry));
             row
         })
@@ -114,8 +130,7 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
 #[must_use]
 pub fn convergence_chart(refined: &Refined) -> Chart {
     let panels: Vec<f64> = refined.steps.iter().map(|s| s.panels as f64).collect();
-    let mut series: Vec<Series> = (0..6)
-        .filter(|&i| refined.value[i][i].abs() > 1e-9 * refined.volume_m3)
+    let mut series: Vec<Series> = motions(refined)
         .map(|i| Series {
             name: MOTIONS[i].to_owned(),
             x: panels.clone(),
@@ -148,8 +163,10 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
 #[must_use]
 pub fn convergence_words(refined: &Refined) -> Vec<String> {
     let orders: Vec<String> =
-        (0..6).filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?))).collect();
-    let mut out = vec![if orders.is_empty() {
+        motions(refined).filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?))).collect();
+    let mut out = vec![if refined.steps.len() == 1 {
+        "One mesh only: there is no numerical uncertainty; three meshes give one.".to_owned()
+    } else if orders.is_empty() {
         "No order of convergence can be seen on these meshes: the value is that of the finest one, with three times its distance from the \
          others."
             .to_owned()
@@ -158,6 +175,7 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
     }];
     out.push(match &refined.stopped {
         None => format!("The largest numerical uncertainty is {:.2} % of its entry.", 100.0 * refined.worst),
+        Some(why) if !refined.worst.is_finite() => format!("There is no finer one: {why}."),
         Some(why) => format!(
             "The largest numerical uncertainty is {:.2} %, more than was asked for: {why}.",
             100.0 * refined.worst

@@ -10,6 +10,7 @@ use froude_panel::mirror::{Mirror, positive_part};
 use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::tank::{Surface, Tank};
 use froude_panel::{PLAIN_LIMIT, fast, solve};
+use froude_report::number;
 
 use super::family::{Family, Member};
 use crate::Error;
@@ -23,6 +24,8 @@ pub struct Wanted {
     pub tolerance: f64,
     /// Panels at most.
     pub most_panels: usize,
+    /// Memory at most, bytes; `None`: four fifths of what is free when each mesh begins.
+    pub memory_bytes: Option<f64>,
     /// Mirror planes that are not the body's: a wall, the water's surface.
     pub mirrors: Vec<Mirror>,
     /// A tank around the body, instead of mirrors.
@@ -42,7 +45,14 @@ pub struct Placed {
 
 impl Default for Wanted {
     fn default() -> Self {
-        Self { origin_m: [0.0; 3], tolerance: 0.01, most_panels: 120_000, mirrors: Vec::new(), tank: None }
+        Self {
+            origin_m: [0.0; 3],
+            tolerance: 0.01,
+            most_panels: 120_000,
+            memory_bytes: None,
+            mirrors: Vec::new(),
+            tank: None,
+        }
     }
 }
 
@@ -186,14 +196,18 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
 ///
 /// # Errors
 ///
-/// Dimensions that give no body, and a mesh that does not fit into the memory even as it is, with the number of panels that would.
+/// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
+/// panels than are allowed.
 pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
     let mut steps: Vec<Step> = Vec::new();
     let mut finest = None;
     let mut stopped = None;
     for number in 0..family.members() {
         let panels = family.panels(number)?;
-        if panels > wanted.most_panels && !steps.is_empty() {
+        if panels > wanted.most_panels {
+            if steps.is_empty() {
+                return Err(too_fine(family, wanted)?);
+            }
             stopped = Some(format!(
                 "the next mesh has {panels} panels, and {} are allowed (--most-panels)",
                 wanted.most_panels
@@ -203,13 +217,13 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         let member = family.member(number)?;
         let (solved, problem) = problem(family, &member, wanted)?;
         let forecast = forecast(&problem);
-        let free = free_memory_bytes().map_or(f64::INFINITY, |m| MEMORY_PART * m);
+        let free = wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY);
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
             let why = format!(
-                "{panels} panels would take {:.1} GB of memory and {:.1} GB are free; some {fits} panels would fit",
-                forecast.memory_bytes / 1e9,
-                free / 1e9
+                "{panels} panels would take {} GB of memory and {} GB may be used; some {fits} panels would fit",
+                number::plain(forecast.memory_bytes / 1e9, 2),
+                number::plain(free / 1e9, 2)
             );
             if steps.is_empty() {
                 return Err(Error::Nothing(why));
@@ -262,16 +276,28 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     })
 }
 
+fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
+    let (coarsest, third) = (family.panels(0)?, family.panels(2)?);
+    Ok(Error::Nothing(format!(
+        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
+         three meshes, or {coarsest} for a value without",
+        wanted.most_panels
+    )))
+}
+
 /// What each mesh would take, up to the panels allowed: panels of the body, and the forecast.
 ///
 /// # Errors
 ///
-/// Dimensions that give no body.
+/// Dimensions that give no body, and a mesh of more panels than are allowed.
 pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, Error> {
     let mut out = Vec::new();
     for number in 0..family.members() {
         let panels = family.panels(number)?;
-        if panels > wanted.most_panels && number > 0 {
+        if panels > wanted.most_panels {
+            if out.is_empty() {
+                return Err(too_fine(family, wanted)?);
+            }
             break;
         }
         out.push((panels, forecast(&problem(family, &family.member(number)?, wanted)?.1)));
@@ -310,7 +336,9 @@ fn worst(entries: &[[Entry; 6]; 6]) -> f64 {
     let mut out = 0.0_f64;
     for (i, row) in entries.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {
-            out = out.max(entry.uncertainty / (size(i) * size(j)).sqrt());
+            let part = entry.uncertainty / (size(i) * size(j)).sqrt();
+            // `max` would pass over what is no number.
+            out = if part.is_nan() { f64::INFINITY } else { out.max(part) };
         }
     }
     out

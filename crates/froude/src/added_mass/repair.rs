@@ -9,7 +9,7 @@ use froude_mesh::parts::part_troubles;
 use froude_mesh::repair::repaired;
 use froude_records::write::write_atomically;
 
-use super::body::read_mesh;
+use super::body::{is_body_file, read_mesh};
 use crate::Error;
 
 /// What was done.
@@ -37,6 +37,9 @@ pub fn repair(input: &Path, unit_m: Option<f64>, weld_m: Option<f64>, target: &P
     let extension = target.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !matches!(extension.as_str(), "obj" | "stl") {
         return Err(Error::Nothing(format!("{}: a repaired mesh is written as .obj or .stl", target.display())));
+    }
+    if is_body_file(input) {
+        return Err(Error::Nothing(format!("{}: --repair is for a mesh; a body file has none", input.display())));
     }
     if input == target || (target.exists() && input.canonicalize().ok() == target.canonicalize().ok()) {
         return Err(Error::Nothing(format!(

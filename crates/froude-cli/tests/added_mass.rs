@@ -1,0 +1,662 @@
+//! `froude added-mass` as a user meets it: closed forms and laws, the files it writes, bad input word for word, odd sizes.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+mod small_disk;
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use froude::added_mass::family::Family;
+use froude::added_mass::refine::{Wanted, refine};
+use froude::hydro::ellipsoid::ellipsoid_added_mass;
+use froude::mesh::files::{write_obj, write_stl_binary};
+use froude::mesh::measure::Measure;
+use froude::mesh::panel::facets;
+use froude::mesh::sections::{Resolution, SectionBody};
+use froude::mesh::vector::{Vec3, cross, sub};
+use froude::mesh::{Mesh, Panel};
+use froude::panel::matrix::AddedMass;
+use froude::records::added_mass_files::read_wamit;
+use froude::records::table::read_table;
+use froude::records::units::Dimension;
+use serde_json::Value;
+use small_disk::SmallDisk;
+
+type Matrix = [[f64; 6]; 6];
+
+fn froude(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_froude")).arg("added-mass").args(args).current_dir(folder).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).trim_end().to_owned()
+}
+
+/// The record, by --json.
+fn record(folder: &Path, args: &[&str]) -> Value {
+    let output = froude(folder, &[args, &["--json"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", said(&output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The lines on standard output.
+fn lines(folder: &Path, args: &[&str]) -> String {
+    let output = froude(folder, args);
+    assert_eq!(output.status.code(), Some(0), "{args:?}: {}", said(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The matrix of an estimate, kg, kg m, kg m².
+fn matrix(record: &Value, estimate: usize) -> Matrix {
+    let coefficients = &record["estimates"][estimate]["coefficients"];
+    core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            let name = format!("A{}{}", i.min(j) + 1, i.max(j) + 1);
+            coefficients[&name]["value"].as_f64().unwrap_or_else(|| panic!("{name} of {coefficients}"))
+        })
+    })
+}
+
+/// Largest difference of two matrices, over √(A_ii A_jj).
+fn apart(a: &Matrix, b: &Matrix) -> f64 {
+    let of = |(i, j): (usize, usize)| (a[i][j] - b[i][j]).abs() / (a[i][i] * a[j][j]).abs().sqrt();
+    (0..36).map(|k| of((k / 6, k % 6))).fold(0.0, f64::max)
+}
+
+fn ellipsoid(semi_axes_m: Vec3, cells: usize, along: usize) -> Mesh {
+    SectionBody::ellipsoid(semi_axes_m, cells).mesh(Resolution { along, around: 8 * along }).unwrap().mesh
+}
+
+/// 64 panels off the origin, so that every entry of the matrix is different from zero.
+fn hull() -> Mesh {
+    ellipsoid([0.6, 0.2, 0.3], 4, 1).mapped(|[x, y, z]| [x + 0.2, y - 0.1 + 0.3 * x, z + 0.05])
+}
+
+/// One mesh, no extrapolation: 64 panels.
+const ONE_MESH: [&str; 4] = ["--density", "1000 kg/m^3", "--most-panels", "64"];
+
+fn write(folder: &Path, name: &str, mesh: &Mesh) {
+    let is_stl = Path::new(name).extension().is_some_and(|e| e == "stl");
+    let content = if is_stl { write_stl_binary(mesh) } else { write_obj(mesh).into_bytes() };
+    std::fs::write(folder.join(name), content).unwrap();
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn an_ellipsoid_as_stl_is_lambs() {
+    let folder = tempfile::tempdir().unwrap();
+    let axes = [0.5, 0.3, 0.2];
+    write(folder.path(), "egg.stl", &ellipsoid(axes, 3, 3));
+    let text = lines(folder.path(), &["egg.stl", "--density", "1025 kg/m^3"]);
+    let rows: Vec<Vec<&str>> = text.lines().map(|l| l.split_whitespace().collect()).collect();
+    let facets = rows.iter().position(|r| r.join(" ").contains("smooth body minus polyhedron")).unwrap();
+    let exact = ellipsoid_added_mass(axes).unwrap();
+    for (i, motion) in ["surge", "sway", "heave", "roll", "pitch", "yaw"].into_iter().enumerate() {
+        let row = rows[facets..].iter().find(|r| r.first() == Some(&motion)).unwrap();
+        let number = |cell: &str| cell.replace('−', "-").parse::<f64>().unwrap();
+        let (value, smooth) = (number(row[1]), number(row[row.len() - 2]));
+        let error = value * (1.0 + smooth / 100.0) / (1025.0 * exact[i]) - 1.0;
+        assert!(error.abs() < 0.002, "{motion}: {error}");
+    }
+}
+
+const EGG: &str = r#"shape = "ellipsoid"
+semi_axis_x = "0.5 m"
+semi_axis_y = "30 cm"
+semi_axis_z = "0.2 m"
+"#;
+const ROBOT: &str = r#"shape = "robot"
+link = { major_semi_axis = "58.8 mm", minor_semi_axis = "39.4 mm", half_length = "90 mm" }
+joint = { length = "60 mm", scale = 0.7, ramp = "4 mm" }
+ends = { length = "31 mm" }
+"#;
+
+fn body_file(shape: &str) -> String {
+    format!("schema = 1\nname = \"it\"\n[fluid]\ndensity = \"1025 kg/m^3\"\n[body]\n{shape}")
+}
+
+/// The record of a body file.
+fn of_shape(shape: &str, args: &[&str]) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("body.toml"), body_file(shape)).unwrap();
+    record(folder.path(), &[&["body.toml"], args].concat())
+}
+
+#[test]
+fn body_files_of_all_shapes_give_what_closed_forms_and_strips_say() {
+    let rho = 1025.0;
+    let a = matrix(&of_shape(EGG, &[]), 0);
+    for (i, exact) in ellipsoid_added_mass([0.5, 0.3, 0.2]).unwrap().into_iter().enumerate() {
+        assert!((a[i][i] / (rho * exact) - 1.0).abs() < 0.005, "{i}: {} of {}", a[i][i], rho * exact);
+    }
+    // Round, so sway is heave; less than that of strips as long as the body, more than that of the cylinder alone cut at a radius.
+    let round = |length: f64| rho * std::f64::consts::PI * 0.01 * length;
+    let capsule = "shape = \"capsule\"\nlength = \"1 m\"\nmajor_semi_axis = \"0.1 m\"\nminor_semi_axis = \"0.1 m\"\nends = { length = \"0.1 m\" }\n";
+    let a = matrix(&of_shape(capsule, &[]), 0);
+    assert!((a[1][1] / a[2][2] - 1.0).abs() < 1e-3, "{a:?}");
+    assert!((round(0.8)..round(1.0)).contains(&a[1][1]), "{a:?}");
+    // DNV-RP-C205, table D-2: C_A is 0.90 at a length of ten radii.
+    let cylinder = "shape = \"cylinder\"\nlength = \"1 m\"\nmajor_semi_axis = \"0.1 m\"\nminor_semi_axis = \"0.1 m\"\n";
+    let a = matrix(&of_shape(cylinder, &["--tolerance", "5 %"]), 0);
+    assert!((a[1][1] / round(1.0) - 0.90).abs() < 0.03, "{} of {}", a[1][1], round(1.0));
+    // Table 6 of the USR paper: 5.1539 kg and 3.830e-3 m³ for three links.
+    let robot = of_shape(ROBOT, &["--links", "3", "--tolerance", "5 %"]);
+    assert_eq!(robot["estimates"][0]["source"], "it, H3LT");
+    let a = matrix(&robot, 0);
+    assert!((a[1][1] / 5.1539 - 1.0).abs() < 0.02, "{}", a[1][1]);
+}
+
+#[test]
+fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("body.toml"), body_file(ROBOT)).unwrap();
+    let out = record(at, &["body.toml", "--links", "1..3", "--tolerance", "10 %"]);
+    let results = at.join("body-added-mass");
+    assert_eq!(names(&results), ["campaign-results", "campaign.toml", "estimate.json", "links.csv", "report.html"]);
+    let estimates = out["estimates"].as_array().unwrap();
+    let models: Vec<&str> = estimates.iter().map(|e| e["model"].as_str().unwrap()).collect();
+    for model in ["displaced_volume", "per_link", "affine"] {
+        assert!(models.contains(&model), "{models:?}");
+    }
+    assert_eq!(models.iter().filter(|m| **m == "added_mass_6x6").count(), 3);
+    let table = read_table(&results.join("links.csv"), None).unwrap();
+    let mass = table.number("mu_y", Dimension::MASS).unwrap();
+    for (links, mass) in mass.iter().enumerate() {
+        let a = matrix(&out, estimates.len() - 3 + links);
+        assert!((mass / a[1][1] - 1.0).abs() < 1e-6, "{mass} {}", a[1][1]);
+    }
+    let page = std::fs::read_to_string(results.join("report.html")).unwrap();
+    assert!(page.contains("H3LT") && page.contains("Least squares"));
+
+    // The record: by the schema, as printed, and as the other verbs take it.
+    let run = |args: &[&str]| {
+        let output = Command::new(env!("CARGO_BIN_EXE_froude")).args(args).current_dir(&results).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{args:?}: {}", said(&output));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let validator = jsonschema::validator_for(&run(&["schema"])).unwrap();
+    let errors: Vec<String> = validator.iter_errors(&out).map(|e| e.to_string()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
+    let written: Value = serde_json::from_slice(&std::fs::read(results.join("estimate.json")).unwrap()).unwrap();
+    assert_eq!(written, out, "--json prints what estimate.json holds");
+    assert_eq!(run(&["inspect", "estimate.json", "--json"])["kind"], "estimate");
+    assert!(run(&["compare", "estimate.json", "--json"]).is_object());
+
+    // Two configurations are no least squares.
+    let out = record(at, &["body.toml", "--links", "1,2", "--tolerance", "10 %", "--out", "two"]);
+    assert_eq!(out["estimates"].as_array().unwrap().len(), 2);
+    assert_eq!(names(&at.join("two")), ["campaign.toml", "estimate.json", "links.csv", "report.html"]);
+}
+
+#[test]
+fn exports_hold_the_matrix_of_the_record() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    let args = [&["hull.obj", "--export", "wamit,capytaine,csv", "--out", "up"], &ONE_MESH[..]].concat();
+    let a = matrix(&record(at, &args), 0);
+    let files = ["added-mass.1", "added-mass.csv", "added-mass.nc", "estimate.json", "pressure.vtp", "report.html"];
+    assert_eq!(names(&at.join("up")), files);
+    let limits = |folder: &str| {
+        let read = read_wamit(&at.join(folder).join("added-mass.1"), 1000.0, 1.0).unwrap();
+        [read.zero_frequency.unwrap(), read.infinite_frequency.unwrap()]
+            .map(|rows| core::array::from_fn(|i| core::array::from_fn(|j| rows[i][j])))
+    };
+    let of_up: [Matrix; 2] = limits("up");
+    // Deeply submerged, both limits are one.
+    assert!(of_up.iter().all(|m| apart(m, &a) < 1e-12));
+    let table = read_table(&at.join("up/added-mass.csv"), None).unwrap();
+    let entry = |name: &str, dimension| table.number(name, dimension).unwrap().to_vec();
+    assert_eq!(entry("A11", Dimension::MASS), [a[0][0]; 2]);
+    assert_eq!(entry("A26", Dimension::MASS.checked_mul(Dimension::LENGTH).unwrap()), [a[1][5]; 2]);
+    assert!(std::fs::read(at.join("up/added-mass.nc")).unwrap().starts_with(b"CDF"));
+
+    // The same body in axes with z down: half a turn about x. Wave programs get the same numbers.
+    write(at, "down.obj", &hull().mapped(|[x, y, z]| [x, -y, -z]));
+    let args = [&["down.obj", "--z", "down", "--export", "wamit", "--out", "down"], &ONE_MESH[..]].concat();
+    let down = record(at, &args);
+    assert_eq!(down["estimates"][0]["frame"], "axes of the mesh, z down");
+    assert!((matrix(&down, 0)[0][1] + a[0][1]).abs() < 1e-9 * a[0][0] && a[0][1].abs() > 1e-3 * a[0][0]);
+    let of_down: [Matrix; 2] = limits("down");
+    assert!(of_down.iter().all(|m| apart(m, &a) < 1e-9), "{of_down:?}");
+}
+
+/// Numbers of a `DataArray` of a .vtp.
+fn array(text: &str, attribute: &str) -> Vec<f64> {
+    let after = text.split(attribute).nth(1).unwrap_or_else(|| panic!("no {attribute}"));
+    let inside = after.split_once('>').unwrap().1.split("</DataArray>").next().unwrap();
+    inside.split_whitespace().map(|x| x.parse().unwrap()).collect()
+}
+
+/// −Σ p n dA and its moment are minus the matrix: the pressure of a unit acceleration is that of its column.
+fn assert_pressure_is_the_matrix(vtp: &Path, a: &Matrix, about_m: Vec3) {
+    let text = std::fs::read_to_string(vtp).unwrap();
+    let vertices = array(&text, "NumberOfComponents=\"3\"").chunks(3).map(|c| [c[0], c[1], c[2]]).collect();
+    let corners: Vec<u32> = array(&text, "Name=\"connectivity\"").into_iter().map(|x| x as u32).collect();
+    let mut begin = 0;
+    let mut panels = Vec::new();
+    for end in array(&text, "Name=\"offsets\"") {
+        panels.push(match corners[begin..end as usize] {
+            [a, b, c] => Panel::triangle(a, b, c),
+            [a, b, c, d] => Panel::quad(a, b, c, d),
+            ref other => panic!("{other:?}"),
+        });
+        begin = end as usize;
+    }
+    let mesh = Mesh { vertices, panels };
+    let mut sum = [[0.0; 6]; 6];
+    let motions = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
+    for (j, motion) in motions.into_iter().enumerate() {
+        let unit = if j < 3 { "m" } else { "rad" };
+        let pressure = array(&text, &format!("Name=\"pressure {motion} [Pa/({unit}/s^2)]\""));
+        assert_eq!(pressure.len(), mesh.panels.len());
+        for (facet, p) in facets(&mesh).iter().zip(pressure) {
+            let lever = cross(sub(facet.centroid, about_m), facet.normal);
+            for i in 0..6 {
+                sum[i][j] += p * facet.area * if i < 3 { facet.normal[i] } else { lever[i - 3] };
+            }
+        }
+    }
+    // The record has the symmetric part.
+    let symmetric = core::array::from_fn(|i| core::array::from_fn(|j| 0.5 * (sum[i][j] + sum[j][i])));
+    assert!(apart(a, &symmetric) < 1e-9, "{:e}: {a:?} {sum:?}", apart(a, &symmetric));
+}
+
+#[test]
+fn the_pressure_on_the_panels_adds_up_to_the_matrix() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let origin = ["--origin", "0.3 m, -20 cm, 0.1 m"];
+    write(at, "hull.obj", &hull());
+    let a = matrix(&record(at, &[&["hull.obj", "--out", "hull"], &ONE_MESH[..], &origin].concat()), 0);
+    assert_pressure_is_the_matrix(&at.join("hull/pressure.vtp"), &a, [0.3, -0.2, 0.1]);
+    // A quarter or an eighth is solved for, and the whole is written; with and without a wall.
+    std::fs::write(at.join("egg.toml"), body_file(EGG)).unwrap();
+    for surface in [&[][..], &["--surface", "0.4 m"]] {
+        let args = [&["egg.toml", "--out", "egg", "--most-panels", "400"], surface, &origin].concat();
+        let a = matrix(&record(at, &args), 0);
+        assert_pressure_is_the_matrix(&at.join("egg/pressure.vtp"), &a, [0.3, -0.2, 0.1]);
+    }
+}
+
+#[test]
+fn an_origin_moves_the_matrix_by_the_parallel_axes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    let about = |origin: &[&str]| record(at, &[&["hull.obj"], &ONE_MESH[..], origin].concat());
+    let a = AddedMass { matrix: matrix(&about(&[]), 0), asymmetry: 0.0, origin_m: [0.0; 3] };
+    let there = about(&["--origin", "-0.3 m, 20 cm, 100 mm"]);
+    assert!(apart(&a.about([-0.3, 0.2, 0.1]).matrix, &matrix(&there, 0)) < 1e-10);
+    assert_eq!(there["estimates"][0]["reference_point"], "(−0.3, 0.2, 0.1) m from the origin of the mesh");
+    let buoyancy = about(&["--origin", "buoyancy"]);
+    let centre = Measure::of(&hull()).centroid_m;
+    assert!(apart(&a.about(centre).matrix, &matrix(&buoyancy, 0)) < 1e-10);
+}
+
+#[test]
+fn millimetres_scale_by_their_powers() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "hull.obj", &hull());
+    let of = |unit: &str| matrix(&record(folder.path(), &[&["hull.obj", "--unit", unit], &ONE_MESH[..]].concat()), 0);
+    let (metres, millimetres) = (of("m"), of("mm"));
+    let scaled = core::array::from_fn(|i| {
+        core::array::from_fn(|j| millimetres[i][j] * [1e9, 1e12, 1e15][usize::from(i > 2) + usize::from(j > 2)])
+    });
+    assert!(apart(&metres, &scaled) < 1e-10);
+}
+
+#[test]
+fn a_surface_has_two_limits_about_the_unbounded_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    write(at, "down.obj", &hull().mapped(|[x, y, z]| [x, -y, -z]));
+    let of = |args: &[&str]| record(at, &[args, &ONE_MESH[..]].concat());
+    let free = matrix(&of(&["hull.obj"]), 0);
+    let near = of(&["hull.obj", "--surface", "0.45 m", "--export", "wamit"]);
+    let (lid, fast) = (matrix(&near, 0), matrix(&near, 1));
+    assert!(lid[2][2] > 1.03 * free[2][2] && fast[2][2] < 0.97 * free[2][2], "{lid:?} {free:?} {fast:?}");
+    let written = read_wamit(&at.join("hull-added-mass/added-mass.1"), 1000.0, 1.0).unwrap();
+    assert!((written.zero_frequency.unwrap()[2][2] / lid[2][2] - 1.0).abs() < 1e-12);
+    assert!((written.infinite_frequency.unwrap()[2][2] / fast[2][2] - 1.0).abs() < 1e-12);
+    // The surface lies above the origin, wherever z points.
+    let down = of(&["down.obj", "--surface", "0.45 m", "--z", "down"]);
+    for (estimate, up) in [lid, fast].into_iter().enumerate() {
+        let down = matrix(&down, estimate);
+        assert!((0..6).all(|i| (down[i][i] / up[i][i] - 1.0).abs() < 1e-9), "{down:?} {up:?}");
+    }
+    // Far below, both limits are that of unbounded water.
+    let deep = of(&["hull.obj", "--surface", "30 m"]);
+    assert!((0..2).all(|estimate| apart(&free, &matrix(&deep, estimate)) < 1e-4));
+}
+
+#[test]
+fn a_check_computes_and_writes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    std::fs::write(at.join("body.toml"), body_file(ROBOT)).unwrap();
+    let text = lines(at, &["hull.obj", "--check"]);
+    assert!(text.starts_with("hull.obj: fit for use\n") && text.contains("16384"), "{text}");
+    let text = lines(at, &["body.toml", "--check", "--links", "1..2"]);
+    assert!(text.contains("it, H1LT: fit for use") && text.contains("it, H2LT: fit for use"), "{text}");
+    let told = record(at, &["body.toml", "--check", "--links", "1..2"]);
+    assert_eq!(told[1]["name"], "it, H2LT");
+    assert!(told[1]["meshes"][0]["panels"].as_u64().unwrap() > 100);
+    assert_eq!(names(at), ["body.toml", "hull.obj"]);
+}
+
+#[test]
+fn a_repair_writes_a_mesh_that_is_fit_for_use() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let mut mesh = hull();
+    mesh.panels[9] = mesh.panels[9].turned();
+    mesh.panels.push(mesh.panels[20]);
+    write(at, "bad.obj", &mesh);
+    for target in ["good.obj", "good.stl"] {
+        let text = lines(at, &["bad.obj", "--repair", target]);
+        assert!(text.trim_end().ends_with(&format!("Next: froude added-mass {target}")), "{text}");
+        assert!(lines(at, &[target, "--check"]).contains("fit for use"));
+    }
+    let told = record(at, &["bad.obj", "--repair", "good.obj"]);
+    assert_eq!((told["written"].as_str(), told["left"].as_array().map(Vec::len)), (Some("good.obj"), Some(0)));
+}
+
+/// Runs on files of a fresh folder; asserts the exit code, the message and that nothing was made.
+fn fails(code: i32, files: &[(&str, &[u8])], args: &[&str], message: &str) {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, content) in files {
+        std::fs::write(folder.path().join(name), content).unwrap();
+    }
+    let before = names(folder.path());
+    let output = froude(folder.path(), args);
+    assert_eq!(said(&output), format!("froude: {message}"), "exact message of {args:?}");
+    assert_eq!(output.status.code(), Some(code), "exit code of {args:?}");
+    assert_eq!(names(folder.path()), before, "nothing is written by {args:?}");
+}
+
+fn refuses(files: &[(&str, &[u8])], args: &[&str], message: &str) {
+    fails(2, files, args, message);
+}
+
+const WATER: [&str; 2] = ["--density", "1000 kg/m^3"];
+
+/// A mesh that potential flow cannot be computed on, with what is wrong.
+fn refuses_mesh(mesh: &Mesh, wrong: &str) {
+    refuses(
+        &[("m.obj", write_obj(mesh).as_bytes())],
+        &[&["m.obj"], &WATER[..]].concat(),
+        &format!(
+            "m.obj: potential flow cannot be computed on this mesh:\n{wrong}\n  froude added-mass m.obj --repair repaired.obj writes a \
+             mesh with what can be decided put right"
+        ),
+    );
+}
+
+fn cube(side_m: f64) -> Mesh {
+    let vertices = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2].map(|bit| side_m * f64::from(bit))).collect();
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    Mesh { vertices, panels: quads.map(|[a, b, c, d]| Panel::quad(a, b, c, d)).to_vec() }
+}
+
+#[test]
+fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
+    let changed = |change: fn(&mut Mesh)| {
+        let mut mesh = cube(1.0);
+        change(&mut mesh);
+        mesh
+    };
+    refuses_mesh(
+        &changed(|m| _ = m.panels.pop()),
+        "  4 edges have one panel only, the first from [1.0, 0.0, 0.0] to [1.0, 1.0, 0.0] m: the surface is open there",
+    );
+    refuses_mesh(
+        &changed(|m| m.panels.iter_mut().for_each(|p| *p = p.turned())),
+        "  the surface is inside out (its volume is -1.0000e0 m³): its normals must point into the water",
+    );
+    refuses_mesh(
+        &changed(|m| m.panels[2] = m.panels[2].turned()),
+        "  4 edges are passed twice in one direction, the first from [0.0, 0.0, 0.0] to [1.0, 0.0, 0.0] m: neighbours are oriented against each other",
+    );
+    // Here no repair helps.
+    refuses(
+        &[("m.obj", write_obj(&changed(|m| m.vertices[3][1] = f64::NAN)).as_bytes())],
+        &[&["m.obj"], &WATER[..]].concat(),
+        "m.obj: potential flow cannot be computed on this mesh:\n  vertex 3 has the coordinates [1.0, NaN, 0.0]: each must be a finite \
+         number",
+    );
+    refuses_mesh(
+        &changed(|m| m.panels.push(m.panels[1])),
+        "  panel 6 at [0.5, 0.5, 1.0] m is there twice (also as 1); take one out\n  4 edges have three panels or more, the first from \
+         [0.0, 0.0, 1.0] to [1.0, 0.0, 1.0] m: surfaces touch there",
+    );
+    let with_a_line = changed(|m| {
+        m.vertices.push([0.5, 0.0, 0.0]);
+        m.panels[2] = Panel::quad(8, 1, 5, 4);
+        m.panels.extend([Panel::triangle(0, 8, 4), Panel::triangle(0, 1, 8)]);
+    });
+    refuses_mesh(&with_a_line, "  panel 7 at [0.0, 0.0, 0.0] m has no area; take it out, or merge its corners");
+    refuses_mesh(
+        &cube(1.0).with(&cube(1.0).mapped(|v| v.map(|x| x + 0.5))),
+        "  6 pairs of panels cross or touch without a common vertex there, the first 1 and 8 at [1.0, 0.5, 1.0] m; unite the bodies, or move them apart",
+    );
+    refuses_mesh(
+        &cube(1.0).with(&cube(0.2).mapped(|v| v.map(|x| x + 0.5))),
+        "  part 1 (6 panels, at [0.5, 0.5, 0.5] m, volume 8.0000e-3 m³) lies inside part 0: no water reaches it; take it out",
+    );
+}
+
+#[test]
+fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
+    let metre = write_obj(&cube(1.0));
+    let small = [("m.obj", metre.as_bytes())];
+    let large = write_obj(&cube(200.0));
+    refuses(
+        &[("m.obj", large.as_bytes())],
+        &[&["m.obj"], &WATER[..]].concat(),
+        "m.obj: the mesh is 200.0000 m long and encloses 8.0000e6 m³ (doubtful above 50 m); drawn in millimetres it is 0.2000 m and 8.0000e-3 m³: say `--unit mm`, or `--unit m` if it is that large",
+    );
+    refuses(
+        &small,
+        &[&["m.obj", "--surface", "0.4 m"], &WATER[..]].concat(),
+        "m.obj: 4 panels cross z = 0.4 m, the first 2 from [0.0, 0.0, 0.0] to [1.0, 0.0, 1.0] m: the body pierces the water's surface; bodies that float are not computed here, submerge it",
+    );
+    refuses(
+        &small,
+        &[&["m.obj", "--surface", "-1 m"], &WATER[..]].concat(),
+        "m.obj: the body lies above the water's surface at z = -1 m; give --surface the height of the surface over the origin of the mesh, and --z up or down as the mesh has it",
+    );
+    refuses(
+        &small,
+        &[&["m.obj", "--surface", "1 m"], &WATER[..]].concat(),
+        "m.obj: panel 1 lies in the water's surface at z = 1 m: bodies that float are not computed here, submerge it",
+    );
+    refuses(
+        &small,
+        &[&["m.obj", "--most-panels", "5"], &WATER[..]].concat(),
+        "the coarsest mesh has 6 panels, and 5 are allowed; write --most-panels 96, for the numerical uncertainty asks for three meshes, or 6 for a value without",
+    );
+}
+
+#[test]
+fn a_file_that_is_no_mesh_is_told_with_its_place() {
+    let stl = write_stl_binary(&cube(1.0));
+    let of = |name: &str, content: &[u8], message: &str| {
+        refuses(&[(name, content)], &[&[name], &WATER[..]].concat(), message);
+    };
+    of(
+        "m.step",
+        b"ISO-10303-21;",
+        "m.step: neither extension nor content is that of STL, OBJ, PLY, WAMIT GDF, Nemoh or Gmsh; give it the extension of its format (.stl .obj .ply .gdf .dat .msh)",
+    );
+    of("m.stl", b"", "m.stl, byte 0: the file ends where a header of 80 bytes should be; copy or export it again");
+    of("m.obj", b"", "m.obj: potential flow cannot be computed on this mesh:\n  the mesh has no panel");
+    of("m.toml", b"", "m.toml:1: `schema` is missing; expected schema = 1");
+    of(
+        "m.stl",
+        &stl[..stl.len() - 70],
+        "m.stl, byte 614: the file ends where triangle 11 of 12 should be; copy or export it again",
+    );
+    refuses(&[], &["m.stl"], "cannot read m.stl: there is no such file or folder");
+    refuses(&[], &["."], "cannot read .: it is a folder");
+}
+
+#[test]
+fn options_that_say_nothing_sensible_are_told_what_they_take() {
+    let metre = write_obj(&cube(1.0));
+    let robot = body_file(ROBOT);
+    let files = [("m.obj", metre.as_bytes()), ("r.toml", robot.as_bytes())];
+    let mesh = |args: &[&str], message: &str| refuses(&files, &[&["m.obj"], args].concat(), message);
+    mesh(&[], "m.obj: no density of the water; write --density \"1025 kg/m^3\", or [fluid] density in the body file");
+    mesh(&["--density", "1025"], "--density \"1025\": `1025` has no unit; write for example `1025 kg/m^3`");
+    mesh(&["--density", "1025 kg"], "--density \"1025 kg\": expected a density (kg/m^3), found a mass (kg)");
+    mesh(&["--density", "-5 kg/m^3"], "--density \"-5 kg/m^3\": it must be larger than zero");
+    mesh(
+        &["--density", "nan kg/m^3"],
+        "--density \"nan kg/m^3\": `nan kg/m^3` does not begin with a number; write a quantity as `0.4 kg/m^3`",
+    );
+    mesh(
+        &["--density", "1 kg/m^3", "--links", "3"],
+        "m.obj: --links counts the links of a body file of shape \"robot\"; leave it out for another shape, or a mesh",
+    );
+    mesh(
+        &["--density", "1 kg/m^3", "--links", "1..3"],
+        "m.obj: --links counts the links of a body file of shape \"robot\"; leave it out for another shape, or a mesh",
+    );
+    mesh(&["--density", "1 kg/m^3", "--tolerance", "0"], "--tolerance \"0\": `0` has no unit; write for example `0 %`");
+    mesh(
+        &["--density", "1 kg/m^3", "--tolerance", "200 %"],
+        "--tolerance \"200 %\": write a part above 0 and below 100 %: \"1 %\"",
+    );
+    mesh(
+        &["--density", "1 kg/m^3", "--origin", "1 m, 2 m"],
+        "--origin \"1 m, 2 m\": write three lengths, \"0 m, 0 m, -0.2 m\", or \"buoyancy\"",
+    );
+    mesh(
+        &["--density", "1 kg/m^3", "--origin", "1 m, 2, 3 m"],
+        "--origin \"2\": `2` has no unit; write for example `2 m`",
+    );
+    mesh(&["--density", "1 kg/m^3", "--surface", "3 s"], "--surface \"3 s\": expected a length (m), found a time (s)");
+    mesh(&["--density", "1 kg/m^3", "--unit", "kg"], "--unit \"kg\": write a unit of length: mm, cm, m, in");
+    mesh(&["--repair", "m.obj"], "m.obj: name another file than the input; it stays as it is");
+    mesh(&["--repair", "./m.obj"], "./m.obj: name another file than the input; it stays as it is");
+    mesh(&["--repair", "n.ply"], "n.ply: a repaired mesh is written as .obj or .stl");
+    let robot = |args: &[&str], message: &str| refuses(&files, &[&["r.toml"], args].concat(), message);
+    robot(&[], "r.toml: a robot has links; say how many: --links 3, or --links 1..9 for a table");
+    for links in ["0", "3..1", "3..x", "..3", "1,,2", "101", ""] {
+        let message = format!("--links {links:?}: write a number of links, \"1..9\" or \"1,3,6\", between 1 and 100");
+        robot(&["--links", links], &message);
+    }
+    robot(&["--links", "3", "--unit", "mm"], "r.toml: --unit is for a mesh; a body file has a unit at each length");
+    robot(
+        &["--links", "1..3", "--origin", "buoyancy"],
+        "--origin is for one body; give one number of links with it: --links 3",
+    );
+    robot(&["--repair", "n.obj"], "r.toml: --repair is for a mesh; a body file has none");
+    refuses(
+        &[("e.toml", body_file(EGG).as_bytes())],
+        &["e.toml", "--links", "3"],
+        "e.toml: --links counts the links of a body file of shape \"robot\"; leave it out for another shape, or a mesh",
+    );
+}
+
+#[test]
+fn results_that_cannot_be_written_are_told_before_anything_is_computed() {
+    let metre = write_obj(&cube(1.0));
+    let robot = body_file(ROBOT);
+    let files = [("m.obj", metre.as_bytes()), ("r.toml", robot.as_bytes())];
+    fails(
+        1,
+        &files,
+        &[&["m.obj", "--out", "r.toml"], &WATER[..]].concat(),
+        "r.toml: cannot be written: not a directory; choose another place with --out",
+    );
+    fails(
+        1,
+        &files,
+        &[&["m.obj", "--out", "r.toml/deep/er"], &WATER[..]].concat(),
+        "r.toml/deep/er: cannot be written: not a directory; choose another place with --out",
+    );
+    fails(
+        1,
+        &files,
+        &["m.obj", "--repair", "no/n.obj"],
+        "cannot write no/n.obj: its folder does not exist; nothing was changed",
+    );
+    fails(
+        1,
+        &files,
+        &["r.toml", "--links", "1..9", "--out", "m.obj"],
+        "m.obj: cannot be written: not a directory; choose another place with --out",
+    );
+}
+
+#[test]
+fn a_full_disk_leaves_nothing_of_an_added_mass() {
+    let Some(disk) = SmallDisk::mount("40k") else {
+        eprintln!("this user may not mount a small disk; the failing writer of froude-records is tested instead");
+        return;
+    };
+    write(disk.path(), "m.obj", &cube(1.0));
+    let output = froude(disk.path(), &["m.obj", "--density", "1000 kg/m^3", "--most-panels", "100"]);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).ends_with("the disk is full; nothing was changed"), "{}", said(&output));
+    assert_eq!(names(disk.path()), ["m.obj"]);
+}
+
+#[test]
+fn more_than_fits_into_the_memory_is_told_with_what_would_fit() {
+    let family = Family::Mesh(hull());
+    let wanted = |memory_bytes| Wanted { memory_bytes: Some(memory_bytes), ..Wanted::default() };
+    let refused = refine(&family, &wanted(5e4), &|_| {}).unwrap_err();
+    assert_eq!(
+        (refused.to_string().as_str(), refused.is_bad_input()),
+        ("64 panels would take 9.8 × 10⁻⁵ GB of memory and 5 × 10⁻⁵ GB may be used; some 32 panels would fit", true)
+    );
+    // One that fits, and a finer one that does not: the value is there, and why it is no better.
+    let one = refine(&family, &wanted(1e6), &|_| {}).unwrap();
+    assert_eq!((one.steps.len(), one.is_within, one.worst), (1, false, f64::INFINITY));
+    assert_eq!(
+        one.stopped.as_deref(),
+        Some("256 panels would take 0.0016 GB of memory and 0.001 GB may be used; some 162 panels would fit")
+    );
+}
+
+/// The diagonal is Lamb's within its stated uncertainty, whatever the size; that below `tolerance` where it is not next to nothing.
+fn assert_lambs(axes: [&str; 3], axes_m: Vec3, args: &[&str], tolerance: f64) {
+    let [x, y, z] = axes;
+    let shape = format!("shape = \"ellipsoid\"\nsemi_axis_x = \"{x}\"\nsemi_axis_y = \"{y}\"\nsemi_axis_z = \"{z}\"\n");
+    let record = of_shape(&shape, args);
+    let a = matrix(&record, 0);
+    let exact = ellipsoid_added_mass(axes_m).unwrap();
+    let kind = |i: usize| (0..3).map(|k| exact[3 * (i / 3) + k]).fold(0.0, f64::max);
+    for i in 0..6 {
+        let coefficient = &record["estimates"][0]["coefficients"][format!("A{0}{0}", i + 1)];
+        let expanded = 2.0 * coefficient["standard_uncertainty"].as_f64().unwrap() / 1025.0;
+        let error = (a[i][i] / 1025.0 - exact[i]).abs();
+        assert!(error < expanded + 1e-9 * kind(i), "{axes:?}, {i}: {error:e} is more than {expanded:e}");
+        assert!(expanded < tolerance * exact[i].max(0.01 * kind(i)), "{axes:?}, {i}: {expanded:e} of {:e}", exact[i]);
+    }
+}
+
+#[test]
+fn odd_sizes_are_computed() {
+    let coarse = ["--tolerance", "20 %"];
+    assert_lambs(["1e-9 m", "8e-10 m", "5e-10 m"], [1e-9, 8e-10, 5e-10], &coarse, 0.2);
+    assert_lambs(["1e6 m", "8e5 m", "5e5 m"], [1e6, 8e5, 5e5], &coarse, 0.2);
+    assert_lambs(["1 m", "1 mm", "1 mm"], [1.0, 1e-3, 1e-3], &coarse, 0.2);
+    assert_lambs(["1 m", "1 m", "1 cm"], [1.0, 1.0, 1e-2], &coarse, 0.2);
+    assert_lambs(["1 cm", "1 m", "1 m"], [1e-2, 1.0, 1.0], &coarse, 0.2);
+    let thread = ROBOT.replace("scale = 0.7", "scale = 0.01");
+    let a = matrix(&of_shape(&thread, &["--links", "2", "--tolerance", "50 %"]), 0);
+    assert!((0..6).all(|i| a[i][i] > 0.0), "{a:?}");
+}
