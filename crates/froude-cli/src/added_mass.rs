@@ -41,7 +41,11 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         let bar = crate::spinner();
         let outcome = links(&job, &|step| bar.set_message(step.to_owned()))?;
         bar.finish_and_clear();
-        return if json { print::json(&outcome.file) } else { table_of_links(&outcome) };
+        if json {
+            return print::json(&outcome.file);
+        }
+        table_of_links(&outcome);
+        return Ok(());
     }
     let job = BodyJob {
         input: args.input,
@@ -62,7 +66,11 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     let bar = crate::spinner();
     let outcome = body::body(&job, &|step| bar.set_message(step.to_owned()))?;
     bar.finish_and_clear();
-    if json { print::json(&outcome.file) } else { one_body(&outcome) }
+    if json {
+        return print::json(&outcome.file);
+    }
+    one_body(&outcome);
+    Ok(())
 }
 
 const fn extension(format: Export) -> &'static str {
@@ -185,7 +193,7 @@ fn check(job: &BodyJob, links: &[usize], json: bool) -> Result<(), Error> {
     if jobs.is_empty() {
         jobs.push(job.clone());
     }
-    let checked = jobs.iter().map(body::forecast).collect::<Result<Vec<_>, _>>()?;
+    let checked = jobs.iter().map(body::forecasts).collect::<Result<Vec<_>, _>>()?;
     if json {
         let bodies: Vec<_> = checked
             .iter()
@@ -234,7 +242,7 @@ fn table(text: &TextTable) {
     print::text_table(text);
 }
 
-fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
+fn table_of_links(outcome: &LinksOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
     if !outcome.fits.is_empty() {
@@ -242,10 +250,9 @@ fn table_of_links(outcome: &LinksOutcome) -> Result<(), Error> {
     }
     print::findings(&outcome.file.findings);
     say!("\n{}\n{}\n{}", outcome.table.display(), outcome.estimate.display(), outcome.page.display());
-    Ok(())
 }
 
-fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
+fn one_body(outcome: &BodyOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     for case in &outcome.cases {
         say!("\n{} ({})", case.title, case.surroundings);
@@ -268,5 +275,4 @@ fn one_body(outcome: &BodyOutcome) -> Result<(), Error> {
     for path in paths {
         say!("{}", path.display());
     }
-    Ok(())
 }

@@ -79,7 +79,7 @@ pub enum Verb {
         yes: bool,
     },
     /// Added mass from potential flow: of a mesh, of a shape by its dimensions, of the robot with any number of links.
-    AddedMass(AddedMassArgs),
+    AddedMass(Box<AddedMassArgs>),
     /// Know a carriage and read drag from its motor current.
     Carriage {
         /// What to do.

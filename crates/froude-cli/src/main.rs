@@ -81,7 +81,7 @@ fn run(cli: Cli) -> Result<(), Error> {
         }
         Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,
         Verb::Carriage { job } => carriage::job(job, cli.json)?,
-        Verb::AddedMass(args) => added_mass::added_mass(args, cli.json)?,
+        Verb::AddedMass(args) => added_mass::added_mass(*args, cli.json)?,
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
     Ok(())

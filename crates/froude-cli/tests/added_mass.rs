@@ -88,6 +88,9 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// The polyhedron's value with "smooth body minus polyhedron" on it, against the ellipsoid that the facets stand for.
+const SMOOTH: f64 = 0.002;
+
 #[test]
 fn an_ellipsoid_as_stl_is_lambs() {
     let folder = tempfile::tempdir().unwrap();
@@ -102,7 +105,9 @@ fn an_ellipsoid_as_stl_is_lambs() {
         let number = |cell: &str| cell.replace('−', "-").parse::<f64>().unwrap();
         let (value, smooth) = (number(row[1]), number(row[row.len() - 2]));
         let error = value * (1.0 + smooth / 100.0) / (1025.0 * exact[i]) - 1.0;
-        assert!(error.abs() < 0.002, "{motion}: {error}");
+        // A44 goes with (b² − c²)²: what is left of the facets' error in b² and c² counts 2 (b² + c²)/(b² − c²) times there.
+        let limit = if motion == "roll" { 5.2 * SMOOTH } else { SMOOTH };
+        assert!(error.abs() < limit, "{motion}: {error}");
     }
 }
 
@@ -336,6 +341,26 @@ fn a_surface_has_two_limits_about_the_unbounded_one() {
     // Far below, both limits are that of unbounded water.
     let deep = of(&["hull.obj", "--surface", "30 m"]);
     assert!((0..2).all(|estimate| apart(&free, &matrix(&deep, estimate)) < 1e-4));
+}
+
+#[test]
+fn one_mesh_has_no_uncertainty_and_none_is_made_up() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "hull.obj", &hull());
+    let text = lines(folder.path(), &[&["hull.obj"], &ONE_MESH[..]].concat());
+    for sentence in [
+        "One mesh only: there is no numerical uncertainty; three meshes give one.",
+        "There is no finer one: the next mesh has 256 panels, and 64 are allowed (--most-panels).",
+        "is not told: panels or memory do not allow a second mesh.",
+    ] {
+        assert!(text.contains(sentence), "{sentence}: {text}");
+    }
+    let out = record(folder.path(), &[&["hull.obj"], &ONE_MESH[..]].concat());
+    assert!(out["estimates"][0]["coefficients"]["A11"]["standard_uncertainty"].is_null());
+    assert_eq!(
+        out["findings"][0]["message"],
+        "Deeply submerged: the numerical uncertainty is not known: the next mesh has 256 panels, and 64 are allowed (--most-panels)"
+    );
 }
 
 #[test]

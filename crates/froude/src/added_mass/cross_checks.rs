@@ -14,7 +14,7 @@ use super::refine::Refined;
 /// Differences along x that count as one station, as part of the length.
 const SAME: f64 = 1e-9;
 
-/// The table; `None` where there is nothing to compare with.
+/// The table.
 #[must_use]
 pub fn table(
     shape: Option<&Shape>,
@@ -23,7 +23,7 @@ pub fn table(
     surroundings: &str,
     density_kg_m3: f64,
     origin_m: Vec3,
-) -> Option<TextTable> {
+) -> TextTable {
     let line = |name: &str, diagonal: [Option<f64>; 6]| {
         let cells = diagonal.map(|a| a.map_or_else(|| "–".to_owned(), |a| number::plain(density_kg_m3 * a, 5)));
         std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
@@ -61,7 +61,7 @@ pub fn table(
     }
     let head = ["", "A11 [kg]", "A22 [kg]", "A33 [kg]", "A44 [kg m²]", "A55 [kg m²]", "A66 [kg m²]"];
     let caption = "This result beside others, which are in unbounded water. A body that is not the one named may differ by as much as it looks different.";
-    Some(TextTable { caption: caption.to_owned(), head: head.map(str::to_owned).to_vec(), rows })
+    TextTable { caption: caption.to_owned(), head: head.map(str::to_owned).to_vec(), rows }
 }
 
 fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {

@@ -136,6 +136,11 @@ pub fn free_memory_bytes() -> Option<f64> {
     line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|kib| 1024.0 * kib)
 }
 
+/// Memory that may be used now, bytes.
+pub(super) fn memory_bytes(wanted: &Wanted) -> f64 {
+    wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY)
+}
+
 /// The problem of a mesh about the origin of its frame, and the body's own planes in it.
 fn problem(family: &Family, mesh: &PartMesh, wanted: &Wanted) -> (Mesh, Problem) {
     let frame = [Frame::at([0.0; 3])];
@@ -176,7 +181,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         let member = family.member(number)?;
         let (solved, problem) = problem(family, &member.mesh, wanted);
         let forecast = forecast(&problem);
-        let free = wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY);
+        let free = memory_bytes(wanted);
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
             let why = format!(
