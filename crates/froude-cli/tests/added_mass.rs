@@ -495,6 +495,10 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
         &[&["m.obj", "--surface", "0.4 m"], &WATER[..]].concat(),
         "m.obj: 4 panels cross z = 0.4 m, the first 2 from [0.0, 0.0, 0.0] to [1.0, 0.0, 1.0] m: the body pierces the water's surface; bodies that float are not computed here, submerge it",
     );
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "m.obj", &cube(1.0));
+    let output = froude(folder.path(), &["m.obj", "--surface", "0.4 m", "--check"]);
+    assert_eq!(output.status.code(), Some(2), "a check looks at the surface as well");
     refuses(
         &small,
         &[&["m.obj", "--surface", "-1 m"], &WATER[..]].concat(),
@@ -636,6 +640,11 @@ fn a_full_disk_leaves_nothing_of_an_added_mass() {
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
     assert!(said(&output).ends_with("the disk is full; nothing was changed"), "{}", said(&output));
     assert_eq!(names(disk.path()), ["m.obj"]);
+    std::fs::write(disk.path().join("r.toml"), body_file(ROBOT)).unwrap();
+    let output = froude(disk.path(), &["r.toml", "--links", "1..3", "--tolerance", "50 %"]);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).ends_with("the disk is full; nothing was changed"), "{}", said(&output));
+    assert_eq!(names(disk.path()), ["m.obj", "r.toml"]);
 }
 
 #[test]

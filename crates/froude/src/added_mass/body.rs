@@ -245,7 +245,8 @@ const MOST_TOLD: usize = 12;
 /// As [`body`].
 pub fn forecasts(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Error> {
     let loaded = load(job)?;
-    let steps = plan(&loaded.family, &job.wanted)?;
+    let mirrors = surroundings(job, &loaded.family.member(0)?.mesh.mesh)?.swap_remove(0).3;
+    let steps = plan(&loaded.family, &Wanted { mirrors, ..job.wanted.clone() })?;
     Ok((loaded, steps))
 }
 
