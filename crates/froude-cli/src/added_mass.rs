@@ -65,17 +65,16 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     if args.check {
         return check(&job, counted.as_deref().unwrap_or_default(), json);
     }
-    let angle_rad = args.joint_angle.as_deref().map(|a| quantity("--joint-angle", a, Dimension::ANGLE)).transpose()?;
+    let angle_rad = args.joint_angle.as_deref().map(angle).transpose()?;
     let apart = match (args.chain || angle_rad.is_some(), args.apart) {
         (true, _) => Some(Apart::Links { joint_angle_rad: angle_rad.unwrap_or(0.0) }),
         (false, true) => Some(Apart::Parts),
         (false, false) => None,
     };
     if let Some(apart) = apart {
-        if job.surface_m.is_some() {
-            return Err(Error::Nothing(
-                "--surface and --tank go with one rigid body, not with --chain or --apart".to_owned(),
-            ));
+        let given = [("--surface", job.surface_m.is_some()), ("--origin", args.origin.is_some())];
+        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
+            return Err(Error::Nothing(format!("{option} goes with one rigid body, not with --chain or --apart")));
         }
         let bar = crate::spinner();
         let outcome = several(&job, apart, &|step| bar.set_message(step.to_owned()))?;
@@ -127,6 +126,12 @@ fn positive(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error
 
 fn length(option: &str, text: &str) -> Result<f64, Error> {
     quantity(option, text, Dimension::LENGTH)
+}
+
+fn angle(text: &str) -> Result<f64, Error> {
+    let q =
+        parse_quantity(text).map_err(|e| wrong("--joint-angle", text, e.expecting(text, Dimension::ANGLE, "deg")))?;
+    q.expect(Dimension::ANGLE).map_err(|e| wrong("--joint-angle", text, e))
 }
 
 fn ratio(option: &str, text: &str) -> Result<f64, Error> {
@@ -211,6 +216,9 @@ fn only_one(args: &AddedMassArgs) -> Result<(), Error> {
         ("--z", args.z == Vertical::Down),
         ("--surface", args.surface.is_some()),
         ("--export", !args.export.is_empty()),
+        ("--chain", args.chain),
+        ("--joint-angle", args.joint_angle.is_some()),
+        ("--apart", args.apart),
     ];
     match given.into_iter().find(|(_, is_given)| *is_given) {
         Some((option, _)) => {
@@ -226,7 +234,7 @@ fn check(job: &BodyJob, links: &[usize], json: bool) -> Result<(), Error> {
     if jobs.is_empty() {
         jobs.push(job.clone());
     }
-    let checked = jobs.iter().map(body::forecast).collect::<Result<Vec<_>, _>>()?;
+    let checked = jobs.iter().map(body::forecasts).collect::<Result<Vec<_>, _>>()?;
     if json {
         let bodies: Vec<_> = checked
             .iter()

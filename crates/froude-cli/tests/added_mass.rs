@@ -88,6 +88,9 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// The polyhedron's value with "smooth body minus polyhedron" on it, against the ellipsoid that the facets stand for.
+const SMOOTH: f64 = 0.002;
+
 #[test]
 fn an_ellipsoid_as_stl_is_lambs() {
     let folder = tempfile::tempdir().unwrap();
@@ -102,7 +105,9 @@ fn an_ellipsoid_as_stl_is_lambs() {
         let number = |cell: &str| cell.replace('−', "-").parse::<f64>().unwrap();
         let (value, smooth) = (number(row[1]), number(row[row.len() - 2]));
         let error = value * (1.0 + smooth / 100.0) / (1025.0 * exact[i]) - 1.0;
-        assert!(error.abs() < 0.002, "{motion}: {error}");
+        // A44 goes with (b² − c²)²: what is left of the facets' error in b² and c² counts 2 (b² + c²)/(b² − c²) times there.
+        let limit = if motion == "roll" { 5.2 * SMOOTH } else { SMOOTH };
+        assert!(error.abs() < limit, "{motion}: {error}");
     }
 }
 
@@ -339,6 +344,26 @@ fn a_surface_has_two_limits_about_the_unbounded_one() {
 }
 
 #[test]
+fn one_mesh_has_no_uncertainty_and_none_is_made_up() {
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "hull.obj", &hull());
+    let text = lines(folder.path(), &[&["hull.obj"], &ONE_MESH[..]].concat());
+    for sentence in [
+        "One mesh only: there is no numerical uncertainty; three meshes give one.",
+        "There is no finer one: the next mesh has 256 panels, and 64 are allowed (--most-panels).",
+        "is not told: panels or memory do not allow a second mesh.",
+    ] {
+        assert!(text.contains(sentence), "{sentence}: {text}");
+    }
+    let out = record(folder.path(), &[&["hull.obj"], &ONE_MESH[..]].concat());
+    assert!(out["estimates"][0]["coefficients"]["A11"]["standard_uncertainty"].is_null());
+    assert_eq!(
+        out["findings"][0]["message"],
+        "Deeply submerged: the numerical uncertainty is not known: the next mesh has 256 panels, and 64 are allowed (--most-panels)"
+    );
+}
+
+#[test]
 fn a_check_computes_and_writes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -470,6 +495,10 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
         &[&["m.obj", "--surface", "0.4 m"], &WATER[..]].concat(),
         "m.obj: 4 panels cross z = 0.4 m, the first 2 from [0.0, 0.0, 0.0] to [1.0, 0.0, 1.0] m: the body pierces the water's surface; bodies that float are not computed here, submerge it",
     );
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "m.obj", &cube(1.0));
+    let output = froude(folder.path(), &["m.obj", "--surface", "0.4 m", "--check"]);
+    assert_eq!(output.status.code(), Some(2), "a check looks at the surface as well");
     refuses(
         &small,
         &[&["m.obj", "--surface", "-1 m"], &WATER[..]].concat(),
@@ -611,6 +640,11 @@ fn a_full_disk_leaves_nothing_of_an_added_mass() {
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
     assert!(said(&output).ends_with("the disk is full; nothing was changed"), "{}", said(&output));
     assert_eq!(names(disk.path()), ["m.obj"]);
+    std::fs::write(disk.path().join("r.toml"), body_file(ROBOT)).unwrap();
+    let output = froude(disk.path(), &["r.toml", "--links", "1..3", "--tolerance", "50 %"]);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).ends_with("the disk is full; nothing was changed"), "{}", said(&output));
+    assert_eq!(names(disk.path()), ["m.obj", "r.toml"]);
 }
 
 #[test]

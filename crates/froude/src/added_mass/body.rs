@@ -8,7 +8,7 @@ use froude_mesh::files::{self, vtk::vtp};
 use froude_mesh::measure::Measure;
 use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::{crosses, too_large};
-use froude_mesh::refine::{rounded, subdivided, without_warp};
+use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::mirror::{Kind, Mirror, signs};
 use froude_panel::tank::{Surface, Tank};
@@ -28,7 +28,7 @@ use super::limits;
 use super::links::{default_out, file_name, no_density, not_links, not_within};
 use super::page;
 use super::record::{About, MOTIONS, estimate};
-use super::refine::{Finest, Forecast, Placed, Refined, Wanted, plan, refine};
+use super::refine::{Finest, Forecast, Placed, Refined, Wanted, forecast, memory_bytes, plan, refine};
 use crate::Error;
 
 /// Where moments are taken about.
@@ -247,9 +247,15 @@ const MOST_TOLD: usize = 12;
 /// # Errors
 ///
 /// As [`body`].
-pub fn forecast(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Error> {
+pub fn forecasts(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Error> {
     let loaded = load(job)?;
-    let steps = plan(&loaded.family, &job.wanted)?;
+    let mut around = surroundings(job, &loaded.family.member(0)?.mesh.mesh)?;
+    // The last takes most: it has mirrors, or the walls of a tank.
+    let wanted = match around.pop() {
+        Some(s) => Wanted { mirrors: s.mirrors, tank: s.tank, ..job.wanted.clone() },
+        None => job.wanted.clone(),
+    };
+    let steps = plan(&loaded.family, &wanted)?;
     Ok((loaded, steps))
 }
 
@@ -282,11 +288,19 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         cases.push(Case { title: s.title, surroundings: s.words, is_lid: s.is_lid, refined });
     }
     let length_m = extent_along_x(&coarse);
+    let mut notes = loaded.notes;
     let mut tables = vec![hydrostatics(&cases[0].refined, density_kg_m3, origin_m)];
-    tables.push(cross_checks::table(loaded.shape.as_ref(), &coarse, &cases[0].refined, density_kg_m3, origin_m));
+    let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
+    tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, origin_m));
     if let Family::Mesh(mesh) = &loaded.family {
         told("the same with facets rounded");
-        tables.extend(geometry(mesh, &cases[0], job, origin_m, density_kg_m3));
+        match geometry(mesh, &cases[0], &job.wanted, origin_m, density_kg_m3) {
+            Ok(table) => tables.push(table),
+            Err(why) => {
+                notes
+                    .push(format!("How far a smooth body with these corners lies from the facets is not told: {why}."));
+            }
+        }
     }
     tables.extend(limits::table(&cases, density_kg_m3));
     let estimates = cases.iter().map(|case| {
@@ -312,7 +326,6 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         estimates: estimates.collect(),
         findings,
     };
-    let mut notes = loaded.notes;
     notes.extend(limits::words(job.surface_m, job.tank_m));
     if !job.is_z_up && !job.export.is_empty() {
         notes.push("The exported files have z up, as wave programs ask for: turned about x by 180°.".to_owned());
@@ -441,19 +454,30 @@ fn hydrostatics(refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> TextTa
     TextTable { caption: "Hydrostatics.".to_owned(), head: vec![String::new(), "value".to_owned()], rows }
 }
 
-/// What the facets of a mesh may hide: its difference from the smooth body that they stand for.
-fn geometry(mesh: &Mesh, case: &Case, job: &BodyJob, origin_m: Vec3, density_kg_m3: f64) -> Option<TextTable> {
-    if 4 * mesh.panels.len() > job.wanted.most_panels {
-        return None;
-    }
-    let round = rounded(mesh, CREASE_RAD);
-    let flat = subdivided(mesh);
-    let matrix = |mesh: &Mesh| {
-        let mirrors: &[Mirror] = &case.refined.finest.mirrors;
-        let problem = froude_panel::problem::Problem::rigid(mesh, mirrors);
-        froude_panel::solve(&problem).added_mass(0).about(origin_m).matrix
+/// What the facets of a mesh may hide: its difference from the smooth body that they stand for; otherwise why it is not told.
+fn geometry(
+    mesh: &Mesh,
+    case: &Case,
+    wanted: &Wanted,
+    origin_m: Vec3,
+    density_kg_m3: f64,
+) -> Result<TextTable, &'static str> {
+    // The mesh divided once is the second of the family.
+    let flat = case.refined.steps.get(1).ok_or("panels or memory do not allow a second mesh")?.added_mass.matrix;
+    let round = without_warp(&rounded(mesh, CREASE_RAD), WARP);
+    let mirrors: &[Mirror] = &case.refined.finest.mirrors;
+    let is_through = |m: &Mirror| {
+        let side = |v: &Vec3| v[m.axis] > m.at_m;
+        m.kind != Kind::Body && round.vertices.iter().any(|v| side(v) != side(&mesh.vertices[0]))
     };
-    let (round, flat) = (matrix(&without_warp(&round, WARP)), matrix(&flat));
+    if mirrors.iter().any(is_through) {
+        return Err("rounded, the body would pierce the water's surface");
+    }
+    let problem = froude_panel::problem::Problem::rigid(&round, mirrors);
+    if problem.facets.len() > wanted.most_panels || forecast(&problem).memory_bytes > memory_bytes(wanted) {
+        return Err("panels or memory do not allow the rounded mesh");
+    }
+    let round = froude_panel::solve(&problem).added_mass(0).about(origin_m).matrix;
     let rows = (0..6)
         .map(|i| {
             // Rounding once takes three quarters of the distance to the smooth body away.
@@ -462,12 +486,12 @@ fn geometry(mesh: &Mesh, case: &Case, job: &BodyJob, origin_m: Vec3, density_kg_
             vec![
                 MOTIONS[i].to_owned(),
                 number::plain(density_kg_m3 * value, 6),
-                percent_of(case.refined.uncertainty[i][i], value),
+                percent_of(case.refined.uncertainty[i][i], value).replace('+', ""),
                 percent_of(apart, value),
             ]
         })
         .collect();
-    Some(TextTable {
+    Ok(TextTable {
         caption: format!(
             "Two uncertainties, never one: that of the panels (the matrix of the polyhedron that was given), and how far a smooth body with \
              these corners lies from it, should the facets stand for one. Edges of more than {:.0}° count as edges of the body.",
@@ -494,7 +518,7 @@ fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path, origin_m: Vec3) -
     let pressure = pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, origin_m);
     write_atomically(&folder.join(&names[0]), pressure.as_bytes())?;
     // Wave programs have z up: a mesh with z down is turned about x by half a turn, and y and z change their signs.
-    let sign = |i: usize| if job.is_z_up || i % 3 == 0 { 1.0 } else { -1.0 };
+    let sign = |i: usize| if job.is_z_up || matches!(i, 0 | 3) { 1.0 } else { -1.0 };
     let rows = |case: &Case| -> Vec<Vec<f64>> {
         let entry = |i: usize, j: usize| sign(i) * sign(j) * outcome.density_kg_m3 * case.refined.value[i][j];
         (0..6).map(|i| (0..6).map(|j| entry(i, j)).collect()).collect()

@@ -96,12 +96,29 @@ pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error>
         let length_m = robot(&body.shape).length_m(links);
         configurations.push(Configuration { links, name, length_m, refined });
     }
+    let is_new = !out.exists();
+    let written = written(job, &body.name, density_kg_m3, configurations, &out, told);
+    if written.is_err() && is_new {
+        // Nothing of a job that failed is left.
+        let _ = std::fs::remove_dir_all(&out);
+    }
+    written
+}
+
+fn written(
+    job: &LinksJob,
+    name: &str,
+    density_kg_m3: f64,
+    configurations: Vec<Configuration>,
+    out: &Path,
+    told: &dyn Fn(&str),
+) -> Result<LinksOutcome, Error> {
     let made = |path: &Path, source| Error::Output { path: path.to_owned(), source };
-    std::fs::create_dir_all(&out).map_err(|e| made(&out, e))?;
+    std::fs::create_dir_all(out).map_err(|e| made(out, e))?;
     let table = out.join("links.csv");
     write_atomically(&table, csv(&configurations, density_kg_m3).as_bytes())?;
     let campaign = out.join("campaign.toml");
-    write_atomically(&campaign, campaign_text(&body.name, density_kg_m3).as_bytes())?;
+    write_atomically(&campaign, campaign_text(name, density_kg_m3).as_bytes())?;
     let mut findings = Vec::new();
     let mut fits = Vec::new();
     if configurations.len() >= FIT {
@@ -130,10 +147,10 @@ pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error>
         estimates: fits.iter().cloned().chain(matrices).collect(),
         findings,
     };
-    let page = page::links(&body.name, density_kg_m3, &configurations, &fits, &file, job.date.clone()).html()?;
-    let written = crate::results::write(&out, &file, &[], &[], &page)?;
+    let page = page::links(name, density_kg_m3, &configurations, &fits, &file, job.date.clone()).html()?;
+    let written = crate::results::write(out, &file, &[], &[], &page)?;
     Ok(LinksOutcome {
-        name: body.name,
+        name: name.to_owned(),
         density_kg_m3,
         configurations,
         fits,

@@ -167,6 +167,11 @@ pub fn free_memory_bytes() -> Option<f64> {
     line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|kib| 1024.0 * kib)
 }
 
+/// Memory that may be used now, bytes.
+pub(super) fn memory_bytes(wanted: &Wanted) -> f64 {
+    wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY)
+}
+
 /// Cells of a tank's walls, as part of its shortest side, in a multiple of one.
 const WALL_CELL: f64 = 0.25;
 
@@ -217,7 +222,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         let member = family.member(number)?;
         let (solved, problem) = problem(family, &member, wanted)?;
         let forecast = forecast(&problem);
-        let free = wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY);
+        let free = memory_bytes(wanted);
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
             let why = format!(

@@ -122,6 +122,22 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
             }
         }
     }
+    let mut findings = loaded.findings;
+    let size = |i: usize| value[i][i].abs();
+    let worst = (0..n * n).map(|k| uncertainty[k / n][k % n] / (size(k / n) * size(k % n)).sqrt()).fold(0.0, f64::max);
+    if worst.is_nan() || worst > job.wanted.tolerance {
+        let told = if worst.is_finite() {
+            format!("is {:.1} %", 100.0 * worst)
+        } else {
+            "cannot be told from one mesh".to_owned()
+        };
+        let message = format!(
+            "the largest numerical uncertainty of an entry, as part of the diagonal, {told} where {:.1} % was asked for: no finer mesh is made \
+             part by part",
+            100.0 * job.wanted.tolerance
+        );
+        findings.push(Finding::new(Severity::Warning, "not-converged", message));
+    }
     let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
     let mut notes = loaded.notes;
     tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3));
@@ -141,8 +157,8 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         schema: ESTIMATE_SCHEMA.to_owned(),
         data: vec![DataFile { path: file_name(&job.input), sha256: sha256_of_file(&job.input)? }],
         versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3)],
-        findings: loaded.findings,
+        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, levels.len())],
+        findings,
     };
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
     let page = Document {
@@ -359,7 +375,14 @@ fn diagonal_form_table(form: &DiagonalForm, density_kg_m3: f64) -> TextTable {
     }
 }
 
-fn record(name: &str, parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>], density_kg_m3: f64) -> Estimate {
+fn record(
+    name: &str,
+    parts: &[String],
+    value: &[Vec<f64>],
+    uncertainty: &[Vec<f64>],
+    density_kg_m3: f64,
+    meshes: usize,
+) -> Estimate {
     let mut coefficients = IndexMap::new();
     for i in 0..value.len() {
         for j in i..value.len() {
@@ -390,11 +413,14 @@ fn record(name: &str, parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f
         density: Some(Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() }),
         frame: "each part's own axes".to_owned(),
         reference_point: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
-        method: "potential flow, constant panels, direct formulation, unbounded water, extrapolated".to_owned(),
+        method: format!(
+            "potential flow, constant panels, direct formulation, unbounded water; {meshes} similar meshes{}",
+            if meshes > 1 { ", extrapolated" } else { "" }
+        ),
         covariance_kind: "numerical uncertainty of each entry alone, 95 %".to_owned(),
         dof: IndexMap::new(),
         sigma: IndexMap::new(),
-        n_observations: LEVELS.len(),
+        n_observations: meshes,
         coefficients,
         covariance: None,
         undetermined: Vec::new(),
