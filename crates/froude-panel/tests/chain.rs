@@ -54,9 +54,7 @@ fn bending_a_joint_changes_the_matrix_and_the_diagonal_form_errs() {
             }
             println!(
                 "joint at {degrees} deg: sway of links 1, 2 {:.4e} {:.4e} m3, their coupling {coupling:.4e}, {:?}",
-                own[0],
-                own[1],
-                form
+                own[0], own[1], form
             );
             sway.push(own[0]);
         }
