@@ -228,6 +228,9 @@ pub struct PatternError {
 }
 
 /// How far a chain is from "every link the same added mass across itself, and no coupling" (equation 4 of the paper).
+///
+/// For H3LT, necked or smooth, with a joint bent by up to 30 degrees: root mean square errors of 2 to 3 % for parts alike, 16 to 19 % for a wave
+/// over the body, 53 to 61 % for neighbours against each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DiagonalForm {
     /// The one coefficient over ρ, m³: mean force on a link when all parts accelerate alike.

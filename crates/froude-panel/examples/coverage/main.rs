@@ -21,7 +21,7 @@ use std::time::Instant;
 use bodies::{Body, Class, Random, Reference};
 use froude_mesh::measure::Measure;
 use froude_mesh::sections::Resolution;
-use froude_panel::convergence::{Estimate, converged};
+use froude_panel::convergence::{Converged, Estimate, converged};
 use froude_panel::mirror::positive_part;
 use froude_panel::problem::{Problem, Solution};
 use froude_panel::study::{Size, study};
@@ -90,7 +90,25 @@ struct Row {
     entry: (usize, usize),
     values: [f64; 3],
     exact: f64,
-    estimates: [Estimate; 4],
+    /// The last two by the rule that was asked for first.
+    estimates: [Estimate; 6],
+}
+
+/// The rule that was asked for first: outside orders of 1.5 to 2.5 the finest value is taken for both, with three times its distance from the
+/// others; inside, 1.5 times what extrapolation takes off, and 3 times the change of the extrapolated value.
+fn asked(values: [f64; 3], now: &Converged) -> [Estimate; 2] {
+    let [f3, f2, f1] = values;
+    if now.order.is_some_and(|p| (1.5..=2.5).contains(&p)) {
+        let limit = |fine: usize, coarse: usize| {
+            let q = LEVELS[fine] as f64 / LEVELS[coarse] as f64;
+            values[fine] + (values[fine] - values[coarse]) / (q * q - 1.0)
+        };
+        let (finer, coarser) = (limit(2, 1), limit(1, 0));
+        let estimate = |value, uncertainty| Estimate { value, uncertainty };
+        [estimate(f1, 1.5 * (f1 - finer).abs()), estimate(finer, 3.0 * (finer - coarser).abs())]
+    } else {
+        [Estimate { value: f1, uncertainty: 3.0 * (f1 - f2).abs().max((f1 - f3).abs()) }; 2]
+    }
 }
 
 fn rows(class: Class, body: &Body) -> Vec<Row> {
@@ -106,13 +124,15 @@ fn rows(class: Class, body: &Body) -> Vec<Row> {
         let unit = size.volume_m3 * reach(i) * reach(j);
         let scaled = |e: Estimate| Estimate { value: e.value / unit, uncertainty: e.uncertainty / unit };
         let [a, b] = [three.entries[i][j], two.entries[i][j]];
+        let values = [0, 1, 2].map(|l| solutions[l].added_mass(0).matrix[i][j]);
+        let [fine, extrapolated] = asked(values, &a);
         Row {
             class,
             kind: body.kind,
             entry,
-            values: [0, 1, 2].map(|l| solutions[l].matrix[i][j] / unit),
+            values: values.map(|v| v / unit),
             exact: reference[i][j] / unit,
-            estimates: [a.fine, a.extrapolated, b.fine, b.extrapolated].map(scaled),
+            estimates: [a.fine, a.extrapolated, b.fine, b.extrapolated, fine, extrapolated].map(scaled),
         }
     };
     ENTRIES.into_iter().map(of).filter(|r| r.exact.abs() > ZERO).collect()
@@ -136,7 +156,7 @@ fn main() -> ExitCode {
     let after = |name: &str| arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1));
     let is_short = has("--short");
     let count = after("--bodies").map_or(if is_short { 40 } else { 1000 }, |n| n.parse().unwrap());
-    let seed = if has("--tuning") { 301 } else { 20_260 };
+    let seed = if has("--tuning") { 301 } else { 20_261 };
     let started = Instant::now();
     let mut random = Random(seed);
     let cases: Vec<(Class, Body)> = (0..count)
@@ -165,12 +185,16 @@ fn main() -> ExitCode {
     );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     let mut misses = 0;
+    let mut misses_as_asked = 0;
     for ((class, (i, j)), rows) in &cells {
         let both = [0, 1].map(|which| summary(rows, which));
         let text = |s: &[f64; 3]| format!("{:.1} % | {:.2} | {:.1e}", 100.0 * s[0], s[1], s[2]);
         let name = Class::ALL[*class].name();
-        let is_missed = both.iter().zip(GENEROUS).any(|(s, most)| s[0] < COVERED || s[1] > most);
+        let misses_one =
+            |both: &[[f64; 3]; 2]| both.iter().zip(GENEROUS).any(|(s, most)| s[0] < COVERED || s[1] > most);
+        let is_missed = misses_one(&both);
         misses += usize::from(is_missed);
+        misses_as_asked += usize::from(misses_one(&[4, 5].map(|which| summary(rows, which))));
         println!(
             "| {name} | A{}{} | {} | {} | {} |{}",
             i + 1,
@@ -182,12 +206,17 @@ fn main() -> ExitCode {
         );
     }
     let all: Vec<&Row> = rows.iter().collect();
-    for (which, name) in
-        ["finest", "extrapolated", "finest of two meshes", "extrapolated from two meshes"].iter().enumerate()
-    {
+    let names = [
+        "finest",
+        "extrapolated",
+        "finest of two meshes",
+        "extrapolated from two meshes",
+        "finest, by the rule first asked for",
+        "extrapolated, by the rule first asked for",
+    ];
+    for (which, name) in names.iter().enumerate() {
         let [covered, ratio, error] = summary(&all, which);
         println!("{name}: {:.1} % of {} entries, U/error {ratio:.2}, error {error:.1e}", 100.0 * covered, all.len());
-        misses += usize::from(is_short && which < 2 && covered < SHORT_COVERED);
     }
     let kinds: std::collections::BTreeSet<&str> = rows.iter().map(|r| r.kind).collect();
     for kind in kinds {
@@ -195,12 +224,16 @@ fn main() -> ExitCode {
         let [a, b] = [0, 1].map(|which| 100.0 * summary(&of, which)[0]);
         println!("{kind}: {a:.1} %, {b:.1} % of {} entries", of.len());
     }
-    println!("{count} bodies, seed {seed}: {:.1} s, {misses} missed", started.elapsed().as_secs_f64());
-    let fails = if is_short { rows.is_empty() || misses > 0 && overall(&all) } else { misses > 0 };
+    println!(
+        "{count} bodies, seed {seed}: {:.1} s, {misses} of {} rows missed, {misses_as_asked} by the rule first asked for",
+        started.elapsed().as_secs_f64(),
+        cells.len()
+    );
+    let fails = if is_short { is_seldom_covered(&all) } else { misses > 0 };
     if fails { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }
 
 /// Whether fewer entries than the short run asks for are covered.
-fn overall(all: &[&Row]) -> bool {
+fn is_seldom_covered(all: &[&Row]) -> bool {
     (0..2).any(|which| summary(all, which)[0] < SHORT_COVERED)
 }
