@@ -13,9 +13,10 @@
 //! No U is smaller than the floor, the solver's noise.
 //!
 //! **How far it holds.** An order outside 1.5 to 2.5 says here that c is small by chance (the sway of a short body, a coupling), which is why
-//! the extrapolated value stays. `examples/coverage` counts over 1,000 random bodies; its figures, and those of the rule before (fine value
-//! with three times its distance from the others outside that range), are in its head. The meshes must resolve the section: 16 panels around
-//! at the coarsest, 32 where it is flatter than 2:1. There, with 16, U of the extrapolated value fell to 80 %.
+//! the extrapolated value stays. Over 1,000 random bodies (`examples/coverage`, which says what was found before) U covers 99.9 % of the finest
+//! values and 99.2 % of the extrapolated ones, 96 % or more of every entry in every class, and is 1.5 and 5.2 times the error at the median;
+//! from two meshes 96 % and 92 %. The meshes must resolve the section: 16 panels around at the coarsest, 32 where it is flatter than 2:1. With 16
+//! there, U of the extrapolated value held for 80 to 90 %.
 //!
 //! Sources: Richardson 1911; Roache 1994; the last factors by count.
 
