@@ -21,12 +21,14 @@ pub fn solve(problem: &Problem) -> Solution {
     let columns = problem.columns();
     let velocities: Vec<Vec<f64>> = (0..n).map(|p| (0..columns).map(|c| problem.velocity(p, c)).collect()).collect();
     let area: f64 = problem.facets.iter().map(|f| f.area).sum();
-    // In an enclosed fluid the mean of φ is added to each row: it makes the matrix regular, and the mean zero.
-    let mean = |j: usize| if problem.is_enclosed { problem.facets[j].area / area } else { 0.0 };
+    // In an enclosed fluid a constant may be added to φ where no mirror turns its sign: there the mean is added to each row, which makes the
+    // matrix regular and the mean zero.
+    let is_open = |class: &Class| !problem.is_enclosed || class.signs.iter().any(|s| *s < 0.0);
     let classes = classes(problem);
     let rows: Vec<Vec<Row>> = (0..n).into_par_iter().map(|i| rows(problem, &velocities, i, &classes)).collect();
     let mut potentials = vec![vec![0.0; columns]; n];
     for (number, class) in classes.iter().enumerate() {
+        let mean = |j: usize| if is_open(class) { 0.0 } else { problem.facets[j].area / area };
         let matrix = Mat::from_fn(n, n, |i, j| rows[i][number].left[j] + mean(j));
         let right = Mat::from_fn(n, class.columns.len(), |i, k| rows[i][number].right[k]);
         let phi = PartialPivLu::new(matrix.as_ref()).solve(&right);

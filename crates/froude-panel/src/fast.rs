@@ -486,13 +486,15 @@ pub fn solve(problem: &Problem) -> Solution {
         let velocities: Vec<Lane> = (0..n).map(|p| lanes(&|c| problem.velocity(p, c))).collect();
         let images = 1_usize << problem.mirrors.len();
         let signs: Vec<Lane> = (0..images).map(|set| lanes(&|c| problem.signs(c)[set])).collect();
+        let is_even: [bool; LANES] = core::array::from_fn(|l| signs.iter().all(|s| s[l] > 0.0));
         let (operator, right) = Operator::new(&layout, &points, &velocities, signs);
         let apply = |x: &[Lane]| -> Vec<Lane> {
             let mut out = operator.apply(x);
+            // As in the plain solver: a constant is fixed where no mirror turns its sign.
             let mut mean = [0.0; LANES];
             if problem.is_enclosed {
                 for (x, f) in x.iter().zip(&problem.facets) {
-                    (0..LANES).for_each(|l| mean[l] += x[l] * f.area / area);
+                    (0..LANES).filter(|l| is_even[*l]).for_each(|l| mean[l] += x[l] * f.area / area);
                 }
             }
             for (out, x) in out.iter_mut().zip(x) {

@@ -46,11 +46,18 @@ mod tree;
 
 use problem::{Problem, Solution};
 
-/// Unknowns up to which the plain solver is as quick as the fast one, and free of its 3e-7.
-pub const PLAIN_LIMIT: usize = 1500;
+/// Pairs of an unknown with a panel or an image up to which the plain solver is as quick as the fast one, and free of its 3e-7.
+pub const PLAIN_PAIRS: usize = 2_500_000;
+
+/// Whether [`solve`] takes the plain solver.
+#[must_use]
+pub fn is_plain(problem: &Problem) -> bool {
+    let n = problem.facets.len();
+    (n * n) << problem.mirrors.len() <= PLAIN_PAIRS
+}
 
 /// Solves by the plain solver where it is quick, else by the fast one.
 #[must_use]
 pub fn solve(problem: &Problem) -> Solution {
-    if problem.facets.len() <= PLAIN_LIMIT { dense::solve(problem) } else { fast::solve(problem) }
+    if is_plain(problem) { dense::solve(problem) } else { fast::solve(problem) }
 }

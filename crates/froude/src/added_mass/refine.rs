@@ -9,7 +9,7 @@ use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
 use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::tank::{Surface, Tank};
-use froude_panel::{PLAIN_LIMIT, fast, solve};
+use froude_panel::{fast, is_plain, solve};
 use froude_report::number;
 
 use super::family::{Family, Member};
@@ -128,6 +128,8 @@ struct Entry {
     order: Option<f64>,
 }
 
+/// Residual above which a solution is none.
+pub(super) const LOOSE: f64 = 1e-6;
 /// Noise of the solvers, as part of √(A_ii A_jj).
 const PLAIN_NOISE: f64 = 1e-12;
 const FAST_NOISE: f64 = 5e-7;
@@ -146,7 +148,7 @@ const MEMORY_PART: f64 = 0.8;
 pub fn forecast(problem: &Problem) -> Forecast {
     let n = problem.facets.len() as f64;
     let threads = std::thread::available_parallelism().map_or(1.0, |t| t.get() as f64);
-    if problem.facets.len() <= PLAIN_LIMIT {
+    if is_plain(problem) {
         // A matrix for each class of signs: a body with three planes has six.
         let classes = if problem.mirrors.is_empty() { 1.0 } else { 6.0 };
         let images = f64::from(1_u32 << problem.mirrors.len());
@@ -244,6 +246,13 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         ));
         let started = Instant::now();
         let solution = solve(&problem);
+        if solution.report.residual > LOOSE {
+            return Err(Error::Nothing(format!(
+                "the equations of {panels} panels were not solved: after {} iterations the residual is {:.1e} of the right-hand side; panels that \
+                 nearly touch others make them nearly singular; give such places finer panels, or a gap of a panel's size",
+                solution.report.iterations, solution.report.residual
+            )));
+        }
         steps.push(Step {
             panels: member.mesh.mesh.panels.len(),
             unknowns: problem.facets.len(),

@@ -29,6 +29,7 @@ use super::body::{BodyJob, is_body_file, load};
 use super::family::{Family, robot};
 use super::links::{default_out, file_name, no_density};
 use super::record::{MOTIONS, unit};
+use super::refine::LOOSE;
 use crate::Error;
 
 /// What moves apart.
@@ -97,7 +98,17 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     let mut levels = Vec::new();
     for (size, problem) in loaded.problems {
         told(&format!("{} panels, {} parts", problem.facets.len(), problem.frames.len()));
-        levels.push(Level { size, solution: solve(&problem) });
+        let solution = solve(&problem);
+        if solution.report.residual > LOOSE {
+            return Err(Error::Nothing(format!(
+                "{}: the equations were not solved: after {} iterations the residual is {:.1e} of the right-hand side; parts that nearly touch \
+                 make them nearly singular; give a gap of a panel's size",
+                job.input.display(),
+                solution.report.iterations,
+                solution.report.residual
+            )));
+        }
+        levels.push(Level { size, solution });
     }
     let Some(finest) = levels.last().map(|l| l.solution.clone()) else {
         return Err(Error::Nothing(format!(
