@@ -145,7 +145,13 @@ pub fn spheroid(along_m: f64, across_m: f64, panels: usize) -> Vec<Stretch> {
 /// where the curvature jumps, equal panels in between.
 #[must_use]
 pub fn capsule(half_length_m: f64, radius_m: f64, halvings: usize, middle: usize) -> Vec<Stretch> {
-    let cap = |centre_m, angle_rad| Meridian::Ellipse { centre_m, along_m: radius_m, across_m: radius_m, angle_rad };
+    rounded_cylinder(half_length_m, radius_m, radius_m, halvings, middle)
+}
+
+/// The same with half-spheroids of length `end_m` at its ends.
+#[must_use]
+pub fn rounded_cylinder(half_length_m: f64, radius_m: f64, end_m: f64, halvings: usize, middle: usize) -> Vec<Stretch> {
+    let cap = |centre_m, angle_rad| Meridian::Ellipse { centre_m, along_m: end_m, across_m: radius_m, angle_rad };
     let tube = Meridian::Cylinder { radius_m, z_m: [-half_length_m, half_length_m] };
     // 0, 1/2, 3/4, …, 1 − 2⁻ⁿ, 1: fine at the end.
     let towards_end: Vec<f64> = (0..=halvings).map(|i| 1.0 - 0.5_f64.powi(i as i32)).chain([1.0]).collect();

@@ -7,6 +7,7 @@
 //! | [`links`] | the robot with 1 to k links: the table, its least squares |
 //! | [`body`] | one body or mesh: checks, matrix, pressure, files |
 //! | [`several`] | links of a chain, parts of a mesh: six rows and columns each |
+//! | [`spectral`] | bodies of revolution to eight digits and more |
 //! | [`repair`] | a mesh put right, as a new file |
 //! | [`record`] | a matrix as an estimate |
 //! | [`page`] | the report |
@@ -21,3 +22,4 @@ pub mod record;
 pub mod refine;
 pub mod repair;
 pub mod several;
+pub mod spectral;

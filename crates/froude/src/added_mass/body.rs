@@ -29,6 +29,7 @@ use super::links::{default_out, file_name, no_density, not_links, not_within};
 use super::page;
 use super::record::{About, MOTIONS, estimate};
 use super::refine::{Finest, Forecast, Placed, Refined, Wanted, forecast, memory_bytes, plan, refine};
+use super::spectral;
 use crate::Error;
 
 /// Where moments are taken about.
@@ -289,6 +290,9 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     }
     let length_m = extent_along_x(&coarse);
     let mut notes = loaded.notes;
+    if let Some(exact) = loaded.shape.as_ref().and_then(spectral::solve) {
+        notes.push(spectral::replace(&mut cases[0].refined, &exact, origin_m));
+    }
     let mut tables = vec![hydrostatics(&cases[0].refined, density_kg_m3, origin_m)];
     let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
     tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, origin_m));

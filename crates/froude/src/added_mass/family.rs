@@ -11,8 +11,10 @@ use froude_records::body::Shape;
 
 /// Multiples of the coarsest cells that are tried one after the other.
 const MULTIPLES: [usize; 10] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48];
-/// Panels around in a multiple of one: with the cells below they are as long as wide.
+/// Panels around in a multiple of one: with the cells below they are as long as wide; twice as many where the section is flatter than
+/// this, or the uncertainty does not hold (`froude_panel::convergence`).
 const AROUND: usize = 8;
+const FLAT: f64 = 2.0;
 /// Subdivisions of a mesh from elsewhere that are tried.
 const SUBDIVISIONS: usize = 4;
 
@@ -27,6 +29,8 @@ pub enum Family {
         planes: Vec<usize>,
         /// Number of the first multiple that resolves it.
         first: usize,
+        /// Panels around in a multiple of one.
+        around: usize,
     },
     /// From a mesh.
     Mesh(Mesh),
@@ -81,7 +85,8 @@ impl Family {
                 )
             }
         };
-        Self::Sections { body, planes, first }
+        let around = if flatness(shape) > FLAT { 2 * AROUND } else { AROUND };
+        Self::Sections { body, planes, first, around }
     }
 
     /// Members from the coarsest on.
@@ -115,9 +120,9 @@ impl Family {
     /// [`SectionError`] where the dimensions give no body.
     pub fn member(&self, number: usize) -> Result<Member, SectionError> {
         match self {
-            Self::Sections { body, first, .. } => {
+            Self::Sections { body, first, around, .. } => {
                 let along = MULTIPLES[first + number];
-                let mesh = body.mesh(Resolution { along, around: AROUND * along })?;
+                let mesh = body.mesh(Resolution { along, around: around * along })?;
                 Ok(Member { mesh, size: MULTIPLES[*first] as f64 / along as f64, multiple: along })
             }
             Self::Mesh(mesh) => {
@@ -131,6 +136,17 @@ impl Family {
             }
         }
     }
+}
+
+/// Height over width of the section, or the other way round.
+fn flatness(shape: &Shape) -> f64 {
+    let (major, minor) = match *shape {
+        Shape::Robot { section, .. } | Shape::Capsule { section, .. } | Shape::Cylinder { section, .. } => {
+            (section.major_m, section.minor_m)
+        }
+        Shape::Ellipsoid { semi_axes_m: [_, b, c] } => (b, c),
+    };
+    (major / minor).max(minor / major)
 }
 
 /// The robot of a shape; any other shape has none.

@@ -2,12 +2,14 @@
 
 use std::time::Instant;
 
+use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::convergence::converged;
 use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
-use froude_panel::problem::{Frame, Problem, Solution};
+use froude_panel::problem::{Frame, Problem, Report, Solution};
+use froude_panel::study::{Size, study};
 use froude_panel::tank::{Surface, Tank};
 use froude_panel::{fast, is_plain, solve};
 use froude_report::number;
@@ -41,6 +43,15 @@ pub struct Placed {
     pub surface: Surface,
     /// Height of the surface over the origin of the mesh, m.
     pub over_origin_m: f64,
+}
+
+impl Step {
+    /// As a solution without its potentials.
+    fn solution(&self) -> Solution {
+        let report = Report { iterations: self.iterations, ..Report::default() };
+        let matrix = self.added_mass.matrix.iter().map(|row| row.to_vec()).collect();
+        Solution { potentials: Vec::new(), matrix, frames: Vec::new(), report }
+    }
 }
 
 impl Default for Wanted {
@@ -130,9 +141,6 @@ struct Entry {
 
 /// Residual above which a solution is none.
 pub(super) const LOOSE: f64 = 1e-6;
-/// Noise of the solvers, as part of √(A_ii A_jj).
-const PLAIN_NOISE: f64 = 1e-12;
-const FAST_NOISE: f64 = 5e-7;
 /// Time of a near pair and of a pair of boxes over a whole solution, one thread, s: as measured on a processor with AVX-512.
 const NEAR_S: f64 = 25e-9;
 const FAR_S: f64 = 40e-6;
@@ -206,6 +214,7 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
 /// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
 /// panels than are allowed.
 pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
+    let length_m = extent(&family.member(0)?.mesh.mesh);
     let mut steps: Vec<Step> = Vec::new();
     let mut finest = None;
     let mut stopped = None;
@@ -263,17 +272,19 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             measure: Measure::of(&member.mesh.mesh),
         });
         finest = Some(Finest { mesh: solved, mirrors: problem.mirrors, solution });
-        if steps.len() >= 3 && worst(&entries(&steps)) <= wanted.tolerance {
+        if steps.len() >= 3 && worst(&entries(&steps, length_m)) <= wanted.tolerance {
             break;
         }
     }
     let Some(finest) = finest else {
         return Err(Error::Nothing("the body has no mesh".to_owned()));
     };
-    let entries = entries(&steps);
+    let entries = entries(&steps, length_m);
     let worst = worst(&entries);
     let is_within = worst <= wanted.tolerance;
     let volumes: Vec<f64> = steps.iter().map(|s| s.measure.volume_m3).collect();
+    let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
+    let volume_m3 = if volumes.len() > 1 { converged(&sizes, &volumes, 0.0).extrapolated.value } else { volumes[0] };
     if !is_within && stopped.is_none() {
         stopped = Some("no finer mesh is made".to_owned());
     }
@@ -281,7 +292,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         value: entries.map(|row| row.map(|e| e.value)),
         uncertainty: entries.map(|row| row.map(|e| e.uncertainty)),
         order: entries.map(|row| row.map(|e| e.order)),
-        volume_m3: last_three(&steps, &volumes, 0.0).value,
+        volume_m3,
         steps,
         worst,
         is_within,
@@ -319,23 +330,23 @@ pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, 
     Ok(out)
 }
 
-/// A value of the last three meshes, or of two; of one no uncertainty. `size` is what the solver's noise is a part of.
-fn last_three(steps: &[Step], values: &[f64], size: f64) -> Entry {
+/// Entries of the last three meshes together, or of two; of one no uncertainty.
+fn entries(steps: &[Step], length_m: f64) -> [[Entry; 6]; 6] {
     let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
-    let Some(last) = steps.last().filter(|_| steps.len() > 1) else {
-        return Entry { value: values.first().copied().unwrap_or(f64::NAN), uncertainty: f64::INFINITY, order: None };
+    let solutions: Vec<Solution> = steps.iter().map(Step::solution).collect();
+    let Some(last) = steps.last() else {
+        return [[Entry { value: f64::NAN, uncertainty: f64::INFINITY, order: None }; 6]; 6];
     };
-    let noise = if last.iterations > 0 { FAST_NOISE } else { PLAIN_NOISE };
-    let c = converged(&sizes, values, noise * size);
-    Entry { value: c.extrapolated.value, uncertainty: c.extrapolated.uncertainty, order: c.order }
-}
-
-fn entries(steps: &[Step]) -> [[Entry; 6]; 6] {
-    let size = |i: usize| steps.last().map_or(0.0, |s| s.added_mass.matrix[i][i].abs());
+    if steps.len() == 1 {
+        let alone = |value| Entry { value, uncertainty: f64::INFINITY, order: None };
+        return last.added_mass.matrix.map(|row| row.map(alone));
+    }
+    let size = Size { volume_m3: last.measure.volume_m3, length_m };
+    let study = study(&sizes, &solutions, size);
     core::array::from_fn(|i| {
         core::array::from_fn(|j| {
-            let values: Vec<f64> = steps.iter().map(|s| s.added_mass.matrix[i][j]).collect();
-            last_three(steps, &values, (size(i) * size(j)).sqrt())
+            let c = &study.entries[i][j];
+            Entry { value: c.extrapolated.value, uncertainty: c.extrapolated.uncertainty, order: c.order }
         })
     })
 }

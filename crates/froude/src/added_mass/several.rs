@@ -12,10 +12,11 @@ use froude_mesh::refine::subdivided;
 use froude_mesh::sections::Resolution;
 use froude_mesh::vector::{norm, sub};
 use froude_panel::chain::{Chain, DiagonalForm, diagonal_form, whole};
-use froude_panel::convergence::converged;
+use froude_panel::convergence::Converged;
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::{Frame, Problem, Solution};
 use froude_panel::solve;
+use froude_panel::study::{Size, study};
 use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{Coefficient, DataFile, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, Measured, Status};
@@ -118,21 +119,16 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         )));
     };
     let n = finest.matrix.len();
-    let symmetric = |m: &[Vec<f64>], i: usize, j: usize| 0.5 * (m[i][j] + m[j][i]);
     let sizes: Vec<f64> = levels.iter().map(|l| l.size).collect();
-    let mut value = vec![vec![0.0; n]; n];
-    let mut uncertainty = vec![vec![f64::INFINITY; n]; n];
-    for i in 0..n {
-        for j in 0..n {
-            let values: Vec<f64> = levels.iter().map(|l| symmetric(&l.solution.matrix, i, j)).collect();
-            value[i][j] = values[values.len() - 1];
-            if values.len() > 1 {
-                let noise = 5e-7 * (finest.matrix[i][i] * finest.matrix[j][j]).abs().sqrt();
-                let c = converged(&sizes, &values, noise);
-                (value[i][j], uncertainty[i][j]) = (c.extrapolated.value, c.extrapolated.uncertainty);
-            }
-        }
-    }
+    let solutions: Vec<Solution> = levels.into_iter().map(|l| l.solution).collect();
+    let (value, uncertainty) = if solutions.len() > 1 {
+        let entries = study(&sizes, &solutions, loaded.size).entries;
+        let of = |f: fn(&Converged) -> f64| entries.iter().map(|row| row.iter().map(f).collect()).collect();
+        (of(|c| c.extrapolated.value), of(|c| c.extrapolated.uncertainty))
+    } else {
+        (finest.matrix.clone(), vec![vec![f64::INFINITY; n]; n])
+    };
+    let meshes = solutions.len();
     let mut findings = loaded.findings;
     let size = |i: usize| value[i][i].abs();
     let worst = (0..n * n).map(|k| uncertainty[k / n][k % n] / (size(k / n) * size(k % n)).sqrt()).fold(0.0, f64::max);
@@ -168,7 +164,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         schema: ESTIMATE_SCHEMA.to_owned(),
         data: vec![DataFile { path: file_name(&job.input), sha256: sha256_of_file(&job.input)? }],
         versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, levels.len())],
+        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, meshes)],
         findings,
     };
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
@@ -209,6 +205,8 @@ struct Several {
     density_kg_m3: Option<f64>,
     parts: Vec<String>,
     problems: Vec<(f64, Problem)>,
+    /// Of one part.
+    size: Size,
     notes: Vec<String>,
     findings: Vec<Finding>,
 }
@@ -245,7 +243,9 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
         number::degrees(angle)
     )];
     let name = format!("{name}, H{links}LT, link by link");
-    Ok(Several { name, density_kg_m3: None, parts, problems, notes, findings: Vec::new() })
+    let volume_m3 = core::f64::consts::PI * robot.half_height_m * robot.half_width_m * robot.pitch_m;
+    let size = Size { volume_m3, length_m: robot.pitch_m };
+    Ok(Several { size, name, density_kg_m3: None, parts, problems, notes, findings: Vec::new() })
 }
 
 fn parts_of(job: &BodyJob) -> Result<Several, Error> {
@@ -288,7 +288,9 @@ fn parts_of(job: &BodyJob) -> Result<Several, Error> {
     }
     let mut findings = loaded.findings;
     findings.extend(problems.first().and_then(|(_, p)| too_close(p)));
-    Ok(Several { name: loaded.name, density_kg_m3: None, parts: names, problems, notes, findings })
+    let largest = found.iter().map(|p| p.volume_m3.abs()).fold(0.0, f64::max);
+    let size = Size { volume_m3: largest, length_m: largest.cbrt() };
+    Ok(Several { size, name: loaded.name, density_kg_m3: None, parts: names, problems, notes, findings })
 }
 
 fn centroid(mesh: &Mesh, tags: &[usize], part: usize) -> [f64; 3] {
