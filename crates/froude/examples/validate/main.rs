@@ -5,8 +5,14 @@
 //! written then. A line that misses its bar fails the run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
 
+#[path = "../../../froude-panel/examples/coverage/bodies.rs"]
+mod bodies;
 mod carriage;
 mod claims;
+// Its own example tells more of each row.
+#[allow(dead_code, clippy::unwrap_used)]
+#[path = "../../../froude-panel/examples/coverage/count.rs"]
+mod count;
 mod coverage;
 mod dynamic;
 mod eiv;
@@ -14,6 +20,7 @@ mod emps;
 mod flexible;
 mod kvlcc2;
 mod potential;
+mod potential_laws;
 mod rm2;
 mod snake;
 mod sweeps;
@@ -70,6 +77,7 @@ fn main() -> ExitCode {
         }
         if wants("potential") {
             potential::all(claims, &root, full)?;
+            potential_laws::all(claims, full)?;
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;

@@ -174,7 +174,9 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
         format!("Observed order of convergence: {}. Flat panels of constant potential have 2.", orders.join(", "))
     }];
     out.push(match &refined.stopped {
-        None if refined.worst < 1e-4 => "The largest numerical uncertainty is less than 0.01 % of its entry.".to_owned(),
+        None if refined.worst < 1e-4 => {
+            "The largest numerical uncertainty is less than 0.01 % of its entry.".to_owned()
+        }
         None => format!("The largest numerical uncertainty is {:.2} % of its entry.", 100.0 * refined.worst),
         Some(why) if !refined.worst.is_finite() => format!("There is no finer one: {why}."),
         Some(why) => format!(
