@@ -203,7 +203,7 @@ fn pool(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
     {
         let change = 100.0 * (value(case, i) / value(0, i) - 1.0);
         // Half of its last digit, and a fiftieth of the change for meshes that are not stated.
-        let band = (5.0 + 20.0 * other).round() / 1000.0;
+        let band = (5.0_f64 + 20.0 * other).round() / 1000.0;
         claims.near(
             WALLS,
             &format!("the paper's pool, {name}: change [%]"),
