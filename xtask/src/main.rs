@@ -35,7 +35,7 @@ enum Task {
         #[arg(long, default_value_t = 1_000_000)]
         runs: u64,
     },
-    /// Benches against numpy, pandas and scipy in the same run (installs them into bench/peers/.venv).
+    /// Benches against numpy, pandas, scipy, Capytaine and HAMS in the same run (installs them below bench/peers).
     Bench,
     /// Licences and advisories of the dependencies (needs cargo-deny; installs it).
     Deny,
@@ -56,7 +56,8 @@ fn main() -> ExitCode {
         Task::Test => test(&root),
         Task::Validate { short } => validate(&root, short),
         Task::Fuzz { runs } => fuzz(&root, runs),
-        Task::Bench => run(&root, "sh", &["bench/peers/run.sh"]),
+        Task::Bench => run(&root, "sh", &["bench/peers/run.sh"])
+            .and_then(|()| run(&root, "sh", &["bench/peers/added_mass/run.sh"])),
         Task::Deny => deny(&root),
         Task::Firmware { full } => firmware::firmware(&root, full),
         Task::Book => book(&root),
