@@ -202,9 +202,13 @@ fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Erro
     for line in &done.left {
         say!("  still: {line}");
     }
-    if done.left.is_empty() {
-        say!("Next: froude added-mass {}", target.display());
+    if !done.left.is_empty() {
+        return Err(Error::Nothing(format!(
+            "{}: written, and not fit for use yet; unite bodies that cross (a boolean union), and close holes, where the mesh was drawn",
+            target.display()
+        )));
     }
+    say!("Next: froude added-mass {}", target.display());
     Ok(())
 }
 
@@ -295,6 +299,9 @@ fn table_of_links(outcome: &LinksOutcome) {
 
 fn one_body(outcome: &BodyOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
+    if let Some(limits) = froude::added_mass::limits::table(&outcome.cases, outcome.density_kg_m3) {
+        table(&limits);
+    }
     for case in &outcome.cases {
         say!("\n{} ({})", case.title, case.surroundings);
         table(&page::matrix_table(&case.refined, outcome.density_kg_m3));

@@ -421,11 +421,16 @@ fn refuses_mesh(mesh: &Mesh, wrong: &str) {
     refuses(
         &[("m.obj", write_obj(mesh).as_bytes())],
         &[&["m.obj"], &WATER[..]].concat(),
-        &format!(
-            "m.obj: potential flow cannot be computed on this mesh:\n{wrong}\n  froude added-mass m.obj --repair repaired.obj writes a \
-             mesh with what can be decided put right"
-        ),
+        &format!("m.obj: potential flow cannot be computed on this mesh:\n{wrong}{}", advice(wrong)),
     );
+}
+
+/// No repair unites bodies that cross, or knows which of two nested ones the water touches.
+fn advice(wrong: &str) -> &'static str {
+    if wrong.contains("cross or touch") || wrong.contains("lies inside") || wrong.contains("lie inside") {
+        return "";
+    }
+    "\n  froude added-mass m.obj --repair repaired.obj writes a mesh with what can be decided put right"
 }
 
 fn cube(side_m: f64) -> Mesh {
@@ -443,7 +448,8 @@ fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
     };
     refuses_mesh(
         &changed(|m| _ = m.panels.pop()),
-        "  4 edges have one panel only, the first from [1.0, 0.0, 0.0] to [1.0, 1.0, 0.0] m: the surface is open there",
+        "  4 edges have one panel only, the first from [1.0, 0.0, 0.0] to [1.0, 1.0, 0.0] m: the surface is open there\n  where it looks closed and is not, corners lie within edges of \
+         neighbours (T-junctions): let the drawing program mesh it anew",
     );
     refuses_mesh(
         &changed(|m| m.panels.iter_mut().for_each(|p| *p = p.turned())),

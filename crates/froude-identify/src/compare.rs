@@ -412,7 +412,12 @@ fn contradiction(a: &Named<'_>, b: &Named<'_>) -> Option<Finding> {
         .coefficients
         .keys()
         .filter_map(|name| Some((name, value(a, name)?, value(b, name)?)))
-        .filter(|(_, x, y)| (x - y).abs() > 1e-9 * x.abs().max(y.abs()))
+        .filter(|(name, x, y)| {
+            // What rounding leaves of a number that is nearly zero is small against its uncertainty.
+            let standard = |n: &Named<'_>| n.estimate.coefficients[*name].standard_uncertainty.unwrap_or(0.0);
+            let rounding = (1e-9 * x.abs().max(y.abs())).max(1e-3 * standard(a).min(standard(b)));
+            (x - y).abs() > rounding
+        })
         .collect();
     if differing.is_empty() {
         return None;

@@ -227,7 +227,7 @@ pub struct PatternError {
     pub rms: f64,
 }
 
-/// How far a chain is from "every link the same added mass across itself, and no coupling" (equation 4 of the paper).
+/// How far a chain is from "every link its added mass across itself, and no coupling" (equation 4 of the paper).
 ///
 /// For H3LT, necked or smooth, with a joint bent by up to 30 degrees: root mean square errors of 2 to 3 % for parts alike, 16 to 19 % for a wave
 /// over the body, 53 to 61 % for neighbours against each other.

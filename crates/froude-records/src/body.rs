@@ -259,7 +259,7 @@ ends = { length = "31 mm" }
             "body.toml:9:49: `ramp` is 0.04 m; two of them must be shorter than the joint of 0.06 m"
         );
         assert!(told("\"31 mm\"", "\"31 kg\"").contains("body.toml:10"));
-        assert!(told("shape = \"robot\"", "shape = \"robo\"").contains("\"robot\""));
+        assert!(told("shape = \"robot\"", "shape = \"robo\"").contains("robot"));
         assert!(told("scale = 0.7", "scale = 1.7").contains("between 0 and 1"));
         assert!(told("shape = \"robot\"", "").contains("shape"));
         assert!(told("ends = { length = \"31 mm\" }", "").contains("write ends"));

@@ -8,6 +8,7 @@
 //! | [`body`] | one body or mesh: checks, matrix, pressure, files |
 //! | [`several`] | links of a chain, parts of a mesh: six rows and columns each |
 //! | [`spectral`] | bodies of revolution to eight digits and more |
+//! | [`limits`] | unbounded water, rigid lid, φ = 0: side by side, and which holds when |
 //! | [`repair`] | a mesh put right, as a new file |
 //! | [`record`] | a matrix as an estimate |
 //! | [`page`] | the report |
@@ -15,7 +16,7 @@
 pub mod body;
 mod cross_checks;
 pub mod family;
-mod limits;
+pub mod limits;
 pub mod links;
 pub mod page;
 pub mod record;

@@ -6,9 +6,11 @@ use froude_mesh::check::{Trouble, check, extent};
 use froude_mesh::crossing::crossings;
 use froude_mesh::files::{self, vtk::vtp};
 use froude_mesh::measure::Measure;
+use froude_mesh::panel::Facet;
 use froude_mesh::parts::part_troubles;
 use froude_mesh::plausible::{crosses, too_large};
 use froude_mesh::refine::{rounded, without_warp};
+use froude_mesh::vector::{norm, sub};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::mirror::{Kind, Mirror, signs};
 use froude_panel::tank::{Surface, Tank};
@@ -127,10 +129,12 @@ pub struct Loaded {
 
 /// Warp of a quadrilateral, as part of its radius, from which it is divided into triangles.
 const WARP: f64 = 1e-6;
-/// Angle between facets from which an edge is an edge of the body, rad: 30°.
-const CREASE_RAD: f64 = core::f64::consts::FRAC_PI_6;
+/// Angle between facets from which an edge is an edge of the body, rad: seven segments to a circle still count as round.
+const CREASE_RAD: f64 = 50.0 * core::f64::consts::PI / 180.0;
 /// Distance from the water's surface that is none, as part of the body's extent.
 const ROUNDING: f64 = 1e-9;
+/// What is said of exports of a mesh with z down.
+pub(super) const TURNED: &str = "The files for WAMIT and Capytaine have z up, as wave programs ask for: turned about x by 180°; record and CSV have the axes of the mesh.";
 /// Largest mesh file, bytes.
 const LARGEST_FILE: u64 = 4 << 30;
 /// Standard acceleration of gravity, m/s².
@@ -199,7 +203,12 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
     }
     let is_unreadable =
         |t: &Trouble| matches!(t, Trouble::Empty | Trouble::NotFinite { .. } | Trouble::NoSuchVertex { .. });
-    let is_repairable = !troubles.iter().any(is_unreadable);
+    // A repair merges, turns and takes out; bodies that cross must be united where they were drawn.
+    let is_crossing = |t: &Trouble| matches!(t, Trouble::Crossing { .. });
+    let is_nested = |t: &Trouble| matches!(t, Trouble::Nested { .. });
+    let is_repairable = !troubles.iter().any(is_unreadable)
+        && !troubles.iter().all(|t| is_crossing(t) || is_nested(t) || !t.is_fatal());
+    let is_open = troubles.iter().any(|t| matches!(t, Trouble::Open { .. }));
     for trouble in troubles {
         if trouble.is_fatal() {
             wrong.push(format!("  {trouble}"));
@@ -213,10 +222,17 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         if rest > 0 {
             wrong.push(format!("  and {rest} more"));
         }
+        if is_open {
+            wrong.push(
+                "  where it looks closed and is not, corners lie within edges of neighbours (T-junctions): let the drawing program mesh it anew"
+                    .to_owned(),
+            );
+        }
         if is_repairable {
             wrong.push(format!(
-                "  froude added-mass {} --repair repaired.obj writes a mesh with what can be decided put right",
-                job.input.display()
+                "  froude added-mass {}{} --repair repaired.obj writes a mesh with what can be decided put right",
+                job.input.display(),
+                job.unit_m.map_or_else(String::new, |m| format!(" --unit \"{m} m\""))
             ));
         }
         return Err(Error::Nothing(format!(
@@ -228,6 +244,7 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
     if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
         return Err(Error::Nothing(format!("{}: {doubt}", job.input.display())));
     }
+    findings.extend(thin_panels(&mesh));
     let flat = without_warp(&mesh, WARP);
     if flat.panels.len() > mesh.panels.len() {
         notes.push(format!(
@@ -238,6 +255,31 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
     notes.push(format!("z points {} in the mesh; the matrix is in its axes.", if job.is_z_up { "up" } else { "down" }));
     let name = file_name(&job.input);
     Ok(Loaded { name, family: Family::Mesh(flat), shape: None, density_kg_m3: None, notes, findings })
+}
+
+/// Area over the square of the longest edge, and longest edge over the extent, from which a panel is long and thin.
+const THIN: f64 = 0.05;
+const LONG: f64 = 0.1;
+
+/// Long thin panels, as drawing programs leave on flat sides: dividing them keeps their shape, and convergence slow.
+fn thin_panels(mesh: &Mesh) -> Option<Finding> {
+    let extent_m = extent(mesh);
+    let longest = |p: &froude_mesh::Panel| {
+        let corners: Vec<Vec3> = mesh.corners(*p).collect();
+        (0..corners.len()).map(|i| norm(sub(corners[(i + 1) % corners.len()], corners[i]))).fold(0.0, f64::max)
+    };
+    let lengths = mesh.panels.iter().map(|p| (longest(p), Facet::of(mesh, *p)));
+    let thin: Vec<(f64, Facet)> = lengths.filter(|(l, f)| *l > LONG * extent_m && f.area < THIN * l * l).collect();
+    let (length, facet) = thin.first()?;
+    let message = format!(
+        "{} of {} panels are long and thin, the first at {:.4?} m is {length:.4} m long; finer meshes keep their shape, and converge slowly \
+         where they meet an edge: let the drawing program mesh the surface with edges of {:.3} m or less",
+        thin.len(),
+        mesh.panels.len(),
+        facet.centroid,
+        extent_m / 30.0
+    );
+    Some(Finding::new(Severity::Note, "thin-panels", message))
 }
 
 /// Troubles of a mesh that are told one by one.
@@ -289,7 +331,12 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         cases.push(Case { title: s.title, surroundings: s.words, is_lid: s.is_lid, refined });
     }
     let length_m = extent_along_x(&coarse);
-    let mut notes = loaded.notes;
+    let mut notes = vec![format!(
+        "Density {density_kg_m3} kg/m³; tolerance {} %; froude {}.",
+        number::plain(100.0 * job.wanted.tolerance, 3),
+        env!("CARGO_PKG_VERSION")
+    )];
+    notes.extend(loaded.notes);
     if let Some(exact) = loaded.shape.as_ref().and_then(spectral::solve) {
         notes.push(spectral::replace(&mut cases[0].refined, &exact, origin_m));
     }
@@ -306,13 +353,22 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
             }
         }
     }
-    tables.extend(limits::table(&cases, density_kg_m3));
+    if let (Some(tank), Some(surface_m)) = (job.tank_m, job.surface_m) {
+        findings.push(limits::clearance(&coarse, tank, surface_m));
+    }
+    if !job.export.is_empty() && origin_m != [0.0; 3] {
+        findings.push(Finding::new(
+            Severity::Warning,
+            "export-origin",
+            format!(
+                "the exported files are about {reference} and cannot say so; wave programs take the origin of their mesh: leave --origin out for \
+                 them"
+            ),
+        ));
+    }
     let estimates = cases.iter().map(|case| {
-        let source = if cases.len() == 1 {
-            loaded.name.clone()
-        } else {
-            format!("{}, {}", loaded.name, case.title.to_lowercase())
-        };
+        let source =
+            if cases.len() == 1 { loaded.name.clone() } else { format!("{}, {}", loaded.name, case.surroundings) };
         let about = About {
             source,
             density_kg_m3,
@@ -330,9 +386,11 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         estimates: estimates.collect(),
         findings,
     };
-    notes.extend(limits::words(job.surface_m, job.tank_m));
+    let up = if job.is_z_up { 1.0 } else { -1.0 };
+    let depth_m = job.surface_m.map(|surface_m| surface_m - up * measure.centroid_m[2]);
+    notes.extend(limits::words(depth_m, job.tank_m));
     if !job.is_z_up && !job.export.is_empty() {
-        notes.push("The exported files have z up, as wave programs ask for: turned about x by 180°.".to_owned());
+        notes.push(TURNED.to_owned());
     }
     notes.push(format!("Moments are about {reference}. Nothing here depends on frequency: no waves are computed."));
     let mut outcome = BodyOutcome {
@@ -485,8 +543,9 @@ fn geometry(
     let rows = (0..6)
         .map(|i| {
             // Rounding once takes three quarters of the distance to the smooth body away.
-            let apart = 4.0 / 3.0 * (round[i][i] - flat[i][i]);
             let value = case.refined.value[i][i];
+            // Less than nothing is not left of an entry.
+            let apart = (4.0 / 3.0 * (round[i][i] - flat[i][i])).max(-value);
             vec![
                 MOTIONS[i].to_owned(),
                 number::plain(density_kg_m3 * value, 6),
@@ -521,11 +580,8 @@ fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path, origin_m: Vec3) -
     let mut names = vec![PathBuf::from("pressure.vtp")];
     let pressure = pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, origin_m);
     write_atomically(&folder.join(&names[0]), pressure.as_bytes())?;
-    // Wave programs have z up: a mesh with z down is turned about x by half a turn, and y and z change their signs.
-    let sign = |i: usize| if job.is_z_up || matches!(i, 0 | 3) { 1.0 } else { -1.0 };
     let rows = |case: &Case| -> Vec<Vec<f64>> {
-        let entry = |i: usize, j: usize| sign(i) * sign(j) * outcome.density_kg_m3 * case.refined.value[i][j];
-        (0..6).map(|i| (0..6).map(|j| entry(i, j)).collect()).collect()
+        case.refined.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect()
     };
     // Deeply submerged both limits are the same.
     let limit = |is_lid: bool| outcome.cases.iter().rfind(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
@@ -533,20 +589,31 @@ fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path, origin_m: Vec3) -
     let body =
         outcome.name.chars().map(|c| if c.is_ascii_alphanumeric() || " -.".contains(c) { c } else { '-' }).collect();
     let bodies = [body];
-    let file = AddedMassFile {
-        density_kg_m3: outcome.density_kg_m3,
-        gravity_m_s2: G_M_S2,
-        length_m: 1.0,
-        bodies: &bodies,
-        zero_frequency: zero.as_deref(),
-        infinite_frequency: infinite.as_deref(),
-    };
     for extension in &job.export {
+        let axes = |m: &Option<Vec<Vec<f64>>>| m.as_ref().map(|m| for_program(m, extension, job.is_z_up));
+        let (zero, infinite) = (axes(&zero), axes(&infinite));
+        let file = AddedMassFile {
+            density_kg_m3: outcome.density_kg_m3,
+            gravity_m_s2: G_M_S2,
+            length_m: 1.0,
+            bodies: &bodies,
+            zero_frequency: zero.as_deref(),
+            infinite_frequency: infinite.as_deref(),
+        };
         let name = PathBuf::from(format!("added-mass.{extension}"));
         file.write(&folder.join(&name))?;
         names.push(name);
     }
     Ok(names)
+}
+
+/// A matrix in the axes that a format has. Wave programs have z up: a mesh with z down is turned about x by half a turn, and y and z change
+/// their signs. A CSV keeps the axes of the record.
+pub(super) fn for_program(matrix: &[Vec<f64>], extension: &str, is_z_up: bool) -> Vec<Vec<f64>> {
+    let is_turned = !is_z_up && extension != "csv";
+    let sign = |i: usize| if is_turned && !i.is_multiple_of(3) { -1.0 } else { 1.0 };
+    let row = |(i, row): (usize, &Vec<f64>)| row.iter().enumerate().map(|(j, a)| sign(i) * sign(j) * a).collect();
+    matrix.iter().enumerate().map(row).collect()
 }
 
 /// Pressure over unit acceleration on the whole body, −ρ φ, for each motion about the origin asked for.

@@ -1,6 +1,6 @@
 //! The matrix beside what closed forms, strips and printed tables give for the same or a like body.
 
-use froude_hydro::ellipsoid::ellipsoid_added_mass;
+use froude_hydro::ellipsoid::{ellipsoid_added_mass, ellipsoid_volume_m3};
 use froude_hydro::strip::{Station, strip_added_mass};
 use froude_hydro::tabulated::circular_cylinder_added_mass_m3;
 use froude_mesh::{Mesh, Vec3};
@@ -11,6 +11,8 @@ use froude_report::number;
 
 use super::refine::Refined;
 
+/// An ellipsoid in the body's box whose volume differs by more than this part is no yardstick.
+const LIKE: f64 = 0.3;
 /// Differences along x that count as one station, as part of the length.
 const SAME: f64 = 1e-9;
 
@@ -25,7 +27,10 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
     let (low, high) = bounds(mesh);
     let half: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] - low[a]));
     let centre: Vec3 = core::array::from_fn(|a| 0.5 * (high[a] + low[a]));
-    if let Ok(diagonal) = ellipsoid_added_mass(half) {
+    let ellipsoid_m3 = ellipsoid_volume_m3(half);
+    if let Ok(diagonal) = ellipsoid_added_mass(half)
+        && (refined.volume_m3 / ellipsoid_m3 - 1.0).abs() < LIKE
+    {
         let mut matrix = [[0.0; 6]; 6];
         (0..6).for_each(|i| matrix[i][i] = diagonal[i]);
         let moved = AddedMass { matrix, asymmetry: 0.0, origin_m: centre }.about(origin_m).matrix;

@@ -16,7 +16,7 @@ const MULTIPLES: [usize; 10] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48];
 const AROUND: usize = 8;
 const FLAT: f64 = 2.0;
 /// Subdivisions of a mesh from elsewhere that are tried.
-const SUBDIVISIONS: usize = 4;
+const SUBDIVISIONS: usize = 8;
 
 /// A body that can be meshed as finely as one likes.
 #[derive(Debug, Clone, PartialEq)]

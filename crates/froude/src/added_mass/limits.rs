@@ -3,6 +3,8 @@
 //! Sources: Newman 1977, ch. 6 (ω²d/g); Faltinsen & Timokha 2009, ch. 4 (sloshing).
 
 use froude_hydro::sloshing::rectangular_tank_modes_rad_s;
+use froude_mesh::Mesh;
+use froude_records::finding::{Finding, Severity};
 use froude_report::document::TextTable;
 use froude_report::number;
 
@@ -42,14 +44,40 @@ pub fn table(cases: &[Case], density_kg_m3: f64) -> Option<TextTable> {
     })
 }
 
+/// How far the body is from walls, bottom and surface: correction of a test depends on it.
+#[must_use]
+pub fn clearance(mesh: &Mesh, [length_m, breadth_m, depth_m]: [f64; 3], surface_m: f64) -> Finding {
+    let side = |axis: usize| {
+        let values = mesh.vertices.iter().map(|v| v[axis]);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
+    };
+    let [(x_low, x_high), (y_low, y_high), (z_low, z_high)] = [side(0), side(1), side(2)];
+    let m = |x: f64| number::plain(x, 3);
+    Finding::new(
+        Severity::Note,
+        "tank-clearance",
+        format!(
+            "the origin of the mesh lies in the middle of the tank's plan; from the body it is {} and {} m to the ends (−x, +x), {} and {} m to \
+             the sides (−y, +y), {} m to the bottom and {} m to the surface",
+            m(x_low + 0.5 * length_m),
+            m(0.5 * length_m - x_high),
+            m(y_low + 0.5 * breadth_m),
+            m(0.5 * breadth_m - y_high),
+            m(z_low - surface_m + depth_m),
+            m(surface_m - z_high)
+        ),
+    )
+}
+
 /// Where each limit holds.
 #[must_use]
-pub fn words(surface_m: Option<f64>, tank_m: Option<[f64; 3]>) -> Vec<String> {
-    let Some(depth_m) = surface_m.filter(|d| *d > 0.0) else { return Vec::new() };
+pub fn words(depth_m: Option<f64>, tank_m: Option<[f64; 3]>) -> Vec<String> {
+    let Some(depth_m) = depth_m.filter(|d| *d > 0.0) else { return Vec::new() };
     let at = |number: f64| (number * G_M_S2 / depth_m).sqrt();
     let mut out = vec![format!(
-        "With d = {depth_m} m of water over the origin, ω²d/g is {SLOW} at {:.2} rad/s ({:.2} Hz): slower motions are near the rigid lid; it \
+        "With d = {} m of water over the body's centre of buoyancy, ω²d/g is {SLOW} at {:.2} rad/s ({:.2} Hz): slower motions are near the rigid lid; it \
          is {FAST} at {:.2} rad/s ({:.2} Hz): faster ones are near φ = 0.",
+        number::plain(depth_m, 3),
         at(SLOW),
         at(SLOW) / core::f64::consts::TAU,
         at(FAST),
@@ -60,7 +88,7 @@ pub fn words(surface_m: Option<f64>, tank_m: Option<[f64; 3]>) -> Vec<String> {
     {
         out.push(format!(
             "The tank's first sloshing modes are {along:.2} rad/s ({:.2} Hz) along and {across:.2} rad/s ({:.2} Hz) across: near them neither \
-             limit holds; well below the first the lid does, well above φ = 0.",
+             limit holds; well below the first the lid does, well above all that the motion excites φ = 0.",
             along / core::f64::consts::TAU,
             across / core::f64::consts::TAU,
         ));

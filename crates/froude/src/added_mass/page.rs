@@ -167,17 +167,20 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
     let mut out = vec![if refined.steps.len() == 1 {
         "One mesh only: there is no numerical uncertainty; three meshes give one.".to_owned()
     } else if orders.is_empty() {
-        "No order of convergence can be seen on these meshes: the value is that of the finest one, with three times its distance from the \
-         others."
+        "No order of convergence can be seen on these meshes: values are extrapolated with the second order all the same; look at the meshes."
             .to_owned()
     } else {
         format!("Observed order of convergence: {}. Flat panels of constant potential have 2.", orders.join(", "))
     }];
     out.push(match &refined.stopped {
         None if refined.worst < 1e-4 => {
-            "The largest numerical uncertainty is less than 0.01 % of its entry.".to_owned()
+            "The largest numerical uncertainty is less than 0.01 %.".to_owned()
         }
-        None => format!("The largest numerical uncertainty is {:.2} % of its entry.", 100.0 * refined.worst),
+        None => format!(
+            "The largest numerical uncertainty is {:.2} %: of a diagonal entry, or of √(A_ii A_jj); a rotation counts as 1 % of the largest, or of \
+             ρV(L/2)², at least.",
+            100.0 * refined.worst
+        ),
         Some(why) if !refined.worst.is_finite() => format!("There is no finer one: {why}."),
         Some(why) => format!(
             "The largest numerical uncertainty is {:.2} %, more than was asked for: {why}.",
@@ -211,7 +214,7 @@ pub fn links_table(configurations: &[Configuration], density_kg_m3: f64) -> Text
         })
         .collect();
     TextTable {
-        caption: "Added mass of the configurations, deeply submerged; C_A = μ/(ρV) (USR eq. 15), and the sway mass over ρL³ as WAMIT prints \
+        caption: "Added mass of the configurations, deeply submerged; C_A = μ/(ρV) (USR eq. 22), and the sway mass over ρL³ as WAMIT prints \
                   it. ± is the numerical uncertainty, 95 %."
             .to_owned(),
         head: ["", "V [10⁻³ m³]", "μ_x [kg]", "μ_y [kg]", "μ_z [kg]", "C_Ax [1]", "C_Ay [1]", "C_Az [1]", "μ_y/(ρL³) [1]"]
@@ -325,11 +328,19 @@ pub fn links(
 #[must_use]
 pub fn body(outcome: &BodyOutcome, date: Option<String>) -> Document {
     let rho = outcome.density_kg_m3;
-    let mut sections = Vec::new();
+    let first = &outcome.cases[0];
+    let mut sections = vec![DocumentSection {
+        title: "Result".to_owned(),
+        paragraphs: outcome.notes.clone(),
+        tables: vec![super::limits::table(&outcome.cases, rho).unwrap_or_else(|| matrix_table(&first.refined, rho))],
+        charts: Vec::new(),
+    }];
     for case in &outcome.cases {
         sections.push(DocumentSection {
             title: case.title.clone(),
-            paragraphs: convergence_words(&case.refined),
+            paragraphs: std::iter::once(format!("{}.", case.surroundings))
+                .chain(convergence_words(&case.refined))
+                .collect(),
             tables: vec![
                 matrix_table(&case.refined, rho),
                 dimensionless_table(&case.refined, outcome.length_m),
@@ -340,7 +351,7 @@ pub fn body(outcome: &BodyOutcome, date: Option<String>) -> Document {
     }
     sections.push(DocumentSection {
         title: "Body".to_owned(),
-        paragraphs: outcome.notes.clone(),
+        paragraphs: Vec::new(),
         tables: outcome.tables.clone(),
         charts: Vec::new(),
     });

@@ -81,7 +81,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
         method: format!(
             "potential flow, constant panels, direct formulation, {}; meshes of {steps} panels{}",
             about.surroundings,
-            if refined.steps.len() > 2 { ", extrapolated" } else { "" }
+            if refined.steps.len() > 1 { ", extrapolated" } else { "" }
         ),
         covariance_kind: "numerical uncertainty of each entry alone, 95 %".to_owned(),
         dof: IndexMap::new(),

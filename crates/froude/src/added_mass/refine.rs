@@ -215,6 +215,8 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
 /// panels than are allowed.
 pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
     let length_m = extent(&family.member(0)?.mesh.mesh);
+    let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
+    let is_foreign = matches!(family, Family::Mesh(_));
     let mut steps: Vec<Step> = Vec::new();
     let mut finest = None;
     let mut stopped = None;
@@ -272,15 +274,15 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             measure: Measure::of(&member.mesh.mesh),
         });
         finest = Some(Finest { mesh: solved, mirrors: problem.mirrors, solution });
-        if steps.len() >= 3 && worst(&entries(&steps, length_m)) <= wanted.tolerance {
+        if steps.len() >= 3 && worst(&entries(&steps, length_m, is_foreign), least_m5) <= wanted.tolerance {
             break;
         }
     }
     let Some(finest) = finest else {
         return Err(Error::Nothing("the body has no mesh".to_owned()));
     };
-    let entries = entries(&steps, length_m);
-    let worst = worst(&entries);
+    let entries = entries(&steps, length_m, is_foreign);
+    let worst = worst(&entries, least_m5);
     let is_within = worst <= wanted.tolerance;
     let volumes: Vec<f64> = steps.iter().map(|s| s.measure.volume_m3).collect();
     let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
@@ -331,7 +333,7 @@ pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, 
 }
 
 /// Entries of the last three meshes together, or of two; of one no uncertainty.
-fn entries(steps: &[Step], length_m: f64) -> [[Entry; 6]; 6] {
+fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
     let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
     let solutions: Vec<Solution> = steps.iter().map(Step::solution).collect();
     let Some(last) = steps.last() else {
@@ -346,18 +348,21 @@ fn entries(steps: &[Step], length_m: f64) -> [[Entry; 6]; 6] {
     core::array::from_fn(|i| {
         core::array::from_fn(|j| {
             let c = &study.entries[i][j];
-            Entry { value: c.extrapolated.value, uncertainty: c.extrapolated.uncertainty, order: c.order }
+            // Triangles break the symmetry of a body: what a coupling owes to that does not fall in a row from mesh to mesh.
+            let root = (last.added_mass.matrix[i][i] * last.added_mass.matrix[j][j]).abs().sqrt();
+            let broken = if i == j || !is_foreign { 0.0 } else { last.added_mass.asymmetry * root };
+            Entry { value: c.extrapolated.value, uncertainty: c.extrapolated.uncertainty.max(broken), order: c.order }
         })
     })
 }
 
-/// A diagonal entry below this part of the largest of its kind is judged as if it were so large: the roll of a slender body.
-const ZERO: f64 = 1e-2;
+/// Part of what turning takes, the largest of a body or ρV(L/2)², that a rotation is judged as at least: the roll of a slender body.
+pub(super) const ZERO: f64 = 1e-2;
 
-/// Largest uncertainty of an entry over √(A_ii A_jj).
-fn worst(entries: &[[Entry; 6]; 6]) -> f64 {
-    let kind = |i: usize| (0..3).map(|k| entries[3 * (i / 3) + k][3 * (i / 3) + k].value.abs()).fold(0.0, f64::max);
-    let size = |i: usize| entries[i][i].value.abs().max(ZERO * kind(i));
+/// Largest uncertainty of an entry over √(A_ii A_jj); `least_m5` is what turning a body of this size may take.
+fn worst(entries: &[[Entry; 6]; 6], least_m5: f64) -> f64 {
+    let turning = (3..6).map(|k| entries[k][k].value.abs()).fold(least_m5, f64::max);
+    let size = |i: usize| entries[i][i].value.abs().max(if i < 3 { 0.0 } else { ZERO * turning });
     let mut out = 0.0_f64;
     for (i, row) in entries.iter().enumerate() {
         for (j, entry) in row.iter().enumerate() {

@@ -26,11 +26,11 @@ use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 use indexmap::IndexMap;
 
-use super::body::{BodyJob, is_body_file, load};
+use super::body::{BodyJob, TURNED, for_program, is_body_file, load};
 use super::family::{Family, robot};
 use super::links::{default_out, file_name, no_density};
 use super::record::{MOTIONS, unit};
-use super::refine::LOOSE;
+use super::refine::{LOOSE, ZERO};
 use crate::Error;
 
 /// What moves apart.
@@ -130,7 +130,10 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     };
     let meshes = solutions.len();
     let mut findings = loaded.findings;
-    let size = |i: usize| value[i][i].abs();
+    // As for one body: a roll that hardly resists counts as a part of what turning a body of this size takes.
+    let half = 0.5 * loaded.size.length_m;
+    let least = |i: usize| loaded.size.volume_m3 * if i % 6 < 3 { 1.0 } else { half * half };
+    let size = |i: usize| value[i][i].abs().max(ZERO * least(i));
     let worst = (0..n * n).map(|k| uncertainty[k / n][k % n] / (size(k / n) * size(k % n)).sqrt()).fold(0.0, f64::max);
     if worst.is_nan() || worst > job.wanted.tolerance {
         let told = if worst.is_finite() {
@@ -147,6 +150,9 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     }
     let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
     let mut notes = loaded.notes;
+    if !job.is_z_up && !job.export.is_empty() {
+        notes.push(TURNED.to_owned());
+    }
     tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3));
     let together = whole(&Solution { matrix: value.clone(), ..finest.clone() }, &Frame::at([0.0; 3]));
     tables.push(whole_table(&together, density_kg_m3));
@@ -154,17 +160,26 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         let form = diagonal_form(&Solution { matrix: value.clone(), ..finest });
         tables.push(diagonal_form_table(&form, density_kg_m3));
         notes.push(
-            "Equation 4 of the USR paper gives every link the same added mass across itself and none along, and no coupling of one link with \
-             another."
+            "Equation 4 of the USR paper gives each link an added mass across itself, none along, and no coupling of one link with another; with \
+             links of one size it is one number. It is fitted here to the plain links while all parts sway alike, each in its own axes."
+                .to_owned(),
+        );
+        notes.push(
+            "Parts are cut at the joints: only motions in which neighbours meet there have a meaning. A part that moves alone opens its joints, and \
+             an end that surges alone contains a source of water."
                 .to_owned(),
         );
     }
     let name = loaded.name;
+    let frame = match apart {
+        Apart::Links { .. } => "each part's own axes: x along it towards the head, z vertical".to_owned(),
+        Apart::Parts => format!("axes of the mesh, z {}", if job.is_z_up { "up" } else { "down" }),
+    };
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
         data: vec![DataFile { path: file_name(&job.input), sha256: sha256_of_file(&job.input)? }],
         versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, meshes)],
+        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, meshes, &frame, &notes)],
         findings,
     };
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
@@ -238,8 +253,8 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
     parts.extend((1..=links).map(|k| format!("link {k}")));
     parts.push("head".to_owned());
     let notes = vec![format!(
-        "Joints bent by {} each about z; every part has its point half-way between its joints, x along it towards the head, z vertical. Links \
-         count from the tail.",
+        "Joints bent by {} each about z, the tail's end lies as in the straight robot; every link has its point half-way between its joints, an \
+         end half-way between joint and tip; x along it towards the head, z vertical. Links count from the tail.",
         number::degrees(angle)
     )];
     let name = format!("{name}, H{links}LT, link by link");
@@ -366,7 +381,9 @@ fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> O
 fn whole_table(together: &AddedMass, density_kg_m3: f64) -> TextTable {
     let row = (0..6).map(|i| number::plain(density_kg_m3 * together.matrix[i][i], 6));
     TextTable {
-        caption: "All parts as one rigid body about the origin of the mesh, from the matrix: kg, kg m².".to_owned(),
+        caption: "All parts as one rigid body, from the matrix, about the origin of the mesh and in its axes (a robot's are those of the straight \
+                  chain, whose tail stays where it was): kg, kg m²."
+            .to_owned(),
         head: std::iter::once(String::new()).chain(MOTIONS.map(str::to_owned)).collect(),
         rows: vec![std::iter::once("whole".to_owned()).chain(row).collect()],
     }
@@ -395,6 +412,8 @@ fn record(
     uncertainty: &[Vec<f64>],
     density_kg_m3: f64,
     meshes: usize,
+    frame: &str,
+    notes: &[String],
 ) -> Estimate {
     let mut coefficients = IndexMap::new();
     for i in 0..value.len() {
@@ -424,7 +443,7 @@ fn record(
         law: Law { version: 1, ..Law::default() },
         geometry: IndexMap::new(),
         density: Some(Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() }),
-        frame: "each part's own axes".to_owned(),
+        frame: frame.to_owned(),
         reference_point: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
         method: format!(
             "potential flow, constant panels, direct formulation, unbounded water; {meshes} similar meshes{}",
@@ -438,7 +457,7 @@ fn record(
         covariance: None,
         undetermined: Vec::new(),
         validity: IndexMap::new(),
-        diagnostics: froude_records::estimate::Diagnostics::default(),
+        diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },
         recommended: true,
         reason: Some("the only model of its source".to_owned()),
     }
@@ -447,18 +466,19 @@ fn record(
 fn exports(outcome: &SeveralOutcome, job: &BodyJob, out: &Path) -> Result<Vec<PathBuf>, Error> {
     let rows: Vec<Vec<f64>> =
         outcome.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect();
-    let file = AddedMassFile {
-        density_kg_m3: outcome.density_kg_m3,
-        gravity_m_s2: G_M_S2,
-        length_m: 1.0,
-        bodies: &outcome.parts,
-        zero_frequency: Some(&rows),
-        infinite_frequency: Some(&rows),
-    };
     let mut formats = vec!["csv"];
     formats.extend(job.export.iter().filter(|e| **e != "csv"));
     let mut paths = Vec::new();
     for extension in formats {
+        let turned = for_program(&rows, extension, job.is_z_up);
+        let file = AddedMassFile {
+            density_kg_m3: outcome.density_kg_m3,
+            gravity_m_s2: G_M_S2,
+            length_m: 1.0,
+            bodies: &outcome.parts,
+            zero_frequency: Some(&turned),
+            infinite_frequency: Some(&turned),
+        };
         let path = out.join(format!("added-mass.{extension}"));
         file.write(&path)?;
         paths.push(path);
