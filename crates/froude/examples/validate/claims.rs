@@ -102,6 +102,21 @@ impl Claims {
     }
 }
 
+/// An old page with the sections of a new one in the place of its own of the same title, or at its end.
+pub fn with_sections_of(old: &str, new: &str) -> String {
+    let parts = |page: &str| -> Vec<String> { page.split("\n## ").map(str::to_owned).collect() };
+    let title = |section: &str| section.lines().next().unwrap_or_default().to_owned();
+    let mut out = parts(old);
+    for section in parts(new).into_iter().skip(1) {
+        let section = section.trim_end().to_owned() + "\n";
+        match out.iter().skip(1).position(|s| title(s) == title(&section)) {
+            Some(place) => out[place + 1] = section,
+            None => out.push(section),
+        }
+    }
+    out.join("\n## ")
+}
+
 fn mark(v: Verdict) -> &'static str {
     match v {
         Verdict::Pass => "pass",

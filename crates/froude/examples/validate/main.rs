@@ -1,8 +1,9 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, dynamic, potential, coverage); no page is
-//! written then. A line that misses its bar fails the run. A line whose data are absent counts as
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, dynamic, potential,
+//! coverage); no page is
+//! written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
 
 #[path = "../../../froude-panel/examples/coverage/bodies.rs"]
@@ -89,9 +90,15 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     print!("{}", claims.text());
-    if full && chosen.is_empty() {
+    let is_part = arguments.iter().any(|a| a == "--page");
+    if full && (chosen.is_empty() || is_part) {
         let page = root.join("book/src/validation.md");
-        if let Err(error) = std::fs::write(&page, claims.page(repetitions)) {
+        let mut text = claims.page(repetitions);
+        if !chosen.is_empty() {
+            let old = std::fs::read_to_string(&page).unwrap_or_default();
+            text = claims::with_sections_of(&old, &text);
+        }
+        if let Err(error) = std::fs::write(&page, text) {
             eprintln!("validate: {}: {error}", page.display());
             return ExitCode::FAILURE;
         }
