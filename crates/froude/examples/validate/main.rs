@@ -2,8 +2,8 @@
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
 //! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, dynamic, potential,
-//! coverage); no page is
-//! written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the run. A line whose data are absent counts as
+//! coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
+//! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
 
 #[path = "../../../froude-panel/examples/coverage/bodies.rs"]
