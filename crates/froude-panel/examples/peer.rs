@@ -6,7 +6,7 @@
 //!
 //! | case | body |
 //! | --- | --- |
-//! | spheroid-2000, spheroid-100000 | 6:1, in its closed form 0.045183, 0.917123 of its volume |
+//! | spheroid-2000, -20000, -100000 | 6:1, in its closed form 0.045183, 0.917123 of its volume |
 //! | robot-8064, robot-20064 | necked H3LT, joints bent by 10, −20, 25 and −15 degrees: no symmetry is used |
 //! | spectral-spheroid, spectral-capsule | 6:1, and a capsule of L/D 10, by azimuthal modes, to 1e-8 |
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
@@ -21,8 +21,15 @@ use froude_panel::chain::Chain;
 use froude_panel::problem::Problem;
 use froude_panel::revolution::{self, Stretch};
 
-const CASES: [&str; 6] =
-    ["spheroid-2000", "robot-8064", "robot-20064", "spheroid-100000", "spectral-spheroid", "spectral-capsule"];
+const CASES: [&str; 7] = [
+    "spheroid-2000",
+    "robot-8064",
+    "spheroid-20000",
+    "robot-20064",
+    "spheroid-100000",
+    "spectral-spheroid",
+    "spectral-capsule",
+];
 
 fn mesh(case: &str) -> Mesh {
     let spheroid =
@@ -36,6 +43,7 @@ fn mesh(case: &str) -> Mesh {
         "spheroid-2000" => spheroid(5, 40),
         "robot-8064" => robot(7, 48),
         "robot-20064" => robot(11, 76),
+        "spheroid-20000" => spheroid(20, 100),
         "spheroid-100000" => spheroid(40, 250),
         _ => panic!("{case} has no mesh"),
     }
