@@ -1,6 +1,5 @@
 //! `froude run` and `froude carriage …`: call, show progress, print.
 
-use std::io::{BufRead, IsTerminal, Write};
 use std::path::PathBuf;
 
 use froude::Error;
@@ -18,31 +17,28 @@ use froude::records::units::{Dimension, parse_quantity};
 use froude::report::document::TextTable;
 use froude::rig::campaign::plan::{PlannedRun, Step};
 use froude::rig::campaign::preflight::Objection;
-use froude::rig::campaign::runner::{Operator, Progress};
-use froude::rig::campaign::stop::StopSwitch;
-use froude::rig::drive::Sample;
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::args::{CarriageJob, Experiment};
 use crate::out::say;
 use crate::print;
+use crate::stage::Stage;
 
 /// `froude run`.
 pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_json: bool) -> Result<(), Error> {
     let prepared = prepare(&drive_job(campaign, out))?;
+    let stage = if check { None } else { Some(Stage::set(&prepared, yes, prepared.steps.len())?) };
     if !is_json {
         preflight(&prepared);
     }
-    if check {
+    let Some(Stage { switch, mut person, mut bar }) = stage else {
         if is_json {
             print::json(&preflight_json(&prepared))?;
         }
         return refused(&prepared, is_json);
-    }
-    let (switch, mut operator, mut progress) = stage(&prepared, yes)?;
-    let outcome = drive(&prepared, &switch, &mut operator, &mut progress);
-    progress.end();
+    };
+    let outcome = drive(&prepared, &switch, &mut person, &mut bar);
+    bar.end();
     let outcome = outcome?;
     if is_json {
         return print::json(&json!({
@@ -67,23 +63,6 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
 fn drive_job(campaign: PathBuf, out: Option<PathBuf>) -> DriveJob {
     let since = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default();
     DriveJob { campaign, out, start_unix_ns: since.as_nanos() as u64, date: crate::today() }
-}
-
-/// Ctrl-C, who confirms, and who is told.
-fn stage(prepared: &Prepared, yes: bool) -> Result<(StopSwitch, Person, Bar), Error> {
-    if yes && !prepared.is_twin() {
-        return Err(Error::Nothing(
-            "--yes is for the twin: on a real rig somebody must stand there and confirm each step".to_owned(),
-        ));
-    }
-    let switch = StopSwitch::default();
-    let pressed = switch.clone();
-    ctrlc::set_handler(move || {
-        pressed.press();
-        eprintln!("\nstopping the carriage under control; Ctrl-C again cuts the torque");
-    })
-    .map_err(|e| Error::Nothing(format!("Ctrl-C cannot be watched: {e}; nothing was moved")))?;
-    Ok((switch, Person { is_yes: yes }, Bar::new(prepared.steps.len())))
 }
 
 fn preflight(prepared: &Prepared) {
@@ -244,68 +223,6 @@ fn preflight_json(prepared: &Prepared) -> serde_json::Value {
 
 fn minutes(seconds: f64) -> String {
     if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.0} min", seconds / 60.0) }
-}
-
-/// The operator at the terminal.
-struct Person {
-    is_yes: bool,
-}
-
-impl Operator for Person {
-    fn confirm(&mut self, prompt: &str) -> bool {
-        if self.is_yes {
-            return true;
-        }
-        eprint!("\n>>> {prompt}; confirm with y and Enter (anything else stops): ");
-        let _ = std::io::stderr().flush();
-        let mut answer = String::new();
-        std::io::stdin().lock().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "yes")
-    }
-}
-
-/// Live progress on standard error.
-struct Bar {
-    bar: ProgressBar,
-    is_seen: bool,
-}
-
-impl Bar {
-    fn new(steps: usize) -> Self {
-        let bar = ProgressBar::new(steps as u64);
-        if let Ok(style) = ProgressStyle::with_template("{elapsed_precise} [{bar:24}] {pos}/{len} {msg}") {
-            bar.set_style(style);
-        }
-        Self { bar, is_seen: std::io::stderr().is_terminal() }
-    }
-
-    fn end(&self) {
-        self.bar.finish_and_clear();
-    }
-}
-
-impl Progress for Bar {
-    fn run_begins(&mut self, run: &PlannedRun, number: usize, total: usize) {
-        self.bar.set_length(total as u64);
-        self.bar.set_position(number as u64 - 1);
-        if !self.is_seen {
-            eprintln!("{number}/{total} {}", run.id);
-        }
-    }
-
-    fn sample(&mut self, run: &PlannedRun, sample: &Sample, time_s: f64) {
-        if self.is_seen {
-            let y = &sample.axes[run.axis as usize];
-            let force = sample.force_n.map_or_else(String::new, |f| format!(", sensor {f:.2} N"));
-            self.bar.set_message(format!(
-                "{} {time_s:.1} s: {:.3} m, {:.3} m/s, {:.2} V, {:.2} A{force}",
-                run.id, y.position_m, y.reference_m_s, y.command_v, y.current_a
-            ));
-        }
-    }
-
-    fn say(&mut self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
-    }
 }
 
 /// `froude carriage …`.
@@ -476,16 +393,16 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     Ok(())
 }
 
-fn experiment(e: &Experiment) -> Result<(DriveJob, StopSwitch, Person, Bar), Error> {
+fn experiment(e: &Experiment) -> Result<(DriveJob, Stage), Error> {
     let job = drive_job(e.campaign.clone(), e.out.clone());
     let prepared = prepare(&job)?;
-    let steps = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
-    let (switch, person, _) = stage(&prepared, e.yes)?;
-    Ok((job, switch, person, Bar::new(steps.min(3))))
+    let runs = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
+    let stage = Stage::set(&prepared, e.yes, runs.min(3))?;
+    Ok((job, stage))
 }
 
 fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
-    let (job, switch, mut person, mut bar) = experiment(&e)?;
+    let (job, Stage { switch, mut person, mut bar }) = experiment(&e)?;
     let outcome = tune(&job, &switch, &mut person, &mut bar);
     bar.end();
     let outcome = outcome?;
@@ -523,7 +440,7 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
 }
 
 fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
-    let (job, switch, mut person, mut bar) = experiment(&e)?;
+    let (job, Stage { switch, mut person, mut bar }) = experiment(&e)?;
     let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
     bar.end();
     let outcome = outcome?;

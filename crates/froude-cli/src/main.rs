@@ -8,6 +8,7 @@ mod args;
 mod carriage;
 mod out;
 mod print;
+mod stage;
 
 use std::process::ExitCode;
 
@@ -23,7 +24,7 @@ fn main() -> ExitCode {
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("froude: {error}");
+            out::tell!("froude: {error}");
             ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
         }
     }

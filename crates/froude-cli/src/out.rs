@@ -1,11 +1,24 @@
 //! Lines on standard output, without a panic when nobody reads them.
 
 use std::io::Write as _;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What is done does not end with whoever reads about it.
+static GOES_ON_UNREAD: AtomicBool = AtomicBool::new(false);
+
+/// From now on a reader that goes away ends nothing: for verbs that do more than print. Who drives a carriage neither stops half way nor leaves it
+/// undriven and calls that done, because `| head -1` has seen enough.
+pub fn go_on_unread() {
+    GOES_ON_UNREAD.store(true, Ordering::Relaxed);
+}
 
 /// Prints a line; ends quietly when nobody reads any more (`froude … | head`), and says so when standard output fails.
 pub fn line(text: std::fmt::Arguments<'_>) {
     if let Err(error) = writeln!(std::io::stdout(), "{text}") {
         if error.kind() == std::io::ErrorKind::BrokenPipe {
+            if GOES_ON_UNREAD.load(Ordering::Relaxed) {
+                return;
+            }
             std::process::exit(0);
         }
         let _ = writeln!(std::io::stderr(), "froude: cannot write to standard output: {error}");
@@ -18,3 +31,14 @@ macro_rules! say {
     ($($text:tt)*) => { $crate::out::line(format_args!($($text)*)) };
 }
 pub(crate) use say;
+
+/// Says a line on standard error; where nobody reads that either, there is nobody to say it to.
+pub fn aside(text: std::fmt::Arguments<'_>) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// `eprintln!` that does not panic.
+macro_rules! tell {
+    ($($text:tt)*) => { $crate::out::aside(format_args!($($text)*)) };
+}
+pub(crate) use tell;

@@ -124,6 +124,11 @@ pub trait Rig {
         1
     }
 
+    /// Whether its time passes by itself: a real rig has to be listened to whatever else happens; a twin's passes only when it is ticked.
+    fn is_real_time(&self) -> bool {
+        false
+    }
+
     /// Begins a run with what the operator has mounted. Nothing to do on a real rig.
     fn begin_run(&mut self, load: &Load, run_number: u64);
 

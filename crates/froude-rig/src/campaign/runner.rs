@@ -4,6 +4,9 @@
 //! early is told apart and kept: the operator (category 2), a fault of the controller (its own category), a recorder that can
 //! write no more (category 1), a rig that no longer answers (its own watchdog). Whatever was recorded by then stays, marked
 //! `interrupted` or `faulted`; a resumed campaign does that run again.
+//!
+//! Here the campaign goes on step by step, asks and records. The rig is ticked by a thread of its own, which carries out one order after the
+//! other (a `Session` each).
 
 use std::path::{Path, PathBuf};
 
@@ -11,15 +14,15 @@ use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_records::RecordError;
-use froude_records::run::{
-    AxisConstants, AxisSample, BodyState, CarriageSample, ClockAlignment, EventKind, Layout, Packing, Recorder,
-    RunMeta, RunStatus, read_run_meta,
-};
+use froude_records::run::{AxisConstants, BodyState, EventKind, RunStatus, read_run_meta};
 use indexmap::IndexMap;
 
 use froude_records::carriage::CarriagePlan;
 
+use super::hand_over::{Engine, Helm, hand_over};
 use super::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
+use super::recording::{Recording, RigFacts};
+use super::rig_thread::{self, Ended, Entry, Order};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample};
 use crate::load::Load;
@@ -34,11 +37,28 @@ pub enum RunnerError {
         /// The run.
         run: String,
     },
+    /// The operator asked for it while being asked.
+    #[error("stopped by the operator, who was asked: {prompt}; run the campaign again to go on from there")]
+    StoppedWaiting {
+        /// What was asked.
+        prompt: String,
+    },
     /// The operator does not go on.
     #[error("the operator did not confirm: {prompt}")]
     NotConfirmed {
         /// What was asked.
         prompt: String,
+    },
+    /// A fault while nothing was to move: the operator was asked, or logs were read.
+    #[error(
+        "fault between two runs, while nothing was to move: {fault:?} (category {category} stop). Mend the cause, then run the \
+         campaign again: it goes on from there"
+    )]
+    FaultAtRest {
+        /// The fault.
+        fault: Fault,
+        /// How it was stopped.
+        category: u8,
     },
     /// The controller latched a fault.
     #[error(
@@ -89,9 +109,25 @@ pub enum RunnerError {
     /// Recording failed; the carriage was stopped (category 1).
     #[error("the carriage was stopped because it can no longer be recorded: {0}")]
     Record(#[from] RecordError),
+    /// What was recorded came too late to the disk; the carriage was stopped (category 1).
+    #[error(
+        "the carriage was stopped in {run} because the disk is {} s behind it; free the disk of other work, or record to another \
+         one (--out)",
+        rig_thread::PATIENCE_S
+    )]
+    Behind {
+        /// The run.
+        run: String,
+    },
     /// The rig does not answer.
     #[error(transparent)]
     Rig(#[from] RigError),
+    /// The thread that ticks the rig did not start, or did not live.
+    #[error("the thread that ticks the rig: {reason}; the board's own watchdog stops the carriage")]
+    Thread {
+        /// What happened.
+        reason: String,
+    },
     /// A folder.
     #[error("{}: {reason}", path.display())]
     Folder {
@@ -113,9 +149,13 @@ impl RunnerError {
 
 /// Who confirms the operator's steps.
 pub trait Operator {
-    /// Asks; `true` when it is done.
-    fn confirm(&mut self, prompt: &str) -> bool;
+    /// Asks; `true` when it is done. Takes as long as it takes: the rig is looked after meanwhile. When `is_over` says so, nobody waits for
+    /// the answer any more, and it is `false`.
+    fn confirm(&mut self, prompt: &str, is_over: &dyn Fn() -> bool) -> bool;
 }
+
+/// What is asked before the first motion.
+const CLEAR: &str = "Homing moves both axes now: both ways are clear, and somebody stands at the emergency stop";
 
 /// Who is told how it goes.
 pub trait Progress {
@@ -182,58 +222,157 @@ pub struct Outcome {
 pub fn drive(
     steps: &[Step],
     setting: &Setting,
-    rig: &mut dyn Rig,
+    rig: &mut (dyn Rig + Send),
     switch: &StopSwitch,
     operator: &mut dyn Operator,
     progress: &mut dyn Progress,
     enough: &mut Enough<'_>,
 ) -> Result<Outcome, RunnerError> {
-    let total = steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
-    let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None };
-    let mut mounted: Option<OperatorStep> = None;
-    let mut is_prepared = false;
-    let mut number = 0;
-    for step in steps {
-        let run = match step {
-            Step::Operator(step) => {
-                // Asked when a run needs it, so that a resumed campaign does not ask for what is past.
-                mounted = Some(step.clone());
+    let facts = RigFacts::of(rig);
+    let (pace, capacity) = rig_thread::pace(rig);
+    let (helm, engine) = hand_over(pace, capacity);
+    std::thread::scope(|scope| {
+        let attend = move || rig_thread::attend(rig, engine, setting, switch);
+        let thread = std::thread::Builder::new().name("rig".to_owned()).spawn_scoped(scope, attend);
+        thread.map_err(|e| RunnerError::Thread { reason: e.to_string() })?;
+        Campaign { steps, setting, helm, facts, switch, operator, progress }.drive(enough)
+    })
+}
+
+/// The side of the campaign: it orders, asks and records.
+struct Campaign<'a, 'b> {
+    steps: &'a [Step],
+    setting: &'a Setting,
+    helm: Helm<Order<'a>, Entry>,
+    facts: RigFacts,
+    switch: &'a StopSwitch,
+    operator: &'b mut dyn Operator,
+    progress: &'b mut dyn Progress,
+}
+
+impl<'a> Campaign<'a, '_> {
+    fn drive(mut self, enough: &mut Enough<'_>) -> Result<Outcome, RunnerError> {
+        let folder = &self.setting.folder;
+        let total = self.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
+        let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None };
+        let mut mounted: Option<OperatorStep> = None;
+        let mut is_prepared = false;
+        let mut number = 0;
+        for step in self.steps {
+            let run = match step {
+                Step::Operator(step) => {
+                    // Asked when a run needs it, so that a resumed campaign does not ask for what is past.
+                    mounted = Some(step.clone());
+                    continue;
+                }
+                Step::Run(run) => run,
+            };
+            number += 1;
+            if outcome.enough.is_some() && run.pair.is_some() {
+                outcome.spared += 1;
                 continue;
             }
-            Step::Run(run) => run,
-        };
-        number += 1;
-        if outcome.enough.is_some() && run.pair.is_some() {
-            outcome.spared += 1;
-            continue;
-        }
-        if is_complete(&setting.folder, &run.id)? {
-            outcome.resumed += 1;
-            // What was known then is known now: a campaign that had stopped stays stopped.
-            let known = enough(&setting.folder.join(format!("{}.mcap", run.id)), run);
-            outcome.enough = outcome.enough.or(known);
-            continue;
-        }
-        if let Some(step) = mounted.take()
-            && !operator.confirm(&step.prompt)
-        {
-            return Err(RunnerError::NotConfirmed { prompt: step.prompt });
-        }
-        progress.run_begins(run, number, total);
-        rig.begin_run(&load_of(run, &setting.load), number as u64);
-        let mut session = Session { setting, rig, switch, progress, run, recorder: None, row: Vec::new(), tick: None };
-        if !is_prepared {
-            session.prepare()?;
+            if is_complete(folder, &run.id)? {
+                outcome.resumed += 1;
+                // What was known then is known now: a campaign that had stopped stays stopped.
+                let known = enough(&folder.join(format!("{}.mcap", run.id)), run);
+                outcome.enough = outcome.enough.or(known);
+                continue;
+            }
+            if let Some(step) = mounted.take() {
+                self.confirm(step.prompt)?;
+            }
+            if !is_prepared {
+                self.confirm(CLEAR.to_owned())?;
+            }
+            self.progress.run_begins(run, number, total);
+            let path = self.drive_run(run, number as u64, !is_prepared)?;
             is_prepared = true;
+            outcome.driven += 1;
+            if let Some(why) = enough(&path, run) {
+                self.progress.say(&why);
+                outcome.enough = Some(why);
+            }
         }
-        let path = session.drive_run()?;
-        outcome.driven += 1;
-        if let Some(why) = enough(&path, run) {
-            progress.say(&why);
-            outcome.enough = Some(why);
-        }
+        Ok(outcome)
     }
-    Ok(outcome)
+
+    fn confirm(&mut self, prompt: String) -> Result<(), RunnerError> {
+        let (switch, helm) = (self.switch, &self.helm);
+        let is_over = || switch.is_asked() || helm.is_in_trouble();
+        let is_confirmed = self.operator.confirm(&prompt, &is_over);
+        if self.helm.is_in_trouble() {
+            self.carry_out(Order::Report, None, &mut None)?.result?;
+        }
+        if self.switch.is_asked() {
+            return Err(RunnerError::StoppedWaiting { prompt });
+        }
+        if is_confirmed { Ok(()) } else { Err(RunnerError::NotConfirmed { prompt }) }
+    }
+
+    /// One run from its approach to its log, which is closed whatever happens.
+    fn drive_run(&mut self, run: &'a PlannedRun, number: u64, is_first: bool) -> Result<PathBuf, RunnerError> {
+        let begun = self.carry_out(Order::Begin { run, number, is_first }, Some(run), &mut None)?;
+        begun.result?;
+        let mut recording = Some(Recording::create(self.setting, run, &self.facts, &begun.last)?);
+        let driven = self.carry_out(Order::Drive(run), Some(run), &mut recording);
+        let (driven, clock) = match driven {
+            Ok(ended) => (ended.result, ended.clock),
+            Err(error) => (Err(error), None),
+        };
+        let status = driven.as_ref().map_or_else(RunnerError::status, |()| RunStatus::Complete);
+        let note = match &driven {
+            Ok(()) => None,
+            Err(RunnerError::Record(_)) => Some("the disk took no more".to_owned()),
+            Err(error) => Some(error.to_string()),
+        };
+        let path = recording.map(|r| r.finish(status, note, clock)).transpose();
+        // A log that cannot be closed after it could not be written is no second failure.
+        driven?;
+        Ok(path?.unwrap_or_default())
+    }
+
+    /// Has an order carried out; what comes meanwhile is recorded and shown. A record that fails stops the carriage.
+    fn carry_out(
+        &mut self,
+        order: Order<'a>,
+        run: Option<&PlannedRun>,
+        recording: &mut Option<Recording<'a>>,
+    ) -> Result<Ended, RunnerError> {
+        self.helm.order(order);
+        let tick_s = 1.0 / (self.facts.rate_hz * self.facts.ticks_per_sample as f64);
+        let mut failed = None;
+        let mut entries = Vec::new();
+        while self.helm.take(&mut entries) {
+            for entry in entries.drain(..) {
+                let recorded = match (&entry, &mut *recording) {
+                    _ if failed.is_some() => Ok(()),
+                    (Entry::Sample(number, sample), Some(recording)) => recording.sample(*number, sample),
+                    (Entry::Event(kind, sentence), Some(recording)) => recording.event(kind, sentence),
+                    _ => Ok(()),
+                };
+                if let Err(error) = recorded {
+                    self.helm.give_up();
+                    failed = Some(error);
+                }
+                match entry {
+                    Entry::Sample(number, sample) if number.is_multiple_of(TOLD_EVERY) => {
+                        if let Some(run) = run {
+                            self.progress.sample(run, &sample, number as f64 * tick_s);
+                        }
+                    }
+                    Entry::Ended(ended) => {
+                        return match failed {
+                            Some(error) => Err(error.into()),
+                            None => Ok(ended),
+                        };
+                    }
+                    _ => {}
+                }
+            }
+        }
+        Err(RunnerError::Thread { reason: "it has ended by itself".to_owned() })
+    }
 }
 
 /// Whether a run lies there complete; an incomplete one is put aside.
@@ -287,26 +426,51 @@ const STOP_S: f64 = 20.0;
 /// A request that is neither carried out nor refused within this many ticks is asked again on a line that loses frames.
 const PATIENCE: usize = 400;
 
-struct Session<'a> {
+/// An order being carried out, on the rig's thread.
+pub(super) struct Session<'a, 'o> {
     setting: &'a Setting,
     rig: &'a mut dyn Rig,
     switch: &'a StopSwitch,
-    progress: &'a mut dyn Progress,
+    engine: &'a mut Engine<Order<'o>, Entry>,
     run: &'a PlannedRun,
-    recorder: Option<Recorder>,
-    row: Vec<f64>,
-    /// Board's tick at which recording began.
+    is_recorded: bool,
+    /// Board's tick at which the order began.
     tick: Option<u64>,
+    last: Sample,
 }
 
-impl Session<'_> {
+impl<'a, 'o> Session<'a, 'o> {
+    pub(super) fn new(
+        setting: &'a Setting,
+        rig: &'a mut dyn Rig,
+        switch: &'a StopSwitch,
+        engine: &'a mut Engine<Order<'o>, Entry>,
+        run: &'a PlannedRun,
+        is_recorded: bool,
+    ) -> Self {
+        Self { setting, rig, switch, engine, run, is_recorded, tick: None, last: Sample::default() }
+    }
+
+    /// Carries the order out and says how it ended.
+    pub(super) fn ordered(mut self, order: impl FnOnce(&mut Self) -> Result<(), RunnerError>) -> Ended {
+        let result = order(&mut self);
+        let clock = self.tick.and_then(|tick| self.rig.host_clock(tick));
+        Ended { result, last: self.last, clock }
+    }
+
     fn axis(&self) -> usize {
         self.run.axis as usize
     }
 
-    /// Whether the short axis is recorded: it is declared, or it is the one that moves.
-    fn has_x(&self) -> bool {
-        self.setting.constants.contains_key("x") || self.run.axis == froude_records::run::Axis::X
+    /// Goes to where the run starts and waits for the water; the last sample says what the rig has to be recorded.
+    pub(super) fn begin(&mut self, number: u64, is_first: bool) -> Result<(), RunnerError> {
+        self.rig.begin_run(&load_of(self.run, &self.setting.load), number);
+        if is_first {
+            self.prepare()?;
+        }
+        self.approach()?;
+        self.wait(self.run.settle_s)?;
+        self.tick(None).map(drop)
     }
 
     /// Enables and homes both axes.
@@ -317,22 +481,6 @@ impl Session<'_> {
             self.until("homing", HOMING_S, |s| s.axes[axis].is_homed && s.axes[axis].phase == Phase::Holding)?;
         }
         Ok(())
-    }
-
-    /// The whole run; the record is closed whatever happens.
-    fn drive_run(mut self) -> Result<PathBuf, RunnerError> {
-        self.approach()?;
-        self.wait(self.run.settle_s)?;
-        self.begin_record()?;
-        let driven = self.motion();
-        let status = driven.as_ref().map_or_else(RunnerError::status, |()| RunStatus::Complete);
-        if let (Some(recorder), Err(error)) = (&mut self.recorder, &driven) {
-            recorder.meta_mut().note = error.to_string();
-        }
-        self.align_clock();
-        let path = self.recorder.take().map(|r| r.finish(status)).transpose();
-        driven?;
-        Ok(path?.unwrap_or_default())
     }
 
     /// Goes to where the run starts: as fast as allowed, with a hung weight no faster than the run itself; more slowly where the coast
@@ -377,23 +525,11 @@ impl Session<'_> {
         self.until("the move", limit_s, |s| s.axes[axis].phase == Phase::Holding)
     }
 
-    /// Where the record's first tick lies on the host's clock.
-    fn align_clock(&mut self) {
-        let clock = self.tick.and_then(|tick| self.rig.host_clock(tick));
-        if let (Some(recorder), Some(clock)) = (&mut self.recorder, clock) {
-            recorder.meta_mut().clock = Some(ClockAlignment {
-                host_at_zero_s: clock.unix_s - 1e-9 * self.setting.start_unix_ns as f64,
-                drift: clock.drift,
-                standard_uncertainty_s: clock.standard_uncertainty_s,
-            });
-        }
-    }
-
     /// Still, motion, still.
-    fn motion(&mut self) -> Result<(), RunnerError> {
+    pub(super) fn motion(&mut self) -> Result<(), RunnerError> {
         let still_s = self.setting.asked.still_s;
         self.wait(still_s)?;
-        self.event(EventKind::Phase, "the motion begins")?;
+        self.event(EventKind::Phase, "the motion begins");
         match self.run.drive {
             Drive::Profile { to_m, speed_m_s, .. } => self.go(to_m, speed_m_s)?,
             Drive::Pulses { volts, period_s, duty, duration_s, .. } => {
@@ -410,7 +546,7 @@ impl Session<'_> {
                 self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?;
             }
         }
-        self.event(EventKind::Phase, "the motion has ended")?;
+        self.event(EventKind::Phase, "the motion has ended");
         self.wait(still_s)
     }
 
@@ -465,63 +601,51 @@ impl Session<'_> {
                 return Ok(());
             }
         }
-        self.come_to_rest(StopCategory::One)?;
+        self.come_to_rest(Request::Stop(StopCategory::One), None)?;
         Err(RunnerError::TooLong { run: self.run.id.clone(), what, limit_s })
     }
 
-    /// One tick: driven, recorded, watched.
+    /// One tick: driven, handed over, watched. Who asked for a stop gets it before anything else is asked of the rig.
     fn tick(&mut self, request: Option<Request>) -> Result<Sample, RunnerError> {
-        let sample = self.rig.tick(request)?;
-        if let Err(error) = self.record(&sample) {
-            self.come_to_rest_for_recorder()?;
-            return Err(error.into());
+        match self.switch.asked() {
+            Asked::Nothing => {}
+            Asked::Stop => return Err(self.stopped(StopCategory::Two, "the operator asked for a stop (category 2)")),
+            Asked::Cut => return Err(self.stopped(StopCategory::Zero, "the operator cut the torque (category 0)")),
         }
+        if self.engine.is_unrecorded() {
+            self.come_to_rest(Request::RecorderFailed, None)?;
+            return Err(RunnerError::Behind { run: self.run.id.clone() });
+        }
+        let sample = self.rig_tick(request)?;
         if let Some((fault, _)) = sample.fault {
             let sentence = format!("{fault:?}: category {} stop", fault.category() as u8);
-            self.event(EventKind::Fault, &sentence)?;
+            self.event(EventKind::Fault, &sentence);
             self.until_rest()?;
             let (run, category) = (self.run.id.clone(), fault.category() as u8);
-            return Err(if self.recorder.is_some() {
+            return Err(if self.is_recorded {
                 RunnerError::Fault { run, fault, category }
             } else {
                 RunnerError::FaultBefore { run, fault, category }
             });
         }
-        match self.switch.asked() {
-            Asked::Nothing => Ok(sample),
-            Asked::Stop => {
-                self.event(EventKind::Operator, "the operator asked for a stop (category 2)")?;
-                self.come_to_rest(StopCategory::Two)?;
-                Err(RunnerError::Stopped { run: self.run.id.clone() })
-            }
-            Asked::Cut => {
-                self.event(EventKind::Operator, "the operator cut the torque (category 0)")?;
-                self.come_to_rest(StopCategory::Zero)?;
-                Err(RunnerError::Stopped { run: self.run.id.clone() })
-            }
+        Ok(sample)
+    }
+
+    /// Stops because the operator asked for it.
+    fn stopped(&mut self, category: StopCategory, sentence: &str) -> RunnerError {
+        match self.come_to_rest(Request::Stop(category), Some(sentence)) {
+            Ok(()) => RunnerError::Stopped { run: self.run.id.clone() },
+            Err(error) => error,
         }
     }
 
-    /// Asks for a stop and goes on ticking and recording until both axes are at rest; a second press of the switch cuts.
-    fn come_to_rest(&mut self, category: StopCategory) -> Result<(), RunnerError> {
-        let sample = self.rig.tick(Some(Request::Stop(category)))?;
-        self.record(&sample)?;
-        self.until_rest()
-    }
-
-    fn come_to_rest_for_recorder(&mut self) -> Result<(), RunnerError> {
-        self.recorder_gone();
-        self.rig.tick(Some(Request::RecorderFailed))?;
-        self.until_rest()
-    }
-
-    /// What is recorded is closed by the recorder itself; nothing more goes there.
-    fn recorder_gone(&mut self) {
-        if let Some(mut recorder) = self.recorder.take() {
-            "the disk took no more".clone_into(&mut recorder.meta_mut().note);
-            // Its failure is what is being told.
-            let _ = recorder.finish(RunStatus::Interrupted);
+    /// Asks for a stop, then says so, and goes on ticking and recording until both axes are at rest; a second press of the switch cuts.
+    fn come_to_rest(&mut self, request: Request, sentence: Option<&str>) -> Result<(), RunnerError> {
+        self.rig_tick(Some(request))?;
+        if let Some(sentence) = sentence {
+            self.event(EventKind::Operator, sentence);
         }
+        self.until_rest()
     }
 
     /// Goes on until both axes are at rest, and a tenth of a second more, so that the record shows it.
@@ -533,8 +657,7 @@ impl Session<'_> {
                 is_cut = true;
                 Request::Stop(StopCategory::Zero)
             });
-            let sample = self.rig.tick(request)?;
-            self.record(&sample)?;
+            let sample = self.rig_tick(request)?;
             let is_at_rest = sample.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Holding));
             rest_ticks = if is_at_rest { rest_ticks + 1.0 } else { 0.0 };
             if rest_ticks >= 0.1 * self.rig.rate_hz() {
@@ -544,100 +667,22 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn begin_record(&mut self) -> Result<(), RunnerError> {
-        let probe = self.tick(None)?;
-        let run = self.run;
-        let setting = self.setting;
-        let rate_hz = self.rig.rate_hz() * self.rig.ticks_per_sample() as f64 / setting.decimation as f64;
-        let meta = RunMeta {
-            campaign: setting.campaign.clone(),
-            id: run.id.clone(),
-            kind: run.kind,
-            set: run.set,
-            pair: run.pair,
-            repeat: run.pair,
-            axis: run.axis,
-            target_speed_m_s: run.speed_m_s(),
-            direction: run.direction(),
-            body: run.body,
-            is_ballasted: run.is_ballasted,
-            hung_weight_n: (run.kind == froude_records::run::RunKind::Calibration).then_some(run.hung_weight_n),
-            rig: setting.constants.clone(),
-            constants: IndexMap::new(),
-            status: RunStatus::Running,
-            note: String::new(),
-            versions: IndexMap::from([
-                ("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
-                ("board".to_owned(), self.rig.version()),
-            ]),
-            twin_seed: setting.twin_seed,
-            clock: None,
-            log_rate_hz: rate_hz,
-            date: setting.date.clone(),
-            start_unix_ns: setting.start_unix_ns,
-        };
-        let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };
-        let layout = Layout::carriage(self.has_x(), probe.force_n.is_some(), truths)?;
-        self.recorder = Some(Recorder::create(&setting.folder, meta, layout, Packing::Lz4)?);
-        self.tick = None;
-        Ok(())
+    /// One tick of the rig; its sample is handed over where it is due to be recorded or shown.
+    fn rig_tick(&mut self, request: Option<Request>) -> Result<Sample, RunnerError> {
+        let sample = self.rig.tick(request)?;
+        self.last = sample;
+        let number = sample.tick - *self.tick.get_or_insert(sample.tick);
+        let is_due = self.is_recorded && number.is_multiple_of(self.setting.decimation);
+        if is_due || number.is_multiple_of(TOLD_EVERY) {
+            self.engine.offer(Entry::Sample(number, sample));
+        }
+        Ok(sample)
     }
 
-    fn event(&mut self, kind: EventKind, sentence: &str) -> Result<(), RunnerError> {
-        if let Some(recorder) = &mut self.recorder {
-            let tick = recorder.ticks();
-            recorder.event(tick, &kind, sentence)?;
-        }
-        Ok(())
-    }
-
-    fn record(&mut self, sample: &Sample) -> Result<(), RecordError> {
-        let first = *self.tick.get_or_insert(sample.tick);
-        let number = sample.tick - first;
-        if number.is_multiple_of(TOLD_EVERY) {
-            self.progress.sample(
-                self.run,
-                sample,
-                number as f64 / (self.rig.rate_hz() * self.rig.ticks_per_sample() as f64),
-            );
-        }
-        let has_x = self.has_x();
-        let Some(recorder) = &mut self.recorder else { return Ok(()) };
-        if !number.is_multiple_of(self.setting.decimation) {
-            return Ok(());
-        }
-        let axis = |i: usize| {
-            let a = &sample.axes[i];
-            let fault = sample.fault.filter(|&(_, on)| usize::from(on) == i || usize::from(on) >= sample.axes.len());
-            AxisSample {
-                encoder: a.count,
-                position_m: a.position_m,
-                reference_position_m: a.reference_m,
-                reference_velocity_m_s: a.reference_m_s,
-                reference_acceleration_m_s2: a.reference_m_s2,
-                command_v: a.command_v,
-                current_a: a.current_a,
-                state: a.phase as u8,
-                fault: fault.map_or(0, |(f, _)| f as u8),
-            }
-        };
-        let row = CarriageSample { y: axis(0), x: has_x.then(|| axis(1)), force_n: sample.force_n.unwrap_or(0.0) };
-        let mut truths = [0.0; TRUTHS.len()];
-        let n = match &sample.truth {
-            Some([y, _]) => {
-                truths = [y.load_position_m, y.load_speed_m_s, y.drag_n, y.spring_n];
-                truths.len()
-            }
-            None => 0,
-        };
-        row.row(sample.force_n.is_some(), &truths[..n], &mut self.row);
-        recorder.record(number / self.setting.decimation, &self.row)
+    fn event(&mut self, kind: EventKind, sentence: &str) {
+        self.engine.put(Entry::Event(kind, sentence.to_owned()));
     }
 }
 
 /// Ticks between two words to whoever watches: thirty a second.
 const TOLD_EVERY: u64 = 133;
-
-/// What only the twin knows, for tests and for looking on; no identification reads it.
-const TRUTHS: [(&str, &str); 4] =
-    [("truth/y/load_position", "m"), ("truth/y/load_velocity", "m/s"), ("truth/y/drag", "N"), ("truth/y/spring", "N")];

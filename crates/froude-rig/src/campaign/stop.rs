@@ -1,11 +1,21 @@
-//! The operator's stop: the first request stops under control and holds (category 2), the second cuts the torque (category 0).
+//! The operator's stop: the first Ctrl-C stops under control and holds (category 2), the second cuts the torque (category 0).
+//!
+//! A signal's handler sets flags and nothing else. That a stop was asked for is one flag which nobody clears, so that everybody may look at it.
+//! Presses are counted by one thread alone, the rig's, at every tick: two presses are two as soon as a quarter of a millisecond lies
+//! between them.
+//!
+//! SIGTERM and SIGHUP stop under control however often they come: a terminal that is closed hangs up twice, once by itself and once by its
+//! shell, and that must not cut the torque.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU8, Ordering};
+use super::sync::{Arc, AtomicBool, AtomicU8, Ordering};
 
-/// Shared between the signal handler and the runner.
+/// Shared between the signals' handlers and everybody who looks.
 #[derive(Debug, Clone, Default)]
-pub struct StopSwitch(Arc<AtomicU8>);
+pub struct StopSwitch {
+    is_asked: Arc<AtomicBool>,
+    is_pressed: Arc<AtomicBool>,
+    presses: Arc<AtomicU8>,
+}
 
 /// What was asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,18 +29,39 @@ pub enum Asked {
 }
 
 impl StopSwitch {
-    /// One more press; safe in a signal handler.
+    /// One more press.
     pub fn press(&self) {
-        let _ = self.0.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |n| Some(n.saturating_add(1)));
+        self.is_asked.store(true, Ordering::SeqCst);
+        let _ = self.presses.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |n| Some(n.saturating_add(1)));
     }
 
-    /// What the presses so far ask for.
+    /// The flag that the handler of every signal sets: stop.
+    #[must_use]
+    pub fn stop_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.is_asked)
+    }
+
+    /// The flag that Ctrl-C's handler sets after that: once more.
+    #[must_use]
+    pub fn press_flag(&self) -> Arc<AtomicBool> {
+        Arc::clone(&self.is_pressed)
+    }
+
+    /// Whether a stop was asked for.
+    #[must_use]
+    pub fn is_asked(&self) -> bool {
+        self.is_asked.load(Ordering::SeqCst)
+    }
+
+    /// What was asked for so far. It counts, so that it is for the rig's thread alone; all others have [`Self::is_asked`].
     #[must_use]
     pub fn asked(&self) -> Asked {
-        match self.0.load(Ordering::SeqCst) {
-            0 => Asked::Nothing,
-            1 => Asked::Stop,
-            _ => Asked::Cut,
+        if !self.is_asked() {
+            return Asked::Nothing;
         }
+        if self.is_pressed.swap(false, Ordering::SeqCst) {
+            self.press();
+        }
+        if self.presses.load(Ordering::SeqCst) > 1 { Asked::Cut } else { Asked::Stop }
     }
 }

@@ -297,9 +297,6 @@ impl SerialRig {
             if let Some(telemetry) = self.heard.pop_front() {
                 return Ok(self.sample(&telemetry));
             }
-            if self.last_heard.elapsed() > SILENCE {
-                return Err(self.silent(self.last_heard.elapsed()));
-            }
             if let Some((id, request, at)) = self.asked
                 && at.elapsed() > REPEAT
             {
@@ -314,6 +311,10 @@ impl SerialRig {
                 self.send(&ToBoard::TimeRequest { host_sent_us: self.clock.host_us() })?;
             }
             self.listen()?;
+            // Only now: what came while nobody listened lies in the port.
+            if self.heard.is_empty() && self.last_heard.elapsed() > SILENCE {
+                return Err(self.silent(self.last_heard.elapsed()));
+            }
         }
     }
 
@@ -369,6 +370,10 @@ impl Rig for SerialRig {
 
     fn ticks_per_sample(&self) -> u64 {
         self.hello.map_or(1, |h| u64::from(h.telemetry_every.max(1)))
+    }
+
+    fn is_real_time(&self) -> bool {
+        true
     }
 
     fn begin_run(&mut self, _: &Load, _: u64) {}

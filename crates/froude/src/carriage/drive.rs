@@ -275,7 +275,7 @@ pub fn drive(
     Ok(runner::drive(&prepared.steps, &setting, rig.as_mut(), switch, operator, progress, &mut enough)?)
 }
 
-type Driven = (Box<dyn Rig>, Load, Option<u64>);
+type Driven = (Box<dyn Rig + Send>, Load, Option<u64>);
 
 fn rig_of(prepared: &Prepared) -> Result<Driven, Error> {
     match &prepared.carriage.rig.kind {
