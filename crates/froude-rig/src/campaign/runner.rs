@@ -583,7 +583,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn event(&mut self, kind: EventKind, sentence: &str) -> Result<(), RunnerError> {
+    fn event(&mut self, kind: EventKind, sentence: &str) -> Result<(), RecordError> {
         if let Some(recorder) = &mut self.recorder {
             let tick = recorder.ticks();
             recorder.event(tick, &kind, sentence)?;
@@ -592,6 +592,11 @@ impl Session<'_> {
     }
 
     fn record(&mut self, sample: &Sample) -> Result<(), RecordError> {
+        if let Some(session) = sample.stranger {
+            let sentence = format!("another program (session {session:08x}) asked for the board and was turned away");
+            self.progress.say(&sentence);
+            self.event(EventKind::Link, &sentence)?;
+        }
         let first = *self.tick.get_or_insert(sample.tick);
         let number = sample.tick - first;
         if number.is_multiple_of(TOLD_EVERY) {
