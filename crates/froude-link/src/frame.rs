@@ -1,13 +1,13 @@
 //! Frames: COBS(kind, sequence, body, CRC-32), closed by a zero byte.
 //!
 //! The zero stands nowhere else, so a reader that was thrown off finds the next frame by itself. A frame counts only if its CRC
-//! fits, its kind is known and its body has exactly that kind's length.
+//! fits, its kind is known and its body has exactly that kind's length. Who said it, and in which order its frames came, is the
+//! business of whoever reads them ([`crate::sequence`], [`crate::session`]): on one line more than one host may speak.
 
 use cobs::{CobsEncoder, DecodeResult, DecoderState};
 use crc::{CRC_32_ISO_HDLC, Crc, Table};
 
 use crate::codec::{Reader, Wire, Writer};
-use crate::sequence::{Arrival, Order, OrderCounts};
 
 /// CRC-32 as Ethernet's: it sees every error of one to five bits in 64 bytes, and every burst up to 32 bits.
 static CRC: Crc<u32, Table<1>> = Crc::<u32, Table<1>>::new(&CRC_32_ISO_HDLC);
@@ -23,8 +23,6 @@ pub const OVERHEAD: usize = 1 + 2 + 4 + 1 + 1;
 pub trait Message: Sized {
     /// The first byte of its frame.
     fn kind(&self) -> u8;
-    /// With number 0 it is the first word of an end that just started: numbers begin anew with it.
-    fn is_greeting(&self) -> bool;
     #[doc(hidden)]
     fn write_body(&self, to: &mut Body<'_, '_>);
     #[doc(hidden)]
@@ -81,19 +79,15 @@ pub struct LinkCounts {
     pub corrupt: u32,
     /// Valid frames of a kind, or with a body, that this version does not know.
     pub unknown: u32,
-    /// Lost, late and repeated frames.
-    pub order: OrderCounts,
 }
 
-/// A message, and how it arrived.
+/// A message with its number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Received<M> {
     /// What was said.
     pub message: M,
     /// Its number.
     pub sequence: u16,
-    /// In order, after a loss, late, or again.
-    pub arrival: Arrival,
 }
 
 /// Finds frames in a stream of bytes.
@@ -103,9 +97,19 @@ pub struct FrameReader<M> {
     len: usize,
     /// Since the last zero something was wrong: everything up to the next one is dropped.
     is_spoilt: bool,
-    order: Order,
     counts: LinkCounts,
     says: core::marker::PhantomData<M>,
+}
+
+impl<M> Clone for FrameReader<M> {
+    fn clone(&self) -> Self {
+        let cobs = match self.cobs {
+            DecoderState::Idle => DecoderState::Idle,
+            DecoderState::Grab(left) => DecoderState::Grab(left),
+            DecoderState::GrabChain(left) => DecoderState::GrabChain(left),
+        };
+        Self { cobs, ..*self }
+    }
 }
 
 impl<M: Message> Default for FrameReader<M> {
@@ -123,13 +127,7 @@ impl<M: Message> FrameReader<M> {
             plain: [0; MAX_PLAIN],
             len: 0,
             is_spoilt: false,
-            order: Order::new(),
-            counts: LinkCounts {
-                frames: 0,
-                corrupt: 0,
-                unknown: 0,
-                order: OrderCounts { lost: 0, late: 0, duplicates: 0 },
-            },
+            counts: LinkCounts { frames: 0, corrupt: 0, unknown: 0 },
             says: core::marker::PhantomData,
         }
     }
@@ -137,7 +135,7 @@ impl<M: Message> FrameReader<M> {
     /// What was counted so far.
     #[must_use]
     pub const fn counts(&self) -> LinkCounts {
-        LinkCounts { order: self.order.counts(), ..self.counts }
+        self.counts
     }
 
     /// Takes the next byte of the line; a message when that byte completes one.
@@ -181,16 +179,12 @@ impl<M: Message> FrameReader<M> {
         let mut from = Reader::new(framed);
         let (kind, sequence) = (u8::take(&mut from)?, u16::take(&mut from)?);
         let message = M::read_body(kind, &mut BodyReader(&mut from)).filter(|_| from.is_empty());
-        if sequence == 0 && message.as_ref().is_some_and(M::is_greeting) {
-            self.order.restart();
-        }
-        let arrival = self.order.note(sequence);
         let Some(message) = message else {
             self.counts.unknown = self.counts.unknown.wrapping_add(1);
             return None;
         };
         self.counts.frames = self.counts.frames.wrapping_add(1);
-        Some(Received { message, sequence, arrival })
+        Some(Received { message, sequence })
     }
 }
 

@@ -1,7 +1,7 @@
 //! The two vocabularies: what the host says to the board and what the board says to the host.
 //!
 //! Hello keeps its place for all versions: kind, a magic number, the version. An end that reads another version than its own
-//! learns that and nothing else.
+//! learns that and nothing else. Everything that a host says, it says as one session ([`HostFrame`], [`crate::session`]).
 
 use froude_control::config::Config;
 use froude_control::request::Request;
@@ -10,7 +10,8 @@ use froude_control::tick::Tick;
 use crate::VERSION;
 use crate::codec::{Reader, Wire, Writer};
 use crate::frame::{Body, BodyReader, Message};
-use crate::status::{Ack, BoardHello, Event, FaultReport, Health, LockStepReply, TimeReply};
+use crate::session::NOBODY;
+use crate::status::{Ack, BoardHello, Event, FaultReport, Health, LockStepReply, TimeReply, TurnedAway};
 use crate::telemetry::Telemetry;
 
 /// "FROU" in ASCII.
@@ -20,14 +21,16 @@ const MAGIC: u32 = u32::from_le_bytes(*b"FROU");
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(clippy::large_enum_variant)] // there is no heap to put the configuration on
 pub enum ToBoard {
-    /// The host is there and speaks this version. Requests before it are not heard.
+    /// The host is there, speaks this version and asks for the board. Answered by [`FromBoard::Hello`] with its session when it has
+    /// the board, as often as it asks, and by [`FromBoard::TurnedAway`] when another session has it.
     Hello,
     /// The host speaks another version.
     ForeignHello {
         /// Its version.
         version: u16,
     },
-    /// Do this. Answered by [`FromBoard::Ack`]; repeat with the same `id` when no answer comes.
+    /// Do this. Answered by [`FromBoard::Ack`]; repeat with the same `id` when no answer comes. A stop is obeyed from every
+    /// session, also from [`NOBODY`]; anything else only from the one that has the board.
     Request {
         /// Number by which the answer is known, not 0.
         id: u16,
@@ -57,6 +60,23 @@ pub enum ToBoard {
     },
 }
 
+/// A frame of a host: what it says, and which session it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HostFrame {
+    /// The session, drawn when the host starts; [`NOBODY`] can stop and do nothing else.
+    pub session: u32,
+    /// What it says.
+    pub says: ToBoard,
+}
+
+impl ToBoard {
+    /// This, said by a session.
+    #[must_use]
+    pub const fn from_session(self, session: u32) -> HostFrame {
+        HostFrame { session, says: self }
+    }
+}
+
 /// Board to host.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FromBoard {
@@ -81,6 +101,8 @@ pub enum FromBoard {
     TimeReply(TimeReply),
     /// Answer to a lock-step tick.
     LockStep(LockStepReply),
+    /// A host that does not have the board was not heard.
+    TurnedAway(TurnedAway),
 }
 
 /// The two ends do not speak the same version.
@@ -121,37 +143,37 @@ fn skip(from: &mut Reader<'_>) {
     while u8::take(from).is_some() {}
 }
 
-impl Message for ToBoard {
+impl Message for HostFrame {
     fn kind(&self) -> u8 {
-        match self {
-            Self::Hello | Self::ForeignHello { .. } => 0x80,
-            Self::Request { .. } => 0x81,
-            Self::Configure { .. } => 0x82,
-            Self::Heartbeat => 0x83,
-            Self::TimeRequest { .. } => 0x84,
-            Self::LockStep { .. } => 0x85,
+        match self.says {
+            ToBoard::Hello | ToBoard::ForeignHello { .. } => 0x80,
+            ToBoard::Request { .. } => 0x81,
+            ToBoard::Configure { .. } => 0x82,
+            ToBoard::Heartbeat => 0x83,
+            ToBoard::TimeRequest { .. } => 0x84,
+            ToBoard::LockStep { .. } => 0x85,
         }
     }
 
-    fn is_greeting(&self) -> bool {
-        matches!(self, Self::Hello | Self::ForeignHello { .. })
-    }
-
     fn write_body(&self, Body(to): &mut Body<'_, '_>) {
-        match self {
-            Self::Hello => put_hello(to, VERSION),
-            Self::ForeignHello { version } => put_hello(to, *version),
-            Self::Request { id, request } => {
+        match &self.says {
+            ToBoard::Hello => put_hello(to, VERSION),
+            ToBoard::ForeignHello { version } => return put_hello(to, *version),
+            _ => {}
+        }
+        self.session.put(to);
+        match &self.says {
+            ToBoard::Hello | ToBoard::ForeignHello { .. } | ToBoard::Heartbeat => {}
+            ToBoard::Request { id, request } => {
                 id.put(to);
                 request.put(to);
             }
-            Self::Configure { id, config } => {
+            ToBoard::Configure { id, config } => {
                 id.put(to);
                 config.put(to);
             }
-            Self::Heartbeat => {}
-            Self::TimeRequest { host_sent_us } => host_sent_us.put(to),
-            Self::LockStep { number, tick } => {
+            ToBoard::TimeRequest { host_sent_us } => host_sent_us.put(to),
+            ToBoard::LockStep { number, tick } => {
                 number.put(to);
                 tick.put(to);
             }
@@ -159,21 +181,24 @@ impl Message for ToBoard {
     }
 
     fn read_body(kind: u8, BodyReader(from): &mut BodyReader<'_, '_>) -> Option<Self> {
-        Some(match kind {
-            0x80 => match take_hello(from)? {
-                VERSION => Self::Hello,
-                version => {
-                    skip(from);
-                    Self::ForeignHello { version }
-                }
-            },
-            0x81 => Self::Request { id: Wire::take(from)?, request: Wire::take(from)? },
-            0x82 => Self::Configure { id: Wire::take(from)?, config: Wire::take(from)? },
-            0x83 => Self::Heartbeat,
-            0x84 => Self::TimeRequest { host_sent_us: Wire::take(from)? },
-            0x85 => Self::LockStep { number: Wire::take(from)?, tick: Wire::take(from)? },
+        if kind == 0x80 {
+            let version = take_hello(from)?;
+            if version != VERSION {
+                skip(from);
+                return Some(ToBoard::ForeignHello { version }.from_session(NOBODY));
+            }
+        }
+        let session = Wire::take(from)?;
+        let says = match kind {
+            0x80 => ToBoard::Hello,
+            0x81 => ToBoard::Request { id: Wire::take(from)?, request: Wire::take(from)? },
+            0x82 => ToBoard::Configure { id: Wire::take(from)?, config: Wire::take(from)? },
+            0x83 => ToBoard::Heartbeat,
+            0x84 => ToBoard::TimeRequest { host_sent_us: Wire::take(from)? },
+            0x85 => ToBoard::LockStep { number: Wire::take(from)?, tick: Wire::take(from)? },
             _ => return None,
-        })
+        };
+        Some(says.from_session(session))
     }
 }
 
@@ -188,11 +213,8 @@ impl Message for FromBoard {
             Self::Health(_) => 0x06,
             Self::TimeReply(_) => 0x07,
             Self::LockStep(_) => 0x08,
+            Self::TurnedAway(_) => 0x09,
         }
-    }
-
-    fn is_greeting(&self) -> bool {
-        matches!(self, Self::Hello(_) | Self::ForeignHello { .. })
     }
 
     fn write_body(&self, Body(to): &mut Body<'_, '_>) {
@@ -209,6 +231,7 @@ impl Message for FromBoard {
             Self::Health(health) => health.put(to),
             Self::TimeReply(reply) => reply.put(to),
             Self::LockStep(reply) => reply.put(to),
+            Self::TurnedAway(turned_away) => turned_away.put(to),
         }
     }
 
@@ -228,6 +251,7 @@ impl Message for FromBoard {
             0x06 => Self::Health(Wire::take(from)?),
             0x07 => Self::TimeReply(Wire::take(from)?),
             0x08 => Self::LockStep(Wire::take(from)?),
+            0x09 => Self::TurnedAway(Wire::take(from)?),
             _ => return None,
         })
     }

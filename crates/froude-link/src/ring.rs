@@ -13,6 +13,7 @@ pub const RING_FRAMES: usize = 1024;
 const _: () = assert!(RING_FRAMES as u32 * 1000 / TICKS_PER_S >= 100, "the ring holds less than 100 ms");
 
 /// First in, first out; never more than `N`.
+#[derive(Debug, Clone)]
 pub struct TelemetryRing<const N: usize = RING_FRAMES> {
     frames: Deque<Telemetry, N>,
     lost: u32,

@@ -1,6 +1,6 @@
 //! Order of arrival: what was lost, repeated or late.
 //!
-//! Every frame of one direction carries the next 16-bit number. A number ahead of the newest one seen leaves a gap; a number
+//! Every frame of one end carries the next 16-bit number. A number ahead of the newest one seen leaves a gap; a number
 //! behind it is late if it fills a gap and a repetition if it does not, told apart over the last 64 numbers. Older ones count as
 //! late without giving anything back. Gaps of up to 32,767 frames (8 s of telemetry) are counted exactly.
 
@@ -20,7 +20,7 @@ pub enum Arrival {
     Duplicate,
 }
 
-/// Counters of one direction.
+/// Counters of one end's frames.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OrderCounts {
     /// Missing until now; a late arrival takes one back.
@@ -31,7 +31,7 @@ pub struct OrderCounts {
     pub duplicates: u32,
 }
 
-/// Watches the sequence numbers of one direction.
+/// Watches the sequence numbers of one end. Frames of another end have numbers of their own and do not belong here.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Order {
     newest: Option<u16>,
@@ -53,7 +53,7 @@ impl Order {
         self.counts
     }
 
-    /// Forgets the numbers, not the counts: the other end started anew.
+    /// Forgets the numbers, not the counts: another end, or the same one anew, speaks from here.
     pub fn restart(&mut self) {
         self.newest = None;
     }

@@ -40,6 +40,8 @@ pub struct BoardHello {
     pub is_configured: bool,
     /// The last stop of the processor was the hardware watchdog's.
     pub was_watchdog_reset: bool,
+    /// The session that has the board; [`crate::session::NOBODY`] in the hello that the board says by itself when it starts.
+    pub session: u32,
 }
 wire_struct!(BoardHello {
     board,
@@ -51,6 +53,7 @@ wire_struct!(BoardHello {
     current_a_per_count,
     is_configured,
     was_watchdog_reset,
+    session,
 });
 
 /// What became of a request or a configuration.
@@ -93,6 +96,8 @@ impl Wire for Verdict {
 /// Answer to a request or a configuration. A request repeated with the same `id` is answered again and not carried out again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ack {
+    /// Whose request it was: the numbers of two hosts may be the same.
+    pub session: u32,
     /// Number that the host gave.
     pub id: u16,
     /// Tick at which it was decided; wraps at 2³².
@@ -100,7 +105,7 @@ pub struct Ack {
     /// What was decided.
     pub verdict: Verdict,
 }
-wire_struct!(Ack { id, tick, verdict });
+wire_struct!(Ack { session, id, tick, verdict });
 
 /// A fault was latched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -208,6 +213,8 @@ wire_struct!(Health { tick, telemetry_lost, overruns, worst_step_us, port_overfl
 /// Answer to a clock request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct TimeReply {
+    /// Who asked: the stamps of two hosts do not belong together.
+    pub session: u32,
     /// The host's own stamp, given back.
     pub host_sent_us: u64,
     /// When the request had arrived, µs of the board; wraps.
@@ -215,11 +222,13 @@ pub struct TimeReply {
     /// When this answer was written, µs of the board; wraps.
     pub board_sent_us: u32,
 }
-wire_struct!(TimeReply { host_sent_us, board_received_us, board_sent_us });
+wire_struct!(TimeReply { session, host_sent_us, board_received_us, board_sent_us });
 
 /// Answer to a lock-step tick: what the controller commanded, to the last bit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LockStepReply {
+    /// Whose tick it was.
+    pub session: u32,
     /// Number of the tick that it answers.
     pub number: u32,
     /// The commands.
@@ -235,4 +244,19 @@ pub struct LockStepReply {
     /// Why the tick's request was refused.
     pub refusal: Option<Refusal>,
 }
-wire_struct!(LockStepReply { number, command, reference_m, position_m, phases, fault, refusal });
+wire_struct!(LockStepReply { session, number, command, reference_m, position_m, phases, fault, refusal });
+
+/// A host asked for something that only the session that has the board may ask for. Said at most a hundred times a second,
+/// about the last one that asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TurnedAway {
+    /// Who asked.
+    pub session: u32,
+    /// The session that has the board; [`crate::session::NOBODY`] when nobody has: a hello takes it then.
+    pub holder: u32,
+    /// Frames heard from it so far; wraps. When they become more, it lives.
+    pub holder_frames: u32,
+    /// Silent for so long more, it loses the board, µs.
+    pub free_in_us: u32,
+}
+wire_struct!(TurnedAway { session, holder, holder_frames, free_in_us });

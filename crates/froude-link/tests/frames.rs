@@ -3,11 +3,12 @@
 
 mod any;
 
-use any::{any_from_board, any_to_board};
+use any::{any_from_board, any_host_frame};
 use froude_link::frame::{FrameReader, FrameWriter, MAX_WIRE, Message, Received};
-use froude_link::sequence::Arrival;
+use froude_link::sequence::{Arrival, Order};
+use froude_link::session::NOBODY;
 use froude_link::status::{BoardHello, BoardId};
-use froude_link::{FromBoard, ToBoard};
+use froude_link::{FromBoard, HostFrame, ToBoard};
 use proptest::prelude::*;
 
 fn framed<M: Message>(message: &M, sequence: u16) -> Vec<u8> {
@@ -22,10 +23,10 @@ fn read<M: Message>(reader: &mut FrameReader<M>, bytes: &[u8]) -> Vec<Received<M
 proptest! {
     /// Bytes in, the same message out, to the last bit (`==` on floats would let −0 pass for 0 and stumble over NaN).
     #[test]
-    fn every_message_to_the_board_comes_out_as_it_went_in(message in any_to_board(), sequence: u16) {
+    fn every_message_to_the_board_comes_out_as_it_went_in(message in any_host_frame(), sequence: u16) {
         let wire = framed(&message, sequence);
         prop_assert!(wire.len() <= MAX_WIRE && wire.ends_with(&[0]));
-        let got = read(&mut FrameReader::<ToBoard>::new(), &wire);
+        let got = read(&mut FrameReader::<HostFrame>::new(), &wire);
         prop_assert_eq!(got.len(), 1);
         prop_assert_eq!(format!("{:?}", got[0].message), format!("{message:?}"));
         prop_assert_eq!(framed(&got[0].message, got[0].sequence), wire);
@@ -49,7 +50,7 @@ proptest! {
 
     #[test]
     fn noise_never_panics_and_never_speaks(noise in prop::collection::vec(any::<u8>(), 0..2000)) {
-        let mut board = FrameReader::<ToBoard>::new();
+        let mut board = FrameReader::<HostFrame>::new();
         let mut host = FrameReader::<FromBoard>::new();
         // 2⁻³² for each of at most 667 pieces: a false frame in 10⁴ cases is a chance of 2·10⁻³ %.
         prop_assert!(read(&mut board, &noise).is_empty());
@@ -93,16 +94,18 @@ proptest! {
         start: u16,
         fates in prop::collection::vec(prop::sample::select(vec!["pass", "drop", "twice", "late", "flip"]), 1..400),
     ) {
+        let heartbeat = ToBoard::Heartbeat.from_session(7);
         let mut writer = FrameWriter::starting_at(start);
-        let mut reader = FrameReader::<ToBoard>::new();
+        let mut order = Order::new();
+        let mut reader = FrameReader::<HostFrame>::new();
         let mut held: Option<Vec<u8>> = None;
         let (mut lost, mut corrupt, mut duplicates, mut late, mut delivered) = (0, 0, 0, 0, 0);
         let mut trailing = 0; // losses after the last frame that arrived cannot be known yet
         let mut frames = vec![];
         let mut wire = [0; MAX_WIRE];
-        frames.push(("pass", writer.write(&ToBoard::Heartbeat, &mut wire).to_vec()));
+        frames.push(("pass", writer.write(&heartbeat, &mut wire).to_vec()));
         for fate in fates {
-            frames.push((fate, writer.write(&ToBoard::Heartbeat, &mut wire).to_vec()));
+            frames.push((fate, writer.write(&heartbeat, &mut wire).to_vec()));
         }
         for (fate, mut bytes) in frames {
             match fate {
@@ -118,51 +121,101 @@ proptest! {
                 _ => {
                     lost += trailing;
                     trailing = 0;
-                    delivered += read(&mut reader, &bytes).len();
+                    for received in read(&mut reader, &bytes) {
+                        order.note(received.sequence);
+                        delivered += 1;
+                    }
                     if fate == "twice" {
                         let again = read(&mut reader, &bytes);
-                        prop_assert_eq!(again[0].arrival, Arrival::Duplicate);
+                        prop_assert_eq!(order.note(again[0].sequence), Arrival::Duplicate);
                         duplicates += 1;
                     }
                     if let Some(old) = held.take() {
                         let again = read(&mut reader, &old);
-                        prop_assert_eq!(again[0].arrival, Arrival::Late);
+                        prop_assert_eq!(order.note(again[0].sequence), Arrival::Late);
                         late += 1;
                     }
                 }
             }
         }
         let counts = reader.counts();
-        prop_assert_eq!(counts.order.lost, lost);
-        prop_assert_eq!(counts.order.duplicates, duplicates);
-        prop_assert_eq!(counts.order.late, late);
+        prop_assert_eq!(order.counts().lost, lost);
+        prop_assert_eq!(order.counts().duplicates, duplicates);
+        prop_assert_eq!(order.counts().late, late);
         prop_assert_eq!(counts.corrupt, corrupt);
-        prop_assert_eq!(counts.frames as usize, delivered + duplicates as usize + late as usize);
+        prop_assert_eq!(counts.frames, delivered + duplicates + late);
     }
 }
 
 #[test]
 fn a_long_gap_is_counted_to_the_frame() {
     for gap in [1_u16, 63, 64, 65, 4000, 32_766] {
-        let mut reader = FrameReader::<ToBoard>::new();
-        read(&mut reader, &framed(&ToBoard::Heartbeat, 65_000));
-        let got = read(&mut reader, &framed(&ToBoard::Heartbeat, 65_001_u16.wrapping_add(gap)));
-        assert_eq!(got[0].arrival, Arrival::AfterLoss(gap));
-        assert_eq!(reader.counts().order.lost, u32::from(gap));
+        let mut order = Order::new();
+        assert_eq!(order.note(65_000), Arrival::InOrder);
+        assert_eq!(order.note(65_001_u16.wrapping_add(gap)), Arrival::AfterLoss(gap));
+        assert_eq!(order.counts().lost, u32::from(gap));
     }
 }
 
 #[test]
 fn another_version_is_recognised_and_named() {
-    let got = read(&mut FrameReader::<ToBoard>::new(), &framed(&ToBoard::ForeignHello { version: 9 }, 0));
-    assert_eq!(got[0].message, ToBoard::ForeignHello { version: 9 });
+    let foreign = ToBoard::ForeignHello { version: 9 }.from_session(NOBODY);
+    assert_eq!(read(&mut FrameReader::<HostFrame>::new(), &framed(&foreign, 0))[0].message, foreign);
     let got = read(&mut FrameReader::<FromBoard>::new(), &framed(&FromBoard::ForeignHello { version: 9 }, 0));
     assert_eq!(got[0].message, FromBoard::ForeignHello { version: 9 });
     assert_eq!(
-        froude_link::message::VersionMismatch { board: 9, host: 1 }.to_string(),
-        "the board speaks protocol 9, this program 1: flash the firmware of this release, \
+        froude_link::message::VersionMismatch { board: 9, host: 2 }.to_string(),
+        "the board speaks protocol 9, this program 2: flash the firmware of this release, \
          or use the program that came with the board"
     );
+}
+
+/// A frame of a host as version 1 wrote it: without the session.
+struct FirstVersion(HostFrame);
+
+impl FirstVersion {
+    fn framed(&self, sequence: u16) -> Vec<u8> {
+        let mut plain = vec![];
+        cobs_decoded(&framed(&self.0, sequence), &mut plain);
+        let mut old = plain[..plain.len() - 4].to_vec();
+        match self.0.says {
+            // kind, number, magic, version, session
+            ToBoard::Hello => {
+                old.truncate(3 + 4);
+                old.extend(1_u16.to_le_bytes());
+            }
+            _ => drop(old.drain(3..7)),
+        }
+        let check = CRC.checksum(&old).to_le_bytes();
+        old.extend(check);
+        let mut wire = vec![0; MAX_WIRE];
+        let len = cobs::encode(&old, &mut wire);
+        wire.truncate(len);
+        wire.push(0);
+        wire
+    }
+}
+
+const CRC: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
+
+fn cobs_decoded(wire: &[u8], plain: &mut Vec<u8>) {
+    plain.resize(wire.len(), 0);
+    let len = cobs::decode(&wire[..wire.len() - 1], plain).unwrap().frame_size();
+    plain.truncate(len);
+}
+
+proptest! {
+    /// A host of version 1 gets to say its version and nothing else: no other frame of it is one of ours by chance.
+    #[test]
+    fn of_the_first_version_only_the_hello_is_understood(frame in any_host_frame(), sequence: u16) {
+        prop_assume!(!matches!(frame.says, ToBoard::ForeignHello { .. }));
+        let got = read(&mut FrameReader::<HostFrame>::new(), &FirstVersion(frame).framed(sequence));
+        let said: Vec<_> = got.iter().map(|received| received.message).collect();
+        match frame.says {
+            ToBoard::Hello => prop_assert_eq!(said, [ToBoard::ForeignHello { version: 1 }.from_session(NOBODY)]),
+            _ => prop_assert!(said.is_empty(), "{:?} was read as {said:?}", frame),
+        }
+    }
 }
 
 #[test]
@@ -177,6 +230,7 @@ fn two_zeros_in_a_row_are_no_error() {
         current_a_per_count: [0.01; 2],
         is_configured: false,
         was_watchdog_reset: false,
+        session: NOBODY,
     };
     let mut wire = vec![0, 0];
     wire.extend(framed(&FromBoard::Hello(hello), 0));

@@ -4,6 +4,7 @@
 //! |---------------|-----------------------------------------------------------------------------|
 //! | [`plan`]      | from the schedule to runs in order, with the operator's steps in between       |
 //! | [`preflight`] | travel, coast, speed, command, current and heating of every run, before it moves |
+//! | [`lock`]      | one drive at a time into a folder                                               |
 //! | [`runner`]    | drives and records one run after the other; stops, resumes                     |
 //! | [`setup`]     | controller and twin from the campaign's `[rig]` section                            |
 //! | [`stop`]      | Ctrl-C: once is a controlled stop, twice cuts the torque                        |
@@ -15,6 +16,7 @@
 //! each pair's difference (MCD eq. 8); within a block the speeds come in a drawn order, so that it does not look like speed.
 
 mod hand_over;
+pub mod lock;
 pub mod plan;
 pub mod preflight;
 mod recording;

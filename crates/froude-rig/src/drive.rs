@@ -47,6 +47,8 @@ pub struct Sample {
     pub fault: Option<(Fault, u8)>,
     /// Why the last request was refused.
     pub refusal: Option<Refusal>,
+    /// Session of another host that asked the board for something and was turned away; said once of each.
+    pub stranger: Option<u32>,
     /// What no sensor shows; only a twin knows.
     pub truth: Option<[Truth; AXES]>,
 }
@@ -85,6 +87,44 @@ pub enum RigError {
         board: String,
         /// Ours.
         ours: String,
+    },
+    /// Another program has the port.
+    #[error("{port} is in use by another program, and only one may drive a board; end that one (`fuser {port}` names it), then run again")]
+    InUse {
+        /// The port.
+        port: String,
+    },
+    /// Another session has the board and lives.
+    #[error(
+        "the board at {port} is being driven by another program (session {holder:08x}), which is alive; nothing was asked of it but \
+         whether it is free. End that program, then run again"
+    )]
+    Held {
+        /// The port.
+        port: String,
+        /// Who has it.
+        holder: u32,
+    },
+    /// Another session took the board over.
+    #[error(
+        "the board at {port} is driven by another program now (session {holder:08x}): this one was silent for longer than the board \
+         waits (suspended?), and the board had stopped the carriage before. End that program, then run again: the campaign goes on where it \
+         stopped"
+    )]
+    TakenOver {
+        /// The port.
+        port: String,
+        /// Who has it.
+        holder: u32,
+    },
+    /// The board does not know this session any more, nor any other.
+    #[error(
+        "the board at {port} has started anew: the torque is off, and the axes are no longer homed. Check its supply and what its hardware \
+         watchdog may have seen, then run again: the campaign goes on where it stopped"
+    )]
+    Restarted {
+        /// The port.
+        port: String,
     },
     /// The controller does not take the configuration.
     #[error("the controller does not take the configuration: {0}")]
@@ -136,5 +176,6 @@ pub trait Rig {
     fn version(&self) -> String;
 }
 
+pub mod port;
 pub mod serial;
 pub mod twin;

@@ -3,8 +3,8 @@
 
 use std::io::{Read, Write};
 use std::os::unix::net::UnixStream;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
@@ -15,7 +15,10 @@ use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_control::tick::{AXES, Command};
-use froude_link::status::BoardId;
+use froude_link::frame::{FrameWriter, MAX_WIRE};
+use froude_link::session::NOBODY;
+use froude_link::status::{Ack, BoardHello, BoardId, TurnedAway, Verdict};
+use froude_link::{FrameReader, FromBoard, HostFrame, Telemetry, ToBoard};
 use froude_rig::defaults::control_config;
 use froude_rig::drive::serial::SerialRig;
 use froude_rig::drive::{Rig, RigError, Sample};
@@ -25,16 +28,17 @@ use froude_rig::twin::{Twin, TwinConfig};
 const COMMAND_V: f64 = 10.0 / 32_768.0;
 const CURRENT_A: f64 = 5.0 / 32_768.0;
 
-/// A board whose rig is the twin and whose serial port is a socket. A tick is due whenever the last one was taken and the line is idle,
+/// A board whose rig is the twin and whose serial port is a few sockets, as if several hosts were on one line. A tick is due whenever the last one was taken and the line is idle,
 /// so its time runs as fast as the host listens.
 struct TwinBoard {
     twin: Twin,
-    line: UnixStream,
+    lines: Vec<UnixStream>,
     command: Command,
     now_us: u32,
     bytes: std::collections::VecDeque<u8>,
     /// Ticks that the host has not heard of are held back beyond this many, as a line of finite speed would.
     credit: Arc<std::sync::atomic::AtomicI64>,
+    ticks: Arc<AtomicU64>,
 }
 
 impl Board for TwinBoard {
@@ -58,6 +62,7 @@ impl Board for TwinBoard {
             self.credit.fetch_add(1, Ordering::SeqCst);
             return None;
         }
+        self.ticks.fetch_add(1, Ordering::SeqCst);
         let tick = self.twin.tick(self.command);
         self.now_us = tick.latched_us;
         let axes = tick.axes.map(|a| AxisLatched {
@@ -76,15 +81,24 @@ impl Board for TwinBoard {
     }
     fn read_byte(&mut self) -> Option<u8> {
         if self.bytes.is_empty() {
-            let mut chunk = [0_u8; 512];
-            if let Ok(n) = self.line.read(&mut chunk) {
-                self.bytes.extend(&chunk[..n]);
+            let mut chunk = [0_u8; 4096];
+            for line in &mut self.lines {
+                if let Ok(n) = line.read(&mut chunk) {
+                    self.bytes.extend(&chunk[..n]);
+                }
             }
         }
         self.bytes.pop_front()
     }
     fn write_byte(&mut self, byte: u8) -> bool {
-        self.line.write(&[byte]).is_ok_and(|n| n == 1)
+        // One host is waited for; of several, a port cannot know who listens.
+        if let [line] = &mut self.lines[..] {
+            return line.write(&[byte]).is_ok_and(|n| n == 1);
+        }
+        for line in &mut self.lines {
+            let _ = line.write(&[byte]);
+        }
+        true
     }
     fn port_overflows(&self) -> u32 {
         0
@@ -96,27 +110,48 @@ impl Board for TwinBoard {
 struct Running {
     thread: JoinHandle<(Option<(Fault, u8)>, [Phase; AXES])>,
     is_over: Arc<AtomicBool>,
+    is_reset: Arc<AtomicBool>,
+    ticks: Arc<AtomicU64>,
+    _alone: MutexGuard<'static, ()>,
 }
+
+/// Boards run one at a time: each wants a processor.
+static ALONE: Mutex<()> = Mutex::new(());
 
 /// Ticks a millisecond of real time: four is real time; the tests hurry.
 const HURRY: i64 = 40;
 
 fn board() -> (Running, UnixStream) {
-    let (ours, theirs) = UnixStream::pair().unwrap();
-    theirs.set_nonblocking(true).unwrap();
-    ours.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
+    let (running, [line]) = board_with_hosts();
+    (running, line)
+}
+
+/// A board with so many hosts on its line.
+fn board_with_hosts<const N: usize>() -> (Running, [UnixStream; N]) {
+    let alone = ALONE.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let mut lines = vec![];
+    let ours = [(); N].map(|()| {
+        let (ours, theirs) = UnixStream::pair().unwrap();
+        theirs.set_nonblocking(true).unwrap();
+        ours.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
+        lines.push(theirs);
+        ours
+    });
     let is_over = Arc::new(AtomicBool::new(false));
-    let stop = Arc::clone(&is_over);
+    let is_reset = Arc::new(AtomicBool::new(false));
+    let ticks = Arc::new(AtomicU64::new(0));
+    let (stop, reset, counted) = (Arc::clone(&is_over), Arc::clone(&is_reset), Arc::clone(&ticks));
     let thread = std::thread::spawn(move || {
         let credit = Arc::new(std::sync::atomic::AtomicI64::new(0));
         let twin = Twin::new(&TwinConfig::loaded(Load::default()), 3);
         let mut board = TwinBoard {
             twin,
-            line: theirs,
+            lines,
             command: Command::default(),
             now_us: 0,
             bytes: std::collections::VecDeque::new(),
             credit: Arc::clone(&credit),
+            ticks: counted,
         };
         let mut application = Application::new();
         application.announce(&mut board);
@@ -126,15 +161,29 @@ fn board() -> (Running, UnixStream) {
                 last = std::time::Instant::now();
                 credit.store(HURRY, Ordering::SeqCst);
             }
-            application.turn(&mut board);
+            if reset.swap(false, Ordering::SeqCst) {
+                application = Application::new();
+                application.announce(&mut board);
+            }
+            if !application.turn(&mut board) {
+                std::thread::sleep(Duration::from_micros(200));
+            }
         }
         let status = application.output().status;
         (status.fault, status.axes.map(|a| a.phase))
     });
-    (Running { thread, is_over }, ours)
+    (Running { thread, is_over, is_reset, ticks, _alone: alone }, ours)
 }
 
 impl Running {
+    /// Waits until so much of the board's time has passed.
+    fn pass_s(&self, s: f64) {
+        let until = self.ticks.load(Ordering::SeqCst) + (4_000.0 * s) as u64;
+        while self.ticks.load(Ordering::SeqCst) < until {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
     fn end(self) -> (Option<(Fault, u8)>, [Phase; AXES]) {
         self.is_over.store(true, Ordering::SeqCst);
         self.thread.join().unwrap()
@@ -199,8 +248,8 @@ fn a_host_that_vanishes_is_noticed_by_the_board_which_stops_by_itself() {
     rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
     until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
     drop(rig);
-    // Four seconds of the board's time at ten times the host's, and the stop.
-    std::thread::sleep(Duration::from_millis(1_500));
+    // Four seconds of the board's time, and the stop.
+    running.pass_s(6.0);
     let (fault, phases) = running.end();
     assert_eq!(fault.map(|f| f.0), Some(Fault::HostSilent));
     assert_eq!(Fault::HostSilent.category(), StopCategory::One);
@@ -227,4 +276,148 @@ fn a_line_without_a_board_is_told_with_what_to_do() {
     ours.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
     let error = SerialRig::on("a socket", Box::new(ours), config()).map(|_| ()).unwrap_err();
     assert!(error.to_string().starts_with("the board at a socket has sent no valid frame for 5."), "{error}");
+}
+
+/// Ticks a rig until told to end; the sessions that it was told of, and why it ended if it did by itself.
+fn driven(mut rig: SerialRig, is_over: Arc<AtomicBool>) -> JoinHandle<(Vec<u32>, Result<(), RigError>)> {
+    std::thread::spawn(move || {
+        let mut strangers = vec![];
+        while !is_over.load(Ordering::SeqCst) {
+            match rig.tick(None) {
+                Ok(sample) => {
+                    assert_eq!(sample.fault, None, "{sample:?}");
+                    strangers.extend(sample.stranger);
+                }
+                Err(error) => return (strangers, Err(error)),
+            }
+        }
+        (strangers, Ok(()))
+    })
+}
+
+#[test]
+fn a_second_host_is_refused_while_the_first_lives_and_the_first_learns_of_it() {
+    let (running, [line, other]) = board_with_hosts();
+    let mut rig = SerialRig::on("a socket", Box::new(line), config()).unwrap();
+    rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
+    until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
+    let is_over = Arc::new(AtomicBool::new(false));
+    let first = driven(rig, Arc::clone(&is_over));
+    let error = SerialRig::on("a socket", Box::new(other), config()).map(|_| ()).unwrap_err();
+    assert!(matches!(error, RigError::Held { holder, .. } if holder != NOBODY), "{error}");
+    let said = error.to_string();
+    assert!(said.starts_with("the board at a socket is being driven by another program (session "), "{said}");
+    assert!(said.ends_with("End that program, then run again"), "{said}");
+    running.pass_s(1.0);
+    is_over.store(true, Ordering::SeqCst);
+    let (strangers, end) = first.join().unwrap();
+    end.unwrap();
+    assert_eq!(strangers.len(), 1, "said once: {strangers:x?}");
+    let (fault, phases) = running.end();
+    assert_eq!((fault, phases[0]), (None, Phase::Holding), "the first one's axis holds as before");
+}
+
+#[test]
+fn a_host_that_died_is_followed_by_the_next_one_after_its_silence() {
+    let (running, [line, other]) = board_with_hosts();
+    let mut rig = SerialRig::on("a socket", Box::new(line), config()).unwrap();
+    rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
+    until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
+    drop(rig);
+    // At once: for four seconds of the board's time it waits for the dead one.
+    let mut next = SerialRig::on("a socket", Box::new(other), config()).unwrap();
+    let sample = next.tick(None).unwrap();
+    assert_eq!((sample.fault, sample.axes[0].phase), (None, Phase::Disabled), "stopped by the board, cleared by its name");
+    running.end();
+}
+
+/// A board that gives itself to whoever greets, takes every configuration, and then says that another session has it.
+fn taken_over(mut line: UnixStream, holder: u32) -> JoinHandle<()> {
+    std::thread::spawn(move || {
+        let (mut reader, mut writer) = (FrameReader::<HostFrame>::new(), FrameWriter::default());
+        let (mut tick, mut bytes) = (0, [0; 4096]);
+        let hello = |session| BoardHello {
+            board: BoardId::Twin,
+            boot: 1,
+            baud: 3_000_000,
+            telemetry_every: 1,
+            tick_us: 250,
+            command_v_per_count: [COMMAND_V; 2],
+            current_a_per_count: [CURRENT_A; 2],
+            is_configured: false,
+            was_watchdog_reset: false,
+            session,
+        };
+        while let Ok(n @ 1..) = line.read(&mut bytes) {
+            for received in bytes[..n].iter().filter_map(|&byte| reader.feed(byte)) {
+                let HostFrame { session, says } = received.message;
+                tick += 1;
+                let answer = match says {
+                    ToBoard::Hello => FromBoard::Hello(hello(session)),
+                    ToBoard::Configure { id, .. } => FromBoard::Ack(Ack { session, id, tick, verdict: Verdict::Accepted }),
+                    _ => FromBoard::TurnedAway(TurnedAway { session, holder, holder_frames: 9, free_in_us: 210_000 }),
+                };
+                // What another host is answered is no business of ours.
+                let others = FromBoard::Ack(Ack { session: holder, id: 2, tick, verdict: Verdict::NotNow });
+                for message in [others, answer, FromBoard::Telemetry(Telemetry { tick: tick + 1, ..Telemetry::default() })] {
+                    let _ = line.write_all(writer.write(&message, &mut [0; MAX_WIRE]));
+                }
+            }
+        }
+    })
+}
+
+#[test]
+fn a_host_that_slept_too_long_is_told_who_has_the_board() {
+    let (ours, theirs) = UnixStream::pair().unwrap();
+    ours.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
+    let board = taken_over(theirs, 0xbeef);
+    let mut rig = SerialRig::on("a socket", Box::new(ours), config()).unwrap();
+    let error = (0..10_000).find_map(|_| rig.tick(None).err()).unwrap();
+    assert!(matches!(error, RigError::TakenOver { holder: 0xbeef, .. }), "{error}");
+    assert!(
+        error.to_string().starts_with("the board at a socket is driven by another program now (session 0000beef): this one was silent"),
+        "{error}"
+    );
+    drop(rig);
+    board.join().unwrap();
+}
+
+#[test]
+fn a_board_that_starts_anew_is_told_from_one_that_is_silent() {
+    let (running, line) = board();
+    let mut rig = SerialRig::on("a socket", Box::new(line), config()).unwrap();
+    rig.tick(None).unwrap();
+    running.is_reset.store(true, Ordering::SeqCst);
+    let begun = std::time::Instant::now();
+    let error = loop {
+        if let Err(error) = rig.tick(None) {
+            break error;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(20));
+    };
+    assert!(matches!(error, RigError::Restarted { .. }), "{error}");
+    assert!(error.to_string().starts_with("the board at a socket has started anew: the torque is off"), "{error}");
+    running.end();
+}
+
+#[test]
+fn a_board_of_the_first_version_is_named_with_what_to_do() {
+    let (ours, mut theirs) = UnixStream::pair().unwrap();
+    ours.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
+    // Its answer to a hello of another version: a hello cut short behind its own.
+    let mut wire = [0; MAX_WIRE];
+    theirs.write_all(FrameWriter::default().write(&FromBoard::ForeignHello { version: 1 }, &mut wire)).unwrap();
+    let error = SerialRig::on("a socket", Box::new(ours), config()).map(|_| ()).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the board at a socket speaks version 1 of the protocol, this program 2; flash the matching firmware"
+    );
+    // And ours is what that board would recognise as another version: the version stands where it always stood.
+    let mut sent = [0; 64];
+    let n = theirs.read(&mut sent).unwrap();
+    let mut plain = [0; 64];
+    let length = sent[..n].iter().position(|&byte| byte == 0).unwrap();
+    cobs::decode(&sent[..length], &mut plain).unwrap();
+    assert_eq!((plain[0], &plain[3..9]), (0x80, &b"FROU\x02\x00"[..]));
 }

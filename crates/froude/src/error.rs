@@ -34,6 +34,10 @@ pub enum Error {
     #[error(transparent)]
     Runner(#[from] froude_rig::campaign::runner::RunnerError),
 
+    /// Somebody else drives into the folder.
+    #[error(transparent)]
+    Lock(#[from] froude_rig::campaign::lock::LockError),
+
     /// A mesh file cannot be read.
     #[error(transparent)]
     Mesh(#[from] froude_mesh::files::ReadError),
@@ -93,7 +97,7 @@ impl Error {
             | Self::Sections(_)
             | Self::Tank(_)
             | Self::Chain(_) => true,
-            Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
+            Self::Runner(_) | Self::Lock(_) | Self::Report(_) | Self::Output { .. } => false,
         }
     }
 }

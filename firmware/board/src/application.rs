@@ -3,20 +3,26 @@
 //! A tick comes before everything else. Between ticks bytes go in and out one at a time, so the next tick never waits for the
 //! port longer than it takes to decode a frame.
 //!
-//! After power-up there is no configuration, no torque and no controller; telemetry runs from the first hello on. Any valid frame
-//! from the host counts as a sign of life for the controller's host watchdog. The hardware watchdog is fed only after a tick
-//! that was stepped, so a main loop that hangs takes the torque away by reset.
+//! After power-up there is no configuration, no torque and no controller; telemetry runs from the first hello on. The hardware
+//! watchdog is fed only after a tick that was stepped, so a main loop that hangs takes the torque away by reset.
+//!
+//! One host has the board at a time ([`froude_link::session`]). Any valid frame of it counts as a sign of life for the controller's
+//! host watchdog. Of any other host a stop is obeyed and nothing else; that it was turned away is said to everybody on the line.
 
 use froude_control::Controller;
+use froude_control::config::Config;
 use froude_control::request::Request;
 use froude_control::status::{Output, Phase, Status};
 use froude_control::tick::{AXES, AxisInput, Command, Tick};
 use froude_link::budget::Decimation;
 use froude_link::frame::{FrameReader, FrameWriter};
 use froude_link::ring::TelemetryRing;
-use froude_link::sequence::Arrival;
-use froude_link::status::{Ack, BoardHello, Event, EventKind, FaultReport, Health, LockStepReply, TimeReply, Verdict};
-use froude_link::{FromBoard, Telemetry, ToBoard, VERSION};
+use froude_link::sequence::{Arrival, Order};
+use froude_link::session::{Greeting, Holder, NOBODY};
+use froude_link::status::{
+    Ack, BoardHello, Event, EventKind, FaultReport, Health, LockStepReply, TimeReply, TurnedAway, Verdict,
+};
+use froude_link::{FromBoard, HostFrame, Telemetry, ToBoard, VERSION};
 use heapless::Deque;
 
 use crate::board::{Board, Latched};
@@ -25,14 +31,18 @@ use crate::board::{Board, Latched};
 const FRAME_BYTES: usize = 160;
 /// Ticks between two health reports: a second.
 const HEALTH_TICKS: u32 = 4000;
+/// Ticks between two words to hosts that are turned away: 10 ms, so that no host can fill the line with them.
+const TURNED_AWAY_TICKS: u32 = 40;
 /// Nominal tick, µs.
 pub const TICK_US: u32 = 250;
 
 /// State of the whole program.
+#[derive(Clone)]
 pub struct Application {
     controller: Option<Controller>,
     output: Output,
     tick: u32,
+    operator: Operator,
     requests: Requests,
     lock_step: Option<LockStep>,
     link: Link,
@@ -40,25 +50,48 @@ pub struct Application {
     worst_step_us: u32,
 }
 
-/// What the host asked for and what became of it.
-#[derive(Default)]
+/// Who may drive.
+#[derive(Clone)]
+struct Operator {
+    holder: Holder,
+    /// The controller's limit of its host's silence, µs.
+    silence_us: u32,
+    /// Turned away and not told yet.
+    stranger: Option<u32>,
+    /// Ticks since one was told.
+    untold_ticks: u32,
+}
+
+/// A request and who asked for it.
+#[derive(Clone, Copy)]
+struct Waiting {
+    session: u32,
+    id: u16,
+    request: Request,
+}
+
+/// What was asked for and what became of it.
+#[derive(Clone)]
 struct Requests {
     is_host_heard: bool,
     /// To be carried out, one a tick; a stop goes first.
-    waiting: Deque<(u16, Request), 8>,
-    /// The last answer, for a host that did not get it.
+    waiting: Deque<Waiting, 8>,
+    /// The last answer to the host that has the board, for when it did not get it.
     answered: Option<Ack>,
 }
 
 /// The host gives the ticks, one by one.
+#[derive(Clone)]
 struct LockStep {
     reply: LockStepReply,
 }
 
 /// Both directions of the serial line.
+#[derive(Clone)]
 struct Link {
-    is_greeted: bool,
-    reader: FrameReader<ToBoard>,
+    reader: FrameReader<HostFrame>,
+    /// Of the frames of the host that has the board.
+    order: Order,
     writer: FrameWriter,
     frame: [u8; FRAME_BYTES],
     len: usize,
@@ -82,11 +115,17 @@ impl Application {
             controller: None,
             output: NOTHING,
             tick: 0,
+            operator: Operator {
+                holder: Holder::nobody(),
+                silence_us: Config::PUBLISHED.host_silence_us,
+                stranger: None,
+                untold_ticks: TURNED_AWAY_TICKS,
+            },
             requests: Requests { is_host_heard: false, waiting: Deque::new(), answered: None },
             lock_step: None,
             link: Link {
-                is_greeted: false,
                 reader: FrameReader::new(),
+                order: Order::new(),
                 writer: FrameWriter::starting_at(0),
                 frame: [0; FRAME_BYTES],
                 len: 0,
@@ -139,6 +178,8 @@ impl Application {
 
     fn tick(&mut self, board: &mut impl Board, latched: &Latched) {
         self.tick = self.tick.wrapping_add(latched.ticks);
+        self.operator.holder.pass(latched.ticks.saturating_mul(TICK_US));
+        self.turn_away(latched.ticks);
         let missed = latched.ticks.saturating_sub(1);
         if missed > 0 {
             self.overruns = self.overruns.wrapping_add(missed);
@@ -163,13 +204,13 @@ impl Application {
                 is_amplifier_ready: axis.is_amplifier_ready,
             }
         };
-        let waiting = self.requests.waiting.pop_front();
+        let waiting = self.next_request();
         let tick = Tick {
             latched_us: latched.latched_us,
             axes: [input(0), input(1)],
             is_estop_open: latched.is_estop_open,
             is_host_heard: core::mem::take(&mut self.requests.is_host_heard),
-            request: waiting.map(|(_, request)| request),
+            request: waiting.map(|waiting| waiting.request),
         };
         let before = self.output.status;
         self.output = match &mut self.controller {
@@ -185,15 +226,17 @@ impl Application {
         let mut telemetry = Telemetry::of(&tick, &self.output, codes, currents);
         telemetry.tick = self.tick;
         telemetry.is_after_overrun = missed > 0;
-        self.link.file(telemetry, decimation(board));
+        if self.operator.holder.session() != NOBODY {
+            self.link.file(telemetry, decimation(board));
+        }
         self.report(&before, latched.latched_us);
-        if let Some((id, _)) = waiting {
+        if let Some(Waiting { session, id, .. }) = waiting {
             let verdict = match (&self.controller, self.output.status.refusal) {
                 (None, _) => Verdict::NotConfigured,
                 (_, Some(refusal)) => Verdict::Refused(refusal),
                 (_, None) => Verdict::Accepted,
             };
-            self.answer(id, verdict);
+            self.answer(session, id, verdict);
         }
         if self.tick % HEALTH_TICKS < latched.ticks {
             self.report_health(board);
@@ -222,7 +265,7 @@ impl Application {
     }
 
     fn report_health(&mut self, board: &impl Board) {
-        let counts = self.link.reader.counts();
+        let (counts, order) = (self.link.reader.counts(), self.link.order.counts());
         self.link.say(FromBoard::Health(Health {
             tick: self.tick,
             telemetry_lost: self.link.telemetry.lost(),
@@ -230,59 +273,106 @@ impl Application {
             worst_step_us: self.worst_step_us,
             port_overflows: board.port_overflows().wrapping_add(self.link.messages_lost),
             corrupt: counts.corrupt,
-            lost: counts.order.lost,
-            late: counts.order.late,
-            duplicates: counts.order.duplicates,
+            lost: order.lost,
+            late: order.late,
+            duplicates: order.duplicates,
         }));
     }
 
-    fn answer(&mut self, id: u16, verdict: Verdict) {
-        let ack = Ack { id, tick: self.tick, verdict };
-        self.requests.answered = Some(ack);
+    fn answer(&mut self, session: u32, id: u16, verdict: Verdict) {
+        let ack = Ack { session, id, tick: self.tick, verdict };
+        if session == self.operator.holder.session() {
+            self.requests.answered = Some(ack);
+        }
         self.link.say(FromBoard::Ack(ack));
     }
 
-    /// A byte came from the host.
+    /// A byte came from a host.
     fn hear(&mut self, board: &mut impl Board, byte: u8) {
         let Some(received) = self.link.reader.feed(byte) else { return };
-        match received.message {
-            ToBoard::Hello => return self.greet(board),
+        let HostFrame { session, says } = received.message;
+        match says {
+            ToBoard::Hello => return self.greet(board, session, received.sequence),
+            // It can be told the version and nothing else, and takes nothing from the host that has the board.
             ToBoard::ForeignHello { version } => {
-                self.link.is_greeted = false;
                 self.link.say(FromBoard::ForeignHello { version: VERSION });
                 let kind = EventKind::VersionMismatch(version);
                 let latched_us = board.now_us();
                 return self.link.say(FromBoard::Event(Event { tick: self.tick, latched_us, kind }));
             }
-            _ if !self.link.is_greeted => return, // who does not greet is not heard
             _ => {}
         }
+        if !self.operator.holder.hear(session) {
+            return self.hear_stranger(session, &says);
+        }
+        let arrival = self.link.order.note(received.sequence);
         self.requests.is_host_heard = true;
-        let is_stale = matches!(received.arrival, Arrival::Late | Arrival::Duplicate);
-        match received.message {
+        match says {
             ToBoard::Hello | ToBoard::ForeignHello { .. } | ToBoard::Heartbeat => {}
             ToBoard::TimeRequest { host_sent_us } => {
                 let board_received_us = board.now_us();
                 // The answer is stamped when it is written; it waits behind what is already in the queue.
-                let reply = TimeReply { host_sent_us, board_received_us, board_sent_us: board_received_us };
+                let reply = TimeReply { session, host_sent_us, board_received_us, board_sent_us: board_received_us };
                 self.link.say(FromBoard::TimeReply(reply));
             }
-            ToBoard::Request { id, request } => self.request(id, request, is_stale),
+            ToBoard::Request { id, request } => {
+                self.request(Waiting { session, id, request }, matches!(arrival, Arrival::Late | Arrival::Duplicate));
+            }
             ToBoard::Configure { id, config } => {
                 if let Some(ack) = self.requests.answered.filter(|ack| ack.id == id) {
                     return self.link.say(FromBoard::Ack(ack));
                 }
                 let verdict = self.configure(&config);
-                self.answer(id, verdict);
+                self.answer(session, id, verdict);
             }
-            ToBoard::LockStep { number, tick } => self.lock_step(number, &tick),
+            ToBoard::LockStep { number, tick } => self.lock_step(session, number, &tick),
         }
     }
 
-    fn greet(&mut self, board: &mut impl Board) {
-        self.link.is_greeted = true;
-        self.lock_step = None;
-        self.requests.answered = None;
+    /// A stop is obeyed from everybody, as often as it is asked for; nothing else is, from a host that does not have the board.
+    fn hear_stranger(&mut self, session: u32, says: &ToBoard) {
+        match *says {
+            ToBoard::Request { id, request: request @ Request::Stop(_) } => {
+                self.requests.put(Waiting { session, id, request });
+            }
+            _ => self.operator.stranger = Some(session),
+        }
+    }
+
+    /// Says that somebody was turned away, not too often.
+    fn turn_away(&mut self, ticks: u32) {
+        let Operator { holder, silence_us, stranger, untold_ticks } = &mut self.operator;
+        *untold_ticks = untold_ticks.saturating_add(ticks);
+        if *untold_ticks < TURNED_AWAY_TICKS {
+            return;
+        }
+        if let Some(session) = stranger.take() {
+            *untold_ticks = 0;
+            self.link.say(FromBoard::TurnedAway(TurnedAway {
+                session,
+                holder: holder.session(),
+                holder_frames: holder.frames(),
+                free_in_us: holder.free_in_us(*silence_us),
+            }));
+        }
+    }
+
+    fn greet(&mut self, board: &mut impl Board, session: u32, sequence: u16) {
+        match self.operator.holder.greet(session, self.operator.silence_us) {
+            Greeting::Refused => {
+                self.operator.stranger = Some(session);
+                return;
+            }
+            Greeting::Taken => {
+                self.lock_step = None;
+                self.requests.answered = None;
+                self.link.order.restart();
+            }
+            // A repeated hello changes nothing: it must not make a repeated request a new one.
+            Greeting::Again => {}
+        }
+        self.link.order.note(sequence);
+        self.requests.is_host_heard = true;
         self.say_hello(board);
         self.report_health(board);
     }
@@ -299,31 +389,33 @@ impl Application {
             current_a_per_count: scales.current_a_per_count,
             is_configured: self.controller.is_some(),
             was_watchdog_reset: board.was_watchdog_reset(),
+            session: self.operator.holder.session(),
         }));
     }
 
     /// A request is carried out once, whatever the line does: its number is remembered until the next one.
-    fn request(&mut self, id: u16, request: Request, is_stale: bool) {
-        if let Some(ack) = self.requests.answered.filter(|ack| ack.id == id) {
+    fn request(&mut self, waiting: Waiting, is_stale: bool) {
+        if let Some(ack) = self.requests.answered.filter(|ack| ack.id == waiting.id) {
             return self.link.say(FromBoard::Ack(ack));
         }
         // A late or repeated frame is older than one that was carried out: its sender has moved on, except for a stop.
-        if is_stale && !matches!(request, Request::Stop(_)) {
-            return;
+        if !is_stale || waiting.is_stop() {
+            self.requests.put(waiting);
         }
-        let waiting = &mut self.requests.waiting;
-        if waiting.iter().any(|(other, _)| *other == id) {
-            return;
-        }
-        // Full: nobody answers, and the host asks again.
-        let _ = if matches!(request, Request::Stop(_)) {
-            waiting.push_front((id, request))
-        } else {
-            waiting.push_back((id, request))
-        };
     }
 
-    fn configure(&mut self, config: &froude_control::config::Config) -> Verdict {
+    /// The next request; what a host asked for before it lost the board is dropped, but for a stop.
+    fn next_request(&mut self) -> Option<Waiting> {
+        let holder = self.operator.holder.session();
+        while let Some(waiting) = self.requests.waiting.pop_front() {
+            if waiting.session == holder || waiting.is_stop() {
+                return Some(waiting);
+            }
+        }
+        None
+    }
+
+    fn configure(&mut self, config: &Config) -> Verdict {
         let is_at_rest = self.output.status.axes.iter().all(|axis| axis.phase == Phase::Disabled);
         if !is_at_rest {
             return Verdict::NotNow;
@@ -331,6 +423,7 @@ impl Application {
         match Controller::new(*config) {
             Ok(controller) => {
                 self.controller = Some(controller);
+                self.operator.silence_us = config.host_silence_us;
                 self.output = NOTHING;
                 self.lock_step = None;
                 Verdict::Accepted
@@ -340,12 +433,13 @@ impl Application {
     }
 
     /// Steps with the host's inputs. The same number again gets the same answer; any other but the next one gets none.
-    fn lock_step(&mut self, number: u32, tick: &Tick) {
+    fn lock_step(&mut self, session: u32, number: u32, tick: &Tick) {
         let Some(controller) = &mut self.controller else { return };
         let next = self.lock_step.as_ref().map_or(0, |last| last.reply.number.wrapping_add(1));
         if number == next {
             let Output { command, status } = controller.step(tick);
             let reply = LockStepReply {
+                session,
                 number,
                 command,
                 reference_m: status.axes.map(|axis| axis.reference_m),
@@ -360,6 +454,30 @@ impl Application {
             let reply = last.reply;
             self.link.say(FromBoard::LockStep(reply));
         }
+    }
+}
+
+impl Waiting {
+    const fn is_stop(&self) -> bool {
+        matches!(self.request, Request::Stop(_))
+    }
+}
+
+impl Requests {
+    /// Keeps a request until its tick, once. There is always room for a stop; what else does not fit is not answered, and its host
+    /// asks again.
+    fn put(&mut self, new: Waiting) {
+        if self.waiting.iter().any(|other| (other.session, other.id) == (new.session, new.id)) {
+            return;
+        }
+        if !new.is_stop() {
+            let _ = self.waiting.push_back(new);
+            return;
+        }
+        if self.waiting.is_full() {
+            self.waiting.pop_back();
+        }
+        let _ = self.waiting.push_front(new);
     }
 }
 
@@ -404,7 +522,7 @@ impl Link {
 
     /// Files telemetry of a tick that is sent.
     fn file(&mut self, telemetry: Telemetry, decimation: Decimation) {
-        if self.is_greeted && decimation.takes(telemetry.tick) {
+        if decimation.takes(telemetry.tick) {
             self.telemetry.put(telemetry);
         }
     }

@@ -269,7 +269,7 @@ fn the_application_homes_a_rig_through_every_register() {
         };
         let mut wire = [0; MAX_WIRE];
         if tick % 10 == 0 {
-            line_in.extend(writer.write(&message, &mut wire));
+            line_in.extend(writer.write(&message.from_session(1), &mut wire));
         }
 
         // The rig moves by what stands at the pins, its encoders turn, its switches open, its current flows.

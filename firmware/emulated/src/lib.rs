@@ -74,6 +74,8 @@ pub struct Board {
     writer: FrameWriter,
     bytes: Vec<u8>,
     taken: usize,
+    /// As which session the host speaks.
+    pub session: u32,
     /// What happens to frames on their way to the board.
     pub outward: noise::Line,
     /// What happens to frames on their way to the host.
@@ -108,6 +110,7 @@ impl Board {
             writer: FrameWriter::default(),
             bytes: Vec::new(),
             taken: 0,
+            session: 1,
             outward: noise::Line::clean(),
             inward: noise::Line::clean(),
         })
@@ -120,7 +123,7 @@ impl Board {
     /// When the emulator is gone.
     pub fn send(&mut self, message: &ToBoard) -> io::Result<()> {
         let mut wire = [0; MAX_WIRE];
-        let frame = self.writer.write(message, &mut wire);
+        let frame = self.writer.write(&message.from_session(self.session), &mut wire);
         let bytes = self.outward.pass(frame);
         self.stream.write_all(&bytes)
     }

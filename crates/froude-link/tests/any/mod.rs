@@ -5,11 +5,12 @@ use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_control::tick::{AxisCommand, AxisInput, Command, Tick};
+use froude_link::session::NOBODY;
 use froude_link::status::{
-    Ack, BoardHello, BoardId, Event, EventKind, FaultReport, Health, LockStepReply, TimeReply, Verdict,
+    Ack, BoardHello, BoardId, Event, EventKind, FaultReport, Health, LockStepReply, TimeReply, TurnedAway, Verdict,
 };
 use froude_link::telemetry::{AxisTelemetry, Telemetry};
-use froude_link::{FromBoard, ToBoard};
+use froude_link::{FromBoard, HostFrame, ToBoard};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -192,10 +193,16 @@ fn any_tick() -> impl Strategy<Value = Tick> {
     })
 }
 
-pub fn any_to_board() -> impl Strategy<Value = ToBoard> {
+pub fn any_host_frame() -> impl Strategy<Value = HostFrame> {
+    // Of another version nothing is read but the version.
+    let foreign = (3..u16::MAX).prop_map(|version| ToBoard::ForeignHello { version }.from_session(NOBODY));
+    let own = (any_to_board(), prop_oneof![Just(NOBODY), any::<u32>()]);
+    prop_oneof![1 => foreign, 9 => own.prop_map(|(says, session)| says.from_session(session))]
+}
+
+fn any_to_board() -> impl Strategy<Value = ToBoard> {
     prop_oneof![
         Just(ToBoard::Hello),
-        (2..u16::MAX).prop_map(|version| ToBoard::ForeignHello { version }),
         (any::<u16>(), any_request()).prop_map(|(id, request)| ToBoard::Request { id, request }),
         (any::<u16>(), any_config()).prop_map(|(id, config)| ToBoard::Configure { id, config }),
         Just(ToBoard::Heartbeat),
@@ -270,8 +277,9 @@ pub fn any_from_board() -> impl Strategy<Value = FromBoard> {
             current_a_per_count: [d.f(), d.f()],
             is_configured: d.b(),
             was_watchdog_reset: d.b(),
+            session: d.bits() as u32,
         })),
-        (2..u16::MAX).prop_map(|version| FromBoard::ForeignHello { version }),
+        (3..u16::MAX).prop_map(|version| FromBoard::ForeignHello { version }),
         any_telemetry().prop_map(FromBoard::Telemetry),
         any_event().prop_map(FromBoard::Event),
         (any_draw(), any_fault(), any_category()).prop_map(|(mut d, fault, category)| FromBoard::Fault(FaultReport {
@@ -281,11 +289,11 @@ pub fn any_from_board() -> impl Strategy<Value = FromBoard> {
             axis: d.bits() as u8,
             category,
         })),
-        (any::<u16>(), any::<u32>(), any_verdict()).prop_map(|(id, tick, verdict)| FromBoard::Ack(Ack {
-            id,
-            tick,
-            verdict
-        })),
+        (any::<[u32; 2]>(), any::<u16>(), any_verdict())
+            .prop_map(|([session, tick], id, verdict)| FromBoard::Ack(Ack { session, id, tick, verdict })),
+        any::<[u32; 4]>().prop_map(|[session, holder, holder_frames, free_in_us]| {
+            FromBoard::TurnedAway(TurnedAway { session, holder, holder_frames, free_in_us })
+        }),
         any_draw().prop_map(|mut d| {
             let mut next = || d.bits() as u32;
             FromBoard::Health(Health {
@@ -300,11 +308,12 @@ pub fn any_from_board() -> impl Strategy<Value = FromBoard> {
                 duplicates: next(),
             })
         }),
-        any::<[u32; 2]>().prop_flat_map(|[a, b]| any::<u64>().prop_map(move |host_sent_us| {
-            FromBoard::TimeReply(TimeReply { host_sent_us, board_received_us: a, board_sent_us: b })
-        })),
+        (any::<[u32; 3]>(), any::<u64>()).prop_map(|([session, a, b], host_sent_us)| {
+            FromBoard::TimeReply(TimeReply { session, host_sent_us, board_received_us: a, board_sent_us: b })
+        }),
         (any_draw(), [any_phase(), any_phase()], prop::option::of(any_fault()), prop::option::of(any_refusal()))
             .prop_map(|(mut d, phases, fault, refusal)| FromBoard::LockStep(LockStepReply {
+                session: d.bits() as u32,
                 number: d.bits() as u32,
                 command: Command {
                     axes: [

@@ -12,7 +12,7 @@ use froude_records::run::EventKind;
 
 use super::hand_over::{Engine, Next, Pace};
 use super::plan::PlannedRun;
-use super::runner::{RunnerError, Session, Setting};
+use super::runner::{RunnerError, Session, Setting, turned_away};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{HostClock, Rig, Sample};
 
@@ -117,6 +117,9 @@ impl Idle {
         });
         let trouble = match rig.tick(request) {
             Ok(sample) => {
+                if let Some(session) = sample.stranger {
+                    engine.put(Entry::Event(EventKind::Link, turned_away(session)));
+                }
                 sample.fault.map(|(fault, _)| RunnerError::FaultAtRest { fault, category: fault.category() as u8 })
             }
             Err(error) => {

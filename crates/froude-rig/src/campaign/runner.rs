@@ -361,6 +361,7 @@ impl<'a> Campaign<'a, '_> {
                             self.progress.sample(run, &sample, number as f64 * tick_s);
                         }
                     }
+                    Entry::Event(EventKind::Link, sentence) => self.progress.say(&sentence),
                     Entry::Ended(ended) => {
                         return match failed {
                             Some(error) => Err(error.into()),
@@ -671,6 +672,9 @@ impl<'a, 'o> Session<'a, 'o> {
     fn rig_tick(&mut self, request: Option<Request>) -> Result<Sample, RunnerError> {
         let sample = self.rig.tick(request)?;
         self.last = sample;
+        if let Some(session) = sample.stranger {
+            self.event(EventKind::Link, &turned_away(session));
+        }
         let number = sample.tick - *self.tick.get_or_insert(sample.tick);
         let is_due = self.is_recorded && number.is_multiple_of(self.setting.decimation);
         if is_due || number.is_multiple_of(TOLD_EVERY) {
@@ -686,3 +690,8 @@ impl<'a, 'o> Session<'a, 'o> {
 
 /// Ticks between two words to whoever watches: thirty a second.
 const TOLD_EVERY: u64 = 133;
+
+/// What is said of another program on the line.
+pub(super) fn turned_away(session: u32) -> String {
+    format!("another program (session {session:08x}) asked for the board and was turned away")
+}

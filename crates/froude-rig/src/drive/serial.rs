@@ -4,6 +4,10 @@
 //! configured time, the board stops the carriage by itself (category 1). A request is repeated with its number until the board
 //! has answered it, so a lost frame costs time and nothing else; a lost telemetry frame is a gap in the record.
 //!
+//! **One operator.** The port is opened for this program alone. On the line every frame carries a session number, drawn when the rig
+//! is opened; the board does what one session asks for and turns others away until that one has been silent ([`froude_link::session`]).
+//! A program that finds the board taken waits as long as a program that has died would keep it, and gives up when the other one lives.
+//!
 //! **Position.** Telemetry carries raw counts. Where they begin is learnt while the axis holds after homing: the mean of reference less
 //! counts over half a second, good to less than a count (2.5 µm).
 //!
@@ -13,6 +17,7 @@
 //! Not here: the force sensor, which has a box of its own; its log is joined by time afterwards.
 
 use std::collections::VecDeque;
+use std::hash::{BuildHasher, RandomState};
 use std::io::{Read, Write};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
@@ -23,9 +28,11 @@ use froude_control::status::{Phase, Refusal};
 use froude_control::tick::AXES;
 use froude_link::clock::{Aligner, Exchange, Unwrapped};
 use froude_link::message::{FromBoard, ToBoard};
-use froude_link::status::{BoardHello, Verdict};
+use froude_link::session::NOBODY;
+use froude_link::status::{Ack, BoardHello, TurnedAway, Verdict};
 use froude_link::{FrameReader, FrameWriter, Telemetry, VERSION};
 
+use super::port::Port;
 use super::{AxisSample, HostClock, Rig, RigError, Sample};
 use crate::load::Load;
 
@@ -62,6 +69,11 @@ struct Origin {
 pub struct SerialRig {
     port: String,
     line: Box<dyn Line>,
+    session: u32,
+    /// The first time that the board turned this session away.
+    refused: Option<TurnedAway>,
+    /// The last session that was turned away because this one has the board, and whether that is still to be said.
+    stranger: Option<(u32, bool)>,
     reader: FrameReader<FromBoard>,
     writer: FrameWriter,
     config: Config,
@@ -72,7 +84,9 @@ pub struct SerialRig {
     /// The request that has no answer yet, its number, and when it was last sent.
     asked: Option<(u16, Request, Instant)>,
     id: u16,
-    answer: Option<Verdict>,
+    answer: Option<Ack>,
+    /// Telemetry up to this tick is of an earlier configuration, or of another host's time.
+    stale_until: Option<u32>,
     refusal: Option<Refusal>,
     last_sent: Instant,
     last_heard: Instant,
@@ -115,13 +129,10 @@ impl SerialRig {
     ///
     /// # Errors
     ///
-    /// [`RigError`]: no such port, no answer, another version, a configuration that the board does not take.
+    /// [`RigError`]: no such port, or another program has it; no answer, another version, a board that another program drives, a
+    /// configuration that the board does not take.
     pub fn open(port: &str, baud: u32, config: Config) -> Result<Self, RigError> {
-        let failed = |e: std::io::Error| RigError::Port { port: port.to_owned(), reason: e.to_string() };
-        let mut line = serial2::SerialPort::open(port, baud).map_err(failed)?;
-        line.set_read_timeout(Duration::from_millis(2)).map_err(failed)?;
-        line.discard_buffers().map_err(failed)?;
-        Self::on(port, Box::new(line), config)
+        Self::on(port, Box::new(Port::open(port, baud)?), config)
     }
 
     /// The same on any line; `port` is its name in messages.
@@ -134,6 +145,9 @@ impl SerialRig {
         let mut rig = Self {
             port: port.to_owned(),
             line,
+            session: drawn_session(),
+            refused: None,
+            stranger: None,
             reader: FrameReader::new(),
             writer: FrameWriter::default(),
             config,
@@ -144,6 +158,7 @@ impl SerialRig {
             asked: None,
             id: 0,
             answer: None,
+            stale_until: None,
             refusal: None,
             last_sent: now,
             last_heard: now,
@@ -154,21 +169,43 @@ impl SerialRig {
         Ok(rig)
     }
 
+    /// Asks for the board until it says that it is ours.
     fn greet(&mut self) -> Result<(), RigError> {
         let begun = Instant::now();
         let mut sent: Option<Instant> = None;
         while self.hello.is_none() {
-            if begun.elapsed() > GREETING {
+            // A program that died keeps the board for a while.
+            let taken = Duration::from_micros(self.refused.map_or(0, |refused| u64::from(refused.free_in_us)));
+            if begun.elapsed() > GREETING + taken {
                 return Err(self.silent(begun.elapsed()));
             }
             if sent.is_none_or(|at| at.elapsed() > REPEAT) {
-                self.writer = FrameWriter::default();
-                self.send(&ToBoard::Hello)?;
+                self.send(ToBoard::Hello)?;
                 sent = Some(Instant::now());
             }
             self.listen()?;
         }
         Ok(())
+    }
+
+    /// The board did not hear this session.
+    fn turned_away(&mut self, now: TurnedAway) -> Result<(), RigError> {
+        let port = self.port.clone();
+        if self.hello.is_some() {
+            return Err(match now.holder {
+                NOBODY => RigError::Restarted { port },
+                holder => RigError::TakenOver { port, holder },
+            });
+        }
+        match self.refused.filter(|first| first.holder == now.holder) {
+            // It spoke between two refusals.
+            Some(first) if first.holder_frames != now.holder_frames => Err(RigError::Held { port, holder: now.holder }),
+            Some(_) => Ok(()),
+            None => {
+                self.refused = Some(now);
+                Ok(())
+            }
+        }
     }
 
     /// A board that still drives is stopped first; a fault that only says that the host was away is cleared by its name.
@@ -177,12 +214,12 @@ impl SerialRig {
         loop {
             self.id = self.id.wrapping_add(1).max(1);
             self.answer = None;
-            self.send(&ToBoard::Configure { id: self.id, config: self.config })?;
+            self.send(ToBoard::Configure { id: self.id, config: self.config })?;
             let sent = Instant::now();
             while self.answer.is_none() && sent.elapsed() < 4 * REPEAT {
                 self.listen()?;
             }
-            match self.answer {
+            match self.answer.map(|ack| ack.verdict) {
                 Some(Verdict::Accepted) => break,
                 Some(Verdict::BadConfiguration) => {
                     return Err(RigError::Port {
@@ -191,14 +228,14 @@ impl SerialRig {
                     });
                 }
                 Some(Verdict::NotNow) => self.quieten()?,
-                // The hello that was heard may have been the board's own, at its start, and ours lost: who does not greet is not heard.
-                None => self.send(&ToBoard::Hello)?,
                 _ => {}
             }
             if begun.elapsed() > GREETING {
                 return Err(self.silent(begun.elapsed()));
             }
         }
+        self.heard.clear();
+        self.stale_until = self.answer.map(|ack| ack.tick);
         if let Some((fault @ (Fault::HostSilent | Fault::RecorderFailed), _)) = self.next(None)?.fault {
             self.tick(Some(Request::Clear(fault)))?;
         }
@@ -217,9 +254,9 @@ impl SerialRig {
         RigError::Silent { port: self.port.clone(), silent_s: silent.as_secs_f64() }
     }
 
-    fn send(&mut self, message: &ToBoard) -> Result<(), RigError> {
+    fn send(&mut self, says: ToBoard) -> Result<(), RigError> {
         let mut wire = [0_u8; LONGEST_FRAME];
-        let frame = self.writer.write(message, &mut wire);
+        let frame = self.writer.write(&says.from_session(self.session), &mut wire);
         self.last_sent = Instant::now();
         self.line.write_all(frame).map_err(|e| RigError::Port { port: self.port.clone(), reason: e.to_string() })
     }
@@ -247,7 +284,15 @@ impl SerialRig {
 
     fn take(&mut self, message: FromBoard) -> Result<(), RigError> {
         match message {
-            FromBoard::Hello(hello) => self.hello = Some(hello),
+            // One of another session is the board's own at its start, or an answer to another host.
+            FromBoard::Hello(hello) if hello.session == self.session => self.hello = Some(hello),
+            FromBoard::TurnedAway(refused) if refused.session == self.session => self.turned_away(refused)?,
+            FromBoard::TurnedAway(TurnedAway { session, holder, .. }) if holder == self.session => {
+                // One that goes on asking is one line in the log.
+                if self.stranger.is_none_or(|(last, _)| last != session) {
+                    self.stranger = Some((session, true));
+                }
+            }
             FromBoard::ForeignHello { version } => {
                 return Err(RigError::Version {
                     port: self.port.clone(),
@@ -255,10 +300,16 @@ impl SerialRig {
                     ours: VERSION.to_string(),
                 });
             }
-            FromBoard::Telemetry(telemetry) => self.heard.push_back(telemetry),
-            FromBoard::Ack(ack) => {
+            FromBoard::Telemetry(telemetry) => {
+                let is_stale = |until: u32| telemetry.tick.wrapping_sub(until) as i32 <= 0;
+                if !self.stale_until.is_some_and(is_stale) {
+                    self.stale_until = None;
+                    self.heard.push_back(telemetry);
+                }
+            }
+            FromBoard::Ack(ack) if ack.session == self.session => {
                 if ack.id == self.id {
-                    self.answer = Some(ack.verdict);
+                    self.answer = Some(ack);
                 }
                 if self.asked.is_some_and(|(id, _, _)| id == ack.id) {
                     self.asked = None;
@@ -269,7 +320,7 @@ impl SerialRig {
                     };
                 }
             }
-            FromBoard::TimeReply(reply) => {
+            FromBoard::TimeReply(reply) if reply.session == self.session => {
                 let clock = &mut self.clock;
                 let board_received_us = clock.board.unwrap(reply.board_received_us);
                 let on_board = reply.board_sent_us.wrapping_sub(reply.board_received_us);
@@ -290,7 +341,7 @@ impl SerialRig {
     fn next(&mut self, request: Option<Request>) -> Result<Sample, RigError> {
         if let Some(request) = request {
             self.id = self.id.wrapping_add(1).max(1);
-            self.send(&ToBoard::Request { id: self.id, request })?;
+            self.send(ToBoard::Request { id: self.id, request })?;
             self.asked = Some((self.id, request, Instant::now()));
         }
         loop {
@@ -300,15 +351,15 @@ impl SerialRig {
             if let Some((id, request, at)) = self.asked
                 && at.elapsed() > REPEAT
             {
-                self.send(&ToBoard::Request { id, request })?;
+                self.send(ToBoard::Request { id, request })?;
                 self.asked = Some((id, request, Instant::now()));
             }
             if self.last_sent.elapsed() > HEARTBEAT {
-                self.send(&ToBoard::Heartbeat)?;
+                self.send(ToBoard::Heartbeat)?;
             }
             if self.clock.asked.elapsed() > ASK_TIME {
                 self.clock.asked = Instant::now();
-                self.send(&ToBoard::TimeRequest { host_sent_us: self.clock.host_us() })?;
+                self.send(ToBoard::TimeRequest { host_sent_us: self.clock.host_us() })?;
             }
             self.listen()?;
             // Only now: what came while nobody listened lies in the port.
@@ -353,10 +404,25 @@ impl SerialRig {
                 is_homed: t.is_homed,
             };
         }
+        let stranger = self.stranger.filter(|(_, is_new)| *is_new).map(|(session, _)| session);
+        self.stranger = self.stranger.map(|(session, _)| (session, false));
         let tick = self.ticks.unwrap(telemetry.tick);
         self.clock.latched = Some((tick, self.clock.board.unwrap(telemetry.latched_us)));
-        Sample { tick, axes, force_n: None, fault: telemetry.fault, refusal: self.refusal.take(), truth: None }
+        Sample {
+            tick,
+            axes,
+            force_n: None,
+            fault: telemetry.fault,
+            refusal: self.refusal.take(),
+            stranger,
+            truth: None,
+        }
     }
+}
+
+/// A session's number: another one each time, and not nobody's.
+fn drawn_session() -> u32 {
+    (RandomState::new().hash_one(std::process::id()) as u32).max(NOBODY + 1)
 }
 
 impl Rig for SerialRig {

@@ -89,6 +89,7 @@ impl Rig for TwinRig {
             force_n: self.has_force_sensor.then(|| self.twin.force_n()),
             fault: output.status.fault,
             refusal: output.status.refusal,
+            stranger: None,
             truth: self.is_truth_told.then(|| [self.twin.truth(0), self.twin.truth(1)]),
         })
     }

@@ -8,6 +8,7 @@ use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 use froude_records::run::{BodyState, RunKind, RunLog, read_run};
+use froude_rig::campaign::lock::FolderLock;
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check, check_campaign};
 use froude_rig::campaign::runner::{self, Operator, Progress, Setting};
@@ -249,6 +250,7 @@ pub fn drive(
         let more = if more == 0 { String::new() } else { format!(" ({more} more: froude run --check)") };
         return Err(Error::Nothing(format!("nothing was moved: {}: {}{more}", first.id, first.text)));
     }
+    let _alone = FolderLock::take(&prepared.folder, &prepared.job.date, prepared.job.start_unix_ns)?;
     own_folder(&prepared.folder, &prepared.job.campaign)?;
     let (mut rig, load, twin_seed) = rig_of(prepared)?;
     let axis = &prepared.control.axes[prepared.asked.axis as usize];

@@ -23,7 +23,7 @@ use froude_control::tick::Tick;
 use froude_images::boot::enable_interrupts;
 use froude_images::semihosting::{Console, exit};
 use froude_link::frame::{FrameReader, FrameWriter, MAX_WIRE};
-use froude_link::{FromBoard, Telemetry, ToBoard};
+use froude_link::{FromBoard, HostFrame, Telemetry, ToBoard};
 
 static LATCH: TickLatch = TickLatch::new();
 
@@ -130,8 +130,8 @@ fn others(system: &Memory, output: &Output) {
     let mut writer = FrameWriter::starting_at(77);
     let (cost, len) = instructions(system, || writer.write(&FromBoard::Telemetry(telemetry), &mut wire).len());
     let _ = writeln!(console, "telemetry_framed {cost} bytes {len}");
-    let len = writer.write(&ToBoard::Heartbeat, &mut wire).len();
-    let mut reader = FrameReader::<ToBoard>::new();
+    let len = writer.write(&ToBoard::Heartbeat.from_session(0x1234_5678), &mut wire).len();
+    let mut reader = FrameReader::<HostFrame>::new();
     let (cost, heard) = instructions(system, || wire.iter().take(len).filter_map(|&byte| reader.feed(byte)).count());
     let _ = writeln!(console, "heartbeat_read {cost} bytes {len} messages {heard}");
     // The timer's own interrupt, made pending by hand: vectors, registers saved, latch, acknowledgement, return.

@@ -29,6 +29,8 @@ use froude_link::{FromBoard, ToBoard};
 
 static LATCH: TickLatch = TickLatch::new();
 
+/// The host's session.
+const SESSION: u32 = 1;
 /// Bytes that 3 Mbaud carry in a tick.
 const BYTES_PER_TICK: u32 = 75;
 /// When the host falls silent, tick.
@@ -93,7 +95,7 @@ impl Host {
             _ if tick % 40 == 7 => ToBoard::Heartbeat,
             _ => return,
         };
-        self.len = self.writer.write(&message, &mut self.wire).len();
+        self.len = self.writer.write(&message.from_session(SESSION), &mut self.wire).len();
         self.sent = 0;
     }
 

@@ -1,0 +1,125 @@
+//! One drive at a time into a folder of runs.
+//!
+//! Whoever drives holds a lock on a file in the folder, in which it says who it is. The lock is the system's: it ends with the process,
+//! however that ends, so that what lies there afterwards stops nobody. Reading a folder needs no lock.
+
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, Write};
+use std::path::{Path, PathBuf};
+
+/// The file's name in the folder.
+pub const LOCK_FILE: &str = "drive.lock";
+
+/// Why a folder cannot be driven into.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum LockError {
+    /// Somebody drives into it.
+    #[error(
+        "{}: another froude is driving into this folder ({by}); nothing was moved and nothing changed. Wait until it has ended, or \
+         name another folder with --out", folder.display()
+    )]
+    Taken {
+        /// The folder.
+        folder: PathBuf,
+        /// Who, in words: process, host, since when.
+        by: String,
+    },
+    /// The folder or its lock cannot be made.
+    #[error(
+        "{}: cannot be locked: {reason}; without a lock two programs could drive into it. Name a folder on a disk of this computer \
+         with --out", path.display()
+    )]
+    Impossible {
+        /// The folder or the file.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// A folder that nobody else drives into as long as this lives.
+#[derive(Debug)]
+pub struct FolderLock {
+    _file: File,
+}
+
+impl FolderLock {
+    /// Makes the folder where it is missing, and takes it. `date` in words and `start_unix_ns`, ns since 1970, are left for whoever
+    /// comes second.
+    ///
+    /// # Errors
+    ///
+    /// [`LockError`].
+    pub fn take(folder: &Path, date: &str, start_unix_ns: u64) -> Result<Self, LockError> {
+        let path = folder.join(LOCK_FILE);
+        let failed = |e: std::io::Error| LockError::Impossible { path: path.clone(), reason: e.to_string() };
+        std::fs::create_dir_all(folder).map_err(failed)?;
+        let mut file =
+            OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path).map_err(failed)?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                let mut by = String::new();
+                // Where a locked file cannot be read, or is not written yet, there is only less to say.
+                let _ = file.read_to_string(&mut by);
+                let by = if by.trim().is_empty() { "who, it has not said yet".to_owned() } else { by.trim().to_owned() };
+                return Err(LockError::Taken { folder: folder.to_owned(), by });
+            }
+            Err(TryLockError::Error(e)) => return Err(failed(e)),
+        }
+        let who = format!(
+            "process {} on {}, since {date} {} UTC\n",
+            std::process::id(),
+            host(),
+            time_of_day(start_unix_ns / 1_000_000_000)
+        );
+        file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(who.as_bytes())).map_err(failed)?;
+        Ok(Self { _file: file })
+    }
+}
+
+fn time_of_day(unix_s: u64) -> String {
+    let s = unix_s % 86_400;
+    format!("{:02}:{:02}:{:02}", s / 3_600, s / 60 % 60, s % 60)
+}
+
+#[cfg(unix)]
+fn host() -> String {
+    rustix::system::uname().nodename().to_string_lossy().into_owned()
+}
+
+#[cfg(not(unix))]
+fn host() -> String {
+    std::env::var("COMPUTERNAME").unwrap_or_else(|_| "this computer".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_second_is_told_who_is_first_and_comes_in_when_that_one_has_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        let runs = folder.path().join("deep/runs");
+        let first = FolderLock::take(&runs, "2026-03-01", (86_400 + 7_384) * 1_000_000_000).unwrap();
+        let refused = FolderLock::take(&runs, "2026-03-02", 0).unwrap_err().to_string();
+        let who = format!("(process {} on {}, since 2026-03-01 02:03:04 UTC)", std::process::id(), host());
+        assert!(refused.contains(&who), "{refused}");
+        assert!(refused.starts_with(&runs.display().to_string()), "{refused}");
+        drop(first);
+        // A longer word before leaves nothing behind.
+        FolderLock::take(&runs, "2026-03-02", 0).unwrap();
+        let left = std::fs::read_to_string(runs.join(LOCK_FILE)).unwrap();
+        assert!(left.ends_with("since 2026-03-02 00:00:00 UTC\n") && left.lines().count() == 1, "{left:?}");
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_an_error_with_its_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        let error = FolderLock::take(&file.join("runs"), "", 0).unwrap_err().to_string();
+        assert!(error.contains("cannot be locked") && error.contains("file/runs"), "{error}");
+    }
+}
