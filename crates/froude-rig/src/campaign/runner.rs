@@ -12,8 +12,8 @@ use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_records::RecordError;
 use froude_records::run::{
-    AxisConstants, AxisSample, BodyState, CarriageSample, ClockAlignment, EventKind, Layout, Packing, Recorder,
-    RunMeta, RunStatus, read_run_meta,
+    AxisConstants, AxisSample, BodyState, CampaignMark, CarriageSample, ClockAlignment, EventKind, Layout, Packing,
+    Pair, Recorder, RunMeta, RunStatus, check_pair,
 };
 use indexmap::IndexMap;
 
@@ -138,6 +138,8 @@ const SLOWEST_APPROACH_M_S: f64 = 0.02;
 pub struct Setting {
     /// Campaign's name.
     pub campaign: String,
+    /// SHA-256 of the campaign's file, hexadecimal; empty where there is none.
+    pub campaign_sha256: String,
     /// Folder of the runs; it exists.
     pub folder: PathBuf,
     /// What is asked for.
@@ -192,6 +194,7 @@ pub fn drive(
     let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None };
     let mut mounted: Option<OperatorStep> = None;
     let mut is_prepared = false;
+    let mut is_said = false;
     let mut number = 0;
     for step in steps {
         let run = match step {
@@ -207,8 +210,14 @@ pub fn drive(
             outcome.spared += 1;
             continue;
         }
-        if is_complete(&setting.folder, &run.id)? {
+        if let Some(is_compared) = is_complete(setting, &run.id, progress)? {
             outcome.resumed += 1;
+            if !(is_compared || std::mem::replace(&mut is_said, true)) {
+                progress.say(
+                    "runs of an earlier version lie there: they carry no SHA-256 of their logs, so that only the logs' own checksums vouch for \
+                     them",
+                );
+            }
             // What was known then is known now: a campaign that had stopped stays stopped.
             let known = enough(&setting.folder.join(format!("{}.mcap", run.id)), run);
             outcome.enough = outcome.enough.or(known);
@@ -236,17 +245,18 @@ pub fn drive(
     Ok(outcome)
 }
 
-/// Whether a run lies there complete; an incomplete one is put aside.
-fn is_complete(folder: &Path, id: &str) -> Result<bool, RunnerError> {
-    let sidecar = folder.join(format!("{id}.toml"));
-    if !sidecar.exists() {
-        return Ok(false);
+/// Whether a run lies there complete, and then whether its log was compared with its hash; what is no complete run is put aside.
+fn is_complete(setting: &Setting, id: &str, progress: &mut dyn Progress) -> Result<Option<bool>, RunnerError> {
+    let folder = &setting.folder;
+    let campaign = CampaignMark { name: &setting.campaign, sha256: &setting.campaign_sha256 };
+    let failed = |e: RecordError| RunnerError::Folder { path: folder.clone(), reason: e.to_string() };
+    match check_pair(folder, id, campaign).map_err(failed)? {
+        Pair::Absent => return Ok(None),
+        Pair::Complete { is_compared, .. } => return Ok(Some(is_compared)),
+        Pair::Again { reason } => progress.say(&format!("{reason}: {id} is put aside and driven again")),
     }
-    if read_run_meta(&sidecar)?.status == RunStatus::Complete {
-        return Ok(true);
-    }
-    let aside =
-        (1..10_000).map(|n| format!("{id}.interrupted-{n}")).find(|name| !folder.join(format!("{name}.toml")).exists());
+    let is_free = |name: &String| ["mcap", "toml"].iter().all(|e| !folder.join(format!("{name}.{e}")).exists());
+    let aside = (1..10_000).map(|n| format!("{id}.interrupted-{n}")).find(is_free);
     if let Some(aside) = aside {
         for extension in ["mcap", "toml"] {
             let from = folder.join(format!("{id}.{extension}"));
@@ -256,7 +266,7 @@ fn is_complete(folder: &Path, id: &str) -> Result<bool, RunnerError> {
             }
         }
     }
-    Ok(false)
+    Ok(None)
 }
 
 /// The load of a run: a ballasted wet run carries what buoyancy takes off its wheels.
@@ -551,6 +561,7 @@ impl Session<'_> {
         let rate_hz = self.rig.rate_hz() * self.rig.ticks_per_sample() as f64 / setting.decimation as f64;
         let meta = RunMeta {
             campaign: setting.campaign.clone(),
+            campaign_sha256: setting.campaign_sha256.clone(),
             id: run.id.clone(),
             kind: run.kind,
             set: run.set,
@@ -575,6 +586,7 @@ impl Session<'_> {
             log_rate_hz: rate_hz,
             date: setting.date.clone(),
             start_unix_ns: setting.start_unix_ns,
+            log: None,
         };
         let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };
         let layout = Layout::carriage(self.has_x(), probe.force_n.is_some(), truths)?;
