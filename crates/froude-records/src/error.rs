@@ -147,6 +147,23 @@ pub enum RecordError {
         /// What the reader says.
         reason: String,
     },
+    /// What a file says is not what its own `checksum` was written for.
+    #[error(
+        "{place}: what the file says is not what this checksum was written for: the file was edited or damaged. Copy it again from \
+         where it was written; to adopt an edit, delete this line"
+    )]
+    Checksum {
+        /// The line of the checksum.
+        place: Place,
+    },
+    /// A log or a sidecar is not of the run whose name it has.
+    #[error("{place} {problem}")]
+    NotItsRun {
+        /// The file.
+        place: Place,
+        /// What it is instead and what to do, as the rest of a sentence.
+        problem: String,
+    },
     /// The record was written for a later version of the format.
     #[error("{place}: this is {found}; this program reads up to {known}: use a newer Froude")]
     NewerSchema {

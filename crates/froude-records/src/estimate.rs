@@ -12,7 +12,9 @@ use crate::finding::Finding;
 pub const ESTIMATE_SCHEMA: &str = "froude/estimate/1";
 
 /// A whole `estimate.json`.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+///
+/// It is serialised with a `checksum` of its content, which [`crate::json::read_estimates`] holds it against.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct EstimateFile {
     /// `froude/estimate/1`.
     pub schema: String,

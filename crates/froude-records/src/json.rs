@@ -2,20 +2,24 @@
 //!
 //! JSON has no NaN, and `null` means "undetermined" here: a number that is not finite
 //! is therefore an error when writing, never a silent null. Numbers read back to the
-//! bits that were written.
+//! bits that were written. Every record that is written carries a checksum of what it says.
 
 use std::collections::HashSet;
 use std::fmt;
 use std::path::Path;
 
-use serde::Deserialize;
+use indexmap::IndexMap;
 use serde::de::{Deserializer, Error as _, MapAccess, SeqAccess, Visitor};
+use serde::ser::{Error as _, Serializer};
+use serde::{Deserialize, Serialize};
 
+use crate::checksum;
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::estimate::{
     Coefficient, Covariance, DataFile, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, NamedCorrelation,
     Status,
 };
+use crate::finding::Finding;
 use crate::hash::sha256_of_file;
 use crate::write::write_atomically;
 
@@ -30,7 +34,8 @@ const NEWEST: u64 = 1;
 /// # Errors
 ///
 /// Not JSON, another or a newer schema, a key or an id twice, a covariance that is not
-/// square, a negative uncertainty, a value where the status says undetermined.
+/// square, a negative uncertainty, a value where the status says undetermined; [`RecordError::Checksum`] where the content is not
+/// the one that its checksum was written for. A record without a checksum is read as it is.
 pub fn read_estimates(path: &Path) -> Result<EstimateFile, RecordError> {
     let bytes = read_bytes(path, LARGEST_BYTES, "an estimate record")?;
     parse_estimates(path, utf8(path, &bytes)?)
@@ -46,6 +51,9 @@ pub fn parse_estimates(path: &Path, text: &str) -> Result<EstimateFile, RecordEr
     serde_json::from_str::<UniqueKeys>(text).map_err(|e| syntax(path, text, &e))?;
     let head: Head = serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?;
     check_schema(path, text, head.schema.as_ref())?;
+    if let Some(sum) = &head.checksum {
+        check_sum(path, text, sum)?;
+    }
     let file: EstimateFile = serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?;
     check(path, text, &file)?;
     Ok(file)
@@ -85,6 +93,40 @@ impl DataFile {
 #[derive(Deserialize)]
 struct Head {
     schema: Option<serde_json::Value>,
+    checksum: Option<serde_json::Value>,
+}
+
+/// The record as it is written: with the checksum of all else that it says. It stands in the second line, so that deleting it
+/// leaves JSON.
+#[derive(Serialize)]
+struct Summed<'a> {
+    schema: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    checksum: Option<String>,
+    data: &'a [DataFile],
+    versions: &'a IndexMap<String, String>,
+    estimates: &'a [Estimate],
+    findings: &'a [Finding],
+}
+
+impl Serialize for EstimateFile {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self { schema, data, versions, estimates, findings } = self;
+        let mut record = Summed { schema, checksum: None, data, versions, estimates, findings };
+        let content = serde_json::to_value(&record).map_err(S::Error::custom)?;
+        record.checksum = Some(checksum::of_json(&content));
+        record.serialize(serializer)
+    }
+}
+
+/// Holds the record against its own checksum.
+fn check_sum(path: &Path, text: &str, said: &serde_json::Value) -> Result<(), RecordError> {
+    let content: serde_json::Value = serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?;
+    if said.as_str() == Some(checksum::of_json(&content).as_str()) {
+        return Ok(());
+    }
+    let line = line_of(text, checksum::KEY, None, 0);
+    Err(RecordError::Checksum { place: line.map_or_else(|| Place::whole(path), |line| Place::line(path, line)) })
 }
 
 /// Any JSON value whose objects have no key twice.

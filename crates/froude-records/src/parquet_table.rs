@@ -3,6 +3,9 @@
 //! Read are flat columns of numbers (float, double, integers) and of UTF-8 text,
 //! uncompressed or with snappy or zstd. A null is an empty cell. A file that is cut
 //! off has no footer and is refused as a whole.
+//!
+//! Checksums of pages are verified where a file has them. They leave out the pages' headers and the footer with names, types and
+//! counts; what we write ourselves has a checksum of each column as it is read, and nothing outside it.
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,7 +17,7 @@ use parquet::column::page::{Page, PageMetadata, PageReader};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::ParquetMetaData;
+use parquet::file::metadata::{KeyValue, ParquetMetaData};
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{ChunkReader, FileReader as _, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
@@ -22,6 +25,7 @@ use parquet::schema::types::Type;
 
 use crate::assemble::{Raw, Want, assemble, plan};
 use crate::error::{Place, RecordError, reason};
+use crate::parquet_sums;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::write::write_with;
@@ -104,7 +108,33 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
         }
         first_row += n_rows;
     }
+    check_sums(path, reader.metadata(), &header, &wants, &raws)?;
     assemble(path, &header, &wants, raws, sidecar, &whole, (1..first_row).collect())
+}
+
+/// Holds every column that was read against its checksum, where the file has any.
+fn check_sums(
+    path: &Path,
+    metadata: &ParquetMetaData,
+    header: &[String],
+    wants: &[Want<'_>],
+    raws: &[Raw],
+) -> Result<(), RecordError> {
+    let entries = metadata.file_metadata().key_value_metadata();
+    let Some(entry) = entries.and_then(|all| all.iter().find(|entry| entry.key == parquet_sums::KEY)) else {
+        return Ok(());
+    };
+    let sums: Vec<&str> = entry.value.as_deref().unwrap_or_default().split(' ').collect();
+    let damaged = |reason: String| Err(RecordError::Damaged { path: path.to_owned(), reason });
+    if sums.len() != header.len() {
+        return damaged(format!("it has checksums of {} columns and {} columns", sums.len(), header.len()));
+    }
+    for (((header, want), raw), sum) in header.iter().zip(wants).zip(raws).zip(sums) {
+        if !matches!(want, Want::LeftOut) && parquet_sums::of_column(header, raw) != sum {
+            return damaged(format!("column {header} is not what was written: its checksum is another"));
+        }
+    }
+    Ok(())
 }
 
 /// Pages whose claims are held against their bytes before the decoder allocates for them.
@@ -358,21 +388,26 @@ fn write_columns(table: &Table, file: impl std::io::Write + Send) -> Result<(), 
     let properties = WriterProperties::builder().set_compression(Compression::ZSTD(ZstdLevel::default())).build();
     let mut writer = SerializedFileWriter::new(file, schema, Arc::new(properties))?;
     let mut group = writer.next_row_group()?;
+    let mut sums = Vec::with_capacity(table.columns.len());
     for column in &table.columns {
         let Some(mut target) = group.next_column()? else { break };
-        match &column.data {
+        let cells = match &column.data {
             ColumnData::Number { unit, si, .. } => {
                 let values: Vec<f64> = si.iter().map(|si| unit.from_si(*si)).collect();
                 target.typed::<DoubleType>().write_batch(&values, None, None)?;
+                Raw::Numbers(values)
             }
             ColumnData::Text(cells) => {
                 let values: Vec<ByteArray> = cells.iter().map(|cell| ByteArray::from(cell.as_str())).collect();
                 target.typed::<ByteArrayType>().write_batch(&values, None, None)?;
+                Raw::Texts(cells.clone())
             }
-        }
+        };
         target.close()?;
+        sums.push(parquet_sums::of_column(column.header().trim(), &cells));
     }
     group.close()?;
+    writer.append_key_value_metadata(KeyValue::new(parquet_sums::KEY.to_owned(), sums.join(" ")));
     writer.close()?;
     Ok(())
 }

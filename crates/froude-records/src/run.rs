@@ -12,6 +12,7 @@
 //! | which columns, which topics | [`Layout`] |
 //! | recording (MCAP)          | [`Recorder`]   |
 //! | reading, whole or streamed | [`read_run`], [`RunReader`] |
+//! | whether it lies as it was driven | [`check_pair`], [`Doubt`] |
 //! | another program's log     | [`import_run`] |
 //!
 //! **On disk.** `ID.mcap`: topics `/axis/y`, `/axis/x`, `/force`, `/truth/…`, one message a tick (ROS 2 definitions, CDR bytes),
@@ -19,6 +20,9 @@
 //! `froude_run_end` with the entries of the sidecar `ID.toml`. Foxglove,
 //! PlotJuggler and the MCAP tools open it as it is. Log time is the board's: start of the run plus tick over log rate; the
 //! sequence number of a message is its tick.
+//!
+//! **Log and sidecar are tied.** Both name run and campaign (with the SHA-256 of its file); the sidecar of a finished log has the
+//! log's length and SHA-256, and a checksum of itself. A reader says what does not fit ([`RunLog::doubts`]).
 //!
 //! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-identify`'s.
 
@@ -29,6 +33,7 @@ mod log;
 mod meta;
 mod reader;
 mod recorder;
+mod seal;
 pub(crate) mod sidecar;
 mod sync;
 
@@ -38,4 +43,5 @@ pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus};
 pub use reader::{Block, RunReader, read_run};
 pub use recorder::{Packing, Recorder};
+pub use seal::{CampaignMark, Doubt, DoubtKind, Pair, check_names, check_pair};
 pub use sidecar::{parse_run_meta, read_run_meta, run_meta_text, write_run_meta};

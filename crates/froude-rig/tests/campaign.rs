@@ -89,6 +89,7 @@ impl Progress for Watch<'_> {
 fn setting(folder: &Path) -> Setting {
     Setting {
         campaign: "small".to_owned(),
+        campaign_sha256: String::new(),
         folder: folder.to_owned(),
         asked: asked(),
         return_speed_m_s: 0.4,

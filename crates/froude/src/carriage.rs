@@ -16,4 +16,5 @@ pub mod drag;
 pub mod drive;
 pub mod runs;
 pub mod servo;
+pub(crate) mod set;
 pub mod tune;

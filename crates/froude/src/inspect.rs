@@ -10,10 +10,14 @@ use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
-use froude_records::run::{read_run, read_run_meta};
+use froude_records::run::{Block, Doubt, DoubtKind, RunMeta, RunReader, RunStatus, read_run, read_run_meta};
 use froude_records::table::{ColumnData, Table, read_table};
 
+use indexmap::IndexMap;
+
 use crate::Error;
+use crate::carriage::runs;
+use crate::carriage::set::{Member, doubles, strangers, summed_up};
 
 /// A column of a table in short.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -75,7 +79,7 @@ pub struct SourceFacts {
 /// What is in a file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Inspection {
-    /// `table`, `campaign`, `estimate` or `run`.
+    /// `table`, `campaign`, `estimate`, `run`, or `runs` for a folder of them.
     pub kind: String,
     /// Facts in words, `(name, value)`.
     pub facts: Vec<(String, String)>,
@@ -99,44 +103,85 @@ impl Inspection {
     }
 }
 
-/// Inspects a table, a campaign, an estimate record or a run, by the ending of its name; a run also by its sidecar.
+/// Inspects a table, a campaign, an estimate record or a run, by the ending of its name; a run also by its sidecar; a folder of
+/// runs as a set.
 ///
 /// # Errors
 ///
 /// Whatever the reader of the format finds.
 pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error> {
     if path.is_dir() {
-        return Err(folder(path));
+        return folder(path);
     }
     let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
     match ending.as_deref() {
         // A run's sidecar lies beside it and says less than the run itself.
-        Some("toml") if read_run_meta(path).is_ok() && path.with_extension("mcap").is_file() => {
-            run(&path.with_extension("mcap"))
-        }
-        Some("toml") => campaign(path),
+        Some("toml") if path.with_extension("mcap").is_file() => run(&path.with_extension("mcap")),
+        Some("toml") => match read_run_meta(path) {
+            Ok(meta) => Err(Error::Nothing(runs::gone(&path.with_extension("mcap"), &meta).message)),
+            Err(_) => campaign(path),
+        },
         Some("json") => estimates(path),
         Some("mcap") => run(path),
         _ => table(path, sidecar),
     }
 }
 
-/// What to do with a folder: one of runs is reduced as a whole.
-fn folder(path: &Path) -> Error {
-    let entries = std::fs::read_dir(path).into_iter().flatten().filter_map(Result::ok);
-    let mut runs: Vec<_> = entries.map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "mcap")).collect();
-    runs.sort();
+/// A folder of runs: how many of what, and whether the files are what they say.
+fn folder(path: &Path) -> Result<Inspection, Error> {
+    let (mut metas, mut members, mut doubts, mut findings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let files = runs::files(&[path.to_owned()])?;
     let shown = path.display();
-    Error::Nothing(match runs.first() {
-        Some(first) => format!(
-            "{shown} is a folder of {} runs: froude carriage drag {shown} reduces them together; froude inspect {} shows one",
-            runs.len(),
-            first.display()
-        ),
-        None => format!(
+    let Some(first) = files.iter().find(|file| file.exists()) else {
+        return Err(Error::Nothing(format!(
             "{shown} is a folder without runs; name a table (.csv, .parquet), a campaign (.toml), a record (.json) or a run (.mcap)"
+        )));
+    };
+    for file in &files {
+        if !file.exists() {
+            match read_run_meta(&file.with_extension("toml")) {
+                Ok(meta) if meta.status == RunStatus::Complete => findings.push(runs::gone(file, &meta)),
+                _ => {}
+            }
+            continue;
+        }
+        let read = RunReader::open(file).and_then(|mut reader| {
+            let mut block = Block::default();
+            while reader.read_block(&mut block)? {}
+            Ok(reader)
+        });
+        match read {
+            Ok(reader) => {
+                if reader.meta().status == RunStatus::Complete {
+                    members.push(Member::of(file, reader.meta())?);
+                }
+                metas.push(reader.meta().clone());
+                doubts.extend_from_slice(reader.doubts());
+            }
+            Err(error) => findings.push(Finding::new(Severity::Error, "run-unreadable", error.to_string())),
+        }
+    }
+    let is_grave = |doubt: &&Doubt| matches!(doubt.kind, DoubtKind::Damaged | DoubtKind::Exchanged);
+    findings.extend(doubts.iter().filter(is_grave).map(Doubt::finding));
+    findings.extend(doubles(&members));
+    findings.extend(strangers(&members)?);
+    findings.extend(summed_up(&doubts));
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    let counted = |name: &dyn Fn(&RunMeta) -> String| {
+        let mut counts: IndexMap<String, usize> = IndexMap::new();
+        metas.iter().for_each(|meta| *counts.entry(name(meta)).or_default() += 1);
+        counts.iter().map(|(name, n)| format!("{n} {name}")).collect::<Vec<_>>().join(", ")
+    };
+    let facts = vec![
+        ("campaign".to_owned(), counted(&|meta| format!("of {:?}", meta.campaign))),
+        ("runs".to_owned(), counted(&|meta| meta.status.name().to_owned())),
+        ("kinds".to_owned(), counted(&|meta| meta.kind.name().to_owned())),
+        (
+            "next".to_owned(),
+            format!("froude carriage drag {shown} reduces them together; froude inspect {} shows one", first.display()),
         ),
-    })
+    ];
+    Ok(Inspection::new("runs", facts, findings))
 }
 
 fn table(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error> {
@@ -338,7 +383,18 @@ fn run(path: &Path) -> Result<Inspection, Error> {
     for event in &log.events {
         fact(&format!("{:.3} s", event.time_s), format!("{}: {}", event.kind.name(), event.text));
     }
-    let findings = log.lost.iter().map(|gap| Finding::new(Severity::Warning, "run-gap", gap.text.clone())).collect();
+    if let Some(recorded) = meta.log.as_ref().filter(|_| log.doubts.is_empty()) {
+        fact(
+            "log",
+            format!(
+                "{} bytes, as they were recorded (SHA-256 {}…)",
+                recorded.bytes,
+                recorded.sha256.get(..8).unwrap_or_default()
+            ),
+        );
+    }
+    let gaps = log.lost.iter().map(|gap| Finding::new(Severity::Warning, "run-gap", gap.text.clone()));
+    let findings = log.doubts.iter().map(Doubt::finding).chain(gaps).collect();
     let columns = log
         .channels
         .iter()

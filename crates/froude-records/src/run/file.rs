@@ -1,7 +1,7 @@
 //! The records of an MCAP file, one after the other, whatever bytes are in it.
 //!
 //! Lengths are believed only as far as the file goes, and as far as [`LARGEST_CHUNK`] and [`LARGEST_RECORD`] allow; records
-//! that nobody needs are passed over unread. A file that ends too early ends; it is not an error here.
+//! that nobody needs are only summed. A file that ends too early ends; it is not an error here.
 //!
 //! Format: the MCAP specification, version 0 (mcap.dev/spec).
 
@@ -10,6 +10,8 @@ use std::io::{self, Read, Seek, SeekFrom};
 
 use mcap::MAGIC;
 use mcap::records::op;
+
+use crate::hash::{Fingerprint, fingerprint_of};
 
 /// Largest chunk, packed and unpacked. Froude writes at most 1 MiB, other programs usually 1 to 8.
 const LARGEST_CHUNK: u64 = 64 << 20;
@@ -20,11 +22,17 @@ const LARGEST_RECORD: u64 = 1 << 20;
 /// Opcode and length before every record.
 const HEAD: u64 = 9;
 
+/// The last record: two offsets and the checksum of the summary, which is of everything from the summary's beginning to itself.
+const FOOTER: u64 = HEAD + 20;
+const SUM_IN_FOOTER: usize = HEAD as usize + 16;
+
 /// How far a file could be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum End {
     /// To the end of its data.
     Whole,
+    /// To the end of its data, which are not those that were written.
+    Changed { problem: String },
     /// It ends before its end mark; `lost` bytes are left of the record at `offset`.
     CutOff { offset: u64, lost: u64 },
     /// At `offset` stands something that cannot be passed over.
@@ -40,11 +48,24 @@ pub(crate) enum Step {
     End(End),
 }
 
+/// What a file's summary is worth.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Summary {
+    /// There is none, or its place cannot be found: the file was cut off.
+    None,
+    /// The walk stands at its beginning.
+    Here,
+    /// Its checksum is another: nothing in it is believed.
+    Damaged(String),
+}
+
 /// A walk over the records.
 pub(crate) struct Walk<R> {
     input: R,
     length: u64,
     at: u64,
+    /// Of all bytes passed since the beginning of the file.
+    sum: crc32fast::Hasher,
     /// The record's bytes.
     pub body: Vec<u8>,
 }
@@ -57,29 +78,57 @@ impl<R: Read + Seek> Walk<R> {
         let mut magic = Vec::new();
         input.by_ref().take(MAGIC.len() as u64).read_to_end(&mut magic)?;
         let is_mcap = MAGIC.starts_with(&magic);
-        Ok(is_mcap.then_some(Self { input, length, at: magic.len() as u64, body: Vec::new() }))
+        let mut sum = crc32fast::Hasher::new();
+        sum.update(&magic);
+        Ok(is_mcap.then_some(Self { input, length, at: magic.len() as u64, sum, body: Vec::new() }))
     }
 
     /// Back to the first record.
     pub fn rewind(&mut self) -> io::Result<()> {
-        self.go_to((MAGIC.len() as u64).min(self.length))
+        let at = (MAGIC.len() as u64).min(self.length);
+        self.sum.reset();
+        self.sum.update(&MAGIC[..at as usize]);
+        self.go_to(at)
     }
 
-    /// To the summary at the end of a whole file; `false` where there is none.
-    pub fn go_to_summary(&mut self) -> io::Result<bool> {
-        const FOOTER: u64 = HEAD + 20;
+    /// To the summary at the end of a whole file, when its checksum is right.
+    pub fn go_to_summary(&mut self) -> io::Result<Summary> {
         let magic = MAGIC.len() as u64;
-        let Some(footer) = self.length.checked_sub(FOOTER + magic).filter(|at| *at >= magic) else { return Ok(false) };
+        let Some(footer) = self.length.checked_sub(FOOTER + magic).filter(|at| *at >= magic) else {
+            return Ok(Summary::None);
+        };
         self.input.seek(SeekFrom::Start(footer))?;
         let mut end = Vec::new();
         self.input.by_ref().take(FOOTER + magic).read_to_end(&mut end)?;
         let is_footer = end.first() == Some(&op::FOOTER) && end.ends_with(MAGIC);
-        let start = end.get(HEAD as usize..).and_then(<[u8]>::first_chunk).map_or(0, |b| u64::from_le_bytes(*b));
+        let number = |at: usize| end.get(at..).and_then(<[u8]>::first_chunk).map_or(0, |b| u64::from_le_bytes(*b));
+        let start = number(HEAD as usize);
         if !is_footer || start < magic || start >= footer {
-            return Ok(false);
+            return Ok(Summary::None);
+        }
+        let said = end.get(SUM_IN_FOOTER..).and_then(<[u8]>::first_chunk).map_or(0, |b| u32::from_le_bytes(*b));
+        let found = self.sum_of(start, footer + SUM_IN_FOOTER as u64)?;
+        if said != 0 && said != found {
+            return Ok(Summary::Damaged(format!("the checksum of its summary is {found:08x} and not {said:08x}")));
         }
         self.go_to(start)?;
-        Ok(true)
+        Ok(Summary::Here)
+    }
+
+    /// CRC-32 of these bytes, in pieces.
+    fn sum_of(&mut self, from: u64, to: u64) -> io::Result<u32> {
+        self.input.seek(SeekFrom::Start(from))?;
+        let mut sum = crc32fast::Hasher::new();
+        pass(&mut self.input.by_ref().take(to - from), &mut sum)?;
+        Ok(sum.finalize())
+    }
+
+    /// All bytes from the beginning to the end, for a fingerprint; the walk begins again.
+    pub fn fingerprint(&mut self) -> io::Result<Fingerprint> {
+        self.input.seek(SeekFrom::Start(0))?;
+        let found = fingerprint_of(&mut self.input)?;
+        self.rewind()?;
+        Ok(found)
     }
 
     fn go_to(&mut self, at: u64) -> io::Result<()> {
@@ -107,9 +156,17 @@ impl<R: Read + Seek> Walk<R> {
                 self.go_to(offset)?;
                 return if length == 0 { cut } else { broken("there is no record that begins with 0".to_owned()) };
             }
-            if matches!(opcode, op::DATA_END | op::FOOTER) {
+            if opcode == op::DATA_END {
+                return Ok(Step::End(self.end_of_data(offset, length)?));
+            }
+            if opcode == op::FOOTER {
                 self.go_to(offset)?;
-                return Ok(Step::End(End::Whole));
+                let is_last = offset + FOOTER + MAGIC.len() as u64 == self.length;
+                return if is_last {
+                    Ok(Step::End(End::Whole))
+                } else {
+                    broken(format!("a footer stands there, and the file goes on for {lost} bytes"))
+                };
             }
             if is_needed(opcode) && length > limit {
                 self.go_to(offset)?;
@@ -119,9 +176,10 @@ impl<R: Read + Seek> Walk<R> {
                 self.go_to(offset)?;
                 return cut;
             }
-            let next = offset + HEAD + length;
+            self.at = offset + HEAD + length;
+            self.sum.update(&head);
             if !is_needed(opcode) {
-                self.go_to(next)?;
+                pass(&mut self.input.by_ref().take(length), &mut self.sum)?;
                 continue;
             }
             self.body.clear();
@@ -130,9 +188,31 @@ impl<R: Read + Seek> Walk<R> {
                 self.go_to(offset)?;
                 return cut;
             }
-            self.at = next;
+            self.sum.update(&self.body);
             return Ok(Step::Record { opcode, offset });
         }
+    }
+
+    /// The record that ends the data; it has the checksum of everything before it, zero where none was computed.
+    fn end_of_data(&mut self, offset: u64, length: u64) -> io::Result<End> {
+        let lost = self.length.saturating_sub(offset);
+        let mut said = [0; 4];
+        let end = if length != 4 {
+            let problem = format!("an end of data of {length} bytes stands there; it has 4");
+            End::Broken { offset, lost, problem }
+        } else if lost < HEAD + 4 {
+            End::CutOff { offset, lost }
+        } else {
+            self.input.read_exact(&mut said)?;
+            let (said, found) = (u32::from_le_bytes(said), self.sum.clone().finalize());
+            if said == 0 || said == found {
+                End::Whole
+            } else {
+                End::Changed { problem: format!("the checksum of its data is {found:08x} and not {said:08x}") }
+            }
+        };
+        self.go_to(offset)?;
+        Ok(end)
     }
 
     /// The next record of the summary that declares something; `None` at its end.
@@ -143,6 +223,19 @@ impl<R: Read + Seek> Walk<R> {
                 Step::Record { .. } => {}
                 Step::End(_) => return Ok(None),
             }
+        }
+    }
+}
+
+/// Reads to the end and keeps nothing but the sum.
+fn pass(input: &mut impl Read, sum: &mut crc32fast::Hasher) -> io::Result<()> {
+    let mut buffer = [0; 4096];
+    loop {
+        match input.read(&mut buffer) {
+            Ok(0) => return Ok(()),
+            Ok(n) => sum.update(&buffer[..n]),
+            Err(e) if e.kind() == io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
         }
     }
 }

@@ -113,7 +113,7 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
     };
     let lost = gaps(&time_s, steps);
     let findings = vec![finding(table, steps, &lost)];
-    let log = RunLog { path: table.path.clone(), time_s, channels, events: Vec::new(), lost, meta };
+    let log = RunLog { path: table.path.clone(), time_s, channels, lost, meta, ..RunLog::default() };
     Ok(ImportedRun { log, steps, findings })
 }
 

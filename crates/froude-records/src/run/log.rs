@@ -8,6 +8,7 @@ use indexmap::IndexMap;
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::run::meta::RunMeta;
+use crate::run::seal::Doubt;
 use crate::units::{Dimension, parse_unit};
 
 /// A whole run.
@@ -27,6 +28,8 @@ pub struct RunLog {
     pub lost: Vec<Gap>,
     /// What is known about the run.
     pub meta: RunMeta,
+    /// What speaks against the log as a whole; empty for one that is as it was recorded.
+    pub doubts: Vec<Doubt>,
 }
 
 /// One column of a run.
@@ -222,6 +225,7 @@ impl RunLog {
             events: self.events.iter().filter(|e| inside(e.time_s)).cloned().collect(),
             lost: self.lost.iter().filter(touches).cloned().collect(),
             meta: self.meta.clone(),
+            doubts: self.doubts.clone(),
         }
     }
 

@@ -3,12 +3,15 @@
 use indexmap::IndexMap;
 
 use crate::estimate::Measured;
+use crate::hash::Fingerprint;
 
 /// What a run is, on which rig, and how it ended.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunMeta {
     /// Name of the campaign.
     pub campaign: String,
+    /// SHA-256 of the campaign's file, hexadecimal; empty where it is not known (versions before runs carried it).
+    pub campaign_sha256: String,
     /// Name of the run, unique in the campaign; also the stem of its files.
     pub id: String,
     /// What it is for.
@@ -51,6 +54,8 @@ pub struct RunMeta {
     pub date: String,
     /// Host time of run time zero, ns since 1970; 0 where there is none. Log times in the file count from there.
     pub start_unix_ns: u64,
+    /// Length and hash of the log, known when it has been finished; only a sidecar has it.
+    pub log: Option<Fingerprint>,
 }
 
 impl RunMeta {

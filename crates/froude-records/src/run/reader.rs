@@ -3,6 +3,10 @@
 //! A file that was cut off (power, `kill -9`, a full disk) gives every tick of its whole chunks, a gap that says what is
 //! missing, and the status `interrupted`. A damaged chunk is passed over and told as a gap with its byte, or refused
 //! ([`RunReader::refuse_damage`]). A tick is taken only when every topic has its message of it.
+//!
+//! **Whether it is the log.** Where the sidecar has the log's SHA-256 the whole file is summed before anything in it is read, which
+//! takes about as long again as reading it. All checksums that the file has itself (chunks, data, summary) are held against it
+//! besides. What does not fit is in [`RunReader::doubts`].
 
 use std::fs::{File, TryLockError};
 use std::io::{BufReader, Read, Seek};
@@ -12,11 +16,13 @@ use indexmap::IndexMap;
 use mcap::records::op;
 
 use crate::error::{Place, RecordError, reason};
-use crate::run::file::{End, FileChannel, Message, Step, Walk, metadata, records, schema, unpack};
+use crate::hash::Fingerprint;
+use crate::run::file::{End, FileChannel, Message, Step, Summary, Walk, metadata, records, schema, unpack};
 use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
 use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 use crate::run::meta::{RunMeta, RunStatus};
-use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, of_record, read_run_meta};
+use crate::run::seal::{Doubt, DoubtKind, contradiction, difference};
+use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, differing, of_record, read_run_meta};
 
 /// Most channels of one run.
 const MOST_CHANNELS: usize = 10_000;
@@ -41,6 +47,8 @@ pub struct RunReader<R> {
     meta: RunMeta,
     has_sidecar: bool,
     is_being_recorded: bool,
+    /// The sidecar says that the run has no end yet.
+    is_unfinished: bool,
     refuses_damage: bool,
     has_ended: bool,
     schemas: IndexMap<u16, String>,
@@ -51,6 +59,11 @@ pub struct RunReader<R> {
     channels: Vec<(String, String)>,
     unpacked: Vec<u8>,
     rows: Rows,
+    /// What the file is, where the sidecar says what it should be.
+    found: Option<Fingerprint>,
+    /// What is wrong inside the file, the first of it.
+    damage: Option<String>,
+    doubts: Vec<Doubt>,
 }
 
 /// A topic with the fields that are wanted.
@@ -121,12 +134,14 @@ impl<R: Read + Seek> RunReader<R> {
             problem: "the file does not begin as MCAP does; runs are MCAP files that `froude run` records".to_owned(),
         })?;
         let id = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let is_unfinished = meta.as_ref().is_some_and(|meta| meta.status == RunStatus::Running);
         let mut reader = Self {
             path: path.to_owned(),
             walk,
             has_sidecar: meta.is_some(),
             meta: meta.unwrap_or_else(|| RunMeta { id: id(), ..RunMeta::default() }),
             is_being_recorded: false,
+            is_unfinished,
             refuses_damage: false,
             has_ended: false,
             schemas: IndexMap::new(),
@@ -136,9 +151,21 @@ impl<R: Read + Seek> RunReader<R> {
             channels: Vec::new(),
             unpacked: Vec::new(),
             rows: Rows::default(),
+            found: None,
+            damage: None,
+            doubts: Vec::new(),
         };
+        if reader.meta.log.is_some() {
+            reader.found = Some(reader.walk.fingerprint().map_err(failed)?);
+        }
         reader.find_channels()?;
         Ok(reader)
+    }
+
+    /// What speaks against the log as a whole; settled when the last block has been read.
+    #[must_use]
+    pub fn doubts(&self) -> &[Doubt] {
+        &self.doubts
     }
 
     /// A damaged chunk is an error that names its byte, not a gap.
@@ -240,7 +267,63 @@ impl<R: Read + Seek> RunReader<R> {
         // An event may be recorded behind ticks that are later than it.
         log.events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         log.meta = self.meta;
+        log.doubts = self.doubts;
         Ok(log)
+    }
+
+    fn doubt(&mut self, kind: DoubtKind, problem: &str) {
+        self.doubts.push(Doubt { kind, text: format!("{} {problem}", self.path.display()) });
+    }
+
+    /// A run has the name of its files; one that was put aside has a word more.
+    fn check_name(&mut self) {
+        let stem = self.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+        let rest = stem.strip_prefix(&self.meta.id).map(|rest| rest.is_empty() || rest.starts_with('.'));
+        if rest != Some(true) {
+            let text = format!("is the log of run {}: the file was copied or renamed", self.meta.id);
+            self.doubt(DoubtKind::Renamed, &text);
+        }
+    }
+
+    /// At the end of the file: whether it is the one that the sidecar was written for.
+    fn settle(&mut self) {
+        self.check_name();
+        let sidecar = self.path.with_extension("toml");
+        let sidecar = sidecar.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let is_exchanged = self.doubts.iter().any(|doubt| doubt.kind == DoubtKind::Exchanged);
+        let damage = self.damage.take().or_else(|| {
+            let is_cut = self.meta.log.as_ref().zip(self.found.as_ref()).is_some_and(|(a, b)| b.bytes < a.bytes);
+            is_cut.then(String::new)
+        });
+        match (&self.meta.log, &self.found) {
+            (Some(recorded), Some(found)) => match (difference(recorded, found), damage) {
+                (None, _) => {}
+                (Some(what), Some(_)) => self.doubt(DoubtKind::Damaged, &what),
+                (Some(_), None) if is_exchanged => {}
+                (Some(_), None) => self.doubt(
+                    DoubtKind::Exchanged,
+                    &format!(
+                        "is a whole log, and not the one that {sidecar} was written for (its SHA-256 is another): they are of two drives; \
+                         put the files that belong together side by side"
+                    ),
+                ),
+            },
+            _ => {
+                if let Some(problem) = damage {
+                    self.doubt(DoubtKind::Damaged, &format!("is damaged: {problem}; copy it again from where it was recorded"));
+                }
+                if !self.has_sidecar {
+                    let text = format!("has no sidecar {sidecar}: only the log's own checksums vouch for it");
+                    self.doubt(DoubtKind::NoSidecar, &text);
+                } else if !self.is_unfinished {
+                    let text = format!(
+                        "is not compared with anything: {sidecar} has no SHA-256 of it, as runs of earlier versions; only the log's own \
+                         checksums vouch for it"
+                    );
+                    self.doubt(DoubtKind::NoFingerprint, &text);
+                }
+            }
+        }
     }
 
     fn failed(&self, error: &std::io::Error) -> RecordError {
@@ -249,7 +332,10 @@ impl<R: Read + Seek> RunReader<R> {
 
     /// Schemas and channels: from the summary of a whole file, else from the beginning up to the first chunk with any.
     fn find_channels(&mut self) -> Result<(), RecordError> {
-        if self.walk.go_to_summary().map_err(|e| self.failed(&e))? {
+        let summary = self.walk.go_to_summary().map_err(|e| self.failed(&e))?;
+        if let Summary::Damaged(problem) = summary {
+            self.damage.get_or_insert(problem);
+        } else if summary == Summary::Here {
             while let Some(opcode) = self.walk.next_of_summary().map_err(|e| self.failed(&e))? {
                 let body = std::mem::take(&mut self.walk.body);
                 self.declare(opcode, &body);
@@ -358,9 +444,23 @@ impl<R: Read + Seek> RunReader<R> {
         }
         let own = of_record(&self.path, &entries)
             .map_err(|e| refuse(format!("what is said of the run cannot be read: {e}")))?;
+        let is_end = name == END_RECORD_NAME;
         if !self.has_sidecar {
             self.meta = own;
-        } else if self.meta.status == RunStatus::Running {
+            return Ok(());
+        }
+        let is_known = self.doubts.iter().any(|doubt| matches!(doubt.kind, DoubtKind::Exchanged | DoubtKind::Edited));
+        if let Some(problem) = contradiction(&own, &self.meta).filter(|_| !is_known) {
+            self.doubt(DoubtKind::Exchanged, &problem);
+        } else if is_end && !self.is_unfinished && !is_known {
+            let keys = differing(&own, &self.meta);
+            if !keys.is_empty() {
+                let text =
+                    format!("has a sidecar that was edited: it gives other values of {} than the log", keys.join(", "));
+                self.doubt(DoubtKind::Edited, &text);
+            }
+        }
+        if self.meta.status == RunStatus::Running {
             // The file was ended and the sidecar was not.
             self.meta.status = own.status;
         }
@@ -394,6 +494,7 @@ impl<R: Read + Seek> RunReader<R> {
                 problem: format!("{problem}; copy the file again, or read it without what is damaged"),
             });
         }
+        self.damage.get_or_insert_with(|| problem.clone());
         self.rows.pending.get_or_insert((GapCause::Damaged, problem));
         Ok(())
     }
@@ -496,6 +597,15 @@ impl<R: Read + Seek> RunReader<R> {
         match end {
             End::Whole if self.meta.status == RunStatus::Running => self.meta.status = RunStatus::Interrupted,
             End::Whole => {}
+            End::Changed { problem } => {
+                if self.meta.status == RunStatus::Running {
+                    self.meta.status = RunStatus::Interrupted;
+                }
+                if self.refuses_damage {
+                    return self.damaged(0, problem);
+                }
+                self.damage.get_or_insert(problem);
+            }
             End::CutOff { .. } if self.is_being_recorded => self.meta.status = RunStatus::Running,
             End::CutOff { offset, lost } => {
                 self.meta.status = unfinished(self.meta.status);
@@ -509,6 +619,9 @@ impl<R: Read + Seek> RunReader<R> {
                         format!("{lost} bytes of it, from byte {offset} on, are no whole chunk")
                     }
                 );
+                if !self.is_unfinished {
+                    self.damage.get_or_insert_with(|| text.clone());
+                }
                 block.lost.push(Gap { from_s, to_s: None, ticks: None, cause: GapCause::CutOff, text });
             }
             End::Broken { offset, lost, problem } => {
@@ -517,11 +630,27 @@ impl<R: Read + Seek> RunReader<R> {
                 if self.refuses_damage {
                     return self.damaged(offset, problem);
                 }
+                self.damage.get_or_insert_with(|| problem.clone());
                 block.lost.push(Gap { from_s, to_s: None, ticks: None, cause: GapCause::Damaged, text: problem });
             }
         }
+        self.settle();
         Ok(())
     }
+}
+
+/// What a log says of itself at its beginning; `None` where that cannot be read.
+pub(crate) fn head_of(path: &Path) -> Result<Option<RunMeta>, RecordError> {
+    let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
+    let Some(mut walk) = Walk::new(BufReader::new(File::open(path).map_err(failed)?)).map_err(failed)? else {
+        return Ok(None);
+    };
+    while let Step::Record { opcode: op::METADATA, .. } = walk.next().map_err(failed)? {
+        if let Some((RECORD_NAME, entries)) = metadata(&walk.body) {
+            return Ok(of_record(path, &entries).ok());
+        }
+    }
+    Ok(None)
 }
 
 /// The tick with these lowest 32 bits that is nearest to `expected`.

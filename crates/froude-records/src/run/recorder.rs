@@ -30,10 +30,11 @@ use crate::error::{RecordError, reason};
 use crate::run::layout::{Layout, text};
 use crate::run::log::EventKind;
 use crate::run::meta::{RunMeta, RunStatus};
+use crate::run::seal::Sealed;
 use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, to_record, write_run_meta};
 use crate::run::sync::Syncer;
 
-type Writer = mcap::Writer<NoSeek<BufWriter<File>>>;
+type Writer = mcap::Writer<NoSeek<BufWriter<Sealed>>>;
 
 /// Run time after which a chunk is handed to the system: 10 ms before the 50 ms that are claimed.
 const CHUNK_NS: u64 = 40_000_000;
@@ -253,7 +254,8 @@ impl Recorder {
         self.whole_bytes
     }
 
-    /// Ends the run: last chunk, metadata with the status, index, and the sidecar; all brought to the disk.
+    /// Ends the run: last chunk, metadata with the status, index, and the sidecar with the log's length and hash (taken while it
+    /// was written); all brought to the disk.
     ///
     /// After a failure there is nothing to add to the file; the sidecar is written where the disk lets it.
     ///
@@ -277,7 +279,8 @@ impl Recorder {
         let metadata = Metadata { name: END_RECORD_NAME.to_owned(), metadata: to_record(&self.meta) };
         let ended = writer.write_metadata(&metadata).and_then(|()| writer.finish()).map_err(in_words);
         ended.and_then(|_| self.file.sync_all()).map_err(|e| self.fail(e))?;
-        self.writer = None;
+        let sealed = self.writer.take().map(|writer| writer.into_inner().into_inner().into_inner());
+        self.meta.log = sealed.and_then(Result::ok).map(Sealed::fingerprint);
         Ok(())
     }
 
@@ -354,7 +357,7 @@ fn open_writer(file: File, packing: Packing) -> mcap::McapResult<Writer> {
         .chunk_size(Some(LARGEST_CHUNK))
         // Chunks are made in memory and written in one piece.
         .disable_seeking(true)
-        .create(NoSeek::new(BufWriter::with_capacity(1 << 16, file)))
+        .create(NoSeek::new(BufWriter::with_capacity(1 << 16, Sealed::new(file))))
 }
 
 /// The system's error inside one of the library, for its words.

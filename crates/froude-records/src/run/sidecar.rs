@@ -7,14 +7,18 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::campaign_toml::{count, one_of};
+use crate::checksum;
 use crate::error::{RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
+use crate::hash::Fingerprint;
 use crate::run::meta::{
     Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus,
 };
 use crate::section::{Section, Source, parse};
 use crate::units::Dimension;
 use crate::write::write_atomically;
+
+use toml::de::DeTable;
 
 /// The largest sidecar that is read.
 const LARGEST_BYTES: u64 = 1 << 20;
@@ -30,14 +34,14 @@ pub(crate) const TORQUE_CONSTANT: Dimension = Dimension { m: 2, kg: 1, s: -2, k:
 pub(crate) const AMPLIFIER: Dimension = Dimension { m: -2, kg: -1, s: 3, k: 0, a: 2 };
 
 /// Keys whose values are whole numbers or true and false; all others are texts.
-const BARE: [&str; 8] =
-    ["schema", "set", "pair", "repeat", "ballasted", "twin_seed", "start_unix_ns", "efficiency_is_calibrated"];
+const BARE: [&str; 9] =
+    ["schema", "set", "pair", "repeat", "ballasted", "twin_seed", "start_unix_ns", "bytes", "efficiency_is_calibrated"];
 
 /// Reads a run's sidecar.
 ///
 /// # Errors
 ///
-/// See [`RecordError`].
+/// See [`RecordError`]; [`RecordError::Checksum`] for a sidecar whose content was changed and whose line `checksum` was left.
 pub fn read_run_meta(path: &Path) -> Result<RunMeta, RecordError> {
     let bytes = read_bytes(path, LARGEST_BYTES, "a run's sidecar")?;
     parse_run_meta(path, utf8(path, &bytes)?)
@@ -53,6 +57,12 @@ pub fn parse_run_meta(path: &Path, text: &str) -> Result<RunMeta, RecordError> {
     let document = parse(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("run")?;
+    // First of all: what was changed since it was written is believed in nothing.
+    if let Some(value) = root.get(checksum::KEY)
+        && root.as_text(checksum::KEY, value)? != checksum::of_toml(document.get_ref())
+    {
+        return Err(RecordError::Checksum { place: source.place(value.span().start) });
+    }
     meta(&root)
 }
 
@@ -65,12 +75,12 @@ pub fn write_run_meta(path: &Path, meta: &RunMeta) -> Result<(), RecordError> {
     write_atomically(path, run_meta_text(meta).as_bytes())
 }
 
-/// The sidecar's text.
+/// The sidecar's text, with the checksum of what it says.
 #[must_use]
 pub fn run_meta_text(meta: &RunMeta) -> String {
     let mut text = String::from("# A run that Froude recorded: what is known about the .mcap file of the same name.\n");
     let mut section = String::new();
-    for (key, value) in entries(meta) {
+    for (key, value) in summed(meta) {
         let (own, name) = split_section(&key);
         if own != section {
             text += &format!("\n[{own}]\n");
@@ -90,7 +100,29 @@ fn split_section(key: &str) -> (&str, &str) {
 
 /// The entries as the metadata record of `RUN.mcap` holds them.
 pub(crate) fn to_record(meta: &RunMeta) -> BTreeMap<String, String> {
-    entries(meta).into_iter().collect()
+    summed(meta).into_iter().collect()
+}
+
+/// All entries, and behind the schema the checksum of the others.
+fn summed(meta: &RunMeta) -> Vec<(String, String)> {
+    let mut all = entries(meta);
+    let text: String = all.iter().map(|(key, value)| format!("{key} = {}\n", written(key, value))).collect();
+    // What is written here is TOML; a sum of nothing would be refused when it is read.
+    let sum = DeTable::parse(&text).map(|table| checksum::of_toml(table.get_ref())).unwrap_or_default();
+    all.insert(1, (checksum::KEY.to_owned(), sum));
+    all
+}
+
+/// Keys that two descriptions of a run give different values; neither checksum nor fingerprint counts.
+pub(crate) fn differing(a: &RunMeta, b: &RunMeta) -> Vec<String> {
+    let all = |meta: &RunMeta| -> BTreeMap<String, String> {
+        entries(&RunMeta { log: None, ..meta.clone() }).into_iter().collect()
+    };
+    let (a, b) = (all(a), all(b));
+    let mut keys: Vec<String> =
+        a.iter().filter(|(key, value)| b.get(*key) != Some(value)).map(|(k, _)| k.clone()).collect();
+    keys.extend(b.keys().filter(|key| !a.contains_key(*key)).cloned());
+    keys
 }
 
 /// Reads them back; `path` is the `.mcap` file, for messages.
@@ -132,6 +164,9 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     put("schema", "1".to_owned());
     put("id", meta.id.clone());
     put("campaign", meta.campaign.clone());
+    if !meta.campaign_sha256.is_empty() {
+        put("campaign_sha256", meta.campaign_sha256.clone());
+    }
     put("kind", meta.kind.name().to_owned());
     put("status", meta.status.name().to_owned());
     put("date", meta.date.clone());
@@ -155,6 +190,10 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
         }
     }
     put("note", meta.note.clone());
+    if let Some(log) = &meta.log {
+        put("log.bytes", log.bytes.to_string());
+        put("log.sha256", log.sha256.clone());
+    }
     if let Some(clock) = &meta.clock {
         put("clock.host_at_zero", format!("{} s", clock.host_at_zero_s));
         put("clock.drift", format!("{} 1", clock.drift));
@@ -191,10 +230,12 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
 }
 
 fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
-    const KEYS: [&str; 23] = [
+    const KEYS: [&str; 26] = [
         "schema",
+        "checksum",
         "id",
         "campaign",
+        "campaign_sha256",
         "kind",
         "status",
         "date",
@@ -211,6 +252,7 @@ fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
         "hung_weight",
         "twin_seed",
         "note",
+        "log",
         "clock",
         "rig",
         "constants",
@@ -221,6 +263,7 @@ fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
     let number = |key: &'static str| count(s, key, u64::from(u32::MAX)).map(|n| n.map(|n| n as u32));
     let mut out = RunMeta {
         campaign: text("campaign")?,
+        campaign_sha256: text("campaign_sha256")?,
         id: s.text("id")?.ok_or_else(|| s.missing("id", "write id = \"…\", the name of the run's files"))?.to_owned(),
         kind: one_of(s, "kind", &RunKind::NAMES, &RunKind::ALL)?
             .ok_or_else(|| s.missing("kind", "say what the run is for: \"wet\", \"dry\", \"still\", …"))?,
@@ -242,6 +285,14 @@ fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
         start_unix_ns: s.integer("start_unix_ns")?.unwrap_or(0),
         ..RunMeta::default()
     };
+    if let Some(log) = s.section("log")? {
+        log.only(&["bytes", "sha256"])?;
+        let lacks =
+            |key| log.missing(key, "both are written when a log is finished; without them leave the section out");
+        let bytes = log.integer("bytes")?.ok_or_else(|| lacks("bytes"))?;
+        let sha256 = log.text("sha256")?.ok_or_else(|| lacks("sha256"))?.to_owned();
+        out.log = Some(Fingerprint { bytes, sha256 });
+    }
     if let Some(clock) = s.section("clock")? {
         clock.only(&["host_at_zero", "drift", "standard_uncertainty"])?;
         let part = |key, dimension| Ok::<_, RecordError>(clock.quantity(key, dimension)?.unwrap_or(0.0));

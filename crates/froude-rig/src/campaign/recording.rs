@@ -44,6 +44,7 @@ impl<'a> Recording<'a> {
         let rate_hz = facts.rate_hz * facts.ticks_per_sample as f64 / setting.decimation as f64;
         let meta = RunMeta {
             campaign: setting.campaign.clone(),
+            campaign_sha256: setting.campaign_sha256.clone(),
             id: run.id.clone(),
             kind: run.kind,
             set: run.set,
@@ -68,6 +69,7 @@ impl<'a> Recording<'a> {
             log_rate_hz: rate_hz,
             date: setting.date.clone(),
             start_unix_ns: setting.start_unix_ns,
+            log: None,
         };
         let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };
         // The short axis is recorded where it is declared, or where it is the one that moves.

@@ -14,7 +14,7 @@ use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_records::RecordError;
-use froude_records::run::{AxisConstants, BodyState, EventKind, RunStatus, read_run_meta};
+use froude_records::run::{AxisConstants, BodyState, CampaignMark, EventKind, Pair, RunStatus, check_pair};
 use indexmap::IndexMap;
 
 use froude_records::carriage::CarriagePlan;
@@ -157,6 +157,10 @@ pub trait Operator {
 /// What is asked before the first motion.
 const CLEAR: &str = "Homing moves both axes now: both ways are clear, and somebody stands at the emergency stop";
 
+/// What is said of logs without a hash.
+const EARLIER_VERSION: &str = "runs of an earlier version lie there: they carry no SHA-256 of their logs, so that only the logs' own checksums \
+                               vouch for them";
+
 /// Who is told how it goes.
 pub trait Progress {
     /// A run begins, the `number`th of `total`.
@@ -178,6 +182,8 @@ const SLOWEST_APPROACH_M_S: f64 = 0.02;
 pub struct Setting {
     /// Campaign's name.
     pub campaign: String,
+    /// SHA-256 of the campaign's file, hexadecimal; empty where there is none.
+    pub campaign_sha256: String,
     /// Folder of the runs; it exists.
     pub folder: PathBuf,
     /// What is asked for.
@@ -257,6 +263,7 @@ impl<'a> Campaign<'a, '_> {
         let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None };
         let mut mounted: Option<OperatorStep> = None;
         let mut is_prepared = false;
+        let mut is_said = false;
         let mut number = 0;
         for step in self.steps {
             let run = match step {
@@ -272,8 +279,11 @@ impl<'a> Campaign<'a, '_> {
                 outcome.spared += 1;
                 continue;
             }
-            if is_complete(folder, &run.id)? {
+            if let Some(is_compared) = is_complete(self.setting, &run.id, self.progress)? {
                 outcome.resumed += 1;
+                if !(is_compared || std::mem::replace(&mut is_said, true)) {
+                    self.progress.say(EARLIER_VERSION);
+                }
                 // What was known then is known now: a campaign that had stopped stays stopped.
                 let known = enough(&folder.join(format!("{}.mcap", run.id)), run);
                 outcome.enough = outcome.enough.or(known);
@@ -376,17 +386,18 @@ impl<'a> Campaign<'a, '_> {
     }
 }
 
-/// Whether a run lies there complete; an incomplete one is put aside.
-fn is_complete(folder: &Path, id: &str) -> Result<bool, RunnerError> {
-    let sidecar = folder.join(format!("{id}.toml"));
-    if !sidecar.exists() {
-        return Ok(false);
+/// Whether a run lies there complete, and then whether its log was compared with its hash; what is no complete run is put aside.
+fn is_complete(setting: &Setting, id: &str, progress: &mut dyn Progress) -> Result<Option<bool>, RunnerError> {
+    let folder = &setting.folder;
+    let campaign = CampaignMark { name: &setting.campaign, sha256: &setting.campaign_sha256 };
+    let failed = |e: RecordError| RunnerError::Folder { path: folder.clone(), reason: e.to_string() };
+    match check_pair(folder, id, campaign).map_err(failed)? {
+        Pair::Absent => return Ok(None),
+        Pair::Complete { is_compared, .. } => return Ok(Some(is_compared)),
+        Pair::Again { reason } => progress.say(&format!("{reason}: {id} is put aside and driven again")),
     }
-    if read_run_meta(&sidecar)?.status == RunStatus::Complete {
-        return Ok(true);
-    }
-    let aside =
-        (1..10_000).map(|n| format!("{id}.interrupted-{n}")).find(|name| !folder.join(format!("{name}.toml")).exists());
+    let is_free = |name: &String| ["mcap", "toml"].iter().all(|e| !folder.join(format!("{name}.{e}")).exists());
+    let aside = (1..10_000).map(|n| format!("{id}.interrupted-{n}")).find(is_free);
     if let Some(aside) = aside {
         for extension in ["mcap", "toml"] {
             let from = folder.join(format!("{id}.{extension}"));
@@ -396,7 +407,7 @@ fn is_complete(folder: &Path, id: &str) -> Result<bool, RunnerError> {
             }
         }
     }
-    Ok(false)
+    Ok(None)
 }
 
 /// The load of a run: a ballasted wet run carries what buoyancy takes off its wheels.

@@ -7,7 +7,8 @@ use froude_identify::carriage::online::OnLine;
 use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
-use froude_records::run::{BodyState, RunKind, RunLog, read_run};
+use froude_records::hash::sha256_of_bytes;
+use froude_records::run::{BodyState, CampaignMark, RunKind, RunLog, check_names, read_run};
 use froude_rig::campaign::lock::FolderLock;
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check, check_campaign};
@@ -251,7 +252,12 @@ pub fn drive(
         return Err(Error::Nothing(format!("nothing was moved: {}: {}{more}", first.id, first.text)));
     }
     let _alone = FolderLock::take(&prepared.folder, &prepared.job.date, prepared.job.start_unix_ns)?;
-    own_folder(&prepared.folder, &prepared.job.campaign)?;
+    let campaign_sha256 = own_folder(&prepared.folder, &prepared.job.campaign)?;
+    // Exchanged and foreign files are for a person to sort out, before anything moves.
+    let mark = CampaignMark { name: &prepared.campaign.name, sha256: &campaign_sha256 };
+    for run in prepared.runs() {
+        check_names(&prepared.folder, &run.id, mark)?;
+    }
     let (mut rig, load, twin_seed) = rig_of(prepared)?;
     let axis = &prepared.control.axes[prepared.asked.axis as usize];
     let mut constants = IndexMap::from([("y".to_owned(), prepared.carriage.rig.y.constants)]);
@@ -261,6 +267,7 @@ pub fn drive(
     let decimation = ((wanted / every as f64).round().max(1.0) as u64) * every;
     let setting = Setting {
         campaign: prepared.campaign.name.clone(),
+        campaign_sha256: campaign_sha256.clone(),
         folder: prepared.folder.clone(),
         asked: prepared.asked.clone(),
         return_speed_m_s: return_speed_m_s(&prepared.asked, &axis.limits),
@@ -296,8 +303,8 @@ fn rig_of(prepared: &Prepared) -> Result<Driven, Error> {
     }
 }
 
-/// Makes the folder and puts the campaign's copy there; a copy of another campaign is refused.
-fn own_folder(folder: &Path, campaign: &Path) -> Result<(), Error> {
+/// Makes the folder and puts the campaign's copy there, and gives its SHA-256; a copy of another campaign is refused.
+fn own_folder(folder: &Path, campaign: &Path) -> Result<String, Error> {
     let failed = |path: &Path| {
         let path = path.to_owned();
         move |source| Error::Output { path, source }
@@ -306,14 +313,17 @@ fn own_folder(folder: &Path, campaign: &Path) -> Result<(), Error> {
     let text = std::fs::read(campaign).map_err(failed(campaign))?;
     let copy = folder.join(CAMPAIGN_COPY);
     match std::fs::read(&copy) {
-        Ok(there) if there == text => Ok(()),
-        Ok(_) => Err(Error::Nothing(format!(
-            "{} holds runs of another campaign, or of an earlier state of this one ({CAMPAIGN_COPY} differs): name another folder \
+        Ok(there) if there == text => {}
+        Ok(_) => {
+            return Err(Error::Nothing(format!(
+                "{} holds runs of another campaign, or of an earlier state of this one ({CAMPAIGN_COPY} differs): name another folder \
              with --out",
-            folder.display()
-        ))),
-        Err(_) => Ok(froude_records::write::write_atomically(&copy, &text)?),
+                folder.display()
+            )));
+        }
+        Err(_) => froude_records::write::write_atomically(&copy, &text)?,
     }
+    Ok(sha256_of_bytes(&text))
 }
 
 /// What says in a folder of runs that its campaign stopped because it knew enough; in words.

@@ -6,9 +6,12 @@ use froude_hydro::fluid::Water;
 use froude_identify::carriage::run as drag;
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{BodyState, Direction, RunKind, RunLog, RunMeta, RunReader, RunStatus, read_run_meta};
+use froude_records::run::{
+    BodyState, Direction, DoubtKind, RunKind, RunLog, RunMeta, RunReader, RunStatus, read_run_meta,
+};
 use froude_records::units::Dimension;
 
+use super::set::{Member, doubles, strangers, summed_up};
 use crate::Error;
 
 /// Name of the campaign's copy in a folder of runs.
@@ -29,20 +32,32 @@ pub struct Runs {
 
 /// Reads the complete runs of these kinds below `paths` (folders, or single `.mcap` files). Truths of a twin are not read.
 ///
+/// A log that is damaged, cut off or gone is left out with a finding.
+///
 /// # Errors
 ///
-/// A path without runs, or a run that cannot be read.
+/// A path without runs, a run that cannot be read; a run that is there twice, of another campaign than the runs beside it, or
+/// whose log and sidecar were exchanged.
 pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Result<Runs, Error> {
     let mut out = Runs { folder: folder_of(paths), ..Runs::default() };
+    let (mut members, mut doubts) = (Vec::new(), Vec::new());
     for file in files(paths)? {
         let sidecar = file.with_extension("toml");
         if sidecar.exists() {
-            let meta = read_run_meta(&sidecar)?;
+            let meta = match read_run_meta(&sidecar) {
+                // Another file of TOML that lies in the folder.
+                Err(_) if !file.exists() => continue,
+                meta => meta?,
+            };
             if !kinds.contains(&meta.kind) {
                 continue;
             }
             if meta.status != RunStatus::Complete {
                 out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&meta)));
+                continue;
+            }
+            if !file.exists() {
+                out.findings.push(left_out_for(gone(&file, &meta)));
                 continue;
             }
         }
@@ -53,23 +68,65 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
         if !kinds.contains(&log.meta.kind) {
             continue;
         }
+        if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Exchanged) {
+            return Err(Error::Nothing(doubt.text.clone()));
+        }
+        if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Damaged) {
+            out.findings.push(left_out_for(doubt.finding()));
+            continue;
+        }
+        if log.meta.status != RunStatus::Complete {
+            out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&log.meta)));
+            continue;
+        }
+        members.push(Member::of(&file, &log.meta)?);
+        doubts.extend(log.doubts.iter().cloned());
         for gap in &log.lost {
             out.findings.push(Finding::new(Severity::Warning, "run-gap", format!("{}: {}", log.meta.id, gap.text)));
         }
         out.logs.push(log);
     }
+    let mut set = doubles(&members);
+    set.extend(strangers(&members)?);
+    if let Some(first) = set.iter().find(|f| f.severity == Severity::Error) {
+        let more = set.iter().filter(|f| f.severity == Severity::Error).count() - 1;
+        let more = if more == 0 { String::new() } else { format!(" ({more} more)") };
+        return Err(Error::Nothing(format!("{}{more}", first.message)));
+    }
+    out.findings.extend(set);
+    out.findings.extend(summed_up(&doubts));
     let copy = out.folder.join(CAMPAIGN_COPY);
     let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
     out.campaign = path.as_deref().map(read_campaign).transpose()?;
     if out.logs.is_empty() {
         let names: Vec<&str> = kinds.iter().map(|k| k.name()).collect();
+        let left = match out.findings.first() {
+            Some(first) => format!("; left out: {}", first.message),
+            None => String::new(),
+        };
         return Err(Error::Nothing(format!(
-            "{}: no complete run of the kinds {}; drive a campaign first: froude run CAMPAIGN.toml",
+            "{}: no complete run of the kinds {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
             out.folder.display(),
             names.join(", ")
         )));
     }
     Ok(out)
+}
+
+/// A finding with what became of the run.
+fn left_out_for(mut finding: Finding) -> Finding {
+    finding.message += ". It was left out";
+    finding
+}
+
+/// A run of which only the sidecar is left.
+pub(crate) fn gone(log: &Path, meta: &RunMeta) -> Finding {
+    let text = format!(
+        "the log {} is gone: its sidecar says that {} was driven to its end; copy it back, or froude run drives it again",
+        log.display(),
+        meta.id
+    );
+    Finding::new(Severity::Error, "run-gone", text)
 }
 
 /// Why a run that is not complete is left out. One that still says `running` was never closed.
@@ -90,15 +147,16 @@ fn folder_of(paths: &[PathBuf]) -> PathBuf {
     if first.is_dir() { first } else { first.parent().map_or_else(PathBuf::new, Path::to_owned) }
 }
 
-/// The `.mcap` files, sorted by name.
-fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
+/// The logs, sorted by name; of a folder also those that its sidecars say should be there.
+pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
     let mut out = Vec::new();
     for path in paths {
         if path.is_dir() {
             let entries = std::fs::read_dir(path).map_err(|source| Error::Output { path: path.clone(), source })?;
-            out.extend(
-                entries.filter_map(Result::ok).map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "mcap")),
-            );
+            let mut own: Vec<PathBuf> = entries.filter_map(Result::ok).map(|e| e.path()).filter_map(log_of).collect();
+            own.sort();
+            own.dedup();
+            out.append(&mut own);
         } else if path.exists() {
             out.push(path.clone());
         } else {
@@ -107,6 +165,15 @@ fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
     }
     out.sort();
     Ok(out)
+}
+
+/// The log that a file of a folder is or belongs to.
+fn log_of(file: PathBuf) -> Option<PathBuf> {
+    match file.extension().map(|e| e.to_string_lossy().into_owned()).as_deref() {
+        Some("mcap") => Some(file),
+        Some("toml") if file.file_name().is_some_and(|name| name != CAMPAIGN_COPY) => Some(file.with_extension("mcap")),
+        _ => None,
+    }
 }
 
 /// A run as the reductions of drag and calibration take it; `None` for runs that are neither.
@@ -195,35 +262,10 @@ pub fn way(direction: Option<Direction>) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use froude_records::run::Axis;
-    use indexmap::IndexMap;
 
     #[test]
     fn a_run_that_was_never_closed_says_what_became_of_it() {
-        let mut meta = RunMeta {
-            campaign: "a".to_owned(),
-            id: "084-wet".to_owned(),
-            kind: RunKind::Wet,
-            set: None,
-            pair: None,
-            repeat: None,
-            axis: Axis::Y,
-            target_speed_m_s: None,
-            direction: None,
-            body: BodyState::Wet,
-            is_ballasted: false,
-            hung_weight_n: None,
-            rig: IndexMap::default(),
-            constants: IndexMap::default(),
-            status: RunStatus::Running,
-            note: String::new(),
-            versions: IndexMap::default(),
-            twin_seed: None,
-            clock: None,
-            log_rate_hz: 1e3,
-            date: String::new(),
-            start_unix_ns: 0,
-        };
+        let mut meta = RunMeta { id: "084-wet".to_owned(), status: RunStatus::Running, ..RunMeta::default() };
         let told = left_out(&meta);
         assert!(told.contains("has no end and was left out: it was interrupted without notice"), "{told}");
         meta.status = RunStatus::Interrupted;
