@@ -99,6 +99,16 @@ pub enum RunnerError {
         /// Where it ended, m.
         at_m: f64,
     },
+    /// All was driven, and some of it not to its end.
+    #[error(
+        "runs that ended before their planned motion was done are marked cut: {}. The same command drives them again; where that ends alike, \
+         change the campaign and name another folder with --out",
+        runs.join("; ")
+    )]
+    Cut {
+        /// What became of each.
+        runs: Vec<String>,
+    },
     /// Something took longer than it can.
     #[error("{run}: {what} did not end within {limit_s:.0} s; the carriage was stopped")]
     TooLong {
@@ -196,6 +206,17 @@ pub struct Outcome {
     pub enough: Option<String>,
     /// Runs whose planned motion was not done, each with the reason.
     pub cut: Vec<String>,
+}
+
+impl Outcome {
+    /// An error where a run's planned motion was not done.
+    ///
+    /// # Errors
+    ///
+    /// [`RunnerError::Cut`].
+    pub fn whole(&self) -> Result<(), RunnerError> {
+        if self.cut.is_empty() { Ok(()) } else { Err(RunnerError::Cut { runs: self.cut.clone() }) }
+    }
 }
 
 /// Drives a whole plan. Runs that lie complete in the folder are not driven again; anything else that lies there of a run is put aside

@@ -21,7 +21,7 @@ use froude_report::chart::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 use froude_rig::campaign::plan::{Experiments, resonance, tuning};
-use froude_rig::campaign::runner::{Operator, Outcome, Progress};
+use froude_rig::campaign::runner::{Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
 
 use super::drive::{DriveJob, Prepared, drive, prepare_with};
@@ -128,7 +128,7 @@ pub fn tune(
     let experiments = Experiments { sweep_hz: TUNING_HZ, ..Experiments::default() };
     let prepared = prepare_with(&with_folder(job, "tune"), &|asked, start_m, _| tuning(asked, start_m, &experiments))?
         .logging_every_tick();
-    whole(&drive(&prepared, switch, operator, progress)?)?;
+    drive(&prepared, switch, operator, progress)?.whole()?;
     let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Relay, RunKind::Sweep], None)?;
     let axis = prepared.axis();
     let sweep = runs.logs.iter().find(|l| l.meta.kind == RunKind::Sweep);
@@ -173,11 +173,6 @@ pub fn tune(
     Ok(outcome)
 }
 
-/// An experiment that was cut has nothing to be read from.
-fn whole(outcome: &Outcome) -> Result<(), Error> {
-    outcome.cut.first().map_or(Ok(()), |why| Err(Error::Nothing(format!("{why}; the same command drives it again"))))
-}
-
 /// Drives a sweep bare, dry and wet, and proposes a shaper.
 ///
 /// # Errors
@@ -192,7 +187,7 @@ pub fn find_resonance(
     let experiments = Experiments::default();
     let prepared =
         prepare_with(&with_folder(job, "resonance"), &|asked, start_m, _| resonance(asked, start_m, &experiments))?;
-    whole(&drive(&prepared, switch, operator, progress)?)?;
+    drive(&prepared, switch, operator, progress)?.whole()?;
     let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Sweep], None)?;
     let states = runs
         .logs
