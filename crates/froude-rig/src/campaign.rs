@@ -5,7 +5,8 @@
 //! | [`plan`]      | from the schedule to runs in order, with the operator's steps in between       |
 //! | [`preflight`] | travel, coast, speed, command, current and heating of every run, before it moves |
 //! | [`lock`]      | one drive at a time into a folder                                               |
-//! | [`runner`]    | drives and records one run after the other; stops, resumes                     |
+//! | [`runner`]    | drives and records one run after the other; stops                              |
+//! | `resume`      | what lies of a run already, and putting aside what is not complete              |
 //! | [`setup`]     | controller and twin from the campaign's `[rig]` section                            |
 //! | [`stop`]      | Ctrl-C: once is a controlled stop, twice cuts the torque                        |
 //!
@@ -20,6 +21,7 @@ pub mod lock;
 pub mod plan;
 pub mod preflight;
 mod recording;
+mod resume;
 mod rig_thread;
 pub mod runner;
 pub mod setup;

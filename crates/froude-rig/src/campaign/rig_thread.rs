@@ -45,8 +45,8 @@ pub(super) enum Entry {
 
 /// How an order ended.
 pub(super) struct Ended {
-    /// Done, or why not.
-    pub result: Result<(), RunnerError>,
+    /// Done, with why the planned motion was not done where it was not; or what ended it.
+    pub result: Result<Option<String>, RunnerError>,
     /// The last sample.
     pub last: Sample,
     /// Where the order's first tick lies on the host's clock.
@@ -83,10 +83,10 @@ pub(super) fn attend<'a>(
                 let trouble = idle.trouble.take();
                 let ended = match (trouble, order) {
                     (Some(error), _) => Ended { result: Err(error), last: Sample::default(), clock: None },
-                    (None, Order::Report) => Ended { result: Ok(()), last: Sample::default(), clock: None },
+                    (None, Order::Report) => Ended { result: Ok(None), last: Sample::default(), clock: None },
                     (None, Order::Begin { run, number, is_first }) => {
                         Session::new(setting, rig, switch, &mut engine, run, false)
-                            .ordered(|session| session.begin(number, is_first))
+                            .ordered(|session| session.begin(number, is_first).map(|()| None))
                     }
                     (None, Order::Drive(run)) => {
                         Session::new(setting, rig, switch, &mut engine, run, true).ordered(Session::motion)

@@ -3,7 +3,8 @@
 //! A run is: go to its start, wait for the water, record the still rig, record the motion, record the still rig again. What ends it
 //! early is told apart and kept: the operator (category 2), a fault of the controller (its own category), a recorder that can
 //! write no more (category 1), a rig that no longer answers (its own watchdog). Whatever was recorded by then stays, marked
-//! `interrupted` or `faulted`; a resumed campaign does that run again.
+//! `interrupted` or `faulted`; a resumed campaign does that run again. A run is `complete` only when its planned motion was done: an
+//! excitation that came to a soft limit before its end leaves it `cut`; the campaign goes on, and says so at its end.
 //!
 //! Here the campaign goes on step by step, asks and records. The rig is ticked by a thread of its own, which carries out one order after the
 //! other (a `Session` each).
@@ -14,7 +15,7 @@ use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_records::RecordError;
-use froude_records::run::{AxisConstants, BodyState, CampaignMark, EventKind, Pair, RunStatus, check_pair};
+use froude_records::run::{AxisConstants, BodyState, CampaignMark, EventKind, RunStatus};
 use indexmap::IndexMap;
 
 use froude_records::carriage::CarriagePlan;
@@ -22,6 +23,7 @@ use froude_records::carriage::CarriagePlan;
 use super::hand_over::{Engine, Helm, hand_over};
 use super::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
 use super::recording::{Recording, RigFacts};
+use super::resume::{Found, look};
 use super::rig_thread::{self, Ended, Entry, Order};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample};
@@ -96,6 +98,39 @@ pub enum RunnerError {
         /// Why not.
         refusal: Refusal,
     },
+    /// A request was neither carried out nor refused.
+    #[error(
+        "{run}: the controller neither carried out nor refused to {what}; the carriage was stopped. Run the campaign again"
+    )]
+    Unanswered {
+        /// The run.
+        run: String,
+        /// What was asked.
+        what: &'static str,
+    },
+    /// A move ended elsewhere.
+    #[error(
+        "{run}: the move to {target_m:.3} m ended at {at_m:.3} m without a fault: something else stopped the carriage. Run the campaign \
+         again: it goes on from there"
+    )]
+    Elsewhere {
+        /// The run.
+        run: String,
+        /// Where it was to end, m.
+        target_m: f64,
+        /// Where it ended, m.
+        at_m: f64,
+    },
+    /// All was driven, and some of it not to its end.
+    #[error(
+        "runs that ended before their planned motion was done are marked cut: {}. The same command drives them again; where that ends alike, \
+         change the campaign and name another folder with --out",
+        runs.join("; ")
+    )]
+    Cut {
+        /// What became of each.
+        runs: Vec<String>,
+    },
     /// Something took longer than it can.
     #[error("{run}: {what} did not end within {limit_s:.0} s; the carriage was stopped")]
     TooLong {
@@ -128,6 +163,9 @@ pub enum RunnerError {
         /// What happened.
         reason: String,
     },
+    /// What lies of a run is for a person to sort out.
+    #[error("{0}")]
+    Files(#[source] RecordError),
     /// A folder.
     #[error("{}: {reason}", path.display())]
     Folder {
@@ -206,6 +244,14 @@ pub struct Setting {
     pub date: String,
 }
 
+impl Setting {
+    /// The campaign, as its runs name it.
+    #[must_use]
+    pub fn mark(&self) -> CampaignMark<'_> {
+        CampaignMark { name: &self.campaign, sha256: &self.campaign_sha256 }
+    }
+}
+
 /// How a campaign ended.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
@@ -217,10 +263,23 @@ pub struct Outcome {
     pub spared: usize,
     /// Why it stopped early, where it did.
     pub enough: Option<String>,
+    /// Runs whose planned motion was not done, each with the reason.
+    pub cut: Vec<String>,
 }
 
-/// Drives a whole plan. Runs that lie complete in the folder are not driven again; an interrupted one is put aside as
-/// `ID.interrupted-N` and driven anew.
+impl Outcome {
+    /// An error where a run's planned motion was not done.
+    ///
+    /// # Errors
+    ///
+    /// [`RunnerError::Cut`].
+    pub fn whole(&self) -> Result<(), RunnerError> {
+        if self.cut.is_empty() { Ok(()) } else { Err(RunnerError::Cut { runs: self.cut.clone() }) }
+    }
+}
+
+/// Drives a whole plan. Runs that lie complete in the folder are not driven again; anything else that lies there of a run is put aside
+/// as `ID.interrupted-N`, and the run driven anew.
 ///
 /// # Errors
 ///
@@ -260,7 +319,7 @@ impl<'a> Campaign<'a, '_> {
     fn drive(mut self, enough: &mut Enough<'_>) -> Result<Outcome, RunnerError> {
         let folder = &self.setting.folder;
         let total = self.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
-        let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None };
+        let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None, cut: Vec::new() };
         let mut mounted: Option<OperatorStep> = None;
         let mut is_prepared = false;
         let mut is_said = false;
@@ -279,15 +338,19 @@ impl<'a> Campaign<'a, '_> {
                 outcome.spared += 1;
                 continue;
             }
-            if let Some(is_compared) = is_complete(self.setting, &run.id, self.progress)? {
-                outcome.resumed += 1;
-                if !(is_compared || std::mem::replace(&mut is_said, true)) {
-                    self.progress.say(EARLIER_VERSION);
+            match look(folder, &run.id, self.setting.mark())? {
+                Found::Complete { is_compared } => {
+                    outcome.resumed += 1;
+                    if !(is_compared || std::mem::replace(&mut is_said, true)) {
+                        self.progress.say(EARLIER_VERSION);
+                    }
+                    // What was known then is known now: a campaign that had stopped stays stopped.
+                    let known = enough(&folder.join(format!("{}.mcap", run.id)), run);
+                    outcome.enough = outcome.enough.or(known);
+                    continue;
                 }
-                // What was known then is known now: a campaign that had stopped stays stopped.
-                let known = enough(&folder.join(format!("{}.mcap", run.id)), run);
-                outcome.enough = outcome.enough.or(known);
-                continue;
+                Found::Nothing { aside: Some(what) } => self.progress.say(&what),
+                Found::Nothing { aside: None } => {}
             }
             if let Some(step) = mounted.take() {
                 self.confirm(step.prompt)?;
@@ -296,9 +359,15 @@ impl<'a> Campaign<'a, '_> {
                 self.confirm(CLEAR.to_owned())?;
             }
             self.progress.run_begins(run, number, total);
-            let path = self.drive_run(run, number as u64, !is_prepared)?;
+            let (path, cut) = self.drive_run(run, number as u64, !is_prepared)?;
             is_prepared = true;
             outcome.driven += 1;
+            if let Some(why) = cut {
+                let what = format!("{} was cut: {why}", run.id);
+                self.progress.say(&what);
+                outcome.cut.push(what);
+                continue;
+            }
             if let Some(why) = enough(&path, run) {
                 self.progress.say(&why);
                 outcome.enough = Some(why);
@@ -320,8 +389,14 @@ impl<'a> Campaign<'a, '_> {
         if is_confirmed { Ok(()) } else { Err(RunnerError::NotConfirmed { prompt }) }
     }
 
-    /// One run from its approach to its log, which is closed whatever happens.
-    fn drive_run(&mut self, run: &'a PlannedRun, number: u64, is_first: bool) -> Result<PathBuf, RunnerError> {
+    /// One run from its approach to its log, which is closed whatever happens. Gives the log, and why the planned motion was not done where
+    /// it was not.
+    fn drive_run(
+        &mut self,
+        run: &'a PlannedRun,
+        number: u64,
+        is_first: bool,
+    ) -> Result<(PathBuf, Option<String>), RunnerError> {
         let begun = self.carry_out(Order::Begin { run, number, is_first }, Some(run), &mut None)?;
         begun.result?;
         let mut recording = Some(Recording::create(self.setting, run, &self.facts, &begun.last)?);
@@ -330,16 +405,16 @@ impl<'a> Campaign<'a, '_> {
             Ok(ended) => (ended.result, ended.clock),
             Err(error) => (Err(error), None),
         };
-        let status = driven.as_ref().map_or_else(RunnerError::status, |()| RunStatus::Complete);
-        let note = match &driven {
-            Ok(()) => None,
-            Err(RunnerError::Record(_)) => Some("the disk took no more".to_owned()),
-            Err(error) => Some(error.to_string()),
+        let (status, note) = match &driven {
+            Ok(None) => (RunStatus::Complete, None),
+            Ok(Some(why)) => (RunStatus::Cut, Some(why.clone())),
+            Err(error @ RunnerError::Record(_)) => (error.status(), Some("the disk took no more".to_owned())),
+            Err(error) => (error.status(), Some(error.to_string())),
         };
         let path = recording.map(|r| r.finish(status, note, clock)).transpose();
         // A log that cannot be closed after it could not be written is no second failure.
-        driven?;
-        Ok(path?.unwrap_or_default())
+        let cut = driven?;
+        Ok((path?.unwrap_or_default(), cut))
     }
 
     /// Has an order carried out; what comes meanwhile is recorded and shown. A record that fails stops the carriage.
@@ -386,30 +461,6 @@ impl<'a> Campaign<'a, '_> {
     }
 }
 
-/// Whether a run lies there complete, and then whether its log was compared with its hash; what is no complete run is put aside.
-fn is_complete(setting: &Setting, id: &str, progress: &mut dyn Progress) -> Result<Option<bool>, RunnerError> {
-    let folder = &setting.folder;
-    let campaign = CampaignMark { name: &setting.campaign, sha256: &setting.campaign_sha256 };
-    let failed = |e: RecordError| RunnerError::Folder { path: folder.clone(), reason: e.to_string() };
-    match check_pair(folder, id, campaign).map_err(failed)? {
-        Pair::Absent => return Ok(None),
-        Pair::Complete { is_compared, .. } => return Ok(Some(is_compared)),
-        Pair::Again { reason } => progress.say(&format!("{reason}: {id} is put aside and driven again")),
-    }
-    let is_free = |name: &String| ["mcap", "toml"].iter().all(|e| !folder.join(format!("{name}.{e}")).exists());
-    let aside = (1..10_000).map(|n| format!("{id}.interrupted-{n}")).find(is_free);
-    if let Some(aside) = aside {
-        for extension in ["mcap", "toml"] {
-            let from = folder.join(format!("{id}.{extension}"));
-            if from.exists() {
-                std::fs::rename(&from, folder.join(format!("{aside}.{extension}")))
-                    .map_err(|e| RunnerError::Folder { path: from, reason: e.to_string() })?;
-            }
-        }
-    }
-    Ok(None)
-}
-
 /// The load of a run: a ballasted wet run carries what buoyancy takes off its wheels.
 fn load_of(run: &PlannedRun, base: &Load) -> Load {
     use crate::load::{HungWeight, Mounting};
@@ -435,8 +486,14 @@ fn load_of(run: &PlannedRun, base: &Load) -> Load {
 const HOMING_S: f64 = 300.0;
 /// Longest that a stop may take, s.
 const STOP_S: f64 = 20.0;
-/// A request that is neither carried out nor refused within this many ticks is asked again on a line that loses frames.
-const PATIENCE: usize = 400;
+/// Ticks within which a request is carried out or refused; a line that loses frames repeats it in the meantime.
+const PATIENCE: usize = 4_000;
+/// Further from its target than this no move has ended there, m: telemetry rounds to 0.1 µm.
+const ARRIVED_M: f64 = 1e-5;
+/// An excitation may seem this much shorter than it was, s: ticks before it was seen, and frames that were lost at its ends.
+const UNSEEN_S: f64 = 0.05;
+/// Part of a jog's way that must have been gone.
+const JOGGED_PART: f64 = 0.9;
 
 /// An order being carried out, on the rig's thread.
 pub(super) struct Session<'a, 'o> {
@@ -464,7 +521,7 @@ impl<'a, 'o> Session<'a, 'o> {
     }
 
     /// Carries the order out and says how it ended.
-    pub(super) fn ordered(mut self, order: impl FnOnce(&mut Self) -> Result<(), RunnerError>) -> Ended {
+    pub(super) fn ordered(mut self, order: impl FnOnce(&mut Self) -> Result<Option<String>, RunnerError>) -> Ended {
         let result = order(&mut self);
         let clock = self.tick.and_then(|tick| self.rig.host_clock(tick));
         Ended { result, last: self.last, clock }
@@ -506,8 +563,10 @@ impl<'a, 'o> Session<'a, 'o> {
                 }
                 from_m
             }
-            Drive::Pulses { from_m, .. } | Drive::Relay { from_m, .. } | Drive::Sweep { from_m, .. } => from_m,
-            Drive::Jog { .. } => return Ok(()),
+            Drive::Pulses { from_m, .. }
+            | Drive::Relay { from_m, .. }
+            | Drive::Sweep { from_m, .. }
+            | Drive::Jog { from_m, .. } => from_m,
         };
         loop {
             match self.go(target_m, speed_m_s) {
@@ -534,38 +593,79 @@ impl<'a, 'o> Session<'a, 'o> {
         self.ask("move", Request::Move { axis, profile })?;
         // The longest way at this speed, and time for ramps and shaping.
         let limit_s = 10.0 / speed_m_s.max(1e-3) + 30.0;
-        self.until("the move", limit_s, |s| s.axes[axis].phase == Phase::Holding)
+        let at_m = self.until("the move", limit_s, |s| s.axes[axis].phase == Phase::Holding)?.axes[axis].reference_m;
+        if (at_m - target_m).abs() > ARRIVED_M {
+            return Err(RunnerError::Elsewhere { run: self.run.id.clone(), target_m, at_m });
+        }
+        Ok(())
     }
 
-    /// Still, motion, still.
-    pub(super) fn motion(&mut self) -> Result<(), RunnerError> {
+    /// Still, motion, still. Gives why the planned motion was not done, where it was not.
+    pub(super) fn motion(&mut self) -> Result<Option<String>, RunnerError> {
         let still_s = self.setting.asked.still_s;
         self.wait(still_s)?;
         self.event(EventKind::Phase, "the motion begins");
-        match self.run.drive {
-            Drive::Profile { to_m, speed_m_s, .. } => self.go(to_m, speed_m_s)?,
+        let cut = match self.run.drive {
+            Drive::Profile { to_m, speed_m_s, .. } => {
+                self.go(to_m, speed_m_s)?;
+                None
+            }
             Drive::Pulses { volts, period_s, duty, duration_s, .. } => {
-                self.excite("the pulses", Excitation::Pulses { volts, period_s, duty, duration_s }, duration_s)?;
+                self.excite("pulses", Excitation::Pulses { volts, period_s, duty, duration_s }, duration_s)?
             }
             Drive::Relay { volts, hysteresis_m, duration_s, .. } => {
-                self.excite("the relay", Excitation::Relay { volts, hysteresis_m, duration_s }, duration_s)?;
+                self.excite("relay", Excitation::Relay { volts, hysteresis_m, duration_s }, duration_s)?
             }
             Drive::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s, .. } => {
                 let sweep = Excitation::Sweep { volts, from_hz, to_hz, duration_s, speed_m_s };
-                self.excite("the sweep", sweep, duration_s)?;
+                self.excite("sweep", sweep, duration_s)?
             }
-            Drive::Jog { volts, distance_m } => {
-                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?;
+            Drive::Jog { volts, distance_m, .. } => {
+                self.excite("jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?
             }
+        };
+        if let Some(why) = &cut {
+            self.event(EventKind::Warning, why);
         }
         self.event(EventKind::Phase, "the motion has ended");
-        self.wait(still_s)
+        self.wait(still_s)?;
+        Ok(cut)
     }
 
-    fn excite(&mut self, what: &'static str, excitation: Excitation, duration_s: f64) -> Result<(), RunnerError> {
+    /// Excites the axis; gives why that was not all that was planned, where it was not.
+    fn excite(
+        &mut self,
+        what: &'static str,
+        excitation: Excitation,
+        duration_s: f64,
+    ) -> Result<Option<String>, RunnerError> {
         let axis = self.axis();
-        self.ask("excite", Request::Excite { axis, excitation })?;
-        self.until(what, duration_s + 30.0, |s| s.axes[axis].phase == Phase::Holding)
+        let begun = self.ask("excite", Request::Excite { axis, excitation })?;
+        let mut last = None;
+        let ended = self.until(what, duration_s + 30.0, |s| {
+            if s.axes[axis].phase == Phase::Exciting {
+                last = Some(s.tick);
+            }
+            s.axes[axis].phase == Phase::Holding
+        })?;
+        let rate_hz = self.rig.rate_hz() * self.rig.ticks_per_sample() as f64;
+        let lasted_s = last.map_or(0.0, |tick| tick.saturating_sub(begun.tick) as f64 / rate_hz);
+        let at_m = ended.axes[axis].position_m;
+        if let Excitation::Jog { volts, distance_m, .. } = excitation {
+            let gone_m = (at_m - begun.axes[axis].position_m).abs();
+            return Ok((gone_m < JOGGED_PART * distance_m).then(|| {
+                format!(
+                    "the jog of {volts} V went {:.1} mm of {:.1} mm: a soft limit or its {duration_s} s ended it; polarity and encoder are not checked",
+                    1e3 * gone_m,
+                    1e3 * distance_m
+                )
+            }));
+        }
+        Ok((lasted_s + UNSEEN_S < duration_s).then(|| {
+            format!(
+                "the {what} ended after {lasted_s:.2} s of {duration_s} s, at {at_m:.3} m: the controller ends what would leave the soft limits"
+            )
+        }))
     }
 
     fn wait(&mut self, seconds: f64) -> Result<(), RunnerError> {
@@ -575,42 +675,33 @@ impl<'a, 'o> Session<'a, 'o> {
         Ok(())
     }
 
-    /// Hands over a request and waits until it has taken effect.
-    fn ask(&mut self, what: &'static str, request: Request) -> Result<(), RunnerError> {
-        let sample = self.tick(Some(request))?;
-        let mut refusal = sample.refusal;
+    /// Hands over a request and waits until it has taken effect; gives the first sample that shows it.
+    fn ask(&mut self, what: &'static str, request: Request) -> Result<Sample, RunnerError> {
+        let mut sample = self.tick(Some(request))?;
         for _ in 0..PATIENCE {
-            if refusal.is_some() || self.has_begun(&request)? {
-                break;
+            if let Some(refusal) = sample.refusal {
+                return Err(RunnerError::Refused { run: self.run.id.clone(), what, refusal });
             }
-            refusal = self.tick(None)?.refusal;
+            if has_begun(&sample, &request) {
+                return Ok(sample);
+            }
+            sample = self.tick(None)?;
         }
-        match refusal {
-            Some(refusal) => Err(RunnerError::Refused { run: self.run.id.clone(), what, refusal }),
-            None => Ok(()),
-        }
+        self.come_to_rest(Request::Stop(StopCategory::One), None)?;
+        Err(RunnerError::Unanswered { run: self.run.id.clone(), what })
     }
 
-    /// A request shows in the phase of its axis one tick later at the latest on the twin, a few on a line.
-    fn has_begun(&mut self, request: &Request) -> Result<bool, RunnerError> {
-        let sample = self.tick(None)?;
-        let phase = |axis: usize| sample.axes.get(axis).map_or(Phase::Disabled, |a| a.phase);
-        Ok(match *request {
-            Request::Enable { axis } => phase(axis) != Phase::Disabled,
-            Request::Home { axis } => phase(axis) == Phase::Homing,
-            Request::Move { axis, profile } => {
-                phase(axis) == Phase::Moving
-                    || sample.axes.get(axis).is_some_and(|a| (a.reference_m - profile.target_m).abs() < 1e-6)
-            }
-            Request::Excite { axis, .. } => phase(axis) == Phase::Exciting || sample.refusal.is_none(),
-            _ => true,
-        })
-    }
-
-    fn until(&mut self, what: &'static str, limit_s: f64, done: impl Fn(&Sample) -> bool) -> Result<(), RunnerError> {
+    /// Goes on until it is done; gives the sample that shows it.
+    fn until(
+        &mut self,
+        what: &'static str,
+        limit_s: f64,
+        mut done: impl FnMut(&Sample) -> bool,
+    ) -> Result<Sample, RunnerError> {
         for _ in 0..(limit_s * self.rig.rate_hz()) as u64 {
-            if done(&self.tick(None)?) {
-                return Ok(());
+            let sample = self.tick(None)?;
+            if done(&sample) {
+                return Ok(sample);
             }
         }
         self.come_to_rest(Request::Stop(StopCategory::One), None)?;
@@ -696,6 +787,22 @@ impl<'a, 'o> Session<'a, 'o> {
 
     fn event(&mut self, kind: EventKind, sentence: &str) {
         self.engine.put(Entry::Event(kind, sentence.to_owned()));
+    }
+}
+
+/// Whether a sample shows that a request is being carried out, or has been.
+fn has_begun(sample: &Sample, request: &Request) -> bool {
+    let phase = |axis: usize| sample.axes.get(axis).map_or(Phase::Disabled, |a| a.phase);
+    match *request {
+        Request::Enable { axis } => phase(axis) != Phase::Disabled,
+        Request::Home { axis } => phase(axis) == Phase::Homing,
+        Request::Move { axis, profile } => {
+            phase(axis) == Phase::Moving
+                || sample.axes.get(axis).is_some_and(|a| (a.reference_m - profile.target_m).abs() < ARRIVED_M)
+        }
+        // One that is ended at once is on its way to a stop already.
+        Request::Excite { axis, .. } => matches!(phase(axis), Phase::Exciting | Phase::Stopping),
+        _ => true,
     }
 }
 

@@ -75,6 +75,7 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
             out.findings.push(left_out_for(doubt.finding()));
             continue;
         }
+        // A log without a sidecar says itself how it ended.
         if log.meta.status != RunStatus::Complete {
             out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&log.meta)));
             continue;
