@@ -1,7 +1,8 @@
-//! Long runs of controller and twin: `endurance hours 24` and `endurance faults 100000`.
+//! Long runs of controller and twin: `endurance hours 24`, `endurance faults 100000` and `endurance hosts 100000`.
 //!
 //! Hours: both axes go to and fro with a wet body, every counter having started just before its wrap; the unwrapped count is
-//! held against the truth at every tick, and a second run must end with the same hash. Faults: the catalogue on that many seeds.
+//! held against the truth at every tick, and a second run must end with the same hash. Faults: the catalogue on that many seeds. Hosts: the
+//! same with the board in between, two hosts on its line and a late operator.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use froude_control::request::{Move, Request};
@@ -11,13 +12,17 @@ use froude_rig::defaults::control_config;
 use froude_rig::{AxisParameters, ClosedLoop, Load, Mounting, TwinConfig};
 use std::time::Instant;
 
+#[path = "../tests/hosts/mod.rs"]
+mod hosts;
+
 fn main() -> std::process::ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let is_good = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["hours", hours] => hours.parse().is_ok_and(endured),
         ["faults", runs] => runs.parse().is_ok_and(faults),
+        ["hosts", runs] => runs.parse().is_ok_and(two_hosts),
         _ => {
-            eprintln!("usage: endurance hours N | endurance faults N");
+            eprintln!("usage: endurance hours N | endurance faults N | endurance hosts N");
             return 2.into();
         }
     };
@@ -93,4 +98,14 @@ fn faults(runs: u64) -> bool {
         println!("{refused:?}");
     }
     sweep.refused.is_empty()
+}
+
+fn two_hosts(runs: u64) -> bool {
+    let begun = Instant::now();
+    let sweep = hosts::Sweep::of(&hosts::Hosts::new(), runs);
+    println!("{sweep}, in {:.0} s", begun.elapsed().as_secs_f64());
+    for refused in sweep.refused.iter().take(20) {
+        println!("{refused:?}");
+    }
+    sweep.runs == runs && sweep.refused.is_empty()
 }

@@ -110,6 +110,19 @@ impl Injection {
         }
     }
 
+    /// Broken within the last counts of a move, these show nothing until the axis is asked to move again.
+    #[must_use]
+    pub fn is_unseen_at_rest(&self) -> bool {
+        matches!(
+            self,
+            Self::TorqueLoss(_)
+                | Self::FrictionJam(_)
+                | Self::EncoderSilent
+                | Self::EncoderStuck
+                | Self::EncoderReversed
+        )
+    }
+
     /// A random one, strong enough to matter.
     #[must_use]
     pub fn random(rng: &mut impl Rng) -> Self {
@@ -163,16 +176,7 @@ impl Outcome {
     #[must_use]
     pub fn is_allowed(&self) -> bool {
         let accepted = self.injection.accepted();
-        // Broken within the last counts of its move, these show nothing until the axis is asked to move again.
-        let is_unseen = self.has_arrived
-            && matches!(
-                self.injection,
-                Injection::TorqueLoss(_)
-                    | Injection::FrictionJam(_)
-                    | Injection::EncoderSilent
-                    | Injection::EncoderStuck
-                    | Injection::EncoderReversed
-            );
+        let is_unseen = self.has_arrived && self.injection.is_unseen_at_rest();
         let is_told = match self.detected {
             Some((fault, after_s)) => accepted.contains(&fault) && after_s <= self.injection.latest_s() + 0.5 * TICK_S,
             None => accepted.is_empty() || is_unseen,
@@ -189,6 +193,9 @@ const ARRIVED_M: f64 = 1e-4;
 const WAIT_TICKS: u64 = 16_000;
 const REST_TICKS: u64 = 48_000;
 
+/// How the body of a scene may be mounted.
+pub const MOUNTINGS: [Mounting; 3] = [Mounting::None, Mounting::Dry, Mounting::Wet];
+
 /// Homed rigs to break, one for each mounting of the body.
 #[derive(Debug, Clone)]
 pub struct Catalogue {
@@ -202,7 +209,7 @@ impl Catalogue {
     ///
     /// [`ConfigError`] from the controller.
     pub fn new() -> Result<Self, ConfigError> {
-        let homed = [Mounting::None, Mounting::Dry, Mounting::Wet].map(|mounting| {
+        let homed = MOUNTINGS.map(|mounting| {
             let load = Load::mounted(mounting);
             let mut config = TwinConfig::loaded(load);
             config.axes[0].start_m = 0.02;
@@ -228,25 +235,17 @@ impl Catalogue {
     /// One random move with one random injection; everything from the seed.
     #[must_use]
     pub fn run(&self, seed: u64) -> Outcome {
-        let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let (mounting, homed) = &self.homed[rng.random_range(0..self.homed.len())];
+        let scene = Scene::drawn(&mut Pcg64Mcg::seed_from_u64(seed));
+        let (mounting, homed) = &self.homed[scene.mounting];
         let mut rig = homed.clone();
-        rig.twin.begin_run([Load::mounted(*mounting); 2], rng.random());
-        let axis = usize::from(rng.random_bool(0.3));
-        for number in 0..2 {
-            let profile = Move {
-                target_m: rng.random_range([1.5..3.5, 0.5..0.8][number].clone()),
-                speed_m_s: rng.random_range([0.03..0.55, 0.03..0.15][number].clone()),
-                acceleration_m_s2: rng.random_range(0.2..0.8),
-                jerk_m_s3: 5.0,
-                is_shaped: rng.random(),
-            };
+        rig.twin.begin_run([Load::mounted(*mounting); 2], scene.load_seed);
+        let axis = scene.axis;
+        for (number, profile) in scene.moves.into_iter().enumerate() {
             rig.request(Request::Move { axis: number, profile });
             rig.step();
         }
-        let injection = Injection::random(&mut rng);
         // On the way, once the axis really moves.
-        for _ in 0..rng.random_range(800..8_000) {
+        for _ in 0..scene.after_ticks {
             rig.step();
         }
         let mut waited = 0;
@@ -254,7 +253,43 @@ impl Catalogue {
             rig.step();
             waited += 1;
         }
-        broken(rig, Scheduled { tick: 0, axis, injection }, *mounting)
+        broken(rig, Scheduled { tick: 0, axis, injection: scene.injection }, *mounting)
+    }
+}
+
+/// What is moved, what breaks, and when.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    /// Which of [`MOUNTINGS`].
+    pub mounting: usize,
+    /// What this run's friction and torque are drawn from.
+    pub load_seed: u64,
+    /// The axis that breaks.
+    pub axis: usize,
+    /// The moves of y and x.
+    pub moves: [Move; 2],
+    /// What breaks.
+    pub injection: Injection,
+    /// So many ticks after the moves began.
+    pub after_ticks: i32,
+}
+
+impl Scene {
+    /// A random one.
+    #[must_use]
+    pub fn drawn(rng: &mut impl Rng) -> Self {
+        let mounting = rng.random_range(0..MOUNTINGS.len());
+        let load_seed = rng.random();
+        let axis = usize::from(rng.random_bool(0.3));
+        let moves = [0, 1].map(|number: usize| Move {
+            target_m: rng.random_range([1.5..3.5, 0.5..0.8][number].clone()),
+            speed_m_s: rng.random_range([0.03..0.55, 0.03..0.15][number].clone()),
+            acceleration_m_s2: rng.random_range(0.2..0.8),
+            jerk_m_s3: 5.0,
+            is_shaped: rng.random(),
+        });
+        let injection = Injection::random(rng);
+        Self { mounting, load_seed, axis, moves, injection, after_ticks: rng.random_range(800..8_000) }
     }
 }
 

@@ -1,0 +1,22 @@
+//! Random faults with two hosts on the line and a late operator; the endurance example runs 10⁵.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod hosts;
+
+use hosts::{Hosts, Sweep};
+
+/// Runs in the pipeline.
+const RUNS: u64 = 600;
+
+#[test]
+fn whatever_a_second_host_says_the_board_does_what_the_first_one_asks_and_stops_for_everybody() {
+    let sweep = Sweep::of(&Hosts::new(), RUNS);
+    println!("{sweep}");
+    assert_eq!(sweep.runs, RUNS);
+    let first: Vec<String> = sweep.refused.iter().take(8).map(|r| format!("{r:?}")).collect();
+    assert!(sweep.refused.is_empty(), "{} of {RUNS}:\n{}", sweep.refused.len(), first.join("\n"));
+    // The story has every part in it, else nothing was tried.
+    for (n, what) in [(sweep.stopped, "stopped"), (sweep.taken_over, "taken over"), (sweep.undisturbed, "undisturbed")] {
+        assert!(n > RUNS / 20, "{n} of {RUNS} runs {what}");
+    }
+}
