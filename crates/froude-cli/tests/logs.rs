@@ -65,7 +65,8 @@ fn json(args: &[&str]) -> Value {
 fn findings(value: &Value) -> Vec<(String, String)> {
     let all = value["findings"].as_array().unwrap().iter();
     let own = |f: &Value| (f["code"].as_str().unwrap().to_owned(), f["message"].as_str().unwrap().to_owned());
-    all.map(own).filter(|(code, _)| code.starts_with("run-") || code == "campaign-changed").collect()
+    let is_of_a_set = |code: &str| code == "campaign-changed" || (code.starts_with("run-") && code != "run-left-out");
+    all.map(own).filter(|(code, _)| is_of_a_set(code)).collect()
 }
 
 /// Runs that were driven once for all tests: of two campaigns.
@@ -178,7 +179,8 @@ fn a_log_that_is_gone_is_told_and_driven_again() {
         format!("the log {0}.mcap is gone; {0}.toml says complete: {0} is put aside and driven again", id(wet));
     assert!(said.contains(&reason), "{said}");
     assert!(wet.exists());
-    assert_eq!(findings(&bench.drag()), []);
+    // What is left of the first drive lies aside and is counted nowhere.
+    assert_eq!((findings(&bench.drag()), findings(&bench.inspect())), (vec![], vec![]));
 }
 
 #[test]

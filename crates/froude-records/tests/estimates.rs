@@ -76,7 +76,14 @@ fn sample() -> EstimateFile {
     }
 }
 
+/// As a person writes it: without the line of the checksum.
 fn text(file: &EstimateFile) -> String {
+    let written = summed(file);
+    written.lines().filter(|line| !line.starts_with("  \"checksum\"")).collect::<Vec<_>>().join("\n")
+}
+
+/// As Froude writes it.
+fn summed(file: &EstimateFile) -> String {
     serde_json::to_string_pretty(file).unwrap()
 }
 
@@ -254,6 +261,21 @@ fn records_that_contradict_themselves_are_refused() {
     );
 }
 
+#[test]
+fn a_record_may_be_laid_out_otherwise_and_not_say_otherwise() {
+    let written = summed(&sample());
+    let sorted: serde_json::Value = serde_json::from_str(&written).unwrap();
+    assert_eq!(parse(&sorted.to_string()).unwrap(), sample(), "keys sorted, on one line");
+    assert_eq!(parse(&text(&sample())).unwrap(), sample(), "without the checksum");
+    let other = written.replacen("\"value\": 0.4", "\"value\": 0.5", 1);
+    assert_ne!(other, written);
+    assert_eq!(
+        parse(&other).unwrap_err(),
+        "estimate.json:3: what the file says is not what this checksum was written for: the file was edited or damaged. Copy it again \
+         from where it was written; to adopt an edit, delete this line"
+    );
+}
+
 type Spoil = fn(&mut Estimate);
 
 #[test]
@@ -295,7 +317,7 @@ proptest! {
         let mut file = sample();
         file.estimates[0].coefficients["C_d_I"].value = Some(value);
         file.estimates[0].density = Some(measured(other, "kg/m^3"));
-        let read = parse(&text(&file)).unwrap();
+        let read = parse(&summed(&file)).unwrap();
         let found = read.estimates[0].coefficients["C_d_I"].value.unwrap();
         prop_assert_eq!(found.to_bits(), value.to_bits());
         prop_assert_eq!(read, file);

@@ -17,7 +17,7 @@ use indexmap::IndexMap;
 
 use crate::Error;
 use crate::carriage::runs;
-use crate::carriage::set::{Member, doubles, strangers, summed_up};
+use crate::carriage::set::{Member, doubles, is_put_aside, strangers, summed_up};
 
 /// A column of a table in short.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -130,6 +130,7 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
 /// A folder of runs: how many of what, and whether the files are what they say.
 fn folder(path: &Path) -> Result<Inspection, Error> {
     let (mut metas, mut members, mut doubts, mut findings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut n_aside = 0;
     let files = runs::files(&[path.to_owned()])?;
     let shown = path.display();
     let Some(first) = files.iter().find(|file| file.exists()) else {
@@ -140,7 +141,9 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
     for file in &files {
         if !file.exists() {
             match read_run_meta(&file.with_extension("toml")) {
-                Ok(meta) if meta.status == RunStatus::Complete => findings.push(runs::gone(file, &meta)),
+                Ok(meta) if meta.status == RunStatus::Complete && !is_put_aside(file, &meta) => {
+                    findings.push(runs::gone(file, &meta))
+                }
                 _ => {}
             }
             continue;
@@ -151,6 +154,7 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
             Ok(reader)
         });
         match read {
+            Ok(reader) if is_put_aside(file, reader.meta()) => n_aside += 1,
             Ok(reader) => {
                 if reader.meta().status == RunStatus::Complete {
                     members.push(Member::of(file, reader.meta())?);
@@ -172,9 +176,10 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
         metas.iter().for_each(|meta| *counts.entry(name(meta)).or_default() += 1);
         counts.iter().map(|(name, n)| format!("{n} {name}")).collect::<Vec<_>>().join(", ")
     };
+    let aside = if n_aside == 0 { String::new() } else { format!("; {n_aside} more were put aside") };
     let facts = vec![
         ("campaign".to_owned(), counted(&|meta| format!("of {:?}", meta.campaign))),
-        ("runs".to_owned(), counted(&|meta| meta.status.name().to_owned())),
+        ("runs".to_owned(), counted(&|meta| meta.status.name().to_owned()) + &aside),
         ("kinds".to_owned(), counted(&|meta| meta.kind.name().to_owned())),
         (
             "next".to_owned(),

@@ -4,8 +4,8 @@
 //! missing, and the status `interrupted`. A damaged chunk is passed over and told as a gap with its byte, or refused
 //! ([`RunReader::refuse_damage`]). A tick is taken only when every topic has its message of it.
 //!
-//! **Whether it is the log.** Where the sidecar has the log's SHA-256 the whole file is summed before anything in it is read, which
-//! takes about as long again as reading it. All checksums that the file has itself (chunks, data, summary) are held against it
+//! **Whether it is the log.** Where the sidecar has the log's SHA-256 the whole file is summed before anything in it is read: one pass
+//! more over the file. All checksums that the file has itself (chunks, data, summary) are held against it
 //! besides. What does not fit is in [`RunReader::doubts`].
 
 use std::fs::{File, TryLockError};

@@ -7,13 +7,13 @@ use std::path::Path;
 
 use sha2::{Digest as _, Sha256};
 
-use crate::error::{Place, RecordError};
+use crate::error::{Place, RecordError, read_bytes};
 use crate::finding::{Finding, Severity};
 use crate::hash::{Fingerprint, fingerprint_of_file, hexadecimal};
 use crate::run::log::GapCause;
 use crate::run::meta::{RunMeta, RunStatus};
 use crate::run::reader::{RunReader, head_of};
-use crate::run::sidecar::read_run_meta;
+use crate::run::sidecar::{LARGEST_BYTES, read_run_meta};
 
 /// What speaks against a log as a whole.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -135,7 +135,7 @@ pub fn check_pair(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Result
     let log = folder.join(format!("{id}.mcap"));
     let Some(meta) = check_names(folder, id, campaign)? else {
         return Ok(if log.exists() {
-            Pair::Again { reason: format!("{id}.mcap has no sidecar {id}.toml: its recording never began") }
+            Pair::Again { reason: format!("{id}.mcap has no sidecar {id}.toml") }
         } else {
             Pair::Absent
         });
@@ -151,7 +151,10 @@ pub fn check_pair(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Result
         (status, note) => return again(format!("{id} is {}: {note}", status.name())),
     }
     let Some(recorded) = &meta.log else {
-        let read = RunReader::open(&log)?.read_all()?;
+        let read = match RunReader::open(&log).and_then(RunReader::read_all) {
+            Ok(read) => read,
+            Err(error) => return again(format!("{id} cannot be read: {error}")),
+        };
         let gap = read.lost.iter().find(|gap| matches!(gap.cause, GapCause::CutOff | GapCause::Damaged));
         let damage = read.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Damaged);
         return match damage.map(|d| &d.text).or(gap.map(|g| &g.text)) {
@@ -166,7 +169,7 @@ pub fn check_pair(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Result
     }
 }
 
-/// The sidecar of a run, `None` where there is none: it and the head of its log must name this run and this campaign.
+/// The sidecar of a run, `None` where there is none or nothing is written in it: it and the head of its log must name this run and this campaign.
 ///
 /// Only the beginning of the log is read, so that a whole folder is looked through before anything moves.
 ///
@@ -175,7 +178,9 @@ pub fn check_pair(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Result
 /// As [`check_pair`].
 pub fn check_names(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Result<Option<RunMeta>, RecordError> {
     let (log, sidecar) = (folder.join(format!("{id}.mcap")), folder.join(format!("{id}.toml")));
-    if !sidecar.exists() {
+    // What a power cut leaves of a file that was just made: it says nothing of any run.
+    let is_blank = |bytes: Vec<u8>| bytes.iter().all(|byte| byte.is_ascii_whitespace() || *byte == 0);
+    if !sidecar.exists() || read_bytes(&sidecar, LARGEST_BYTES, "a run's sidecar").is_ok_and(is_blank) {
         return Ok(None);
     }
     let meta = read_run_meta(&sidecar)?;

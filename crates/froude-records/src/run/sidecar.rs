@@ -21,7 +21,7 @@ use crate::write::write_atomically;
 use toml::de::DeTable;
 
 /// The largest sidecar that is read.
-const LARGEST_BYTES: u64 = 1 << 20;
+pub(crate) const LARGEST_BYTES: u64 = 1 << 20;
 
 /// Name of the metadata record at the beginning of `RUN.mcap`, status `running`.
 pub(crate) const RECORD_NAME: &str = "froude_run";

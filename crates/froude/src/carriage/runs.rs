@@ -11,7 +11,7 @@ use froude_records::run::{
 };
 use froude_records::units::Dimension;
 
-use super::set::{Member, doubles, strangers, summed_up};
+use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
 use crate::Error;
 
 /// Name of the campaign's copy in a folder of runs.
@@ -56,6 +56,10 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
                 out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&meta)));
                 continue;
             }
+            if is_put_aside(&file, &meta) {
+                out.findings.push(put_aside(&file));
+                continue;
+            }
             if !file.exists() {
                 out.findings.push(left_out_for(gone(&file, &meta)));
                 continue;
@@ -66,6 +70,10 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
             reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
         let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
         if !kinds.contains(&log.meta.kind) {
+            continue;
+        }
+        if is_put_aside(&file, &log.meta) {
+            out.findings.push(put_aside(&file));
             continue;
         }
         if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Exchanged) {
@@ -112,6 +120,12 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
         )));
     }
     Ok(out)
+}
+
+/// What was replaced by another drive of the same run.
+fn put_aside(log: &Path) -> Finding {
+    let text = format!("{} was put aside when its run was driven again, and is left out", log.display());
+    Finding::new(Severity::Note, "run-left-out", text)
 }
 
 /// A finding with what became of the run.

@@ -46,6 +46,12 @@ impl Member {
     }
 }
 
+/// Whether a run was put aside and driven again: its files have a word more than its name (`045-wet.interrupted-1`).
+pub(crate) fn is_put_aside(log: &Path, meta: &RunMeta) -> bool {
+    let stem = log.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    stem.strip_prefix(&meta.id).is_some_and(|rest| rest.starts_with('.'))
+}
+
 /// A finding for every member that is there before.
 pub(crate) fn doubles(members: &[Member]) -> Vec<Finding> {
     let mut by_hash: HashMap<&str, &Member> = HashMap::new();
