@@ -14,6 +14,7 @@ use froude::carriage::{calibrate, runs};
 use froude::identify::carriage::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
 use froude::records::run::RunKind;
+use froude::records::text::visible;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::report::document::TextTable;
 use froude::rig::campaign::plan::{PlannedRun, Step};
@@ -25,7 +26,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::args::{CarriageJob, Experiment};
-use crate::out::say;
+use crate::out::{note, say};
 use crate::print;
 
 /// `froude run`.
@@ -80,7 +81,7 @@ fn stage(prepared: &Prepared, yes: bool) -> Result<(StopSwitch, Person, Bar), Er
     let pressed = switch.clone();
     ctrlc::set_handler(move || {
         pressed.press();
-        eprintln!("\nstopping the carriage under control; Ctrl-C again cuts the torque");
+        note!("\nstopping the carriage under control; Ctrl-C again cuts the torque");
     })
     .map_err(|e| Error::Nothing(format!("Ctrl-C cannot be watched: {e}; nothing was moved")))?;
     Ok((switch, Person { is_yes: yes }, Bar::new(prepared.steps.len())))
@@ -256,7 +257,7 @@ impl Operator for Person {
         if self.is_yes {
             return true;
         }
-        eprint!("\n>>> {prompt}; confirm with y and Enter (anything else stops): ");
+        eprint!("\n>>> {}; confirm with y and Enter (anything else stops): ", visible(prompt));
         let _ = std::io::stderr().flush();
         let mut answer = String::new();
         std::io::stdin().lock().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "yes")
@@ -288,7 +289,7 @@ impl Progress for Bar {
         self.bar.set_length(total as u64);
         self.bar.set_position(number as u64 - 1);
         if !self.is_seen {
-            eprintln!("{number}/{total} {}", run.id);
+            note!("{number}/{total} {}", run.id);
         }
     }
 
@@ -298,13 +299,17 @@ impl Progress for Bar {
             let force = sample.force_n.map_or_else(String::new, |f| format!(", sensor {f:.2} N"));
             self.bar.set_message(format!(
                 "{} {time_s:.1} s: {:.3} m, {:.3} m/s, {:.2} V, {:.2} A{force}",
-                run.id, y.position_m, y.reference_m_s, y.command_v, y.current_a
+                visible(&run.id),
+                y.position_m,
+                y.reference_m_s,
+                y.command_v,
+                y.current_a
             ));
         }
     }
 
     fn say(&mut self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
+        self.bar.suspend(|| note!("{line}"));
     }
 }
 
