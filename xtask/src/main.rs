@@ -1,8 +1,8 @@
 //! Project tasks: one command runs what the pipeline runs, its parts run alone.
 //!
 //! `cargo xtask test` is the whole of `.ci/run`: format, lints, tests, documentation, the firmware in its emulator, the demo and the
-//! short validation. The firmware needs a cross linker and an emulator, the tests need strace; they are installed when they are absent. What takes
-//! longer or needs more programs has its own task, which installs what it needs.
+//! short validation. The firmware needs a cross linker and an emulator, the tests need strace; they are installed when they are absent.
+//! What takes longer or needs more programs has its own task, which installs what it needs.
 
 mod firmware;
 

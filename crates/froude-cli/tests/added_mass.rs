@@ -168,6 +168,17 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
         names(&results),
         ["campaign-results", "campaign.toml", "estimate.json", "froude-files.json", "links.csv", "report.html"]
     );
+    for name in [
+        "links.csv",
+        "campaign.toml",
+        "estimate.json",
+        "report.html",
+        "campaign-results/report.html",
+        "campaign-results/estimate.json",
+    ] {
+        let text = std::fs::read_to_string(results.join(name)).unwrap();
+        assert!(!text.contains(".froude-"), "{name} speaks of the folder that it grew in");
+    }
     let estimates = out["estimates"].as_array().unwrap();
     let models: Vec<&str> = estimates.iter().map(|e| e["model"].as_str().unwrap()).collect();
     for model in ["displaced_volume", "per_link", "affine"] {

@@ -176,6 +176,28 @@ fn the_folder_that_one_works_in_is_not_replaced() {
 }
 
 #[test]
+fn a_disk_that_is_mounted_where_results_should_be_is_named_before_anything_is_computed() {
+    let Some(disk) = SmallDisk::mount("300k") else {
+        eprintln!("this user may not mount a small disk");
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    write(folder.path(), "t.csv", TABLE);
+    let out = disk.path().to_str().unwrap();
+    let output = froude(folder.path(), &["identify", "t.csv", "--out", out]);
+    assert_eq!(
+        (said(&output), output.status.code()),
+        (
+            format!(
+                "froude: cannot write {out}: a disk is mounted there; name a folder inside it; nothing was changed"
+            ),
+            Some(1)
+        )
+    );
+    succeeds(folder.path(), &["identify", "t.csv", "--models", "quadratic", "--out", &format!("{out}/results")]);
+}
+
+#[test]
 fn the_campaign_of_a_table_of_links_is_not_taken_back() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

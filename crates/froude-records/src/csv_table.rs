@@ -249,7 +249,7 @@ pub(crate) fn prepare_csv(table: &Table, path: &Path) -> Result<Prepared, Record
 }
 
 /// A text that no spreadsheet takes for a formula.
-fn guarded(cell: String) -> String {
+pub(crate) fn guarded(cell: String) -> String {
     if is_formula(&cell) { format!("'{cell}") } else { cell }
 }
 
@@ -284,4 +284,21 @@ fn shortest(unit: &Unit, si: f64) -> String {
     // A negative zero is zero.
     let value = if value == 0.0 { 0.0 } else { value };
     if value == 0.0 || (1e-5..1e15).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// What is written is no formula, and comes back as it was.
+        #[test]
+        fn a_guarded_cell_is_no_formula_and_comes_back(cell in "'{0,3}[-=+@\\t\\ra＝]?.{0,5}") {
+            let written = guarded(cell.clone());
+            prop_assert!(!written.starts_with(['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠']));
+            prop_assert_eq!(unguarded(&written), cell);
+        }
+    }
 }

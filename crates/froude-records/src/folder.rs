@@ -52,8 +52,9 @@ impl UnfinishedFolder {
             if std::env::current_dir().and_then(|d| d.canonicalize()).is_ok_and(|here| here.starts_with(&whole)) {
                 return Err(RecordError::StartedIn { path: target.to_owned() });
             }
-            let permissions = std::fs::metadata(&whole).map_err(failed)?.permissions();
-            std::fs::set_permissions(folder.path(), permissions).map_err(failed)?;
+            if is_mounted(&whole, parent) {
+                return Err(refuse("a disk is mounted there; name a folder inside it".to_owned()));
+            }
         }
         Ok(Self { target: whole, folder, made, _held: held })
     }
@@ -72,6 +73,9 @@ impl UnfinishedFolder {
     pub fn take_place(mut self) -> Result<(), RecordError> {
         let failed = |e: io::Error| RecordError::Write { path: self.target.clone(), reason: reason(&e) };
         sync_all(self.folder.path());
+        if let Ok(old) = std::fs::metadata(&self.target) {
+            std::fs::set_permissions(self.folder.path(), old.permissions()).map_err(failed)?;
+        }
         match std::fs::symlink_metadata(&self.target) {
             Err(e) if e.kind() == io::ErrorKind::NotFound => std::fs::rename(self.folder.path(), &self.target),
             _ => exchange(self.folder.path(), &self.target),
@@ -80,6 +84,21 @@ impl UnfinishedFolder {
         self.made.0.clear();
         sync_folder(self.target.parent().unwrap_or(Path::new(".")));
         Ok(())
+    }
+}
+
+/// True where a folder lies on another disk than its parent: no rename leads there.
+fn is_mounted(folder: &Path, parent: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt as _;
+        let device = |path: &Path| std::fs::metadata(path).ok().map(|m| m.dev());
+        device(folder) != device(parent)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = (folder, parent);
+        false
     }
 }
 

@@ -53,3 +53,33 @@ fn is_hidden(c: char) -> bool {
             '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}'
             | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn what_steers_a_terminal_is_written_out_and_letters_are_not() {
+        assert_eq!(visible("a\u{1b}[31m\r\u{9b}2J\u{202e}b\u{feff}"), r"a\u{1b}[31m\u{d}\u{9b}2J\u{202e}b\u{feff}");
+        for text in ["Zähigkeit, ν = 1.19·10⁻⁶ m²/s", "می‌خواهم", "水槽", "two\nlines", "x̂"] {
+            assert_eq!(visible(text), text);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn json_says_the_same_when_it_is_visible(text: String) {
+            let json = serde_json::to_string(&text).unwrap();
+            let shown = visible_json(&json).into_owned();
+            prop_assert!(!shown.contains(is_hidden));
+            prop_assert_eq!(serde_json::from_str::<String>(&shown).unwrap(), text);
+        }
+
+        #[test]
+        fn nothing_hidden_is_left(text: String) {
+            prop_assert!(!visible(&text).contains(is_hidden));
+        }
+    }
+}

@@ -31,7 +31,7 @@ pub struct Written {
     pub others: Vec<PathBuf>,
 }
 
-/// Says before a long computation whether its results can be written; nothing is made.
+/// Says before a long computation whether its results can be written; nothing is left of the trial.
 ///
 /// # Errors
 ///
@@ -44,7 +44,8 @@ pub fn can_be_written(out: &Path) -> Result<(), Error> {
         return Err(failed(std::io::ErrorKind::NotADirectory.into()));
     }
     only_own(out)?;
-    tempfile::tempfile_in(there).map(|_| ()).map_err(failed)
+    UnfinishedFolder::beside(out)?;
+    Ok(())
 }
 
 /// Refuses a folder that holds what a person wrote.
