@@ -1,8 +1,8 @@
 //! Project tasks: one command runs what the pipeline runs, its parts run alone.
 //!
 //! `cargo xtask test` is the whole of `.ci/run`: format, lints, tests, documentation, the firmware in its emulator, the demo and the
-//! short validation. The firmware needs a cross linker and an emulator, which its task installs when they are absent. What takes
-//! longer or needs more programs has its own task, which installs what it needs.
+//! short validation. The firmware needs a cross linker and an emulator, the tests need strace; they are installed when they are absent.
+//! What takes longer or needs more programs has its own task, which installs what it needs.
 
 mod firmware;
 
@@ -88,6 +88,8 @@ fn cargo(root: &Path, args: &str) -> Result<(), String> {
 fn test(root: &Path) -> Result<(), String> {
     cargo(root, "fmt --all --check")?;
     cargo(root, "clippy --workspace --all-targets --locked -- -D warnings")?;
+    // Lets the calls of a job fail one after the other.
+    need_package(root, "strace")?;
     cargo(root, "test --workspace --locked")?;
     run_env(root, "cargo", &["doc", "--workspace", "--no-deps", "--locked"], "RUSTDOCFLAGS", "-D warnings")?;
     firmware::firmware(root, false)?;
@@ -139,6 +141,15 @@ fn validate(root: &Path, short: bool) -> Result<(), String> {
 fn need(root: &Path, program: &str) -> Result<(), String> {
     let there = Command::new("cargo").args([program, "--version"]).output().is_ok_and(|o| o.status.success());
     if there { Ok(()) } else { run(root, "cargo", &["install", "--locked", &format!("cargo-{program}")]) }
+}
+
+/// Installs a Debian package unless its program of the same name is there.
+fn need_package(root: &Path, program: &str) -> Result<(), String> {
+    if Command::new(program).arg("--version").output().is_ok_and(|o| o.status.success()) {
+        return Ok(());
+    }
+    run(root, "apt-get", &["update", "-qq"])?;
+    run(root, "apt-get", &["install", "-y", "--no-install-recommends", program])
 }
 
 fn fuzz(root: &Path, runs: u64) -> Result<(), String> {

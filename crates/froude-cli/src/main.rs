@@ -15,16 +15,18 @@ use std::process::ExitCode;
 use clap::Parser;
 use froude::pipeline::{self, Job};
 use froude::{Error, demo, inspect, twin};
-use indicatif::{ProgressBar, ProgressStyle};
 
 use args::{Cli, Verb};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return out::usage(&error),
+    };
     match run(cli) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            out::tell!("froude: {error}");
+            out::note!("froude: {error}");
             ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
         }
     }
@@ -88,14 +90,9 @@ fn run(cli: Cli) -> Result<(), Error> {
     Ok(())
 }
 
-/// A spinner on standard error; silent where that is no terminal.
-fn spinner() -> ProgressBar {
-    let bar = ProgressBar::new_spinner();
-    if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
-        bar.set_style(style);
-    }
-    bar.enable_steady_tick(std::time::Duration::from_millis(100));
-    bar
+/// What shows that the program works.
+fn spinner() -> out::Spinner {
+    out::Spinner::new()
 }
 
 /// Today's date (UTC) as `2026-11-21`, from the days since 1970 (Hinnant's civil-from-days).

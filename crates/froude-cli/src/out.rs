@@ -1,7 +1,16 @@
-//! Lines on standard output, without a panic when nobody reads them.
+//! Lines on standard output and standard error. Here alone text reaches a terminal, and here it is made harmless: names, cells, paths
+//! and messages of other programs may hold a terminal's commands, and are shown as text.
 
 use std::io::Write as _;
+use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::CommandFactory as _;
+use clap::builder::Styles;
+use froude::records::text::visible;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::args::Cli;
 
 /// What is done does not end with whoever reads about it.
 static GOES_ON_UNREAD: AtomicBool = AtomicBool::new(false);
@@ -14,31 +23,63 @@ pub fn go_on_unread() {
 
 /// Prints a line; ends quietly when nobody reads any more (`froude … | head`), and says so when standard output fails.
 pub fn line(text: std::fmt::Arguments<'_>) {
-    if let Err(error) = writeln!(std::io::stdout(), "{text}") {
+    if let Err(error) = writeln!(std::io::stdout(), "{}", visible(&text.to_string())) {
         if error.kind() == std::io::ErrorKind::BrokenPipe {
             if GOES_ON_UNREAD.load(Ordering::Relaxed) {
                 return;
             }
             std::process::exit(0);
         }
-        let _ = writeln!(std::io::stderr(), "froude: cannot write to standard output: {error}");
+        error_line(format_args!("froude: cannot write to standard output: {error}"));
         std::process::exit(1);
     }
+}
+
+/// Prints a line on standard error; where that is closed nobody can be reached.
+pub fn error_line(text: std::fmt::Arguments<'_>) {
+    let _ = writeln!(std::io::stderr(), "{}", visible(&text.to_string()));
 }
 
 /// `println!` that does not panic.
 macro_rules! say {
     ($($text:tt)*) => { $crate::out::line(format_args!($($text)*)) };
 }
-pub(crate) use say;
-
-/// Says a line on standard error; where nobody reads that either, there is nobody to say it to.
-pub fn aside(text: std::fmt::Arguments<'_>) {
-    let _ = writeln!(std::io::stderr(), "{text}");
-}
-
 /// `eprintln!` that does not panic.
-macro_rules! tell {
-    ($($text:tt)*) => { $crate::out::aside(format_args!($($text)*)) };
+macro_rules! note {
+    ($($text:tt)*) => { $crate::out::error_line(format_args!($($text)*)) };
 }
-pub(crate) use tell;
+pub(crate) use {note, say};
+
+/// Help and version, or why the command line was not understood: it quotes what was written.
+pub fn usage(error: &clap::Error) -> ExitCode {
+    if error.use_stderr() {
+        // Said again without clap's colours: every escape that is left was written by somebody else.
+        let plain = Cli::command().styles(Styles::plain()).try_get_matches().err();
+        error_line(format_args!("{}", plain.as_ref().unwrap_or(error).render().ansi().to_string().trim_end()));
+    } else if error.print().is_err() {
+        return ExitCode::FAILURE;
+    }
+    ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+}
+
+/// A spinner on standard error; silent where that is no terminal.
+pub struct Spinner(ProgressBar);
+
+impl Spinner {
+    pub fn new() -> Self {
+        let bar = ProgressBar::new_spinner();
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(std::time::Duration::from_millis(100));
+        Self(bar)
+    }
+
+    pub fn set_message(&self, step: impl AsRef<str>) {
+        self.0.set_message(visible(step.as_ref()).into_owned());
+    }
+
+    pub fn finish_and_clear(&self) {
+        self.0.finish_and_clear();
+    }
+}

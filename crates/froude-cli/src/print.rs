@@ -7,6 +7,7 @@ use froude::inspect::{ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::Outcome;
 use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
+use froude::records::text::visible_json;
 use froude::report::number;
 
 use crate::out::say;
@@ -15,7 +16,8 @@ use crate::out::say;
 pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Error> {
     let text = serde_json::to_string_pretty(value)
         .map_err(|e| Error::Nothing(format!("the result cannot be written as JSON: {e}")))?;
-    say!("{text}");
+    // As JSON's own escapes: what a program reads is the same.
+    say!("{}", visible_json(&text));
     Ok(())
 }
 

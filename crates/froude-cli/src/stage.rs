@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use froude::Error;
 use froude::carriage::drive::Prepared;
+use froude::records::text::visible;
 use froude::rig::campaign::plan::PlannedRun;
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
@@ -115,7 +116,7 @@ impl Terminal {
                         self.put(&format!("{number}/{runs} {id}\n"));
                     }
                 }
-                Ok(Word::Live(message)) => self.bar.set_message(message),
+                Ok(Word::Live(message)) => self.bar.set_message(visible(&message).into_owned()),
                 Ok(Word::Line(line)) => self.put(&format!("{line}\n")),
                 Ok(Word::Question(question)) => self.put(&question),
                 Ok(Word::End) | Err(RecvTimeoutError::Disconnected) => break,
@@ -133,7 +134,7 @@ impl Terminal {
     fn put(&self, text: &str) {
         self.bar.suspend(|| {
             let mut stderr = std::io::stderr();
-            let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
+            let _ = stderr.write_all(visible(text).as_bytes()).and_then(|()| stderr.flush());
         });
     }
 }

@@ -164,7 +164,21 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
     std::fs::write(at.join("body.toml"), body_file(ROBOT)).unwrap();
     let out = record(at, &["body.toml", "--links", "1..3", "--tolerance", "10 %"]);
     let results = at.join("body-added-mass");
-    assert_eq!(names(&results), ["campaign-results", "campaign.toml", "estimate.json", "links.csv", "report.html"]);
+    assert_eq!(
+        names(&results),
+        ["campaign-results", "campaign.toml", "estimate.json", "froude-files.json", "links.csv", "report.html"]
+    );
+    for name in [
+        "links.csv",
+        "campaign.toml",
+        "estimate.json",
+        "report.html",
+        "campaign-results/report.html",
+        "campaign-results/estimate.json",
+    ] {
+        let text = std::fs::read_to_string(results.join(name)).unwrap();
+        assert!(!text.contains(".froude-"), "{name} speaks of the folder that it grew in");
+    }
     let estimates = out["estimates"].as_array().unwrap();
     let models: Vec<&str> = estimates.iter().map(|e| e["model"].as_str().unwrap()).collect();
     for model in ["displaced_volume", "per_link", "affine"] {
@@ -197,7 +211,10 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
     // Two configurations are no least squares.
     let out = record(at, &["body.toml", "--links", "1,2", "--tolerance", "10 %", "--out", "two"]);
     assert_eq!(out["estimates"].as_array().unwrap().len(), 2);
-    assert_eq!(names(&at.join("two")), ["campaign.toml", "estimate.json", "links.csv", "report.html"]);
+    assert_eq!(
+        names(&at.join("two")),
+        ["campaign.toml", "estimate.json", "froude-files.json", "links.csv", "report.html"]
+    );
 }
 
 #[test]
@@ -207,7 +224,15 @@ fn exports_hold_the_matrix_of_the_record() {
     write(at, "hull.obj", &hull());
     let args = [&["hull.obj", "--export", "wamit,capytaine,csv", "--out", "up"], &ONE_MESH[..]].concat();
     let a = matrix(&record(at, &args), 0);
-    let files = ["added-mass.1", "added-mass.csv", "added-mass.nc", "estimate.json", "pressure.vtp", "report.html"];
+    let files = [
+        "added-mass.1",
+        "added-mass.csv",
+        "added-mass.nc",
+        "estimate.json",
+        "froude-files.json",
+        "pressure.vtp",
+        "report.html",
+    ];
     assert_eq!(names(&at.join("up")), files);
     let limits = |folder: &str| {
         let read = read_wamit(&at.join(folder).join("added-mass.1"), 1000.0, 1.0).unwrap();
@@ -393,8 +418,8 @@ fn a_repair_writes_a_mesh_that_is_fit_for_use() {
         assert!(text.trim_end().ends_with(&format!("Next: froude added-mass {target}")), "{text}");
         assert!(lines(at, &[target, "--check"]).contains("fit for use"));
     }
-    let told = record(at, &["bad.obj", "--repair", "good.obj"]);
-    assert_eq!((told["written"].as_str(), told["left"].as_array().map(Vec::len)), (Some("good.obj"), Some(0)));
+    let told = record(at, &["bad.obj", "--repair", "third.obj"]);
+    assert_eq!((told["written"].as_str(), told["left"].as_array().map(Vec::len)), (Some("third.obj"), Some(0)));
 }
 
 /// Runs on files of a fresh folder; asserts the exit code, the message and that nothing was made.

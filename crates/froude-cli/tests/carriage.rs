@@ -324,7 +324,7 @@ fn the_free_mode_is_told_as_seen_and_without_the_gears_loss() {
     assert!((bare["free_seen_hz"].as_f64().unwrap() / 14.1 - 1.0).abs() < 0.02, "{bare}");
     assert!((bare["free_hz"].as_f64().unwrap() / 13.0 - 1.0).abs() < 0.02, "{bare}");
     assert!((bare["load_hz"].as_f64().unwrap() / 6.71 - 1.0).abs() < 0.02, "{bare}");
-    let page = std::fs::read_to_string(folder.path().join("campaign-resonance/report.html")).unwrap();
+    let page = std::fs::read_to_string(folder.path().join("campaign-resonance/report/report.html")).unwrap();
     assert!(page.contains("seen through a gear that drives") && page.contains("0.800(40)"));
 }
 

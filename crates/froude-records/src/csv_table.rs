@@ -6,6 +6,10 @@
 //! end only; comment lines are refused, because another program would read them as
 //! observations.
 //!
+//! **Text is only text.** A spreadsheet takes a cell that begins with `=`, `+`, `-`, `@`, a tab or a line end for a formula and runs it.
+//! Cells of text and headers that begin so are written with an apostrophe before them, as are those that begin with apostrophes and then so;
+//! numbers are not. Reading takes that one apostrophe off again, so names come back as they were; another program sees it.
+//!
 //! The splitting is our own and not a library's: every message names the line on
 //! which the row begins, also after cells with line breaks, and nothing that is not
 //! a row is skipped in silence. The tests hold it against the `csv` crate.
@@ -19,7 +23,7 @@ use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::units::Unit;
-use crate::write::write_with;
+use crate::write::Prepared;
 
 /// The largest CSV table that is read into memory; longer logs are streamed.
 const LARGEST_BYTES: u64 = 2 << 30;
@@ -52,7 +56,7 @@ pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<T
         });
     };
     let header_place = Place::line(path, line);
-    let header: Vec<String> = cells.iter().map(|c| c.trim().to_owned()).collect();
+    let header: Vec<String> = cells.iter().map(|c| unguarded(c.trim()).to_owned()).collect();
     if let [only] = header.as_slice()
         && let Some(separator) = [';', '\t'].into_iter().find(|c| only.contains(*c))
     {
@@ -84,7 +88,7 @@ pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<T
                     values.push(number(cell.trim(), &header[j], &|| Place::line(path, line), &advice)?);
                 }
                 Raw::Texts(_) if is_left_out[j] => {}
-                Raw::Texts(texts) => texts.push(cell.clone().into_owned()),
+                Raw::Texts(texts) => texts.push(unguarded(cell).to_owned()),
             }
         }
         lines.push(line);
@@ -205,6 +209,11 @@ impl<'a> Records<'a> {
 ///
 /// A file that cannot be written, or a number that is not finite.
 pub fn write_csv(table: &Table, path: &Path) -> Result<(), RecordError> {
+    prepare_csv(table, path)?.take_place()
+}
+
+/// The same, up to taking its place.
+pub(crate) fn prepare_csv(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
     for column in &table.columns {
         if let ColumnData::Number { si, .. } = &column.data
             && let Some((row, value)) = si.iter().enumerate().find(|(_, v)| !v.is_finite())
@@ -216,8 +225,8 @@ pub fn write_csv(table: &Table, path: &Path) -> Result<(), RecordError> {
             });
         }
     }
-    write_with(path, |file| {
-        let header: Vec<_> = table.columns.iter().map(|c| quoted(c.header())).collect();
+    Prepared::new(path, |file| {
+        let header: Vec<_> = table.columns.iter().map(|c| quoted(guarded(c.header()))).collect();
         writeln!(file, "{}", header.join(","))?;
         for row in 0..table.n_rows {
             for (j, column) in table.columns.iter().enumerate() {
@@ -229,7 +238,7 @@ pub fn write_csv(table: &Table, path: &Path) -> Result<(), RecordError> {
                         write!(file, "{}", si.get(row).map_or_else(String::new, |si| shortest(unit, *si)))?;
                     }
                     ColumnData::Text(texts) => {
-                        write!(file, "{}", quoted(texts.get(row).cloned().unwrap_or_default()))?;
+                        write!(file, "{}", quoted(guarded(texts.get(row).cloned().unwrap_or_default())))?;
                     }
                 }
             }
@@ -237,6 +246,23 @@ pub fn write_csv(table: &Table, path: &Path) -> Result<(), RecordError> {
         }
         Ok(())
     })
+}
+
+/// A text that no spreadsheet takes for a formula.
+pub(crate) fn guarded(cell: String) -> String {
+    if is_formula(&cell) { format!("'{cell}") } else { cell }
+}
+
+/// What [`guarded`] was made of.
+fn unguarded(cell: &str) -> &str {
+    cell.strip_prefix('\'').filter(|rest| is_formula(rest)).unwrap_or(cell)
+}
+
+/// True for what begins as a formula, and for that with apostrophes before it: they would be taken off when it is read.
+fn is_formula(cell: &str) -> bool {
+    // The wide forms are formulas in East Asian editions.
+    const BEGINNINGS: [char; 11] = ['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠'];
+    cell.trim_start_matches('\'').starts_with(BEGINNINGS)
 }
 
 /// A cell in quotes where it needs them; an empty one too, so that no row is a blank line.
@@ -258,4 +284,21 @@ fn shortest(unit: &Unit, si: f64) -> String {
     // A negative zero is zero.
     let value = if value == 0.0 { 0.0 } else { value };
     if value == 0.0 || (1e-5..1e15).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        /// What is written is no formula, and comes back as it was.
+        #[test]
+        fn a_guarded_cell_is_no_formula_and_comes_back(cell in "'{0,3}[-=+@\\t\\ra＝]?.{0,5}") {
+            let written = guarded(cell.clone());
+            prop_assert!(!written.starts_with(['=', '+', '-', '@', '\t', '\r', '\n', '＝', '＋', '－', '＠']));
+            prop_assert_eq!(unguarded(&written), cell);
+        }
+    }
 }

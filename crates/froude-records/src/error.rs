@@ -110,6 +110,12 @@ pub enum RecordError {
         /// What the system says.
         reason: String,
     },
+    /// A folder that is replaced as a whole is the one that this program works in, or holds it.
+    #[error("cannot write {}: the program was started in it, and the folder is replaced as a whole; name a folder inside it", path.display())]
+    StartedIn {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The file is larger than its kind should ever be.
     #[error("{} has {bytes} bytes; the limit for {what} is {limit}", path.display())]
     TooLarge {
@@ -429,6 +435,7 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "there is no such file or folder".to_owned(),
         std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        std::io::ErrorKind::AlreadyExists => "something of this name is there already".to_owned(),
         std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
         std::io::ErrorKind::NotADirectory => "its folder is not a folder".to_owned(),
         std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),

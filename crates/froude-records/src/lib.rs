@@ -12,6 +12,7 @@
 //! | sidecar (TOML)  | [`sidecar`]                                |
 //! | run (MCAP)      | [`run`]                                    |
 //! | estimate (JSON) | [`mod@estimate`], [`json`], [`schema`]     |
+//! | list of results (JSON) | [`manifest`]                            |
 //! | added mass (WAMIT `.1`, NetCDF, CSV) | [`added_mass_files`] |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
@@ -28,9 +29,11 @@ mod error;
 pub mod estimate;
 pub mod fast_csv;
 pub mod finding;
+pub mod folder;
 pub mod hash;
 pub mod json;
 pub mod keep;
+pub mod manifest;
 pub mod nearest;
 mod parquet_sums;
 pub mod parquet_table;
@@ -41,6 +44,8 @@ pub mod schema;
 mod section;
 pub mod sidecar;
 pub mod table;
+pub mod text;
+mod unfinished;
 pub mod units;
 pub mod write;
 

@@ -28,7 +28,7 @@ use crate::error::{Place, RecordError, reason};
 use crate::parquet_sums;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
-use crate::write::write_with;
+use crate::write::Prepared;
 
 /// Most rows that are read into memory.
 const MOST_ROWS: i64 = 50_000_000;
@@ -361,7 +361,12 @@ fn raw_of(field: &Type) -> Option<Raw> {
 ///
 /// A file that cannot be written.
 pub fn write_parquet(table: &Table, path: &Path) -> Result<(), RecordError> {
-    write_with(path, |file| {
+    prepare_parquet(table, path)?.take_place()
+}
+
+/// The same, up to taking its place.
+pub(crate) fn prepare_parquet(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
+    Prepared::new(path, |file| {
         write_columns(table, file).map_err(|e| match e {
             ParquetError::External(inner) => match inner.downcast::<std::io::Error>() {
                 Ok(io) => *io,

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::units::{Dimension, Unit};
+use crate::write::Prepared;
 use crate::{csv_table, parquet_table, sidecar};
 
 /// A table in memory.
@@ -167,6 +168,20 @@ pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordEr
     };
     table.sidecar = sidecar;
     Ok(table)
+}
+
+/// Writes a table in the format that its name ends in, `.csv` or `.parquet`, up to taking its place.
+///
+/// # Errors
+///
+/// Another ending, a number that is not finite, or a file that cannot be written.
+pub fn prepare_table(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    match ending.as_deref() {
+        Some("csv") => csv_table::prepare_csv(table, path),
+        Some("parquet") => parquet_table::prepare_parquet(table, path),
+        _ => Err(RecordError::Extension { path: path.to_owned() }),
+    }
 }
 
 /// The dimension that a known column must have; `None` for any other name.

@@ -4,10 +4,13 @@
 //! the disk, and takes the target's place by a rename. A full disk, a lost connection
 //! or a failing writer therefore leaves what stood there before.
 
-use std::io::Write as _;
-use std::path::Path;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
 
 use crate::error::{RecordError, reason};
+use crate::unfinished;
 
 /// Writes a file so that either the old or the new content stands there, never a part.
 ///
@@ -25,55 +28,88 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), RecordError> 
 /// As [`write_atomically`]; an error of `fill` counts as one.
 pub fn write_with(
     path: &Path,
-    fill: impl FnOnce(&mut std::io::BufWriter<&mut std::fs::File>) -> std::io::Result<()>,
+    fill: impl FnOnce(&mut io::BufWriter<&mut std::fs::File>) -> io::Result<()>,
 ) -> Result<(), RecordError> {
-    let refuse = |reason: String| RecordError::Write { path: path.to_owned(), reason };
-    let failed = |e: std::io::Error| refuse(reason(&e));
-    let folder = match path.parent() {
-        Some(p) if !p.as_os_str().is_empty() => p,
-        _ => Path::new("."),
-    };
-    if !folder.exists() {
-        return Err(refuse("its folder does not exist".to_owned()));
-    }
-    if !folder.is_dir() {
-        return Err(refuse("its folder is not a folder".to_owned()));
-    }
-    if path.is_dir() {
-        return Err(refuse("it is a folder".to_owned()));
-    }
-    let mut temporary = like_any_other().tempfile_in(folder).map_err(failed)?;
-    {
-        let mut buffered = std::io::BufWriter::new(temporary.as_file_mut());
-        fill(&mut buffered).map_err(failed)?;
-        buffered.flush().map_err(failed)?;
-    }
-    // A file that is replaced keeps its permissions.
-    if let Ok(old) = std::fs::metadata(path) {
-        temporary.as_file().set_permissions(old.permissions()).map_err(failed)?;
-    }
-    temporary.as_file().sync_all().map_err(failed)?;
-    temporary.persist(path).map_err(|e| failed(e.error))?;
-    sync_folder(folder);
-    Ok(())
+    Prepared::new(path, fill)?.take_place()
 }
 
-/// A temporary file is private to its owner; a result is as readable as any other file.
-fn like_any_other() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".froude-");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt as _;
-        // The system takes the umask off, as it does for every new file.
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
+/// A file that lies whole on the disk and has not taken its place yet; dropped, it is gone.
+#[derive(Debug)]
+pub struct Prepared {
+    path: PathBuf,
+    folder: PathBuf,
+    temporary: NamedTempFile,
+}
+
+impl Prepared {
+    /// Writes what will be `path`.
+    ///
+    /// # Errors
+    ///
+    /// As [`write_with`].
+    pub fn new(
+        path: &Path,
+        fill: impl FnOnce(&mut io::BufWriter<&mut std::fs::File>) -> io::Result<()>,
+    ) -> Result<Self, RecordError> {
+        let refuse = |reason: String| RecordError::Write { path: path.to_owned(), reason };
+        let failed = |e: io::Error| refuse(reason(&e));
+        let folder = match path.parent() {
+            Some(p) if !p.as_os_str().is_empty() => p,
+            _ => Path::new("."),
+        };
+        if !folder.exists() {
+            return Err(refuse("its folder does not exist".to_owned()));
+        }
+        if !folder.is_dir() {
+            return Err(refuse("its folder is not a folder".to_owned()));
+        }
+        if path.is_dir() {
+            return Err(refuse("it is a folder".to_owned()));
+        }
+        let mut temporary = unfinished::file_in(folder).map_err(failed)?;
+        {
+            let mut buffered = io::BufWriter::new(temporary.as_file_mut());
+            fill(&mut buffered).map_err(failed)?;
+            buffered.flush().map_err(failed)?;
+        }
+        // A file that is replaced keeps its permissions.
+        if let Ok(old) = std::fs::metadata(path) {
+            temporary.as_file().set_permissions(old.permissions()).map_err(failed)?;
+        }
+        temporary.as_file().sync_all().map_err(failed)?;
+        Ok(Self { path: path.to_owned(), folder: folder.to_owned(), temporary })
     }
-    builder
+
+    /// Takes the place of what stands there.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Write`]; what stood there is untouched.
+    pub fn take_place(self) -> Result<(), RecordError> {
+        let refuse =
+            |e: tempfile::PersistError| RecordError::Write { path: self.path.clone(), reason: reason(&e.error) };
+        self.temporary.persist(&self.path).map_err(refuse)?;
+        sync_folder(&self.folder);
+        Ok(())
+    }
+
+    /// Takes a place that is free, also where another program might take it at this moment.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::Write`]: something stands there, and is untouched.
+    pub fn take_free_place(self) -> Result<(), RecordError> {
+        let refuse =
+            |e: tempfile::PersistError| RecordError::Write { path: self.path.clone(), reason: reason(&e.error) };
+        self.temporary.persist_noclobber(&self.path).map_err(refuse)?;
+        sync_folder(&self.folder);
+        Ok(())
+    }
 }
 
 /// Brings the rename to the disk. The file itself is whole either way, so a folder
 /// that cannot be synchronised (network disks) is no error.
-fn sync_folder(folder: &Path) {
+pub(crate) fn sync_folder(folder: &Path) {
     #[cfg(unix)]
     if let Ok(folder) = std::fs::File::open(folder) {
         let _ = folder.sync_all();

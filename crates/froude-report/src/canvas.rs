@@ -7,6 +7,7 @@
 
 use std::fmt::Write as _;
 
+use froude_records::text::visible;
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontFamily, FontStyle, FontTransform, RGBAColor, ShapeStyle, TextStyle};
@@ -208,7 +209,7 @@ impl Canvas {
             }
             out.push_str(piece);
         }
-        Ok(out)
+        Ok(visible(&out).into_owned())
     }
 }
 

@@ -4,6 +4,7 @@
 //! every number; nothing is computed here.
 
 use froude_records::finding::Finding;
+use froude_records::text::visible;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart::Chart;
@@ -71,6 +72,7 @@ impl Document {
             html lang="en" {
                 head {
                     meta charset="utf-8";
+                    meta http-equiv="Content-Security-Policy" content=(crate::page::POLICY);
                     meta name="viewport" content="width=device-width, initial-scale=1";
                     meta name="generator" content="Froude";
                     title { (self.title) }
@@ -103,7 +105,7 @@ impl Document {
                 }
             }
         };
-        Ok(page.into_string())
+        Ok(visible(&page.into_string()).into_owned())
     }
 }
 

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_records::folder::UnfinishedFolder;
 use froude_records::write::write_atomically;
 use include_dir::{Dir, include_dir};
 
@@ -18,7 +19,9 @@ const FOLDERS: [&str; 2] = ["unh-rm2", "mamba"];
 /// Its campaigns, in the order in which they run; results lie beside each.
 pub const CAMPAIGNS: [&str; 3] = ["unh-rm2/tare.toml", "unh-rm2/rotor.toml", "mamba/campaign.toml"];
 
-/// Writes the example campaigns into `folder` and runs both; `progress` is told each step.
+/// Writes the example campaigns into `folder` and runs them; `progress` is told each step.
+///
+/// All of it grows beside the folder and takes its place at the end: a demo that fails leaves nothing.
 ///
 /// # Errors
 ///
@@ -28,8 +31,16 @@ pub fn run(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Resu
     if occupied {
         return Err(Error::NotEmpty { path: folder.to_owned() });
     }
+    let unfinished = UnfinishedFolder::beside(folder)?;
+    let outcomes = build(unfinished.path(), date, progress).map_err(|e| e.in_finished(unfinished.path(), folder))?;
+    let finished = outcomes.into_iter().map(|outcome| in_finished(outcome, unfinished.path(), folder)).collect();
+    unfinished.take_place()?;
+    Ok(finished)
+}
+
+fn build(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result<Vec<Outcome>, Error> {
     for name in FOLDERS {
-        progress(&format!("writing {}", folder.join(name).display()));
+        progress(&format!("writing {name}"));
         if let Some(dir) = EXAMPLES.get_dir(name) {
             write_files(dir, folder)?;
         }
@@ -44,6 +55,17 @@ pub fn run(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Resu
             identify(&job, &|step| progress(&format!("{name}: {step}")))
         })
         .collect()
+}
+
+/// The same results, where they will lie.
+fn in_finished(mut outcome: Outcome, unfinished: &Path, finished: &Path) -> Outcome {
+    let paths = [&mut outcome.estimate, &mut outcome.report].into_iter();
+    for path in paths.chain(&mut outcome.figures).chain(&mut outcome.observations) {
+        if let Ok(inside) = path.strip_prefix(unfinished) {
+            *path = finished.join(inside);
+        }
+    }
+    outcome
 }
 
 fn write_files(dir: &Dir<'_>, folder: &Path) -> Result<(), Error> {

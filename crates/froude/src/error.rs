@@ -1,6 +1,6 @@
 //! Why a job of the pipeline failed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]
@@ -67,6 +67,40 @@ pub enum Error {
         source: std::io::Error,
     },
 
+    /// The folder of the results holds what a person wrote.
+    #[error(
+        "{} {}, and the folder {} is replaced as a whole; move the file out of it, or name another folder with --out",
+        .path.display(),
+        if *.is_changed { "was changed after Froude wrote it" } else { "was not written by Froude" },
+        .out.display()
+    )]
+    NotOurs {
+        /// The folder.
+        out: PathBuf,
+        /// The first such file.
+        path: PathBuf,
+        /// Froude wrote it, and somebody changed it.
+        is_changed: bool,
+    },
+
+    /// A job failed in a folder that nobody sees, in the words of the one that it would have become.
+    #[error("{text}")]
+    InFinished {
+        /// What went wrong.
+        text: String,
+        /// See [`Error::is_bad_input`].
+        is_bad_input: bool,
+    },
+
+    /// Some of several files took their places, and the others did not.
+    #[error("{source}; written before it: {done}")]
+    HalfWay {
+        /// The files.
+        done: String,
+        /// Why the next one failed.
+        source: froude_records::RecordError,
+    },
+
     /// The demo will not write over somebody's folder.
     #[error("{} exists and is not empty; name another folder: froude demo DIR", .path.display())]
     NotEmpty {
@@ -84,10 +118,12 @@ impl Error {
     #[must_use]
     pub fn is_bad_input(&self) -> bool {
         match self {
+            Self::InFinished { is_bad_input, .. } => *is_bad_input,
             Self::Record(e) => !e.is_output(),
             Self::Identify(froude_identify::IdentifyError::Record(e)) => !e.is_output(),
             Self::Identify(_)
             | Self::NotEmpty { .. }
+            | Self::NotOurs { .. }
             | Self::Nothing(_)
             | Self::Drag(_)
             | Self::Servo(_)
@@ -97,7 +133,18 @@ impl Error {
             | Self::Sections(_)
             | Self::Tank(_)
             | Self::Chain(_) => true,
-            Self::Runner(_) | Self::Lock(_) | Self::Report(_) | Self::Output { .. } => false,
+            Self::Runner(_) | Self::Lock(_) | Self::Report(_) | Self::Output { .. } | Self::HalfWay { .. } => false,
+        }
+    }
+
+    /// The same where it speaks of a folder that grew as `unfinished` and would have become `finished`.
+    pub(crate) fn in_finished(self, unfinished: &Path, finished: &Path) -> Self {
+        let (text, own) = (self.to_string(), unfinished.display().to_string());
+        if text.contains(&own) {
+            let text = text.replace(&own, &finished.display().to_string());
+            Self::InFinished { text, is_bad_input: self.is_bad_input() }
+        } else {
+            self
         }
     }
 }

@@ -3,6 +3,8 @@
 //! After zeros, tare and `keep`: motion, loads and water; Reynolds, Froude and the other numbers of similarity of that row;
 //! what the recommended model gives, the residual, and the leverage of the row in each load.
 
+use std::path::Path;
+
 use froude_identify::source::SourceResult;
 use froude_identify::validity;
 use froude_records::campaign::Campaign;
@@ -20,10 +22,11 @@ pub fn tables(sources: &[SourceResult], campaign: &Campaign) -> Result<Vec<Table
     let mut out: Vec<Table> = Vec::new();
     for source in sources {
         let mut table = table(source, campaign)?;
-        // "day 1" and "day-1" are two sources and one file name.
+        // "day 1" and "day-1" are two sources and one file name, and "Day 1" is the same one to some disks.
+        let same = |name: &Path| name.to_string_lossy().to_lowercase();
         let stem = table.path.with_extension("");
         for k in 2.. {
-            if out.iter().all(|t| t.path != table.path) {
+            if out.iter().all(|t| same(&t.path) != same(&table.path)) {
                 break;
             }
             table.path = format!("{}-{k}.csv", stem.display()).into();
@@ -91,12 +94,18 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
     })
 }
 
+/// Characters of a source's name in that of a file: disks take 255, and a number may follow.
+const LONGEST_NAME: usize = 100;
+
 /// `observations-` and the source's name, as far as every file system takes it.
 fn file_name(source: &str) -> String {
     // The source of a bare table is named after its file.
     let stem = source.trim_end_matches(".csv").trim_end_matches(".parquet");
-    let safe: String =
-        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
+    let safe: String = stem
+        .chars()
+        .take(LONGEST_NAME)
+        .map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' })
+        .collect();
     format!("observations-{safe}.csv")
 }
 

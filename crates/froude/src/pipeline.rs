@@ -58,13 +58,15 @@ pub struct Outcome {
 
 /// Reads, fits, chooses, reports; `progress` is told each step.
 ///
-/// Nothing is written before everything is computed, and the results are written all or none.
+/// Nothing is written before everything is computed, and the results replace those of an earlier job as a whole, or not at all.
 ///
 /// # Errors
 ///
 /// See [`Error`].
 pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let mut campaign = campaign_of(job)?;
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
+    results::can_be_written(&out)?;
     if !job.models.is_empty() {
         campaign.identify.models.clone_from(&job.models);
         // No file names these.
@@ -138,7 +140,6 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let report = sections::report(&campaign, &sources, &records, &comparison, &file, job.date.clone())?;
     let html = froude_report::html(&report)?;
     let figures = froude_report::figures(&report)?;
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
     let tables = observations::tables(&sources, &campaign)?;
     let written = results::write(&out, &file, &tables, &figures, &html)?;
     Ok(Outcome {

@@ -1,10 +1,15 @@
-//! The results of a job are written all or none: into a folder of their own beside the target, then moved.
+//! The results of a job lie in a folder of their own, which is replaced as a whole.
+//!
+//! All files grow in a folder beside it and come into place by one rename, so that results of two runs are never mixed. Beside them lies
+//! the list of what was written: what is not on it, or was changed since, is a person's. Then nothing is written at all.
 
 use std::path::{Path, PathBuf};
 
 use froude_records::csv_table::write_csv;
 use froude_records::estimate::EstimateFile;
+use froude_records::folder::UnfinishedFolder;
 use froude_records::json::write_estimates;
+use froude_records::manifest::{first_alien, write_manifest};
 use froude_records::table::Table;
 use froude_records::write::write_atomically;
 use froude_report::Figure;
@@ -26,11 +31,11 @@ pub struct Written {
     pub others: Vec<PathBuf>,
 }
 
-/// Says before a long computation whether its results can be written; nothing is made.
+/// Says before a long computation whether its results can be written; nothing is left of the trial.
 ///
 /// # Errors
 ///
-/// The folder is a file, or nothing can be written where it is or would be.
+/// The folder is a file, holds what Froude did not write, or nothing can be written where it is or would be.
 pub fn can_be_written(out: &Path) -> Result<(), Error> {
     let failed = |source| Error::Output { path: out.to_owned(), source };
     let there = out.ancestors().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p }).find(|p| p.exists());
@@ -38,14 +43,51 @@ pub fn can_be_written(out: &Path) -> Result<(), Error> {
     if !there.is_dir() {
         return Err(failed(std::io::ErrorKind::NotADirectory.into()));
     }
-    tempfile::tempfile_in(there).map(|_| ()).map_err(failed)
+    only_own(out)?;
+    UnfinishedFolder::beside(out)?;
+    Ok(())
+}
+
+/// Refuses a folder that holds what a person wrote.
+fn only_own(out: &Path) -> Result<(), Error> {
+    let alien = if out.is_dir() { first_alien(out)? } else { None };
+    match alien {
+        Some(alien) => Err(Error::NotOurs { out: out.to_owned(), path: alien.path, is_changed: alien.is_changed }),
+        None => Ok(()),
+    }
+}
+
+/// Replaces the folder `out` by what `fill` writes into the folder that it is given; the results of an earlier job are gone then.
+///
+/// # Errors
+///
+/// Those of `fill`; a folder that holds what a person wrote; a full disk. Then nothing of this job is left, and older results are untouched.
+pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), Error>) -> Result<(), Error> {
+    only_own(out)?;
+    let folder = UnfinishedFolder::beside(out)?;
+    fill(folder.path())
+        .and_then(|()| Ok(write_manifest(folder.path())?))
+        .map_err(|error| error.in_finished(folder.path(), out))?;
+    // Somebody may have put a file there meanwhile.
+    only_own(out)?;
+    Ok(folder.take_place()?)
+}
+
+/// Writes nothing but a report into `out`; where it lies.
+///
+/// # Errors
+///
+/// As [`replace`].
+pub fn write_page(out: &Path, html: &str) -> Result<PathBuf, Error> {
+    replace(out, |folder| Ok(write_atomically(&folder.join("report.html"), html.as_bytes())?))?;
+    Ok(out.join("report.html"))
 }
 
 /// Writes record, observations, figures and report into `out`.
 ///
 /// # Errors
 ///
-/// A folder that cannot be made, or a full disk: then nothing of this job is left, and older results are untouched.
+/// As [`replace`].
 pub fn write(
     out: &Path,
     file: &EstimateFile,
@@ -60,7 +102,7 @@ pub fn write(
 ///
 /// # Errors
 ///
-/// As [`write`], and those of `also`.
+/// As [`replace`], and those of `also`.
 pub fn write_also(
     out: &Path,
     file: &EstimateFile,
@@ -69,45 +111,28 @@ pub fn write_also(
     html: &str,
     also: &dyn Fn(&Path) -> Result<Vec<PathBuf>, Error>,
 ) -> Result<Written, Error> {
-    let failed = |path: &Path| {
-        let path = path.to_owned();
-        move |source| Error::Output { path, source }
-    };
-    let parent = match out.parent() {
-        Some(p) if !p.as_os_str().is_empty() => p,
-        _ => Path::new("."),
-    };
-    std::fs::create_dir_all(parent).map_err(failed(out))?;
-    // Dropped on every early return, and with it all that was written.
-    let staged = tempfile::Builder::new().prefix(".froude-").tempdir_in(parent).map_err(failed(out))?;
-    let mut names = vec![PathBuf::from("estimate.json")];
-    write_estimates(&staged.path().join(&names[0]), file)?;
-    for table in observations {
-        write_csv(table, &staged.path().join(&table.path))?;
-        names.push(table.path.clone());
-    }
-    if !figures.is_empty() {
-        std::fs::create_dir(staged.path().join("figures")).map_err(failed(out))?;
-    }
-    for figure in figures {
-        let name = Path::new("figures").join(&figure.file_name);
-        write_atomically(&staged.path().join(&name), figure.svg.as_bytes())?;
-        names.push(name);
-    }
-    names.push(PathBuf::from("report.html"));
-    write_atomically(&staged.path().join("report.html"), html.as_bytes())?;
-    let others = also(staged.path())?;
-    names.extend(others.iter().cloned());
-    let folder = if figures.is_empty() { out.to_owned() } else { out.join("figures") };
-    std::fs::create_dir_all(folder).map_err(failed(out))?;
-    for name in &names {
-        std::fs::rename(staged.path().join(name), out.join(name)).map_err(failed(out))?;
-    }
+    let mut others = Vec::new();
+    replace(out, |folder| {
+        write_estimates(&folder.join("estimate.json"), file)?;
+        for table in observations {
+            write_csv(table, &folder.join(&table.path))?;
+        }
+        if !figures.is_empty() {
+            let path = folder.join("figures");
+            std::fs::create_dir(&path).map_err(|source| Error::Output { path, source })?;
+        }
+        for figure in figures {
+            write_atomically(&folder.join("figures").join(&figure.file_name), figure.svg.as_bytes())?;
+        }
+        write_atomically(&folder.join("report.html"), html.as_bytes())?;
+        others = also(folder)?;
+        Ok(())
+    })?;
     Ok(Written {
         estimate: out.join("estimate.json"),
         report: out.join("report.html"),
-        figures: names.iter().filter(|n| n.starts_with("figures")).map(|n| out.join(n)).collect(),
+        figures: figures.iter().map(|f| out.join("figures").join(&f.file_name)).collect(),
         observations: observations.iter().map(|t| out.join(&t.path)).collect(),
-        others: others.iter().map(|n| out.join(n)).collect(),
+        others: others.iter().map(|name| out.join(name)).collect(),
     })
 }

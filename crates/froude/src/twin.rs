@@ -1,10 +1,13 @@
 //! The statistical twin of a campaign: its tables, written where the campaign expects them.
+//!
+//! A campaign may come from anybody: its tables are written inside its own folder only, in the format that their names say.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use froude_identify::simulate;
-use froude_records::campaign::{Input, read_campaign};
-use froude_records::csv_table::write_csv;
+use froude_records::RecordError;
+use froude_records::campaign::{Campaign, Input, Source, read_campaign};
+use froude_records::table::prepare_table;
 
 use crate::Error;
 
@@ -21,43 +24,110 @@ pub struct Written {
 
 /// Writes the table of every source with a `plan`.
 ///
-/// An existing table is replaced only when `replace` is true.
+/// An existing table is replaced only when `replace` is true. All tables lie whole on the disk before the first takes its place.
 ///
 /// # Errors
 ///
-/// See [`Error`]; a campaign without plan or without `[simulate]`.
+/// See [`Error`]; a campaign without plan or without `[simulate]`; a table outside of the campaign's folder, of two sources, or of no format.
 pub fn simulate(campaign: &Path, replace: bool) -> Result<Vec<Written>, Error> {
     let campaign = read_campaign(campaign)?;
-    let mut tables = Vec::new();
-    for (stream, source) in campaign.sources.iter().enumerate() {
-        if source.plan.is_empty() {
-            continue;
+    let planned: Vec<(usize, &Source)> =
+        campaign.sources.iter().enumerate().filter(|(_, source)| !source.plan.is_empty()).collect();
+    if planned.is_empty() {
+        return Err(Error::Nothing(format!(
+            "{}: no source has a [[source.plan]]: say which configurations, speeds and angles are run",
+            campaign.path.display()
+        )));
+    }
+    let mut places: Vec<(PathBuf, &Source)> = Vec::new();
+    for (_, source) in &planned {
+        let path = table_of(source)?;
+        let place = place_inside(path, &campaign, source)?;
+        if let Some((_, other)) = places.iter().find(|(taken, _)| *taken == place) {
+            return Err(refused(
+                source,
+                format!("is the table of source {:?}, too; give each source a table of its own", other.name),
+            ));
         }
-        let Input::Table(path) = &source.input else {
-            return Err(Error::Nothing(format!(
-                "source {:?}: a plan needs `table`, where its observations go",
-                source.name
-            )));
-        };
         if path.exists() && !replace {
             return Err(Error::Nothing(format!(
                 "{} exists; say --replace to write the twin's observations over it",
                 path.display()
             )));
         }
+        places.push((place, source));
+    }
+    let mut prepared = Vec::new();
+    for (stream, source) in planned {
         let data = simulate::observations(&campaign, source, stream as u64)?;
-        tables.push((source.name.clone(), simulate::table(&data, source)?));
+        let table = simulate::table(&data, source)?;
+        let written = Written { source: source.name.clone(), path: table.path.clone(), rows: table.n_rows };
+        prepared.push((prepare_table(&table, &table.path)?, written));
     }
-    if tables.is_empty() {
-        return Err(Error::Nothing(format!(
-            "{}: no source has a [[source.plan]]: say which configurations, speeds and angles are run",
-            campaign.path.display()
-        )));
-    }
-    let mut written = Vec::new();
-    for (source, table) in tables {
-        write_csv(&table, &table.path)?;
-        written.push(Written { source, path: table.path.clone(), rows: table.n_rows });
+    let mut written: Vec<Written> = Vec::new();
+    for (table, done) in prepared {
+        if let Err(error) = if replace { table.take_place() } else { table.take_free_place() } {
+            return Err(half_way(error, &written));
+        }
+        written.push(done);
     }
     Ok(written)
+}
+
+fn table_of(source: &Source) -> Result<&Path, Error> {
+    match &source.input {
+        Input::Table(path) => Ok(path),
+        _ => Err(Error::Nothing(format!("source {:?}: a plan needs `table`, where its observations go", source.name))),
+    }
+}
+
+fn refused(source: &Source, problem: String) -> Error {
+    RecordError::Value { place: source.place.clone(), key: "table".to_owned(), problem }.into()
+}
+
+/// One name for each place below the campaign's folder, also where a disk does not tell `A.csv` from `a.csv`.
+fn place_inside(path: &Path, campaign: &Campaign, source: &Source) -> Result<PathBuf, Error> {
+    let folder = campaign.path.parent().unwrap_or(Path::new(""));
+    let inside = path.strip_prefix(folder).unwrap_or(path);
+    let outside = || {
+        refused(
+            source,
+            format!(
+                "is {:?}, which leads out of the campaign's folder; froude simulate writes inside it only: name a table there, such as \
+                 table = \"twin.csv\"",
+                inside.display().to_string()
+            ),
+        )
+    };
+    if !inside.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir)) {
+        return Err(outside());
+    }
+    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+    if !matches!(ending.as_deref(), Some("csv" | "parquet")) {
+        return Err(refused(
+            source,
+            format!("is {:?}; a table is written as .csv or .parquet", inside.display().to_string()),
+        ));
+    }
+    // A link on the way may lead anywhere.
+    let real = |folder: &Path| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize();
+    let (Ok(own), Ok(parent)) = (real(folder), real(path.parent().unwrap_or(folder))) else {
+        return Err(refused(
+            source,
+            format!("is {:?}, and its folder does not exist; make it first", inside.display().to_string()),
+        ));
+    };
+    if !parent.starts_with(&own) {
+        return Err(outside());
+    }
+    Ok(parent.join(path.file_name().unwrap_or_default().to_string_lossy().to_lowercase()))
+}
+
+/// A failure after some tables had taken their places.
+fn half_way(error: RecordError, written: &[Written]) -> Error {
+    if written.is_empty() {
+        return error.into();
+    }
+    let done: Vec<String> = written.iter().map(|w| w.path.display().to_string()).collect();
+    Error::HalfWay { done: done.join(", "), source: error }
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use super::{AddedMassError, AddedMassFile};
+use crate::csv_table::guarded;
 
 impl AddedMassFile<'_> {
     /// A CSV table with the columns `frequency` (`zero` or `infinite`), `force_on`, `motion_of` (bodies) and `A11 [kg]` …
@@ -27,7 +28,7 @@ impl AddedMassFile<'_> {
         for (limit, matrix) in self.limits() {
             for (rows, force_on) in matrix.chunks(6).zip(self.bodies) {
                 for (body, motion_of) in self.bodies.iter().enumerate() {
-                    let _ = write!(text, "{limit},{force_on},{motion_of}");
+                    let _ = write!(text, "{limit},{},{}", guarded(force_on.clone()), guarded(motion_of.clone()));
                     for element in rows.iter().flat_map(|row| &row[6 * body..6 * body + 6]) {
                         let _ = write!(text, ",{element:?}");
                     }

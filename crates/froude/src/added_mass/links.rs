@@ -9,6 +9,7 @@ use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
+use froude_records::json::write_estimates;
 use froude_records::write::write_atomically;
 use indexmap::IndexMap;
 
@@ -96,28 +97,33 @@ pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error>
         let length_m = robot(&body.shape).length_m(links);
         configurations.push(Configuration { links, name, length_m, refined });
     }
-    let is_new = !out.exists();
-    let written = written(job, &body.name, density_kg_m3, configurations, &out, told);
-    if written.is_err() && is_new {
-        // Nothing of a job that failed is left.
-        let _ = std::fs::remove_dir_all(&out);
-    }
-    written
+    let mut outcome = None;
+    crate::results::replace(&out, |folder| {
+        outcome = Some(written(job, &body.name, density_kg_m3, configurations, folder, told)?);
+        Ok(())
+    })?;
+    // It is there: the folder was filled.
+    let outcome = outcome.ok_or_else(|| Error::Nothing("no configuration was computed".to_owned()))?;
+    Ok(LinksOutcome {
+        estimate: out.join("estimate.json"),
+        page: out.join("report.html"),
+        table: out.join("links.csv"),
+        ..outcome
+    })
 }
 
+/// Everything in `folder`, and what it says.
 fn written(
     job: &LinksJob,
     name: &str,
     density_kg_m3: f64,
     configurations: Vec<Configuration>,
-    out: &Path,
+    folder: &Path,
     told: &dyn Fn(&str),
 ) -> Result<LinksOutcome, Error> {
-    let made = |path: &Path, source| Error::Output { path: path.to_owned(), source };
-    std::fs::create_dir_all(out).map_err(|e| made(out, e))?;
-    let table = out.join("links.csv");
+    let table = folder.join("links.csv");
     write_atomically(&table, csv(&configurations, density_kg_m3).as_bytes())?;
-    let campaign = out.join("campaign.toml");
+    let campaign = folder.join("campaign.toml");
     write_atomically(&campaign, campaign_text(name, density_kg_m3).as_bytes())?;
     let mut findings = Vec::new();
     let mut fits = Vec::new();
@@ -149,18 +155,11 @@ fn written(
         estimates: fits.iter().cloned().chain(matrices).collect(),
         findings,
     };
-    let page = page::links(name, density_kg_m3, &configurations, &fits, &file, job.date.clone()).html()?;
-    let written = crate::results::write(out, &file, &[], &[], &page)?;
-    Ok(LinksOutcome {
-        name: name.to_owned(),
-        density_kg_m3,
-        configurations,
-        fits,
-        file,
-        estimate: written.estimate,
-        page: written.report,
-        table,
-    })
+    let html = page::links(name, density_kg_m3, &configurations, &fits, &file, job.date.clone()).html()?;
+    let (estimate, report) = (folder.join("estimate.json"), folder.join("report.html"));
+    write_estimates(&estimate, &file)?;
+    write_atomically(&report, html.as_bytes())?;
+    Ok(LinksOutcome { name: name.to_owned(), density_kg_m3, configurations, fits, file, estimate, page: report, table })
 }
 
 /// Why nothing in kilograms can be said.
@@ -219,10 +218,12 @@ fn csv(configurations: &[Configuration], density_kg_m3: f64) -> String {
 }
 
 fn campaign_text(name: &str, density_kg_m3: f64) -> String {
+    // A text of TOML, whatever the name holds.
+    let name = toml::Value::from(name);
     format!(
         r#"# Least squares over the configurations of links.csv, as Table 7 of the USR paper has them; made by `froude added-mass`.
 schema = 1
-name = {name:?}
+name = {name}
 
 [fluid]
 density = "{density_kg_m3} kg/m^3"

@@ -1,5 +1,6 @@
 //! A mesh with what can be decided put right, as a new file; the given one stays as it is.
 
+use std::io::Write as _;
 use std::path::Path;
 
 use froude_mesh::check::{check, extent};
@@ -7,7 +8,7 @@ use froude_mesh::crossing::crossings;
 use froude_mesh::files::{write_obj, write_stl_binary};
 use froude_mesh::parts::part_troubles;
 use froude_mesh::repair::repaired;
-use froude_records::write::write_atomically;
+use froude_records::write::Prepared;
 
 use super::body::{is_body_file, read_mesh};
 use crate::Error;
@@ -32,7 +33,7 @@ const WELD: f64 = 1e-6;
 ///
 /// # Errors
 ///
-/// A mesh that cannot be read, a target of another format or on top of the input, a disk that is full.
+/// A mesh that cannot be read, a target of another format or one that is there already, a disk that is full.
 pub fn repair(input: &Path, unit_m: Option<f64>, weld_m: Option<f64>, target: &Path) -> Result<Repaired, Error> {
     let extension = target.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !matches!(extension.as_str(), "obj" | "stl") {
@@ -47,11 +48,17 @@ pub fn repair(input: &Path, unit_m: Option<f64>, weld_m: Option<f64>, target: &P
             target.display()
         )));
     }
+    if target.symlink_metadata().is_ok() {
+        return Err(Error::Nothing(format!(
+            "{} exists, and a repair writes over nothing; name another file, or delete that one",
+            target.display()
+        )));
+    }
     let (mesh, notes) = read_mesh(input, unit_m)?;
     let (mesh, repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));
     let mut left: Vec<String> = check(&mesh).iter().map(ToString::to_string).collect();
     left.extend(part_troubles(&mesh).iter().chain(&crossings(&mesh)).map(ToString::to_string));
     let content = if extension == "obj" { write_obj(&mesh).into_bytes() } else { write_stl_binary(&mesh) };
-    write_atomically(target, &content)?;
+    Prepared::new(target, |file| file.write_all(&content))?.take_free_place()?;
     Ok(Repaired { notes, repairs: repairs.iter().map(ToString::to_string).collect(), left, panels: mesh.panels.len() })
 }

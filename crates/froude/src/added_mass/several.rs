@@ -91,6 +91,8 @@ struct Level {
 ///
 /// See [`Error`].
 pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<SeveralOutcome, Error> {
+    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
+    crate::results::can_be_written(&out)?;
     let loaded = match apart {
         Apart::Links { joint_angle_rad } => links_of(job, joint_angle_rad)?,
         Apart::Parts => parts_of(job)?,
@@ -182,7 +184,6 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, meshes, &frame, &notes)],
         findings,
     };
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
     let page = Document {
         sort: "Added mass · potential flow".to_owned(),
         title: name.clone(),
@@ -196,7 +197,6 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         }],
         findings: file.findings.clone(),
     };
-    let written = crate::results::write(&out, &file, &[], &[], &page.html()?)?;
     let mut outcome = SeveralOutcome {
         name,
         density_kg_m3,
@@ -206,11 +206,15 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         tables,
         notes,
         file,
-        estimate: written.estimate,
-        page: written.report,
+        estimate: PathBuf::new(),
+        page: PathBuf::new(),
         others: Vec::new(),
     };
-    outcome.others = exports(&outcome, job, &out)?;
+    let also = |folder: &Path| exports(&outcome, job, folder);
+    let written = crate::results::write_also(&out, &outcome.file, &[], &[], &page.html()?, &also)?;
+    outcome.estimate = written.estimate;
+    outcome.page = written.report;
+    outcome.others = written.others;
     Ok(outcome)
 }
 
@@ -463,12 +467,13 @@ fn record(
     }
 }
 
-fn exports(outcome: &SeveralOutcome, job: &BodyJob, out: &Path) -> Result<Vec<PathBuf>, Error> {
+/// Writes the matrix for other programs; the names of the files.
+fn exports(outcome: &SeveralOutcome, job: &BodyJob, folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let rows: Vec<Vec<f64>> =
         outcome.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect();
     let mut formats = vec!["csv"];
     formats.extend(job.export.iter().filter(|e| **e != "csv"));
-    let mut paths = Vec::new();
+    let mut names = Vec::new();
     for extension in formats {
         let turned = for_program(&rows, extension, job.is_z_up);
         let file = AddedMassFile {
@@ -479,9 +484,9 @@ fn exports(outcome: &SeveralOutcome, job: &BodyJob, out: &Path) -> Result<Vec<Pa
             zero_frequency: Some(&turned),
             infinite_frequency: Some(&turned),
         };
-        let path = out.join(format!("added-mass.{extension}"));
-        file.write(&path)?;
-        paths.push(path);
+        let name = PathBuf::from(format!("added-mass.{extension}"));
+        file.write(&folder.join(&name))?;
+        names.push(name);
     }
-    Ok(paths)
+    Ok(names)
 }

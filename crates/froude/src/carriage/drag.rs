@@ -73,6 +73,11 @@ const BALLAST_RELATIVE: f64 = 0.005;
 /// See [`Error`].
 pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     let runs = read(&job.runs, &KINDS, job.campaign.as_deref())?;
+    let out = job.out.clone().unwrap_or_else(|| {
+        let name = runs.folder.file_name().map_or_else(|| "runs".to_owned(), |n| n.to_string_lossy().into_owned());
+        runs.folder.with_file_name(format!("{name}-drag"))
+    });
+    crate::results::can_be_written(&out)?;
     let reduced: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
@@ -108,10 +113,6 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
         findings: report.findings.clone(),
     };
     let page = document(&report, &setup, calibration.as_ref(), &runs, job.date.clone()).html()?;
-    let out = job.out.clone().unwrap_or_else(|| {
-        let name = runs.folder.file_name().map_or_else(|| "runs".to_owned(), |n| n.to_string_lossy().into_owned());
-        runs.folder.with_file_name(format!("{name}-drag"))
-    });
     let written = crate::results::write(&out, &file, &[], &[], &page)?;
     Ok(DragOutcome { report, calibration, file, estimate: written.estimate, page: written.report })
 }

@@ -88,15 +88,15 @@ pub struct ServoOutcome {
 pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
     let first = job.input.first().cloned().unwrap_or_default();
     let is_table = first.extension().is_some_and(|e| e == "csv" || e == "parquet");
-    let mut outcome = if is_table { of_table(&first, job.sidecar.as_deref())? } else { of_runs(&job.input)? };
     let out = job.out.clone().unwrap_or_else(|| {
         let stem = first.file_stem().map_or_else(|| "servo".to_owned(), |n| n.to_string_lossy().into_owned());
         first.with_file_name(format!("{stem}-servo"))
     });
-    std::fs::create_dir_all(&out).map_err(|source| Error::Output { path: out.clone(), source })?;
+    crate::results::can_be_written(&out)?;
+    let mut outcome = if is_table { of_table(&first, job.sidecar.as_deref())? } else { of_runs(&job.input)? };
     outcome.page = out.join("report.html");
     let html = document(&outcome, &first, job.date.clone()).html()?;
-    froude_records::write::write_atomically(&outcome.page, html.as_bytes())?;
+    crate::results::write_page(&out, &html)?;
     Ok(outcome)
 }
 

@@ -5,7 +5,7 @@
 //! motor, and the shaper that it asks for.
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use froude_control::config::{AxisConfig, CountGains, Gains};
 use froude_identify::tuning::gains::{Demand, Encoder, shaped_on_response, ziegler_nichols};
@@ -128,6 +128,7 @@ pub fn tune(
     let experiments = Experiments { sweep_hz: TUNING_HZ, ..Experiments::default() };
     let prepared = prepare_with(&with_folder(job, "tune"), &|asked, start_m, _| tuning(asked, start_m, &experiments))?
         .logging_every_tick();
+    crate::results::can_be_written(&report_of(&prepared))?;
     drive(&prepared, switch, operator, progress)?.whole()?;
     let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Relay, RunKind::Sweep], None)?;
     let axis = prepared.axis();
@@ -167,9 +168,9 @@ pub fn tune(
         .into_iter()
         .find(|&i| candidates.get(i).is_some_and(|c| c.objections.is_empty()) && (i == 0 || unshaped.is_none()));
     let band_hz = [plant[0].frequency_hz, plant[plant.len() - 1].frequency_hz];
-    let page = prepared.folder.join("report.html");
-    let mut outcome = TuneOutcome { plant, cycle, candidates, recommended, band_hz, unshaped, page };
-    outcome.page = write(&prepared.folder, &tune_document(&outcome, &prepared, &job.date))?;
+    let mut outcome = TuneOutcome { plant, cycle, candidates, recommended, band_hz, unshaped, page: PathBuf::new() };
+    let html = tune_document(&outcome, &prepared, &job.date).html()?;
+    outcome.page = crate::results::write_page(&report_of(&prepared), &html)?;
     Ok(outcome)
 }
 
@@ -187,6 +188,7 @@ pub fn find_resonance(
     let experiments = Experiments::default();
     let prepared =
         prepare_with(&with_folder(job, "resonance"), &|asked, start_m, _| resonance(asked, start_m, &experiments))?;
+    crate::results::can_be_written(&report_of(&prepared))?;
     drive(&prepared, switch, operator, progress)?.whole()?;
     let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Sweep], None)?;
     let states = runs
@@ -212,7 +214,8 @@ pub fn find_resonance(
     });
     let mut outcome =
         ResonanceOutcome { states, efficiency: prepared.efficiency(), proposed, shaper, page: PathBuf::new() };
-    outcome.page = write(&prepared.folder, &resonance_document(&outcome, &prepared, &job.date))?;
+    let html = resonance_document(&outcome, &prepared, &job.date).html()?;
+    outcome.page = crate::results::write_page(&report_of(&prepared), &html)?;
     Ok(outcome)
 }
 
@@ -222,10 +225,9 @@ fn with_folder(job: &DriveJob, what: &str) -> DriveJob {
     DriveJob { out: Some(out), ..job.clone() }
 }
 
-fn write(folder: &Path, document: &Document) -> Result<PathBuf, Error> {
-    let path = folder.join("report.html");
-    froude_records::write::write_atomically(&path, document.html()?.as_bytes())?;
-    Ok(path)
+/// Beside the runs, in a folder of its own: it is replaced as a whole, and runs never are.
+fn report_of(prepared: &Prepared) -> PathBuf {
+    prepared.folder.join("report")
 }
 
 /// Columns of the moving axis in its own units: command, motor angle, and the rows of the excitation.

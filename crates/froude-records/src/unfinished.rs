@@ -1,0 +1,81 @@
+//! Files and folders that grow under a name of their own until they are whole.
+//!
+//! **Name.** `.froude-unfinished-` and six letters or digits, beside what they become, so that the last step is a rename.
+//!
+//! **Life.** Their maker locks each (`flock`) for as long as it lives; the system takes the lock from a process that is
+//! killed. What nobody holds was left by a dead one, however young or old it is, and is cleared by the next that writes
+//! there. A disk without locks (some network disks) keeps what was left on it: nothing is ever cleared by its age.
+
+use std::fs::{File, TryLockError};
+use std::io;
+use std::path::Path;
+
+use tempfile::{Builder, NamedTempFile, TempDir};
+
+/// Before the letters that make each name its own.
+const PREFIX: &str = ".froude-unfinished-";
+
+/// New names, where another process takes the one that was just made for left over.
+const MOST_TRIES: usize = 8;
+
+/// A file that is private to this process until it is persisted; dropped, it is gone.
+pub(crate) fn file_in(folder: &Path) -> io::Result<NamedTempFile> {
+    clear(folder);
+    for _ in 0..MOST_TRIES {
+        let file = builder(0o666).tempfile_in(folder)?;
+        let _ = file.as_file().lock();
+        if file.path().exists() {
+            return Ok(file);
+        }
+    }
+    Err(lost())
+}
+
+/// The same for a folder, with what holds its lock.
+pub(crate) fn folder_in(folder: &Path) -> io::Result<(TempDir, Option<File>)> {
+    clear(folder);
+    for _ in 0..MOST_TRIES {
+        let made = builder(0o777).tempdir_in(folder)?;
+        // Some systems open no folder and lock none.
+        let held = File::open(made.path()).ok().filter(|held| held.lock().is_ok());
+        if made.path().exists() {
+            return Ok((made, held));
+        }
+    }
+    Err(lost())
+}
+
+/// Takes away what dead processes left in a folder; what cannot be taken away stays.
+fn clear(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let is_ours = name.to_str().and_then(|n| n.strip_prefix(PREFIX)).is_some_and(|rest| rest.len() == 6);
+        let Some(kind) = entry.file_type().ok().filter(|_| is_ours) else { continue };
+        let Ok(held) = File::open(entry.path()) else { continue };
+        match held.try_lock() {
+            // Held until it is gone: a maker that comes between finds its name missing and takes another.
+            Ok(()) if kind.is_dir() => _ = std::fs::remove_dir_all(entry.path()),
+            Ok(()) if kind.is_file() => _ = std::fs::remove_file(entry.path()),
+            Ok(()) | Err(TryLockError::WouldBlock | TryLockError::Error(_)) => {}
+        }
+    }
+}
+
+/// A temporary file is private to its owner; a result is as readable as any other: the system takes the umask off.
+fn builder(mode: u32) -> Builder<'static, 'static> {
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        builder.permissions(std::fs::Permissions::from_mode(mode));
+    }
+    #[cfg(not(unix))]
+    let _ = mode;
+    builder
+}
+
+fn lost() -> io::Error {
+    io::Error::other("another program takes its temporary files away")
+}
