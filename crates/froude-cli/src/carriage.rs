@@ -25,7 +25,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 
 use crate::args::{CarriageJob, Experiment};
-use crate::out::say;
+use crate::out::{say, tell};
 use crate::print;
 
 /// `froude run`.
@@ -80,7 +80,7 @@ fn stage(prepared: &Prepared, yes: bool) -> Result<(StopSwitch, Person, Bar), Er
     let pressed = switch.clone();
     ctrlc::set_handler(move || {
         pressed.press();
-        eprintln!("\nstopping the carriage under control; Ctrl-C again cuts the torque");
+        tell!("\nstopping the carriage under control; Ctrl-C again cuts the torque");
     })
     .map_err(|e| Error::Nothing(format!("Ctrl-C cannot be watched: {e}; nothing was moved")))?;
     Ok((switch, Person { is_yes: yes }, Bar::new(prepared.steps.len())))
@@ -256,8 +256,7 @@ impl Operator for Person {
         if self.is_yes {
             return true;
         }
-        eprint!("\n>>> {prompt}; confirm with y and Enter (anything else stops): ");
-        let _ = std::io::stderr().flush();
+        let _ = write!(std::io::stderr(), "\n>>> {prompt}; confirm with y and Enter (anything else stops): ");
         let mut answer = String::new();
         std::io::stdin().lock().read_line(&mut answer).is_ok() && matches!(answer.trim(), "y" | "yes")
     }
@@ -288,7 +287,7 @@ impl Progress for Bar {
         self.bar.set_length(total as u64);
         self.bar.set_position(number as u64 - 1);
         if !self.is_seen {
-            eprintln!("{number}/{total} {}", run.id);
+            tell!("{number}/{total} {}", run.id);
         }
     }
 
@@ -304,7 +303,7 @@ impl Progress for Bar {
     }
 
     fn say(&mut self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
+        self.bar.suspend(|| tell!("{line}"));
     }
 }
 

@@ -3,9 +3,12 @@
 //! Exit code 0: done. 1: failed. 2: bad input. With `--json` the result goes to
 //! standard output as one JSON document; progress and messages go to standard error.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod added_mass;
 mod args;
 mod carriage;
+mod last_word;
 mod out;
 mod print;
 
@@ -19,14 +22,16 @@ use indicatif::{ProgressBar, ProgressStyle};
 use args::{Cli, Verb};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    match run(cli) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("froude: {error}");
-            ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
+    last_word::guarded(|| {
+        let cli = Cli::parse();
+        match run(cli) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                out::tell!("froude: {error}");
+                ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
+            }
         }
-    }
+    })
 }
 
 fn run(cli: Cli) -> Result<(), Error> {

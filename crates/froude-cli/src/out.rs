@@ -18,3 +18,14 @@ macro_rules! say {
     ($($text:tt)*) => { $crate::out::line(format_args!($($text)*)) };
 }
 pub(crate) use say;
+
+/// Says a line on standard error; where nobody reads that either, there is nobody to say it to.
+pub fn aside(text: std::fmt::Arguments<'_>) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// `eprintln!` that does not panic.
+macro_rules! tell {
+    ($($text:tt)*) => { $crate::out::aside(format_args!($($text)*)) };
+}
+pub(crate) use tell;

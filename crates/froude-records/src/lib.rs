@@ -30,6 +30,7 @@ pub mod finding;
 pub mod hash;
 pub mod json;
 pub mod keep;
+pub mod memory;
 pub mod nearest;
 pub mod parquet_table;
 pub mod read;

@@ -12,6 +12,7 @@ use indexmap::IndexMap;
 use mcap::records::op;
 
 use crate::error::{Place, RecordError, reason};
+use crate::run::allowance::{Allowance, holds};
 use crate::run::file::{End, FileChannel, Message, Step, Walk, metadata, records, schema, unpack};
 use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
 use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
@@ -50,6 +51,7 @@ pub struct RunReader<R> {
     events_channel: Option<u16>,
     channels: Vec<(String, String)>,
     unpacked: Vec<u8>,
+    allowance: Allowance,
     rows: Rows,
 }
 
@@ -123,6 +125,7 @@ impl<R: Read + Seek> RunReader<R> {
         let id = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let mut reader = Self {
             path: path.to_owned(),
+            allowance: Allowance::of(walk.length()),
             walk,
             has_sidecar: meta.is_some(),
             meta: meta.unwrap_or_else(|| RunMeta { id: id(), ..RunMeta::default() }),
@@ -223,6 +226,7 @@ impl<R: Read + Seek> RunReader<R> {
         let mut block = Block::default();
         loop {
             let goes_on = self.read_block(&mut block)?;
+            holds(&self.path, log.time_s.len() + block.time_s.len(), self.channels.len())?;
             log.time_s.append(&mut block.time_s);
             log.events.append(&mut block.events);
             log.lost.append(&mut block.lost);
@@ -267,6 +271,7 @@ impl<R: Read + Seek> RunReader<R> {
                         self.declare(opcode, body);
                     }
                     self.unpacked = unpacked;
+                    self.allowance.take(&self.path, self.unpacked.len())?;
                 }
                 op::METADATA => self.take_metadata(offset, &body)?,
                 _ => self.declare(opcode, &body),
@@ -274,6 +279,7 @@ impl<R: Read + Seek> RunReader<R> {
             self.walk.body = body;
         }
         self.walk.rewind().map_err(|e| self.failed(&e))?;
+        self.allowance = Allowance::of(self.walk.length());
         self.index_topics();
         Ok(())
     }
@@ -383,6 +389,7 @@ impl<R: Read + Seek> RunReader<R> {
             Err(error) => problem = Some(error),
         }
         self.unpacked = unpacked;
+        self.allowance.take(&self.path, self.unpacked.len())?;
         problem
             .map_or(Ok(()), |problem| self.damaged(offset, format!("the chunk at byte {offset} is damaged: {problem}")))
     }
