@@ -3,9 +3,12 @@
 //! Exit code 0: done. 1: failed. 2: bad input. With `--json` the result goes to
 //! standard output as one JSON document; progress and messages go to standard error.
 
+#![warn(clippy::print_stdout, clippy::print_stderr)]
+
 mod added_mass;
 mod args;
 mod carriage;
+mod last_word;
 mod out;
 mod print;
 mod stage;
@@ -19,17 +22,19 @@ use froude::{Error, demo, inspect, twin};
 use args::{Cli, Verb};
 
 fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
-        Ok(cli) => cli,
-        Err(error) => return out::usage(&error),
-    };
-    match run(cli) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            out::note!("froude: {error}");
-            ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
+    last_word::guarded(|| {
+        let cli = match Cli::try_parse() {
+            Ok(cli) => cli,
+            Err(error) => return out::usage(&error),
+        };
+        match run(cli) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                out::note!("froude: {error}");
+                ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
+            }
         }
-    }
+    })
 }
 
 fn run(cli: Cli) -> Result<(), Error> {

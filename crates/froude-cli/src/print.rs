@@ -58,6 +58,9 @@ pub fn outcome(outcome: &Outcome) {
         if !others.is_empty() {
             say!("  also fitted: {} (see the report)", others.join(", "));
         }
+        for n in &source.not_fitted {
+            say!("  not fitted: {}: {}", n.model, n.why);
+        }
     }
     if !outcome.comparison.coefficients.is_empty() {
         say!("\nThe sources are compared in the report (E_n, χ², predicted forces).");

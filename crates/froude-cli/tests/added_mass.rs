@@ -717,8 +717,8 @@ fn assert_lambs(axes: [&str; 3], axes_m: Vec3, args: &[&str], tolerance: f64) {
 #[test]
 fn odd_sizes_are_computed() {
     let coarse = ["--tolerance", "20 %"];
-    assert_lambs(["1e-9 m", "8e-10 m", "5e-10 m"], [1e-9, 8e-10, 5e-10], &coarse, 0.2);
-    assert_lambs(["1e6 m", "8e5 m", "5e5 m"], [1e6, 8e5, 5e5], &coarse, 0.2);
+    assert_lambs(["2e-5 m", "1.6e-5 m", "1e-5 m"], [2e-5, 1.6e-5, 1e-5], &coarse, 0.2);
+    assert_lambs(["1e3 m", "8e2 m", "5e2 m"], [1e3, 8e2, 5e2], &coarse, 0.2);
     assert_lambs(["1 m", "1 mm", "1 mm"], [1.0, 1e-3, 1e-3], &coarse, 0.2);
     assert_lambs(["1 m", "1 m", "1 cm"], [1.0, 1.0, 1e-2], &coarse, 0.2);
     assert_lambs(["1 cm", "1 m", "1 m"], [1e-2, 1.0, 1.0], &coarse, 0.2);

@@ -55,7 +55,7 @@ pub fn bounded_least_squares(a: MatRef<'_, f64>, b: &[f64], lower: &[f64], upper
     let p = a.ncols();
     assert!(b.len() == a.nrows() && lower.len() == p && upper.len() == p, "lengths must match the design");
     let start = PivotedQr::new(a).solve(b);
-    let mut x: Vec<f64> = (0..p).map(|j| start[j].clamp(lower[j], upper[j])).collect();
+    let mut x: Vec<f64> = (0..p).map(|j| start[j].max(lower[j]).min(upper[j])).collect();
     let mut active: Vec<Option<Side>> = (0..p)
         .map(|j| {
             if x[j] <= lower[j] {
@@ -157,7 +157,7 @@ fn descend(
             has_moved = true;
         }
         for (k, &j) in free.iter().enumerate() {
-            x[j] = (x[j] + length * step[k]).clamp(lower[j], upper[j]);
+            x[j] = (x[j] + length * step[k]).max(lower[j]).min(upper[j]);
         }
         match stop {
             Some((j, bound, side)) => {

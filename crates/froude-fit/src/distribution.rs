@@ -1,4 +1,8 @@
 //! Quantiles and tail probabilities that intervals and tests need.
+//!
+//! The only place that calls the library of distributions: it panics on arguments outside its ranges, and a load of 1e308 N or a
+//! declared 1e-300 degrees of freedom bring such arguments about. Every argument is checked here; outside its range the answer is NaN,
+//! or the limit where there is one.
 
 use statrs::distribution::{Continuous, ContinuousCDF, Normal, StudentsT};
 use statrs::function::beta::beta_reg;
@@ -11,10 +15,14 @@ const NORMAL_ABOVE: f64 = 1e9;
 /// dropped term is below 1e-11; the incomplete beta function loses digits there.
 const SERIES_ABOVE: f64 = 1e5;
 
+/// Beyond this a quantile is infinite: its square, which the tail needs, is not a number any more.
+const INFINITE_ABOVE: f64 = 1e150;
+
 /// Two-sided coverage factor of Student's t: `P(|t| ≤ factor) = confidence`.
 ///
 /// `dof` may be a fraction, or infinite (normal). `confidence` in (0, 1). NaN
-/// outside these ranges. Relative error below 1e-10.
+/// outside these ranges; infinite where so few degrees of freedom (0.008 at 95 %) leave it above 1e150. Relative error
+/// below 1e-10.
 ///
 /// # Example
 ///
@@ -40,34 +48,42 @@ pub fn coverage_factor(confidence: f64, dof: f64) -> f64 {
     };
     let tail = 0.5 * (1.0 - confidence);
     // Newton on the logarithm of the tail, which is smooth and nearly straight,
-    // from the normal quantile, which is always below.
+    // from the normal quantile, which is always below. A step at most doubles: some 500 reach the largest.
     let mut x = normal_quantile(1.0 - tail);
-    for _ in 0..200 {
+    let mut last_change = f64::INFINITY;
+    for _ in 0..600 {
+        if x.is_nan() || x > INFINITE_ABOVE {
+            return f64::INFINITY;
+        }
         let upper = 0.5 * t_two_sided(x, dof);
         let step = (upper / tail).ln() * upper / t.pdf(x);
-        let next = (x + step).clamp(0.5 * x, 2.0 * x);
-        let is_done = (next - x).abs() <= 1e-14 * x;
+        let next = (x + step).max(0.5 * x).min(2.0 * x);
+        let change = (next - x).abs();
         x = next;
-        if is_done {
+        // Steps halve their digits' distance each time; one that no longer shrinks is rounding of the tail.
+        if change <= 1e-14 * x || (change < 1e-9 * x && change >= last_change) {
             break;
         }
+        last_change = change;
     }
     x
 }
 
-/// Two-sided tail probability `P(|T| ≥ |t|)` of Student's t.
+/// Two-sided tail probability `P(|T| ≥ |t|)` of Student's t; NaN where `t` is none or `dof` is not positive.
 #[must_use]
 pub fn t_two_sided(t: f64, dof: f64) -> f64 {
     if dof > NORMAL_ABOVE {
         return 2.0 * normal_upper(t.abs());
     }
-    if t.is_infinite() {
+    if t.is_infinite() && dof > 0.0 {
         return 0.0;
     }
-    beta_reg(0.5 * dof, 0.5, dof / (dof + t * t))
+    beta(0.5 * dof, 0.5, dof / (dof + t * t))
 }
 
-/// Upper tail probability `P(F ≥ f)` of Fisher's F.
+/// Upper tail probability `P(F ≥ f)` of Fisher's F; NaN where a number of degrees of freedom is not positive or `dof_1` is infinite.
+///
+/// 1 where `f` is no number: what cannot be computed rejects nothing.
 #[must_use]
 pub fn f_upper(f: f64, dof_1: f64, dof_2: f64) -> f64 {
     if f.is_nan() || f <= 0.0 {
@@ -76,30 +92,56 @@ pub fn f_upper(f: f64, dof_1: f64, dof_2: f64) -> f64 {
     if f.is_infinite() {
         return 0.0;
     }
-    beta_reg(0.5 * dof_2, 0.5 * dof_1, dof_2 / (dof_2 + dof_1 * f))
+    if dof_2 == f64::INFINITY {
+        return chi_squared_upper(dof_1 * f, dof_1);
+    }
+    beta(0.5 * dof_2, 0.5 * dof_1, dof_2 / (dof_2 + dof_1 * f))
 }
 
-/// Upper tail probability `P(χ² ≥ x)`.
+/// Upper tail probability `P(χ² ≥ x)`; NaN where `dof` is not positive and finite.
+///
+/// 1 where `x` is no number: what cannot be computed rejects nothing.
 #[must_use]
 pub fn chi_squared_upper(x: f64, dof: f64) -> f64 {
-    if x.is_nan() || x <= 0.0 { 1.0 } else { gamma_ur(0.5 * dof, 0.5 * x) }
+    let (a, half) = (0.5 * dof, 0.5 * x);
+    if x.is_nan() || half <= 0.0 {
+        1.0
+    } else if a.is_nan() || a <= 0.0 || a.is_infinite() {
+        f64::NAN
+    } else if half.is_infinite() {
+        0.0
+    } else {
+        gamma_ur(a, half)
+    }
 }
 
-/// Quantile of the standard normal distribution.
+/// Quantile of the standard normal distribution; NaN outside 0 to 1, infinite at its ends.
 #[must_use]
 pub fn normal_quantile(probability: f64) -> f64 {
+    if !(0.0..=1.0).contains(&probability) {
+        return f64::NAN;
+    }
     Normal::new(0.0, 1.0).map_or(f64::NAN, |normal| normal.inverse_cdf(probability))
 }
 
 /// Upper tail probability of the standard normal distribution.
 #[must_use]
 pub fn normal_upper(x: f64) -> f64 {
+    if x.is_nan() {
+        return f64::NAN;
+    }
     Normal::new(0.0, 1.0).map_or(f64::NAN, |normal| normal.sf(x))
 }
 
-/// `P(B ≤ x)` for a beta variable.
+/// `P(B ≤ x)` for a beta variable; NaN where there is none of these parameters.
 pub(crate) fn beta_lower(x: f64, a: f64, b: f64) -> f64 {
-    beta_reg(a, b, x.clamp(0.0, 1.0))
+    beta(a, b, x.clamp(0.0, 1.0))
+}
+
+/// The regularised incomplete beta function, NaN outside its range.
+fn beta(a: f64, b: f64, x: f64) -> f64 {
+    let is_possible = |p: f64| p > 0.0 && p.is_finite();
+    if is_possible(a) && is_possible(b) && (0.0..=1.0).contains(&x) { beta_reg(a, b, x) } else { f64::NAN }
 }
 
 #[cfg(test)]
@@ -166,5 +208,56 @@ mod tests {
     #[test]
     fn chi_squared_with_two_degrees_is_exponential() {
         assert!((chi_squared_upper(3.0, 2.0) - (-1.5_f64).exp()).abs() < 1e-13);
+    }
+
+    /// Whatever comes in: no panic, and no probability outside 0 to 1.
+    #[test]
+    fn no_argument_makes_a_distribution_panic() {
+        let odd = [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            0.0,
+            -1.0,
+            5e-324,
+            1e-300,
+            1e-12,
+            0.5,
+            1.0 - 1e-16,
+            1.0,
+            1e9,
+            1e300,
+            f64::MAX,
+            f64::MIN,
+        ];
+        let is_probability = |p: f64| p.is_nan() || (0.0..=1.0).contains(&p);
+        for a in odd {
+            let _ = normal_quantile(a);
+            assert!(is_probability(normal_upper(a)), "{a}");
+            for b in odd {
+                let k = coverage_factor(a, b);
+                assert!(k.is_nan() || k >= 0.0, "{a} {b}: {k}");
+                assert!(is_probability(t_two_sided(a, b)), "{a} {b}");
+                assert!(is_probability(chi_squared_upper(a, b)), "{a} {b}");
+                for c in odd {
+                    assert!(is_probability(f_upper(a, b, c)), "{a} {b} {c}");
+                    assert!(is_probability(beta_lower(a, b, c)), "{a} {b} {c}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_factor_of_hardly_any_degrees_of_freedom_is_infinite() {
+        assert_eq!(coverage_factor(0.95, 1e-300), f64::INFINITY);
+        // P(|T| > x) ≈ (dof/x²)^(dof/2) for few degrees of freedom: x = √dof · 0.05^(−1/dof), within some dof · ln 4.
+        let k = coverage_factor(0.95, 0.01);
+        assert!((k / (0.1 * 0.05_f64.powf(-100.0))).ln().abs() < 2.0, "{k}");
+    }
+
+    #[test]
+    fn f_with_infinite_degrees_below_is_chi_squared() {
+        assert!((f_upper(1.5, 4.0, f64::INFINITY) - chi_squared_upper(6.0, 4.0)).abs() < 1e-15);
+        assert!((f_upper(1.5, 4.0, 1e7) - chi_squared_upper(6.0, 4.0)).abs() < 1e-6);
     }
 }

@@ -116,7 +116,7 @@ impl Part {
             match side {
                 Some(crate::bounded::Side::Lower) => beta[l] = bound.lower,
                 Some(crate::bounded::Side::Upper) => beta[l] = bound.upper,
-                None => beta[l] = beta[l].clamp(bound.lower, bound.upper),
+                None => beta[l] = beta[l].max(bound.lower).min(bound.upper),
             }
         }
         beta

@@ -17,10 +17,10 @@ use std::path::Path;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
+use froude_fit::distribution::f_upper;
 use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Range, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
@@ -187,23 +187,32 @@ pub fn named<'a>(files: &'a [(String, EstimateFile)]) -> Vec<Named<'a>> {
         .collect()
 }
 
+/// Most estimates that are set side by side: 44,850 pairs, more than anybody reads.
+pub const MOST_COMPARED: usize = 300;
+
 /// Compares every pair of estimates of the same model, and predicts forces by the recommended ones.
+///
+/// More than [`MOST_COMPARED`] are not compared; the only finding says so.
 #[must_use]
 pub fn compare(all: &[Named<'_>]) -> Comparison {
     let mut out = Comparison::default();
-    let mut told: Vec<[(&str, &str); 2]> = Vec::new();
+    if all.len() > MOST_COMPARED {
+        out.findings.push(Finding::new(Severity::Warning, "not-compared", too_many(all.len())));
+        return out;
+    }
+    let origins = origins(all);
+    let mut told: BTreeSet<[(&str, &str); 2]> = BTreeSet::new();
     for (i, a) in all.iter().enumerate() {
-        for b in &all[i + 1..] {
-            let is_same_data = same_data(a, b);
+        for (j, b) in all.iter().enumerate().skip(i + 1) {
+            let is_same_data = same_data([a, b], [&origins[i], &origins[j]]);
             let pair = [(a.file, a.estimate.source.as_str()), (b.file, b.estimate.source.as_str())];
-            if is_same_data && !is_one_source(a, b) && !told.contains(&pair) {
-                told.push(pair);
+            if is_same_data && !is_one_source(a, b) && told.insert(pair) {
                 out.findings.push(same_data_finding(a, b));
             }
             if a.estimate.model != b.estimate.model {
                 continue;
             }
-            if a.estimate.source == b.estimate.source && !have_other_tables(a, b) {
+            if a.estimate.source == b.estimate.source && !have_other_tables([&origins[i], &origins[j]]) {
                 out.findings.extend(contradiction(a, b));
             }
             out.coefficients.extend(coefficient_rows(a, b, is_same_data));
@@ -213,6 +222,14 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
     out.findings.extend(differing_constants(all));
     predict_forces(all, &mut out);
     out
+}
+
+/// Why so many estimates are not compared.
+#[must_use]
+pub fn too_many(estimates: usize) -> String {
+    format!(
+        "{estimates} estimates are not set side by side: at most {MOST_COMPARED} are; name fewer records, or fewer models in them"
+    )
 }
 
 fn label(n: &Named<'_>, other: &Named<'_>) -> String {
@@ -227,15 +244,39 @@ fn tables(record: &EstimateFile) -> BTreeSet<&str> {
     record.data.iter().filter(|d| is_table(&d.path) && !d.sha256.is_empty()).map(|d| d.sha256.as_str()).collect()
 }
 
+/// Where an estimate comes from, as far as its record tells.
+struct Origin<'a> {
+    /// Fingerprints of its tables.
+    tables: BTreeSet<&'a str>,
+    /// Whether all estimates of the record are of this one's source.
+    is_alone: bool,
+}
+
+/// The origin of each estimate; what a record says is gathered once for all of its own.
+fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
+    let mut of_record: Vec<(&EstimateFile, BTreeSet<&str>, bool)> = Vec::new();
+    all.iter()
+        .map(|n| {
+            let known = of_record.last().is_some_and(|(record, ..)| std::ptr::eq(*record, n.record));
+            if !known {
+                let first = n.record.estimates.first().map(|e| &e.source);
+                let is_one = n.record.estimates.iter().all(|e| Some(&e.source) == first);
+                of_record.push((n.record, tables(n.record), is_one));
+            }
+            let (tables, is_one) = of_record.last().map(|(_, t, one)| (t.clone(), *one)).unwrap_or_default();
+            Origin { tables, is_alone: is_one }
+        })
+        .collect()
+}
+
 /// True for two models of one source in one record, which nobody takes for independent.
 fn is_one_source(a: &Named<'_>, b: &Named<'_>) -> bool {
     std::ptr::eq(a.record, b.record) && a.estimate.source == b.estimate.source
 }
 
 /// True where both records name their tables and none of them is the same.
-fn have_other_tables(a: &Named<'_>, b: &Named<'_>) -> bool {
-    let (x, y) = (tables(a.record), tables(b.record));
-    !x.is_empty() && !y.is_empty() && x.is_disjoint(&y)
+fn have_other_tables([a, b]: [&Origin<'_>; 2]) -> bool {
+    !a.tables.is_empty() && !b.tables.is_empty() && a.tables.is_disjoint(&b.tables)
 }
 
 /// True where two estimates come from the same observations, as far as their records tell.
@@ -243,7 +284,7 @@ fn have_other_tables(a: &Named<'_>, b: &Named<'_>) -> bool {
 /// A record names its tables, but not which source read which. A shared table counts where that is plain (one table, or
 /// one source), and else if the sources have the same name or the same observations (number and ranges). Without
 /// fingerprints only an equal fit is known to be the same.
-fn same_data(a: &Named<'_>, b: &Named<'_>) -> bool {
+fn same_data([a, b]: [&Named<'_>; 2], [first, second]: [&Origin<'_>; 2]) -> bool {
     let (x, y) = (a.estimate, b.estimate);
     if is_one_source(a, b) || x == y {
         return true;
@@ -253,16 +294,13 @@ fn same_data(a: &Named<'_>, b: &Named<'_>) -> bool {
     if same_observations && x.model == y.model && x.sigma == y.sigma && values(x) == values(y) {
         return true;
     }
-    let (first, second) = (tables(a.record), tables(b.record));
     if std::ptr::eq(a.record, b.record) {
         // Fitted sources read tables; a published one beside them does not.
-        return first.len() == 1 && x.n_observations > 0 && y.n_observations > 0;
+        return first.tables.len() == 1 && x.n_observations > 0 && y.n_observations > 0;
     }
-    let is_plain = |n: &Named<'_>, own: &BTreeSet<&str>| {
-        own.len() == 1 || n.record.estimates.iter().all(|e| e.source == n.estimate.source)
-    };
-    !first.is_disjoint(&second)
-        && ((is_plain(a, &first) && is_plain(b, &second)) || x.source == y.source || same_observations)
+    let is_plain = |own: &Origin<'_>| own.tables.len() == 1 || own.is_alone;
+    !first.tables.is_disjoint(&second.tables)
+        && ((is_plain(first) && is_plain(second)) || x.source == y.source || same_observations)
 }
 
 fn same_data_finding(a: &Named<'_>, b: &Named<'_>) -> Finding {
@@ -396,12 +434,7 @@ fn least_dof(sides: [&Named<'_>; 2], names: &[&String]) -> f64 {
 /// Probability of a χ² as large, for covariances known with ν degrees of freedom: χ²/m is taken as F(m, ν), as Hotelling's
 /// T² is but for its factor (ν − m + 1)/ν.
 fn probability(chi2: f64, m: usize, dof: f64) -> f64 {
-    let m_f = m as f64;
-    if dof.is_finite() && dof >= 1.0 {
-        FisherSnedecor::new(m_f, dof).map_or(f64::NAN, |x| x.sf(chi2 / m_f))
-    } else {
-        ChiSquared::new(m_f).map_or(f64::NAN, |x| x.sf(chi2))
-    }
+    f_upper(chi2 / m as f64, m as f64, dof)
 }
 
 /// Two records of the same source and model that say different things, with what looks like a slip.
@@ -585,6 +618,11 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
         }
     }
     let ids = out.force_ids.clone();
+    let predicted_by: Vec<Named<'_>> = predictions.iter().map(|(.., n)| **n).collect();
+    let origins = origins(&predicted_by);
+    let is_same_data: Vec<bool> = (0..predicted_by.len())
+        .map(|j| same_data([&predicted_by[0], &predicted_by[j]], [&origins[0], &origins[j]]))
+        .collect();
     for component in ["f_x", "f_y"] {
         for i in 0..data.rows {
             let forces: Vec<Stated> = predictions
@@ -606,8 +644,7 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
                     if let Some((_, id)) = without.into_iter().find(|(is_missing, _)| *is_missing) {
                         return Err(format!("{id} gives no {component}"));
                     }
-                    let is_same_data = same_data(predictions[0].3, predictions[j].3);
-                    e_n(&forces[0], &forces[j], [&ids[0], &ids[j]], is_same_data)
+                    e_n(&forces[0], &forces[j], [&ids[0], &ids[j]], is_same_data[j])
                 })
                 .collect();
             out.forces.push(ForceRow {
@@ -660,7 +697,7 @@ fn effective_dof(parts: &[f64], dof: &[Option<f64>]) -> Option<f64> {
     }
     let root: f64 = touched.iter().map(|(w, d)| w / total * d.map_or(0.0, |d| d.sqrt().recip())).sum();
     let nu = if root > 0.0 { root.powi(-2) } else { f64::INFINITY };
-    Some(nu.clamp(least, most)).filter(|d| d.is_finite())
+    Some(nu.max(least).min(most)).filter(|d| d.is_finite())
 }
 
 fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -> Dataset {

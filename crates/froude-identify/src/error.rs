@@ -27,6 +27,27 @@ pub enum IdentifyError {
         source: Box<FitError>,
     },
 
+    /// A law that these observations cannot give.
+    #[error("source {source_name:?}, model {model}: {why}")]
+    NoFit {
+        /// Name of the source.
+        source_name: String,
+        /// Name of the model.
+        model: String,
+        /// Why, and what to do.
+        why: String,
+    },
+
+    /// None of the models of a source could be fitted, and the observations themselves look wrong.
+    #[error("{}{}", .reasons.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
+        .found.iter().map(|f| format!("\nfound in the data: {f}")).collect::<String>())]
+    NothingFitted {
+        /// Why, model by model.
+        reasons: Vec<IdentifyError>,
+        /// Errors that were found in the observations before anything was fitted.
+        found: Vec<String>,
+    },
+
     /// A user-written formula cannot be used.
     #[error("model {model:?}, {response}: {source}")]
     Formula {

@@ -96,12 +96,22 @@ impl ModelFit {
 ///
 /// What the law, the fit or the budget finds wrong.
 pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result<ModelFit, IdentifyError> {
-    let refuse = |source: fit::FitError| IdentifyError::Fit {
+    let newtons = law.measured(data)?;
+    let no_fit = |why: String| IdentifyError::NoFit {
         source_name: settings.source_name.to_owned(),
         model: law.name.clone(),
-        source: Box::new(source),
+        why,
     };
-    let newtons = law.measured(data)?;
+    let refuse = |source: fit::FitError| match source {
+        fit::FitError::DesignNotFinite { .. } | fit::FitError::ResponseNotFinite { .. } if law.is_nonlinear() => {
+            no_fit(ran_away(law, data, &newtons))
+        }
+        source => IdentifyError::Fit {
+            source_name: settings.source_name.to_owned(),
+            model: law.name.clone(),
+            source: Box::new(source),
+        },
+    };
     let measured = if law.in_logarithms() { logarithms(law, &newtons, data, settings)? } else { newtons.clone() };
     let setups = offset_setups(law, data, settings.identify);
     let mut specs = law.coefficients.clone();
@@ -205,6 +215,13 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             }
         }
     }
+    let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
+    let standards = combined.iter().flatten().map(|c| c.standard);
+    if let Some(number) = coefficients.iter().copied().chain(of_fit).chain(standards).find(|x| !x.is_finite()) {
+        return Err(no_fit(format!(
+            "its numbers leave what a computer holds ({number}): look for a value of absurd size in the table or in [identify]"
+        )));
+    }
     Ok(ModelFit {
         law: law.clone(),
         specs,
@@ -219,6 +236,27 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         covariance_kind: if in_variables { "model-based, errors in variables".to_owned() } else { covariance_kind },
         findings,
     })
+}
+
+/// Why the iteration of a power law left all bounds.
+fn ran_away(law: &ForceLaw, data: &Dataset, newtons: &[f64]) -> String {
+    let crate::law::Kind::PowerLaw { channel, .. } = &law.kind else {
+        return "its iteration leaves what a computer holds".to_owned();
+    };
+    let speeds = data.values(channel).unwrap_or_default();
+    let moving = speeds.iter().filter(|v| **v != 0.0).count();
+    let opposed = speeds.iter().zip(newtons).filter(|(v, f)| **v * **f < 0.0).count();
+    let load = law.responses.first().map_or("the load", String::as_str);
+    if 2 * opposed < moving {
+        return format!(
+            "{load} opposes {channel} in {opposed} of the {moving} rows that move, and a power law is a resistance: look at the sign of \
+             {load}, or leave this law out"
+        );
+    }
+    format!(
+        "its iteration runs away: exponent and factor of {load} are not told by these rows; use speeds further apart, or a law with a given \
+         exponent (quadratic)"
+    )
 }
 
 /// √(Σ w r²/Σ w f²) of the loads themselves: the fit knows only the response of its last linear step.

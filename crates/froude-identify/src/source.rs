@@ -34,6 +34,8 @@ pub struct SourceResult {
     pub n_read: usize,
     /// The fitted models, in the order asked for.
     pub models: Vec<ModelFit>,
+    /// Models that were asked for and could not be fitted.
+    pub not_fitted: Vec<NotFitted>,
     /// Their records, in the same order.
     pub estimates: Vec<Estimate>,
     /// F tests of nested pairs.
@@ -50,6 +52,15 @@ pub struct SourceResult {
     pub findings: Vec<Finding>,
     /// Files that were read.
     pub files: Vec<PathBuf>,
+}
+
+/// A model that was asked for and could not be fitted: it costs its own row and no other.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NotFitted {
+    /// Name of the model.
+    pub model: String,
+    /// Why, and what to do.
+    pub why: String,
 }
 
 /// Identifies one source that has a table; `progress` is told each model before it is fitted.
@@ -84,13 +95,26 @@ pub fn identify_source(
     };
     let laws = laws(campaign, source, &data)?;
     check_budget(source, &data)?;
-    let mut models = Vec::new();
+    let (mut models, mut failed) = (Vec::new(), Vec::new());
     for law in &laws {
         progress(&law.name);
-        let model = regress(law, &data, settings)?;
-        findings.extend(model.findings.iter().cloned());
-        models.push(model);
+        match regress(law, &data, settings) {
+            Ok(model) => {
+                findings.extend(model.findings.iter().cloned());
+                models.push(model);
+            }
+            Err(error) => failed.push((law.name.clone(), error)),
+        }
     }
+    if models.is_empty() {
+        return Err(nothing_fitted(failed, &findings));
+    }
+    let not_fitted: Vec<NotFitted> =
+        failed.into_iter().map(|(model, error)| NotFitted { model, why: without_place(&error) }).collect();
+    findings.extend(not_fitted.iter().map(|n| {
+        let text = format!("model {} could not be fitted and is left out: {}", n.model, n.why);
+        Finding::new(Severity::Warning, "not-fitted", text)
+    }));
     let tests = nested_tests(&models, &data);
     let scores: Vec<Score> = models.iter().map(|m| leave_one_out(m, &data)).collect();
     let blocks = campaign
@@ -130,6 +154,7 @@ pub fn identify_source(
         data,
         n_read,
         models,
+        not_fitted,
         estimates,
         tests,
         scores,
@@ -139,6 +164,33 @@ pub fn identify_source(
         findings,
         files,
     })
+}
+
+/// Why an error came about, without the source and the model that it names: where it is shown, they stand beside it.
+fn without_place(error: &IdentifyError) -> String {
+    match error {
+        IdentifyError::Fit { source, .. } => source.to_string(),
+        IdentifyError::NoFit { why, .. } => why.clone(),
+        IdentifyError::Campaign { what, .. } => what.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// The error of a source without any fit: what each model says once, and what was found in the data before.
+fn nothing_fitted(failed: Vec<(String, IdentifyError)>, findings: &[Finding]) -> IdentifyError {
+    let mut reasons: Vec<IdentifyError> = Vec::new();
+    for (_, error) in failed {
+        if !reasons.iter().any(|r| without_place(r) == without_place(&error)) {
+            reasons.push(error);
+        }
+    }
+    let found: Vec<String> =
+        findings.iter().filter(|f| f.severity == Severity::Error).map(|f| f.message.clone()).collect();
+    match <[IdentifyError; 1]>::try_from(reasons) {
+        Ok([only]) if found.is_empty() => only,
+        Ok([only]) => IdentifyError::NothingFitted { reasons: vec![only], found },
+        Err(reasons) => IdentifyError::NothingFitted { reasons, found },
+    }
 }
 
 /// Type B uncertainties by Monte Carlo beside the linear ones: where they differ, the propagation is not linear.

@@ -1,12 +1,14 @@
 //! From headers and raw cells to a checked table, the same for every format.
 
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use crate::error::{Place, RecordError};
+use crate::memory;
 use crate::nearest::suggestion;
 use crate::sidecar::{Mapping, Sidecar};
 use crate::table::{Column, ColumnData, Table, expected, is_text_column, known_dimension, usual_unit};
-use crate::units::{Unit, UnitError, parse_unit};
+use crate::units::{Unit, UnitError, is_plausible, parse_unit};
 
 /// What a column of a file becomes, decided by its header alone.
 pub(crate) enum Want<'s> {
@@ -45,6 +47,14 @@ pub(crate) enum Raw {
     Texts(Vec<String>),
 }
 
+/// Longest header and longest cell of text, in bytes: both are printed in tables and sentences, and none is near it.
+const LONGEST_TEXT: usize = 1000;
+
+/// The beginning of a text that is too long to be shown.
+fn beginning(text: &str) -> String {
+    text.chars().take(40).chain("…".chars()).collect()
+}
+
 /// Decides what each column becomes; `header_place` is where the headers stand.
 pub(crate) fn plan<'s>(
     path: &Path,
@@ -52,15 +62,25 @@ pub(crate) fn plan<'s>(
     sidecar: Option<&'s Sidecar>,
     header_place: &Place,
 ) -> Result<Vec<Want<'s>>, RecordError> {
-    for (j, name) in header.iter().enumerate() {
-        if header[..j].contains(name) {
-            return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: name.clone() });
-        }
+    if let Some((j, long)) = header.iter().enumerate().find(|(_, h)| h.len() > LONGEST_TEXT) {
+        return Err(RecordError::Syntax {
+            place: header_place.clone(),
+            problem: format!(
+                "the header of column {} ({:?}) has {} bytes; at most {LONGEST_TEXT} are read",
+                j + 1,
+                beginning(long),
+                long.len()
+            ),
+        });
+    }
+    if let Some(twice) = first_twice(header.iter().map(String::as_str)) {
+        return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: twice.to_owned() });
     }
     let wants = match sidecar {
         Some(sidecar) => {
+            let known: HashSet<&str> = header.iter().map(String::as_str).collect();
             for (written, mapping) in &sidecar.columns {
-                if !header.contains(written) {
+                if !known.contains(written.as_str()) {
                     return Err(RecordError::UnknownColumn {
                         place: mapping.place.clone(),
                         column: written.clone(),
@@ -76,13 +96,83 @@ pub(crate) fn plan<'s>(
         }
         None => header.iter().map(|h| want(path, h, header_place)).collect::<Result<Vec<_>, _>>()?,
     };
-    let names: Vec<&str> = wants.iter().filter_map(name_of).collect();
-    for (j, name) in names.iter().enumerate() {
-        if names[..j].contains(name) {
-            return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: (*name).to_owned() });
-        }
+    if let Some(twice) = first_twice(wants.iter().filter_map(name_of)) {
+        return Err(RecordError::DuplicateColumn { place: header_place.clone(), column: twice.to_owned() });
     }
     Ok(wants)
+}
+
+/// The first name that was there before.
+fn first_twice<'a>(names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let mut seen = HashSet::new();
+    names.into_iter().find(|name| !seen.insert(*name))
+}
+
+/// Bytes of memory that the cells of one table may take.
+pub(crate) struct Room<'a> {
+    path: &'a Path,
+    taken: u64,
+}
+
+impl<'a> Room<'a> {
+    /// Most bytes of cells: 268 million numbers. A fit needs some six times as much.
+    const MOST_BYTES: u64 = 2 << 30;
+
+    pub fn new(path: &'a Path) -> Self {
+        Self { path, taken: 0 }
+    }
+
+    /// Takes a part of it.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::TooLarge`] where no more is left.
+    #[inline]
+    pub fn take(&mut self, bytes: u64) -> Result<(), RecordError> {
+        self.taken = self.taken.saturating_add(bytes);
+        if self.taken > Self::MOST_BYTES { Err(self.refusal(self.taken)) } else { Ok(()) }
+    }
+
+    #[cold]
+    fn refusal(&self, bytes: u64) -> RecordError {
+        RecordError::TooLarge {
+            path: self.path.to_owned(),
+            bytes,
+            limit: Self::MOST_BYTES,
+            what: "the cells of a table, unpacked",
+        }
+    }
+
+    /// A number more.
+    ///
+    /// # Errors
+    ///
+    /// No room, or no memory.
+    #[inline]
+    pub fn number(&mut self, numbers: &mut Vec<f64>, value: f64) -> Result<(), RecordError> {
+        self.take(size_of::<f64>() as u64)?;
+        memory::push(numbers, value).map_err(|e| RecordError::memory(self.path, e))
+    }
+
+    /// A text more; `place` is where it stands.
+    ///
+    /// # Errors
+    ///
+    /// A text that is too long, no room, or no memory.
+    pub fn text(&mut self, texts: &mut Vec<String>, text: &str, place: &dyn Fn() -> Place) -> Result<(), RecordError> {
+        if text.len() > LONGEST_TEXT {
+            return Err(RecordError::Syntax {
+                place: place(),
+                problem: format!(
+                    "a cell ({:?}) has {} bytes of text; at most {LONGEST_TEXT} are read",
+                    beginning(text),
+                    text.len()
+                ),
+            });
+        }
+        self.take((size_of::<String>() + text.len()) as u64)?;
+        memory::push(texts, text.to_owned()).map_err(|e| RecordError::memory(self.path, e))
+    }
 }
 
 fn name_of<'a>(want: &'a Want<'_>) -> Option<&'a str> {
@@ -252,10 +342,8 @@ pub(crate) fn assemble(
     };
     match sidecar {
         Some(sidecar) => {
-            let mut named: Vec<(&str, Option<Raw>)> =
-                header.iter().map(String::as_str).zip(raws.into_iter().map(Some)).collect();
-            let mut take =
-                |written: &str| named.iter_mut().find(|(h, _)| *h == written).and_then(|(_, raw)| raw.take());
+            let mut named: HashMap<&str, Raw> = header.iter().map(String::as_str).zip(raws).collect();
+            let mut take = |written: &str| named.remove(written);
             table.columns = sidecar.columns(&mut take, &|row| table.place_of_row(row))?;
         }
         None => {
@@ -272,11 +360,11 @@ fn column(table: &Table, want: &Want<'_>, raw: Raw, header_place: &Place) -> Res
     Ok(Some(match (want, raw) {
         (Want::Number { name, unit }, Raw::Numbers(values)) => {
             let si: Vec<f64> = values.iter().map(|v| unit.to_si(*v)).collect();
-            if let Some(row) = si.iter().position(|v| !v.is_finite()) {
+            if let Some(row) = si.iter().position(|v| !is_plausible(*v)) {
                 return Err(RecordError::NotFinite {
                     place: table.place_of_row(row),
                     column: format!("{name} [{unit}]"),
-                    found: si[row].to_string(),
+                    found: crate::error::briefly(si[row]),
                 });
             }
             Column {

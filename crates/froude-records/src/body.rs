@@ -142,8 +142,21 @@ fn shape(s: &Section<'_>) -> Result<Shape, RecordError> {
     read(s)
 }
 
+/// Lengths that a body can have, m: from a grain to some ships. Beyond them stands a slip of the unit, and no mesh that resolves both ends.
+const LENGTHS_M: [f64; 2] = [1e-5, 1e3];
+
 fn need(s: &Section<'_>, key: &'static str) -> Result<f64, RecordError> {
-    s.positive(key, Dimension::LENGTH)?.ok_or_else(|| s.missing(key, "write it with its unit: \"60 mm\""))
+    let length_m =
+        s.positive(key, Dimension::LENGTH)?.ok_or_else(|| s.missing(key, "write it with its unit: \"60 mm\""))?;
+    let [least, most] = LENGTHS_M;
+    match s.get(key) {
+        Some(value) if !(least..=most).contains(&length_m) => Err(s.wrong(
+            key,
+            value,
+            format!("is {length_m} m; lengths of a body are from {least} m to {most} m: look at its unit"),
+        )),
+        _ => Ok(length_m),
+    }
 }
 
 fn section_of(s: &Section<'_>) -> Result<SemiAxes, RecordError> {

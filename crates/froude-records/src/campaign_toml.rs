@@ -303,7 +303,24 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
         angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
         repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
     };
+    at_most(s, &[out.configurations.len(), out.speed_m_s.len(), out.angle_rad.len(), out.repeats], MOST_OBSERVATIONS)?;
     Ok(out)
+}
+
+/// Most observations that one block of a plan makes.
+const MOST_OBSERVATIONS: usize = 1_000_000;
+
+/// What a section multiplies out to is held against a limit: each of its numbers may be small, and their product not.
+pub(crate) fn at_most(s: &Section<'_>, numbers: &[usize], most: usize) -> Result<(), RecordError> {
+    let product = numbers.iter().fold(1_usize, |product, n| product.saturating_mul(*n));
+    if product <= most {
+        return Ok(());
+    }
+    Err(RecordError::Value {
+        place: s.place(),
+        key: "repeats".to_owned(),
+        problem: format!("and the lists beside it multiply to {product}; at most {most} are made"),
+    })
 }
 
 /// One value, a list, or start, stop and step.

@@ -3,7 +3,7 @@
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::campaign_toml::{count, one_of, series};
+use crate::campaign_toml::{at_most, count, one_of, series};
 use crate::carriage::{
     AxisSpec, Calibration, CarriageCampaign, CarriagePlan, Directions, ForceSensorSpec, FrictionSweep, GainsSpec,
     LimitsSpec, Order, PulseTrain, RigKind, RigSpec, TwinTruth, WarmUp,
@@ -123,7 +123,7 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
         command_v: limit("command_limit", Dimension::VOLTAGE, "write the amplifier's input range, \"10 V\", say")?,
         current_a: limit("current_limit", Dimension::CURRENT, "write the motor's peak current, \"3.5 A\", say")?,
         continuous_current_a: s.positive("continuous_current_limit", Dimension::CURRENT)?,
-        thermal_time_s: s.positive("thermal_time", Dimension::TIME)?,
+        thermal_time_s: duration(s, "thermal_time")?,
         following_error_m: s.positive("following_error_limit", Dimension::LENGTH)?,
     };
     let constant = |key, dimension, advice: &str| {
@@ -281,10 +281,13 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
     ])?;
     let need = |key, dimension, advice: &str| s.positive(key, dimension)?.ok_or_else(|| s.missing(key, advice));
     let (settling_dry_s, settling_wet_s) = settling(s)?;
+    let speed_m_s = speeds(s, "speeds")?;
+    let repeats = count(s, "repeats", 10_000)?.unwrap_or(1);
+    at_most(s, &[speed_m_s.len(), repeats], MOST_RUNS)?;
     Ok(CarriagePlan {
         axis: one_of(s, "axis", &Axis::NAMES, &Axis::ALL)?.unwrap_or_default(),
-        speed_m_s: speeds(s, "speeds")?,
-        repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
+        speed_m_s,
+        repeats,
         order: one_of(s, "order", &Order::NAMES, &Order::ALL)?.unwrap_or_default(),
         directions: one_of(s, "directions", &Directions::NAMES, &Directions::ALL)?.unwrap_or_default(),
         distance_m: need("distance", Dimension::LENGTH, "write the travel of a run with its ramps, \"2.2 m\", say")?,
@@ -297,7 +300,7 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         jerk_m_s3: s.positive("jerk", JERK)?,
         settling_dry_s,
         settling_wet_s,
-        still_s: s.positive("still", Dimension::TIME)?.unwrap_or(0.0),
+        still_s: duration(s, "still")?.unwrap_or(0.0),
         warm_up: s.section("warm_up")?.map(|s| warm_up(&s)).transpose()?,
         friction: s.section("friction_sweep")?.map(|s| friction_sweep(&s)).transpose()?,
         calibration: s.section("calibration")?.map(|s| calibration(&s)).transpose()?,
@@ -309,6 +312,23 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         place: s.place(),
     })
 }
+
+/// Longest time that a campaign names for anything: a day.
+const LONGEST_S: f64 = 86_400.0;
+
+/// A time larger than zero.
+fn duration(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, RecordError> {
+    let time_s = s.positive(key, Dimension::TIME)?;
+    match (time_s, s.get(key)) {
+        (Some(time_s), Some(value)) if time_s > LONGEST_S => {
+            Err(s.wrong(key, value, format!("is {time_s:e} s; nothing of a campaign takes longer than {LONGEST_S} s")))
+        }
+        _ => Ok(time_s),
+    }
+}
+
+/// Most runs that a speed list and its repeats make, each way.
+const MOST_RUNS: usize = 10_000;
 
 /// Speeds larger than zero, increasing, none twice.
 fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
@@ -350,21 +370,19 @@ fn fraction(s: &Section<'_>, key: &'static str, what: &str) -> Result<Option<f64
 fn settling(s: &Section<'_>) -> Result<(f64, f64), RecordError> {
     let Some(value) = s.get("settling") else { return Ok((0.0, 0.0)) };
     if value.get_ref().as_table().is_none() {
-        let both = s.positive("settling", Dimension::TIME)?.unwrap_or(0.0);
+        let both = duration(s, "settling")?.unwrap_or(0.0);
         return Ok((both, both));
     }
     let table = s.as_section("settling", value)?;
     table.only(&["dry", "wet"])?;
-    let wait = |key| Ok::<_, RecordError>(table.positive(key, Dimension::TIME)?.unwrap_or(0.0));
+    let wait = |key| Ok::<_, RecordError>(duration(&table, key)?.unwrap_or(0.0));
     Ok((wait("dry")?, wait("wet")?))
 }
 
 fn warm_up(s: &Section<'_>) -> Result<WarmUp, RecordError> {
     s.only(&["duration", "speed"])?;
     Ok(WarmUp {
-        duration_s: s
-            .positive("duration", Dimension::TIME)?
-            .ok_or_else(|| s.missing("duration", "write how long, \"10 min\", say"))?,
+        duration_s: duration(s, "duration")?.ok_or_else(|| s.missing("duration", "write how long, \"10 min\", say"))?,
         speed_m_s: s
             .positive("speed", Dimension::SPEED)?
             .ok_or_else(|| s.missing("speed", "write how fast, \"0.3 m/s\", say"))?,
@@ -373,7 +391,9 @@ fn warm_up(s: &Section<'_>) -> Result<WarmUp, RecordError> {
 
 fn friction_sweep(s: &Section<'_>) -> Result<FrictionSweep, RecordError> {
     s.only(&["speeds", "repeats"])?;
-    Ok(FrictionSweep { speed_m_s: speeds(s, "speeds")?, repeats: count(s, "repeats", 10_000)?.unwrap_or(1) })
+    let (speed_m_s, repeats) = (speeds(s, "speeds")?, count(s, "repeats", 10_000)?.unwrap_or(1));
+    at_most(s, &[speed_m_s.len(), repeats], MOST_RUNS)?;
+    Ok(FrictionSweep { speed_m_s, repeats })
 }
 
 fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
@@ -397,14 +417,14 @@ fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
 
 fn excitation(s: &Section<'_>) -> Result<PulseTrain, RecordError> {
     s.only(&["amplitude", "period", "duty", "duration"])?;
-    let need = |key, dimension, example: &str| {
-        s.positive(key, dimension)?.ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", say")))
+    let need = |value: Option<f64>, key, example: &str| {
+        value.ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", say")))
     };
     Ok(PulseTrain {
-        amplitude_v: need("amplitude", Dimension::VOLTAGE, "2 V")?,
-        period_s: need("period", Dimension::TIME, "1 s")?,
+        amplitude_v: need(s.positive("amplitude", Dimension::VOLTAGE)?, "amplitude", "2 V")?,
+        period_s: need(duration(s, "period")?, "period", "1 s")?,
         duty: fraction(s, "duty", "the part of a period that is on")?
             .ok_or_else(|| s.missing("duty", "write duty = \"60 %\", say"))?,
-        duration_s: need("duration", Dimension::TIME, "20 s")?,
+        duration_s: need(duration(s, "duration")?, "duration", "20 s")?,
     })
 }

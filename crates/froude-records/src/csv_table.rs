@@ -18,8 +18,9 @@ use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::Path;
 
-use crate::assemble::{Raw, assemble, number, plan};
+use crate::assemble::{Raw, Room, assemble, number, plan};
 use crate::error::{Place, RecordError, read_bytes, utf8};
+use crate::memory;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::units::Unit;
@@ -73,6 +74,7 @@ pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<T
         .collect();
     let is_left_out: Vec<bool> = wants.iter().map(|want| matches!(want, crate::assemble::Want::LeftOut)).collect();
     let mut lines = Vec::new();
+    let mut room = Room::new(path);
     while let Some(line) = records.next(&mut cells)? {
         if cells.len() != header.len() {
             return Err(RecordError::RaggedRow {
@@ -85,13 +87,14 @@ pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<T
             match raw {
                 Raw::Numbers(values) => {
                     let advice = || wants[j].advice(path, sidecar);
-                    values.push(number(cell.trim(), &header[j], &|| Place::line(path, line), &advice)?);
+                    let value = number(cell.trim(), &header[j], &|| Place::line(path, line), &advice)?;
+                    room.number(values, value)?;
                 }
                 Raw::Texts(_) if is_left_out[j] => {}
-                Raw::Texts(texts) => texts.push(unguarded(cell).to_owned()),
+                Raw::Texts(texts) => room.text(texts, unguarded(cell), &|| Place::line(path, line))?,
             }
         }
-        lines.push(line);
+        memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
     }
     assemble(path, &header, &wants, raws, sidecar, &header_place, lines)
 }

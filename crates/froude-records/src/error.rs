@@ -3,6 +3,8 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::memory::{Exhausted, reserve};
+
 /// Where in a file something stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
@@ -127,6 +129,14 @@ pub enum RecordError {
         limit: u64,
         /// What kind of file it was read as.
         what: &'static str,
+    },
+    /// The machine has not the memory that the file needs.
+    #[error("{}: {source}; close other programs, or read a smaller file", path.display())]
+    Memory {
+        /// The file.
+        path: PathBuf,
+        /// How much it needs.
+        source: Exhausted,
     },
     /// The name of the file does not say what it is.
     #[error("{}: tables are read from .csv and .parquet files", path.display())]
@@ -307,7 +317,7 @@ pub enum RecordError {
         found: String,
     },
     /// A cell with NaN or an infinity.
-    #[error("{place}: column `{column}`: `{found}` is not a finite number; correct it or delete the row")]
+    #[error("{place}: column `{column}`: `{found}` is {}; correct it or delete the row", not_plausible(.found))]
     NotFinite {
         /// Where.
         place: Place,
@@ -426,7 +436,21 @@ impl RecordError {
     /// True where writing failed: the machine is at fault, not the input.
     #[must_use]
     pub fn is_output(&self) -> bool {
-        matches!(self, Self::Write { .. } | Self::NonFinite { .. } | Self::Recording { .. } | Self::RunExists { .. })
+        matches!(
+            self,
+            Self::Memory { .. }
+                | Self::Write { .. }
+                | Self::NonFinite { .. }
+                | Self::Recording { .. }
+                | Self::RunExists { .. }
+        )
+    }
+}
+
+impl RecordError {
+    /// The file that the memory was asked for.
+    pub(crate) fn memory(path: &Path, source: Exhausted) -> Self {
+        Self::Memory { path: path.to_owned(), source }
     }
 }
 
@@ -457,7 +481,8 @@ pub(crate) fn read_bytes(path: &Path, limit: u64, what: &'static str) -> Result<
     if bytes > limit {
         return Err(RecordError::TooLarge { path: path.to_owned(), bytes, limit, what });
     }
-    let mut content = Vec::with_capacity(bytes as usize + 1);
+    let mut content = Vec::new();
+    reserve(&mut content, bytes as usize + 1).map_err(|e| RecordError::memory(path, e))?;
     // A pipe or a growing file has no honest length: stop one byte past the limit.
     file.take(limit + 1).read_to_end(&mut content).map_err(failed)?;
     if content.len() as u64 > limit {
@@ -477,6 +502,19 @@ pub(crate) fn utf8<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, RecordEr
             problem: "the text is not UTF-8; save the file as UTF-8".to_owned(),
         }
     })
+}
+
+/// A number that may have three hundred digits.
+pub(crate) fn briefly(number: f64) -> String {
+    if number.is_finite() && number.abs() >= 1e15 { format!("{number:e}") } else { number.to_string() }
+}
+
+/// What is wrong with a number that is NaN, infinite, or beyond what is taken for a measurement.
+fn not_plausible(found: &str) -> String {
+    match found.parse::<f64>() {
+        Ok(x) if x.is_finite() => format!("beyond {:e} in SI, as no quantity of a test is", crate::units::LARGEST_SI),
+        _ => "not a finite number".to_owned(),
+    }
 }
 
 /// What to do about a number that is written with a decimal comma.

@@ -34,6 +34,7 @@ pub mod hash;
 pub mod json;
 pub mod keep;
 pub mod manifest;
+pub mod memory;
 pub mod nearest;
 mod parquet_sums;
 pub mod parquet_table;

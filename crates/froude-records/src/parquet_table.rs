@@ -23,7 +23,7 @@ use parquet::file::reader::{ChunkReader, FileReader as _, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use crate::assemble::{Raw, Want, assemble, plan};
+use crate::assemble::{Raw, Room, Want, assemble, plan};
 use crate::error::{Place, RecordError, reason};
 use crate::parquet_sums;
 use crate::sidecar::Sidecar;
@@ -33,8 +33,15 @@ use crate::write::Prepared;
 /// Most rows that are read into memory.
 const MOST_ROWS: i64 = 50_000_000;
 
-/// Most bytes of cells, decompressed.
-const LARGEST_BYTES: i64 = 16 << 30;
+/// Most bytes of pages, unpacked.
+const LARGEST_BYTES: i64 = 2 << 30;
+
+/// Largest file.
+const LARGEST_FILE: u64 = 2 << 30;
+
+/// What a column of numbers unpacks to at most: so much a row, as numbers or as a dictionary with its places, and so much beside.
+const BYTES_A_ROW: i64 = 24;
+const BYTES_BESIDE: i64 = 1 << 20;
 
 /// Reads a Parquet table, through a sidecar if there is one.
 ///
@@ -69,6 +76,10 @@ pub fn parse_parquet<R: ChunkReader + 'static>(
 fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
     let damaged = |e: ParquetError| RecordError::Damaged { path: path.to_owned(), reason: in_words(&e) };
     let length = source.len();
+    if length > LARGEST_FILE {
+        let what = "a Parquet table";
+        return Err(RecordError::TooLarge { path: path.to_owned(), bytes: length, limit: LARGEST_FILE, what });
+    }
     let reader = SerializedFileReader::new(source).map_err(damaged)?;
     check_sizes(path, reader.metadata(), length)?;
     let whole = Place::whole(path);
@@ -87,6 +98,12 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
     if fields.is_empty() {
         return Err(RecordError::NoRows { path: path.to_owned() });
     }
+    // Nothing is unpacked for cells that would not be kept: a kilobyte can stand for as many rows as a footer cares to count.
+    let rows = u64::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0);
+    let of = |raw: &Raw| if matches!(raw, Raw::Numbers(_)) { size_of::<f64>() } else { size_of::<String>() } as u64;
+    let kept = wants.iter().zip(&raws).filter(|(want, _)| !matches!(want, Want::LeftOut));
+    Room::new(path).take(kept.map(|(_, raw)| of(raw)).sum::<u64>().saturating_mul(rows))?;
+    let mut room = Room::new(path);
     let descriptions = reader.metadata().file_metadata().schema_descr_ptr();
     let mut first_row = 1;
     for g in 0..reader.num_row_groups() {
@@ -96,7 +113,9 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
             if matches!(want, Want::LeftOut) {
                 continue;
             }
-            let pages = Box::new(Checked(group.get_column_page_reader(j).map_err(damaged)?));
+            let pages = group.get_column_page_reader(j).map_err(damaged)?;
+            let left = u64::try_from(group.metadata().column(j).uncompressed_size()).unwrap_or(0);
+            let pages = Box::new(Checked { pages, left });
             let column = get_column_reader(descriptions.column(j), pages);
             let is_unsigned = matches!(
                 fields[j].get_basic_info().logical_type_ref(),
@@ -104,7 +123,7 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
             );
             let advice = || want.advice(path, sidecar);
             let cells = Cells { path, column: &header[j], advice: &advice, first_row, n_rows };
-            cells.read(column, is_unsigned, &mut raws[j])?;
+            cells.read(column, is_unsigned, &mut raws[j], &mut room)?;
         }
         first_row += n_rows;
     }
@@ -140,12 +159,24 @@ fn check_sums(
 /// Pages whose claims are held against their bytes before the decoder allocates for them.
 ///
 /// The decoder reserves memory for as many dictionary entries as a page's header says; a
-/// damaged header can say two thousand million, and running out of memory cannot be caught.
-struct Checked(Box<dyn PageReader>);
+/// damaged header can say two thousand million, and running out of memory cannot be caught. A page is unpacked before it can be
+/// seen here; more of them than the footer promised are not.
+struct Checked {
+    pages: Box<dyn PageReader>,
+    /// Bytes that the footer still promises.
+    left: u64,
+}
 
 impl PageReader for Checked {
     fn get_next_page(&mut self) -> parquet::errors::Result<Option<Page>> {
-        let page = self.0.get_next_page()?;
+        let page = self.pages.get_next_page()?;
+        if let Some(page) = &page {
+            let bytes = page.buffer().len() as u64;
+            self.left = self
+                .left
+                .checked_sub(bytes)
+                .ok_or_else(|| ParquetError::General("its pages unpack to more than its footer says".to_owned()))?;
+        }
         // Numbers and lengths of texts take four bytes at least.
         if let Some(Page::DictionaryPage { buf, num_values, .. }) = &page
             && *num_values as usize > buf.len() / 4
@@ -159,15 +190,15 @@ impl PageReader for Checked {
     }
 
     fn peek_next_page(&mut self) -> parquet::errors::Result<Option<PageMetadata>> {
-        self.0.peek_next_page()
+        self.pages.peek_next_page()
     }
 
     fn skip_next_page(&mut self) -> parquet::errors::Result<()> {
-        self.0.skip_next_page()
+        self.pages.skip_next_page()
     }
 
     fn at_record_boundary(&mut self) -> parquet::errors::Result<bool> {
-        self.0.at_record_boundary()
+        self.pages.at_record_boundary()
     }
 }
 
@@ -198,25 +229,30 @@ impl Cells<'_> {
         RecordError::Damaged { path: self.path.to_owned(), reason }
     }
 
-    fn read(&self, column: ColumnReader, is_unsigned: bool, raw: &mut Raw) -> Result<(), RecordError> {
+    fn read(
+        &self,
+        column: ColumnReader,
+        is_unsigned: bool,
+        raw: &mut Raw,
+        room: &mut Room<'_>,
+    ) -> Result<(), RecordError> {
         match (column, raw) {
-            (ColumnReader::DoubleColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| *x),
-            (ColumnReader::FloatColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| f64::from(*x)),
+            (ColumnReader::DoubleColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| *x),
+            (ColumnReader::FloatColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| f64::from(*x)),
             (ColumnReader::Int32ColumnReader(c), Raw::Numbers(out)) if is_unsigned => {
-                self.numbers(c, out, |x| f64::from(x.cast_unsigned()))
+                self.numbers(c, out, room, |x| f64::from(x.cast_unsigned()))
             }
-            (ColumnReader::Int32ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| f64::from(*x)),
+            (ColumnReader::Int32ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| f64::from(*x)),
             (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) if is_unsigned => {
-                self.numbers(c, out, |x| x.cast_unsigned() as f64)
+                self.numbers(c, out, room, |x| x.cast_unsigned() as f64)
             }
-            (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, |x| *x as f64),
+            (ColumnReader::Int64ColumnReader(c), Raw::Numbers(out)) => self.numbers(c, out, room, |x| *x as f64),
             (ColumnReader::ByteArrayColumnReader(c), Raw::Texts(out)) => self.each(c, |row, cell| {
                 let text = std::str::from_utf8(cell.map_or(&[], ByteArray::data)).map_err(|_| RecordError::Syntax {
                     place: self.place(row),
                     problem: format!("column `{}`: the text is not UTF-8", self.column),
                 })?;
-                out.push(text.to_owned());
-                Ok(())
+                room.text(out, text, &|| self.place(row))
             }),
             _ => Err(self.damaged(format!("column {} is of another type than its schema says", self.column))),
         }
@@ -226,6 +262,7 @@ impl Cells<'_> {
         &self,
         column: ColumnReaderImpl<T>,
         out: &mut Vec<f64>,
+        room: &mut Room<'_>,
         number: impl Fn(&T::T) -> f64,
     ) -> Result<(), RecordError> {
         self.each(column, |row, cell| {
@@ -244,8 +281,7 @@ impl Cells<'_> {
                     found: value.to_string(),
                 });
             }
-            out.push(value);
-            Ok(())
+            room.number(out, value)
         })
     }
 
@@ -291,6 +327,12 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
     }
     let damaged =
         || RecordError::Damaged { path: path.to_owned(), reason: "its footer names bytes beyond its end".to_owned() };
+    let too_large = |bytes: i64| RecordError::TooLarge {
+        path: path.to_owned(),
+        bytes: bytes.unsigned_abs(),
+        limit: LARGEST_BYTES.unsigned_abs(),
+        what: "the pages of a table, unpacked",
+    };
     let mut decompressed = 0_i64;
     let mut counted = 0_i64;
     for group in metadata.row_groups() {
@@ -309,6 +351,18 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
             {
                 return Err(damaged());
             }
+            let is_number = chunk.column_type() != Physical::BYTE_ARRAY;
+            let most = group.num_rows().saturating_mul(BYTES_A_ROW).saturating_add(BYTES_BESIDE);
+            if is_number && chunk.uncompressed_size() > most {
+                return Err(RecordError::Damaged {
+                    path: path.to_owned(),
+                    reason: format!(
+                        "its footer gives {} bytes to {} numbers",
+                        chunk.uncompressed_size(),
+                        group.num_rows()
+                    ),
+                });
+            }
             decompressed = decompressed.saturating_add(chunk.uncompressed_size());
         }
     }
@@ -319,12 +373,7 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
         });
     }
     if decompressed > LARGEST_BYTES {
-        return Err(RecordError::TooLarge {
-            path: path.to_owned(),
-            bytes: decompressed.unsigned_abs(),
-            limit: LARGEST_BYTES.unsigned_abs(),
-            what: "the cells of a table",
-        });
+        return Err(too_large(decompressed));
     }
     Ok(())
 }

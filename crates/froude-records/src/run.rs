@@ -26,6 +26,7 @@
 //!
 //! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-identify`'s.
 
+mod allowance;
 mod file;
 mod import;
 mod layout;

@@ -10,7 +10,10 @@ use toml::de::{DeTable, DeValue};
 use crate::error::{Place, RecordError};
 use crate::nearest::{nearest, suggestion};
 use crate::table::usual_unit_for;
-use crate::units::{Dimension, Quantity, parse_quantity};
+use crate::units::{Dimension, LARGEST_SI, Quantity, is_plausible, parse_quantity};
+
+/// Longest text of a key, in bytes: a formula has some hundreds, a citation fewer.
+const LONGEST_TEXT: usize = 10_000;
 
 /// A file's text and path, for lines in messages.
 #[derive(Debug, Clone, Copy)]
@@ -134,10 +137,15 @@ impl<'a> Section<'a> {
     }
 
     pub fn as_text(&self, key: &str, value: &'a Spanned<DeValue<'a>>) -> Result<&'a str, RecordError> {
-        value
-            .get_ref()
-            .as_str()
-            .ok_or_else(|| self.wrong(key, value, format!("is {}; expected a text in quotes", found(value))))
+        match value.get_ref().as_str() {
+            Some(text) if text.len() > LONGEST_TEXT => Err(self.wrong(
+                key,
+                value,
+                format!("has {} bytes of text; at most {LONGEST_TEXT} are read", text.len()),
+            )),
+            Some(text) => Ok(text),
+            None => Err(self.wrong(key, value, format!("is {}; expected a text in quotes", found(value)))),
+        }
     }
 
     pub fn flag(&self, key: &'static str) -> Result<Option<bool>, RecordError> {
@@ -161,7 +169,12 @@ impl<'a> Section<'a> {
             _ => return Err(self.wrong(key, value, format!("is {}; expected a number", found(value)))),
         };
         match text.replace('_', "").parse::<f64>() {
-            Ok(x) if x.is_finite() => Ok(x),
+            Ok(x) if is_plausible(x) => Ok(x),
+            Ok(x) if x.is_finite() => Err(self.wrong(
+                key,
+                value,
+                format!("is {text}; no number of a test is beyond {LARGEST_SI:e} in SI: correct it"),
+            )),
             _ => Err(self.wrong(key, value, format!("is {text}; expected a finite number"))),
         }
     }

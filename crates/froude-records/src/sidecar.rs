@@ -9,7 +9,7 @@ use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
 use crate::table::{Column, ColumnData, is_text_column, known_dimension};
-use crate::units::{Dimension, Quantity, Unit, parse_unit};
+use crate::units::{Dimension, Quantity, Unit, is_plausible, parse_unit};
 
 const LARGEST_BYTES: u64 = 1 << 20;
 
@@ -207,12 +207,12 @@ impl Sidecar {
             (None, None) => ColumnData::Text(Vec::new()),
         };
         if let ColumnData::Number { si, .. } = &data
-            && let Some(row) = si.iter().position(|v| !v.is_finite())
+            && let Some(row) = si.iter().position(|v| !is_plausible(*v))
         {
             return Err(RecordError::NotFinite {
                 place: place(row),
                 column: written.to_owned(),
-                found: si[row].to_string(),
+                found: crate::error::briefly(si[row]),
             });
         }
         Ok(data)

@@ -390,8 +390,8 @@ pub enum UnitError {
         /// The same with a point.
         point: String,
     },
-    /// A number beyond the range of a double.
-    #[error("`{text}` is not a finite number")]
+    /// A number beyond [`LARGEST_SI`].
+    #[error("`{text}` is not a finite number, or beyond {LARGEST_SI:e} in SI, as no quantity of a test is")]
     NotFinite {
         /// As written.
         text: String,
@@ -476,10 +476,20 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
     }
     let unit = parse_unit(unit)?;
     let value_si = unit.to_si(value);
-    if !value_si.is_finite() {
+    if !is_plausible(value_si) {
         return Err(UnitError::NotFinite { text: shorten(text) });
     }
     Ok(Quantity { value, value_si, unit })
+}
+
+/// Largest number that is taken for a measurement or a declaration, in SI. No test has a quantity near it, and its fourth power, which
+/// sums of squares of products reach, is a number still.
+pub const LARGEST_SI: f64 = 1e50;
+
+/// Whether a number can be one of a test: finite, and not beyond [`LARGEST_SI`].
+#[must_use]
+pub fn is_plausible(value_si: f64) -> bool {
+    value_si.abs() <= LARGEST_SI
 }
 
 /// Bytes of `text` that make up a decimal number at its beginning; 0 for none.

@@ -222,7 +222,7 @@ fn draw(canvas: &mut Canvas, frame: &Panel, series: &Series, scales: (Scale, Sca
                     && drawable(high)
                     && drawable(x)
                 {
-                    let cut = |y: f64| frame.at_y(y.clamp(frame.y.low, frame.y.high));
+                    let cut = |y: f64| frame.at_y(y.max(frame.y.low).min(frame.y.high));
                     canvas.line((frame.at_x(x), cut(low)), (frame.at_x(x), cut(high)), ink, 1.2);
                 }
                 if let Some(at) = frame.at(x, y) {

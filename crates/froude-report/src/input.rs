@@ -80,6 +80,8 @@ pub struct SourceSection {
     pub budget: Vec<BudgetRow>,
     /// The contest of the models, one row per model and load component.
     pub selection: Vec<SelectionRow>,
+    /// Models that were asked for and could not be fitted, each with the reason.
+    pub not_fitted: Vec<(String, String)>,
     /// F tests between nested models.
     pub tests: Vec<NestedTest>,
     /// Which model is recommended and why, in a sentence or two.

@@ -270,9 +270,10 @@ impl Page<'_> {
             parts.push(self.figures_at(Place::Budget(i)));
             parts.push(self.tables.budget(source));
         }
-        if !source.selection.is_empty() || !source.tests.is_empty() {
+        let has_contest = !source.selection.is_empty() || !source.not_fitted.is_empty();
+        if has_contest || !source.tests.is_empty() {
             parts.push(self.part("selection", "Model selection"));
-            if !source.selection.is_empty() {
+            if has_contest {
                 parts.push(self.tables.selection(source));
             }
             if !source.tests.is_empty() {

@@ -247,7 +247,7 @@ impl Panel {
 
     /// A band, cut at the panel's edges.
     pub(crate) fn band(&self, x: &[f64], low: &[f64], high: &[f64]) -> Vec<Xy> {
-        let cut = |y: f64| self.at_y(y.clamp(self.y.low, self.y.high));
+        let cut = |y: f64| self.at_y(y.max(self.y.low).min(self.y.high));
         let places: Vec<(f64, f64, f64)> = x
             .iter()
             .zip(low.iter().zip(high))

@@ -524,6 +524,14 @@ impl Tables {
                             @for r in own() { (row(r)) }
                         }
                     }
+                    @if !source.not_fitted.is_empty() {
+                        tbody {
+                            tr class="group" { th scope="rowgroup" colspan=(n_columns) { "Not fitted" } }
+                            @for (model, why) in &source.not_fitted {
+                                tr { th scope="row" { (model) } td colspan=(n_columns - 1) { (why) } }
+                            }
+                        }
+                    }
                 }
             }
             @if !reasons.is_empty() {

@@ -45,11 +45,15 @@ pub mod prelude {
 ///
 /// # Errors
 ///
-/// A record that cannot be read.
+/// A record that cannot be read, more estimates than are compared.
 pub fn compare_files(paths: &[std::path::PathBuf]) -> Result<identify::compare::Comparison, Error> {
     let files = paths
         .iter()
         .map(|path| Ok((path.display().to_string(), records::json::read_estimates(path)?)))
         .collect::<Result<Vec<_>, Error>>()?;
-    Ok(identify::compare::compare(&identify::compare::named(&files)))
+    let all = identify::compare::named(&files);
+    if all.len() > identify::compare::MOST_COMPARED {
+        return Err(Error::Nothing(identify::compare::too_many(all.len())));
+    }
+    Ok(identify::compare::compare(&all))
 }

@@ -201,6 +201,7 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
         facts: facts(source),
         estimates: source.estimates.clone(),
         selection: selection(source),
+        not_fitted: source.not_fitted.iter().map(|n| (n.model.clone(), n.why.clone())).collect(),
         tests: source
             .tests
             .iter()

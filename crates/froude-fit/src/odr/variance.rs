@@ -72,7 +72,7 @@ impl Variance {
             let mut change = 0.0_f64;
             for (&k, step) in self.estimated.iter().zip(step) {
                 let old = self.sigma[k] * self.sigma[k];
-                let new = (old + step).clamp(0.1 * old, 10.0 * old).sqrt().max(self.floor[k]);
+                let new = (old + step).max(0.1 * old).min(10.0 * old).sqrt().max(self.floor[k]);
                 change = change.max((new / self.sigma[k] - 1.0).abs());
                 self.sigma[k] = new;
             }

@@ -1,11 +1,14 @@
 //! Prediction of each group from all others.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+
+use faer::Mat;
 
 use super::{ComponentScore, Score, predicting, training};
+use crate::block::{Block, blocks};
 use crate::error::FitError;
 use crate::linear::fit;
-use crate::options::Options;
+use crate::options::{Loss, Options};
 use crate::problem::{Problem, size};
 
 /// How well left-out groups are predicted.
@@ -41,17 +44,29 @@ pub fn leave_one_group_out(
     options.check(problem)?;
     let n = problem.n_rows();
     size("groups", groups.len(), n, "one per row of the design")?;
-    let all: BTreeSet<usize> = groups.iter().copied().collect();
+    let mut rows_of: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for (i, &group) in groups.iter().enumerate() {
+        rows_of.entry(group).or_default().push(i);
+    }
     let options = predicting(options);
+    let mut others: Box<dyn Others + '_> = if is_weighed_alone(problem, &options)? {
+        Box::new(Condensed::new(problem, rows_of.values()))
+    } else {
+        if rows_of.len().saturating_mul(n) > MOST_REFITTED {
+            let reason = format!(
+                "{} groups of {n} rows in all would be fitted anew one by one; at most {MOST_REFITTED} rows are",
+                rows_of.len()
+            );
+            return Ok(not_scored(problem, &reason));
+        }
+        Box::new(Whole { problem, groups })
+    };
     // Error of each row, or the group that leaves it undetermined.
     let mut error: Vec<Result<f64, usize>> = vec![Ok(0.0); n];
-    for &group in &all {
-        let (test, train): (Vec<usize>, Vec<usize>) = (0..n).partition(|&i| groups[i] == group);
-        if train.is_empty() {
-            continue;
-        }
-        let fitted = fit(&training(problem, &train), &options)?;
-        for i in test {
+    for (k, (&group, test)) in rows_of.iter().enumerate() {
+        let Some(training) = others.than(k, group) else { continue };
+        let fitted = fit(&training, &options)?;
+        for &i in test {
             let row = crate::dense::row(problem.design.as_ref(), i);
             error[i] = fitted.predict(&row).map(|p| problem.response[i] - p.value).ok_or(group);
         }
@@ -67,6 +82,123 @@ pub fn leave_one_group_out(
         .collect())
 }
 
+/// Most rows that are fitted again and again, groups times rows, where every fit needs all of them.
+const MOST_REFITTED: usize = 5_000_000;
+
+fn not_scored(problem: &Problem, reason: &str) -> Vec<ComponentScore<GroupScore>> {
+    let score = |name: &String| ComponentScore {
+        component: name.clone(),
+        score: Score::NotScorable { reason: reason.to_owned() },
+    };
+    problem.components.iter().map(score).collect()
+}
+
+/// Whether the coefficients do not hang on how the components' scatters compare: no two components share one, nothing is known before,
+/// and every row counts by its square.
+fn is_weighed_alone(problem: &Problem, options: &Options) -> Result<bool, FitError> {
+    let is_alone = |block: &Block| block.components.len() == 1 && block.priors.is_empty();
+    Ok(options.loss == Loss::Squares && blocks(problem, options)?.iter().all(is_alone))
+}
+
+/// The problem without one group.
+trait Others {
+    /// Without group number `k`, whose name is `group`; `None` where nothing is left.
+    fn than(&mut self, k: usize, group: usize) -> Option<Problem>;
+}
+
+/// All rows of all other groups.
+struct Whole<'a> {
+    problem: &'a Problem,
+    groups: &'a [usize],
+}
+
+impl Others for Whole<'_> {
+    fn than(&mut self, _: usize, group: usize) -> Option<Problem> {
+        let train: Vec<usize> = (0..self.groups.len()).filter(|&i| self.groups[i] != group).collect();
+        (!train.is_empty()).then(|| training(self.problem, &train))
+    }
+}
+
+/// The triangles of the other groups: least squares on `R` and `Qᵀy` is that on the rows.
+///
+/// Those before a group and those behind it are kept for every group, each made from its neighbour by one small factorisation: the cost
+/// grows with the rows and not with groups times rows, and nothing is ever subtracted.
+struct Condensed<'a> {
+    problem: &'a Problem,
+    /// By component, then by group: what stands before it.
+    before: Vec<Vec<Mat<f64>>>,
+    /// The same of what stands behind it.
+    behind: Vec<Vec<Mat<f64>>>,
+}
+
+impl<'a> Condensed<'a> {
+    fn new<'g>(problem: &'a Problem, groups: impl Iterator<Item = &'g Vec<usize>>) -> Self {
+        let p = problem.n_coefficients();
+        let groups: Vec<&Vec<usize>> = groups.collect();
+        let entry = |i: usize, j: usize| {
+            let root = problem.weight.as_ref().map_or(1.0, |w| w[i].sqrt());
+            root * if j < p { problem.design[(i, j)] } else { problem.response[i] }
+        };
+        // Triangle of what came before, group after group in the order given.
+        let sweep = |component: usize, order: &mut dyn Iterator<Item = usize>| -> Vec<Mat<f64>> {
+            let mut so_far = Mat::zeros(0, p + 1);
+            let mut out = Vec::with_capacity(groups.len());
+            for k in order {
+                let own: Vec<usize> =
+                    groups[k].iter().copied().filter(|&i| problem.component[i] == component).collect();
+                let stacked = Mat::from_fn(so_far.nrows() + own.len(), p + 1, |i, j| {
+                    if i < so_far.nrows() { so_far[(i, j)] } else { entry(own[i - so_far.nrows()], j) }
+                });
+                out.push(std::mem::replace(&mut so_far, triangle(stacked)));
+            }
+            out
+        };
+        let components = 0..problem.components.len();
+        let before = components.clone().map(|c| sweep(c, &mut (0..groups.len()))).collect();
+        let behind = components.map(|c| {
+            let mut out = sweep(c, &mut (0..groups.len()).rev());
+            out.reverse();
+            out
+        });
+        Self { problem, before, behind: behind.collect() }
+    }
+}
+
+impl Others for Condensed<'_> {
+    fn than(&mut self, k: usize, _: usize) -> Option<Problem> {
+        let p = self.problem.n_coefficients();
+        let (mut rows, mut component, mut components) = (Vec::new(), Vec::new(), Vec::new());
+        for (c, name) in self.problem.components.iter().enumerate() {
+            let parts = [&self.before[c][k], &self.behind[c][k]];
+            if parts.iter().all(|part| part.nrows() == 0) {
+                continue;
+            }
+            for part in parts {
+                rows.extend((0..part.nrows()).map(|i| (part, i)));
+                component.extend(std::iter::repeat_n(components.len(), part.nrows()));
+            }
+            components.push(name.clone());
+        }
+        (!rows.is_empty()).then(|| Problem {
+            design: Mat::from_fn(rows.len(), p, |i, j| rows[i].0[(rows[i].1, j)]),
+            response: rows.iter().map(|(part, i)| part[(*i, p)]).collect(),
+            weight: None,
+            component,
+            components,
+            cluster: None,
+            names: self.problem.names.clone(),
+        })
+    }
+}
+
+/// The triangle of a matrix, or the matrix where it is no longer than that.
+fn triangle(matrix: Mat<f64>) -> Mat<f64> {
+    if matrix.nrows() <= matrix.ncols() {
+        return matrix;
+    }
+    matrix.qr().thin_R().to_owned()
+}
+
 fn score(rows: &[usize], groups: &[usize], error: &[Result<f64, usize>]) -> Score<GroupScore> {
     let present: BTreeSet<usize> = rows.iter().map(|&i| groups[i]).collect();
     if present.len() < FEWEST_GROUPS {
@@ -78,24 +210,24 @@ fn score(rows: &[usize], groups: &[usize], error: &[Result<f64, usize>]) -> Scor
             ),
         };
     }
-    let mut total = 0.0;
-    let mut worst = (0, -1.0);
-    for &group in &present {
-        let mut sum = 0.0;
-        let mut count = 0.0;
-        for &i in rows.iter().filter(|&&i| groups[i] == group) {
-            match error[i] {
-                Ok(e) => {
-                    sum += e * e;
-                    count += 1.0;
-                }
-                Err(group) => {
-                    return Score::NotScorable {
-                        reason: format!("without group {group} the others do not determine its prediction"),
-                    };
-                }
+    let mut squares: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
+    for &i in rows {
+        match error[i] {
+            Ok(e) => {
+                let (sum, count) = squares.entry(groups[i]).or_default();
+                *sum += e * e;
+                *count += 1.0;
+            }
+            Err(group) => {
+                return Score::NotScorable {
+                    reason: format!("without group {group} the others do not determine its prediction"),
+                };
             }
         }
+    }
+    let mut total = 0.0;
+    let mut worst = (0, -1.0);
+    for (group, (sum, count)) in squares {
         total += sum;
         let rmse = f64::sqrt(sum / count);
         if rmse > worst.1 {
@@ -108,4 +240,72 @@ fn score(rows: &[usize], groups: &[usize], error: &[Result<f64, usize>]) -> Scor
         worst_rmse: worst.1,
         n_groups: present.len(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Bound;
+
+    /// Forces of two components over five settings of three rows; `shared` gives both components one coefficient.
+    fn problem(shared: bool) -> (Problem, Vec<usize>) {
+        let speed = |i: usize| 0.1 + 0.07 * (i % 15) as f64;
+        let p = if shared { 3 } else { 4 };
+        let column = |i: usize| {
+            if i < 15 {
+                0
+            } else if shared {
+                1
+            } else {
+                2
+            }
+        };
+        let design = Mat::from_fn(30, p, |i, j| match j.checked_sub(column(i)) {
+            Some(0) => speed(i),
+            Some(1) => speed(i) * speed(i),
+            _ => 0.0,
+        });
+        let response = (0..30).map(|i| 2.0 * speed(i) + 5.0 * speed(i).powi(2) + 0.01 * ((7 * i % 11) as f64 - 5.0));
+        let problem = Problem {
+            design,
+            response: response.collect(),
+            weight: Some((0..30).map(|i| 1.0 + 0.1 * (i % 4) as f64).collect()),
+            component: (0..30).map(|i| i / 15).collect(),
+            components: vec!["f_x".into(), "f_y".into()],
+            cluster: None,
+            names: (0..p).map(|j| format!("c{j}")).collect(),
+        };
+        (problem, (0..30).map(|i| i % 15 / 3).collect())
+    }
+
+    /// Both ways to the same predictions, to rounding of problems of condition 30: 1e-12.
+    #[test]
+    fn condensed_groups_predict_what_their_rows_do() {
+        let (problem, groups) = problem(false);
+        let bounds = vec![Bound { lower: 2.05, upper: 9.0 }; 4];
+        for options in [Options::default(), Options { bounds, ..Options::default() }] {
+            assert!(is_weighed_alone(&problem, &options).unwrap());
+            let rows_of: Vec<Vec<usize>> = (0..5).map(|g| (0..30).filter(|&i| groups[i] == g).collect()).collect();
+            let mut condensed = Condensed::new(&problem, rows_of.iter());
+            let mut whole = Whole { problem: &problem, groups: &groups };
+            for g in 0..5 {
+                let [short, long] = [condensed.than(g, g), whole.than(g, g)].map(|p| p.unwrap());
+                assert_eq!((short.n_rows(), long.n_rows()), (20, 24));
+                let [short, long] = [short, long].map(|p| fit(&p, &options).unwrap());
+                for i in &rows_of[g] {
+                    let row = crate::dense::row(problem.design.as_ref(), *i);
+                    let [a, b] = [&short, &long].map(|f| f.predict(&row).unwrap().value);
+                    assert!((a - b).abs() < 1e-12 * b.abs(), "{a} {b}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn components_that_share_a_coefficient_are_weighed_by_their_scatter_and_fitted_whole() {
+        let (problem, groups) = problem(true);
+        assert!(!is_weighed_alone(&problem, &Options::default()).unwrap());
+        let scores = leave_one_group_out(&problem, &Options::default(), &groups).unwrap();
+        assert!(scores.iter().all(|s| matches!(s.score, Score::Scored(_))), "{scores:?}");
+    }
 }

@@ -128,7 +128,7 @@ pub fn cells(run: &DragRun<'_>, settings: SteadySettings) -> Vec<Cell> {
     let Ok(window) = window(run, settings) else { return Vec::new() };
     let speed_m_s = super::fsm::mean_speed(run, window);
     let travelled = (speed_m_s * window.len() as f64 * run.step_s()).abs();
-    let count = ((travelled / KNOT_SPACING_M).round() as usize).clamp(1, window.len());
+    let count = ((travelled / KNOT_SPACING_M).round() as usize).min(window.len()).max(1);
     let weights: Vec<f64> = taper(window.len()).collect();
     let even = weights.iter().sum::<f64>() / weights.len() as f64;
     (0..count)

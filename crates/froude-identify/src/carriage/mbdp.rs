@@ -180,6 +180,10 @@ struct Derivatives {
 
 impl Derivatives {
     fn of(column: &[f64], step_s: f64, span_s: f64) -> Self {
+        if column.len() < 3 {
+            // Not enough for a parabola.
+            return Self { value: column.to_vec(), acceleration: vec![0.0; column.len()] };
+        }
         let half = half_width(step_s, span_s, column.len());
         let m = half as f64;
         let n = 2.0 * m + 1.0;

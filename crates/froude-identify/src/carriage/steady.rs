@@ -335,7 +335,7 @@ pub fn driving_part(
     settings: SteadySettings,
 ) -> Result<Window, Rejected> {
     let command = from.of(run.command_v);
-    let span = ((SWING_S / run.step_s()).round() as usize).clamp(1, command.len());
+    let span = ((SWING_S / run.step_s()).round() as usize).min(command.len()).max(1);
     let needed_v = DRIVING * friction_v.abs();
     let mut sum: f64 = command[..span].iter().sum();
     let (mut after, mut least_v) = (0, f64::INFINITY);

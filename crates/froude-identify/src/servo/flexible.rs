@@ -348,13 +348,13 @@ impl Stepper {
             motor_limit_n += self.gear_loss * (self.stiffness_n_m * mean(0) + self.damping_n_s_m * mean(1)).abs();
         }
         // Friction that stops each mass at the end of the step, within its limit. The masses hardly act on each other within a
-        // step, so that two sweeps settle it.
+        // step, so that two sweeps settle it. No `clamp`: the limit of a motion that has run away is no number, and `check` says so.
         let [mut f_m, mut f_l] = moment.friction_n;
         for _ in 0..2 {
             let v = free[1] - on_load[1] * f_l;
-            f_m = (v / on_motor[1]).clamp(-motor_limit_n, motor_limit_n);
+            f_m = (v / on_motor[1]).max(-motor_limit_n).min(motor_limit_n);
             let v = free[3] - on_motor[3] * f_m;
-            f_l = (v / on_load[3]).clamp(-load_limit_n, load_limit_n);
+            f_l = (v / on_load[3]).max(-load_limit_n).min(load_limit_n);
         }
         let side = |f: f64, limit: f64| i8::from(f >= limit) - i8::from(f <= -limit);
         Moment {

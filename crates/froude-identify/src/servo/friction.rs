@@ -137,7 +137,7 @@ pub(crate) fn signum(v: f64) -> f64 {
 /// The piecewise linear function that is 1 at knot `k` and 0 at the others, constant beyond the ends.
 fn hat(knots: &[f64], k: usize, y: f64) -> f64 {
     let (low, high) = (knots[0], knots[knots.len() - 1]);
-    let y = y.clamp(low, high);
+    let y = y.max(low).min(high);
     if k > 0 && y < knots[k] {
         ((y - knots[k - 1]) / (knots[k] - knots[k - 1])).max(0.0)
     } else if k + 1 < knots.len() && y > knots[k] {

@@ -73,7 +73,7 @@ impl Rigid {
             if v * direction >= 0.0 {
                 return [position_m + dx, v];
             }
-            let stop_s = free.stop(velocity_m_s).clamp(0.0, left_s);
+            let stop_s = free.stop(velocity_m_s).max(0.0).min(left_s);
             position_m += free.after(velocity_m_s, stop_s)[0];
             velocity_m_s = 0.0;
             left_s -= stop_s;
@@ -144,7 +144,7 @@ impl Loop {
         let command = match *self {
             Self::Cascade { position_1_s, velocity_v_s_m, limit_v } => {
                 let speed_m_s = (position_m - memory.before_m[1]) / (2.0 * step_s);
-                (velocity_v_s_m * (position_1_s * error_m - speed_m_s)).clamp(-limit_v, limit_v)
+                (velocity_v_s_m * (position_1_s * error_m - speed_m_s)).max(-limit_v).min(limit_v)
             }
             Self::Pid { proportional_v_m, integral_v_m_s, derivative_v_s_m, limit_v } => {
                 let integral_m_s = memory.integral_m_s + error_m * step_s;
@@ -153,7 +153,7 @@ impl Loop {
                 if wanted.abs() <= limit_v {
                     memory.integral_m_s = integral_m_s;
                 }
-                wanted.clamp(-limit_v, limit_v)
+                wanted.max(-limit_v).min(limit_v)
             }
         };
         memory.before_m = [position_m, memory.before_m[0]];

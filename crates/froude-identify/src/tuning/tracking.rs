@@ -94,7 +94,7 @@ pub fn follow(modes: &TwoMassModes, gains: &LoopGains, forward: &Forward, ramp: 
             + forward.inertia_v_s2_rad * acceleration
             + forward.viscous_v_s_rad * speed
             + forward.coulomb_v * (speed / forward.full_friction_rad_s).clamp(-1.0, 1.0);
-        pending.push(wanted.clamp(-forward.limit_v, forward.limit_v));
+        pending.push(wanted.max(-forward.limit_v).min(forward.limit_v));
         let volts = pending.remove(0);
         (0..SUBSTEPS).for_each(|_| drive.step(volts, h));
         if !drive.motor_rad.is_finite() {

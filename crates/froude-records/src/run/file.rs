@@ -83,6 +83,11 @@ impl<R: Read + Seek> Walk<R> {
         Ok(is_mcap.then_some(Self { input, length, at: magic.len() as u64, sum, body: Vec::new() }))
     }
 
+    /// Bytes of the file.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+
     /// Back to the first record.
     pub fn rewind(&mut self) -> io::Result<()> {
         let at = (MAGIC.len() as u64).min(self.length);
@@ -247,12 +252,12 @@ fn is_needed(opcode: u8) -> bool {
 
 /// The records of a chunk, unpacked and checked; `unpacked` is memory that is used again.
 pub(crate) fn unpack<'a>(body: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'a [u8], String> {
+    unpacked.clear();
     let chunk = Chunk::parse(body).ok_or_else(|| "its head does not fit into it".to_owned())?;
     let Chunk { size, sum, packing, packed } = chunk;
     if size > LARGEST_CHUNK {
         return Err(format!("it unpacks to {size} bytes; at most {LARGEST_CHUNK} are read"));
     }
-    unpacked.clear();
     let limit = size + 1;
     let in_words = |e: io::Error| format!("it cannot be unpacked ({e})");
     let content = match packing {
@@ -289,6 +294,11 @@ pub(crate) fn unpack<'a>(body: &'a [u8], unpacked: &'a mut Vec<u8>) -> Result<&'
 pub(crate) fn records(mut content: &[u8]) -> impl Iterator<Item = Result<(u8, &[u8]), ()>> {
     std::iter::from_fn(move || {
         let (opcode, rest) = content.split_first()?;
+        if *opcode == 0 {
+            // No record begins so; 64 MiB of zeros would be seven million of them.
+            content = &[];
+            return Some(Err(()));
+        }
         let Some((length, rest)) = rest.split_first_chunk::<8>() else {
             content = &[];
             return Some(Err(()));

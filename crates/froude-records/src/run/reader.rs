@@ -17,6 +17,7 @@ use mcap::records::op;
 
 use crate::error::{Place, RecordError, reason};
 use crate::hash::Fingerprint;
+use crate::run::allowance::{Allowance, holds};
 use crate::run::file::{End, FileChannel, Message, Step, Summary, Walk, metadata, records, schema, unpack};
 use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
 use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
@@ -58,6 +59,7 @@ pub struct RunReader<R> {
     events_channel: Option<u16>,
     channels: Vec<(String, String)>,
     unpacked: Vec<u8>,
+    allowance: Allowance,
     rows: Rows,
     /// What the file is, where the sidecar says what it should be.
     found: Option<Fingerprint>,
@@ -137,6 +139,7 @@ impl<R: Read + Seek> RunReader<R> {
         let is_unfinished = meta.as_ref().is_some_and(|meta| meta.status == RunStatus::Running);
         let mut reader = Self {
             path: path.to_owned(),
+            allowance: Allowance::of(walk.length()),
             walk,
             has_sidecar: meta.is_some(),
             meta: meta.unwrap_or_else(|| RunMeta { id: id(), ..RunMeta::default() }),
@@ -250,6 +253,7 @@ impl<R: Read + Seek> RunReader<R> {
         let mut block = Block::default();
         loop {
             let goes_on = self.read_block(&mut block)?;
+            holds(&self.path, log.time_s.len() + block.time_s.len(), self.channels.len())?;
             log.time_s.append(&mut block.time_s);
             log.events.append(&mut block.events);
             log.lost.append(&mut block.lost);
@@ -353,6 +357,7 @@ impl<R: Read + Seek> RunReader<R> {
                         self.declare(opcode, body);
                     }
                     self.unpacked = unpacked;
+                    self.allowance.take(&self.path, self.unpacked.len())?;
                 }
                 op::METADATA => self.take_metadata(offset, &body)?,
                 _ => self.declare(opcode, &body),
@@ -360,6 +365,7 @@ impl<R: Read + Seek> RunReader<R> {
             self.walk.body = body;
         }
         self.walk.rewind().map_err(|e| self.failed(&e))?;
+        self.allowance = Allowance::of(self.walk.length());
         self.index_topics();
         Ok(())
     }
@@ -483,6 +489,7 @@ impl<R: Read + Seek> RunReader<R> {
             Err(error) => problem = Some(error),
         }
         self.unpacked = unpacked;
+        self.allowance.take(&self.path, self.unpacked.len())?;
         problem
             .map_or(Ok(()), |problem| self.damaged(offset, format!("the chunk at byte {offset} is damaged: {problem}")))
     }

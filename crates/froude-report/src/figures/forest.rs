@@ -264,7 +264,7 @@ fn draw_mark(
             canvas.area(vec![(x1, y), (x1 - 7.0, y - 4.0), (x1 - 7.0, y + 4.0)], ink);
         }
     }
-    let at = (panel.at_x(mark.value().clamp(panel.x.low, panel.x.high)), y);
+    let at = (panel.at_x(mark.value().max(panel.x.low).min(panel.x.high)), y);
     match mark {
         Mark::Known(..) => canvas.dot(at, 4.0, ink),
         Mark::Bound(..) => canvas.rectangle((at.0 - 1.8, y - 6.0), (at.0 + 1.8, y + 6.0), ink),

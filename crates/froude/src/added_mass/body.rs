@@ -136,7 +136,7 @@ const ROUNDING: f64 = 1e-9;
 /// What is said of exports of a mesh with z down.
 pub(super) const TURNED: &str = "The files for WAMIT and Capytaine have z up, as wave programs ask for: turned about x by 180°; record and CSV have the axes of the mesh.";
 /// Largest mesh file, bytes.
-const LARGEST_FILE: u64 = 4 << 30;
+const LARGEST_FILE: u64 = 1 << 30;
 /// Standard acceleration of gravity, m/s².
 const G_M_S2: f64 = 9.80665;
 

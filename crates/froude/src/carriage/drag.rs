@@ -81,7 +81,7 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     let reduced: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
-    let (two_masses, no_two_masses) = two_masses(&runs.logs)?;
+    let (two_masses, no_two_masses) = two_masses(&runs.logs);
     let mut setup = setup_of(runs.campaign.as_ref(), constants);
     setup.flexible = two_masses.map(|report| report.flexible());
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);

@@ -135,11 +135,12 @@ fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<ServoOutcome, Error> 
         corner_hz: 0.1 * rate_hz,
         ..Chain::new(gain_n_v, friction)
     };
-    let models = [("symmetric", Friction::symmetric()), ("asymmetric", Friction::asymmetric())]
-        .into_iter()
-        .map(|(name, friction)| Ok(Model { name: name.to_owned(), report: identify_servo(&servo, &chain(friction))? }))
-        .collect::<Result<Vec<_>, Error>>()?;
-    let findings = told(&models, imported.findings);
+    let asked = [(CONSTANT, Friction::symmetric()), (ASYMMETRIC, Friction::asymmetric())];
+    let fit = |friction| identify_servo(&servo, &chain(friction)).map_err(Error::from);
+    let (models, not_fitted) = each(asked.into_iter().map(|(name, friction)| (name, fit(friction))));
+    let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
+    let mut findings = told(&models, imported.findings);
+    findings.extend(not_fitted);
     Ok(ServoOutcome {
         models,
         rigid_mounts: Vec::new(),
@@ -161,6 +162,31 @@ fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
     findings
 }
 
+/// The models that came out, and a finding and error for each that did not: it costs its own row and no other.
+fn each<'a>(asked: impl Iterator<Item = (&'a str, Result<ServoReport, Error>)>) -> (Vec<Model>, Vec<(Finding, Error)>) {
+    let (mut models, mut not_fitted) = (Vec::new(), Vec::new());
+    for (name, report) in asked {
+        match report {
+            Ok(report) => models.push(Model { name: name.to_owned(), report }),
+            Err(error) => not_fitted.push((left_out(name, &error), error)),
+        }
+    }
+    (models, not_fitted)
+}
+
+fn left_out(model: &str, why: &Error) -> Finding {
+    Finding::new(Severity::Warning, "not-fitted", format!("{model} could not be fitted and is left out: {why}"))
+}
+
+/// The findings where something came out, else the first error.
+fn some_or_error(is_some: bool, not_fitted: Vec<(Finding, Error)>) -> Result<Vec<Finding>, Error> {
+    let (findings, errors): (Vec<Finding>, Vec<Error>) = not_fitted.into_iter().unzip();
+    match errors.into_iter().next() {
+        Some(first) if !is_some => Err(first),
+        _ => Ok(findings),
+    }
+}
+
 /// Kinds of run that tell the servo.
 const KINDS: [RunKind; 3] = [RunKind::Friction, RunKind::Dry, RunKind::Excitation];
 /// Rate at which rows of slow runs are compared, Hz: below the load's mode, so that the rigid model is what moves.
@@ -169,6 +195,7 @@ const ROW_RATE_HZ: f64 = 20.0;
 const RIGID_CORNER_HZ: f64 = 3.0;
 /// The model of one Coulomb friction everywhere, and that of a map.
 const CONSTANT: &str = "symmetric";
+const ASYMMETRIC: &str = "asymmetric";
 const OVER_POSITION: &str = "over position";
 /// Distance of the friction map's knots, m.
 const KNOT_M: f64 = 0.25;
@@ -181,15 +208,13 @@ fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
     let motor = motor_of(constants);
     let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.kind == RunKind::Friction).collect();
     let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.kind == RunKind::Dry).collect() } else { slow };
-    let mut models = Vec::new();
+    let (mut models, mut not_fitted) = (Vec::new(), Vec::new());
     if !slow.is_empty() {
-        let map = Friction { knots_m: knots(&slow)?, ..Friction::default() };
-        for (name, friction) in
-            [(CONSTANT, Friction::default()), ("asymmetric", Friction::asymmetric()), (OVER_POSITION, map)]
-        {
-            let report = of_slow(&slow, &motor, friction)?;
-            models.push(Model { name: name.to_owned(), report });
-        }
+        let map = knots(&slow).map(|knots_m| Friction { knots_m, ..Friction::default() });
+        let asked =
+            [(CONSTANT, Ok(Friction::default())), (ASYMMETRIC, Ok(Friction::asymmetric())), (OVER_POSITION, map)];
+        (models, not_fitted) =
+            each(asked.into_iter().map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
     }
     let mut findings = told(&models, runs.findings.clone());
     findings.extend(varies(&models));
@@ -204,7 +229,8 @@ fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
                 .to_owned(),
         ));
     }
-    let (flexible, why_not) = two_masses(&runs.logs)?;
+    let (flexible, why_not) = two_masses(&runs.logs);
+    findings.extend(some_or_error(!models.is_empty() || flexible.is_some(), not_fitted)?);
     findings.extend(why_not);
     if let Some(report) = &flexible {
         findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
@@ -237,14 +263,16 @@ fn pulses(logs: &[RunLog]) -> Option<&RunLog> {
 }
 
 /// Two masses and a chain from the first run with pulses; a finding where there is one that does not tell them.
-pub(crate) fn two_masses(logs: &[RunLog]) -> Result<(Option<FlexibleReport>, Option<Finding>), Error> {
+pub(crate) fn two_masses(logs: &[RunLog]) -> (Option<FlexibleReport>, Option<Finding>) {
     let Some((log, constants)) = pulses(logs).and_then(|l| l.meta.moving_axis().map(|c| (l, c))) else {
-        return Ok((None, None));
+        return (None, None);
     };
-    Ok(match identify_flexible(&servo_log(log)?, &flexible_options(motor_of(constants), constants)) {
+    let identified = servo_log(log)
+        .and_then(|columns| Ok(identify_flexible(&columns, &flexible_options(motor_of(constants), constants))?));
+    match identified {
         Ok(report) => (Some(report), None),
         Err(error) => (None, Some(Finding::new(Severity::Warning, "two-mass", format!("{}: {error}", log.meta.id)))),
-    })
+    }
 }
 
 /// From a command to the force on the rotor: half a tick of the controller and the amplifier's current loop, which a campaign does not

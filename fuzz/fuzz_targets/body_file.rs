@@ -1,0 +1,25 @@
+//! Body files: any text gives a body or an error that names the file, and a body has lengths that a mesh can be made of.
+#![no_main]
+
+use std::path::Path;
+
+use froude_records::body::{Shape, parse_body};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    match parse_body(Path::new("body.toml"), text) {
+        Ok(body) => {
+            let lengths_m: Vec<f64> = match body.shape {
+                Shape::Robot { section, pitch_m, joint, end_m } => {
+                    let joint = joint.map_or(vec![], |j| vec![j.length_m, j.ramp_m]);
+                    [vec![section.major_m, section.minor_m, pitch_m, end_m], joint].concat()
+                }
+                Shape::Ellipsoid { semi_axes_m } => semi_axes_m.to_vec(),
+                Shape::Capsule { length_m, section, end_m } => vec![length_m, section.major_m, section.minor_m, end_m],
+                Shape::Cylinder { length_m, section } => vec![length_m, section.major_m, section.minor_m],
+            };
+            assert!(lengths_m.iter().all(|m| (1e-5..=1e3).contains(m)), "{lengths_m:?}");
+        }
+        Err(error) => assert!(error.to_string().starts_with("body.toml"), "{error}"),
+    }
+});
