@@ -43,7 +43,8 @@ fn a_second_run_into_a_folder_is_refused_with_who_is_first_and_a_dead_one_blocks
     assert!(first.try_wait().unwrap().is_none(), "the first goes on");
     let error = String::from_utf8_lossy(&second.stderr);
     assert_eq!(second.status.code(), Some(1), "{error}");
-    let host = std::fs::read_to_string("/proc/sys/kernel/hostname").map(|h| format!(" on {}", h.trim())).unwrap_or_default();
+    let host =
+        std::fs::read_to_string("/proc/sys/kernel/hostname").map(|h| format!(" on {}", h.trim())).unwrap_or_default();
     let who = format!("another froude is driving into this folder (process {}{host}", first.id());
     assert!(error.contains(&who), "{error}");
     // When it began: today, by the clock.

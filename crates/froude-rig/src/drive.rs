@@ -89,7 +89,9 @@ pub enum RigError {
         ours: String,
     },
     /// Another program has the port.
-    #[error("{port} is in use by another program, and only one may drive a board; end that one (`fuser {port}` names it), then run again")]
+    #[error(
+        "{port} is in use by another program, and only one may drive a board; end that one (`fuser {port}` names it), then run again"
+    )]
     InUse {
         /// The port.
         port: String,

@@ -327,7 +327,11 @@ fn a_host_that_died_is_followed_by_the_next_one_after_its_silence() {
     // At once: for four seconds of the board's time it waits for the dead one.
     let mut next = SerialRig::on("a socket", Box::new(other), config()).unwrap();
     let sample = next.tick(None).unwrap();
-    assert_eq!((sample.fault, sample.axes[0].phase), (None, Phase::Disabled), "stopped by the board, cleared by its name");
+    assert_eq!(
+        (sample.fault, sample.axes[0].phase),
+        (None, Phase::Disabled),
+        "stopped by the board, cleared by its name"
+    );
     running.end();
 }
 
@@ -354,12 +358,16 @@ fn taken_over(mut line: UnixStream, holder: u32) -> JoinHandle<()> {
                 tick += 1;
                 let answer = match says {
                     ToBoard::Hello => FromBoard::Hello(hello(session)),
-                    ToBoard::Configure { id, .. } => FromBoard::Ack(Ack { session, id, tick, verdict: Verdict::Accepted }),
+                    ToBoard::Configure { id, .. } => {
+                        FromBoard::Ack(Ack { session, id, tick, verdict: Verdict::Accepted })
+                    }
                     _ => FromBoard::TurnedAway(TurnedAway { session, holder, holder_frames: 9, free_in_us: 210_000 }),
                 };
                 // What another host is answered is no business of ours.
                 let others = FromBoard::Ack(Ack { session: holder, id: 2, tick, verdict: Verdict::NotNow });
-                for message in [others, answer, FromBoard::Telemetry(Telemetry { tick: tick + 1, ..Telemetry::default() })] {
+                for message in
+                    [others, answer, FromBoard::Telemetry(Telemetry { tick: tick + 1, ..Telemetry::default() })]
+                {
                     let _ = line.write_all(writer.write(&message, &mut [0; MAX_WIRE]));
                 }
             }
@@ -376,7 +384,9 @@ fn a_host_that_slept_too_long_is_told_who_has_the_board() {
     let error = (0..10_000).find_map(|_| rig.tick(None).err()).unwrap();
     assert!(matches!(error, RigError::TakenOver { holder: 0xbeef, .. }), "{error}");
     assert!(
-        error.to_string().starts_with("the board at a socket is driven by another program now (session 0000beef): this one was silent"),
+        error.to_string().starts_with(
+            "the board at a socket is driven by another program now (session 0000beef): this one was silent"
+        ),
         "{error}"
     );
     drop(rig);

@@ -16,7 +16,8 @@ fn whatever_a_second_host_says_the_board_does_what_the_first_one_asks_and_stops_
     let first: Vec<String> = sweep.refused.iter().take(8).map(|r| format!("{r:?}")).collect();
     assert!(sweep.refused.is_empty(), "{} of {RUNS}:\n{}", sweep.refused.len(), first.join("\n"));
     // The story has every part in it, else nothing was tried.
-    for (n, what) in [(sweep.stopped, "stopped"), (sweep.taken_over, "taken over"), (sweep.undisturbed, "undisturbed")] {
+    for (n, what) in [(sweep.stopped, "stopped"), (sweep.taken_over, "taken over"), (sweep.undisturbed, "undisturbed")]
+    {
         assert!(n > RUNS / 20, "{n} of {RUNS} runs {what}");
     }
 }

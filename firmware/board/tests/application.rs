@@ -318,7 +318,11 @@ fn a_second_host_is_turned_away_and_nothing_that_it_asks_for_is_done() {
         let said = bench.pass(100, None);
         assert!(matches!(said[..], [FromBoard::TurnedAway(t)] if t.session == SECOND), "{k}: {says:?}: {said:?}");
         assert_eq!(bench.phase(), Phase::Holding, "{says:?}");
-        assert_eq!(bench.application.output().status.axes[0].reference_m, before.status.axes[0].reference_m, "{says:?}");
+        assert_eq!(
+            bench.application.output().status.axes[0].reference_m,
+            before.status.axes[0].reference_m,
+            "{says:?}"
+        );
     }
     // It is the first one's board as before, whatever numbers the second one's frames had.
     bench.writers.insert(SECOND, FrameWriter::starting_at(9_000));
@@ -349,8 +353,11 @@ fn a_stop_is_obeyed_from_everybody_whatever_its_number() {
             let said = bench.say_as(session, &stop(id, category));
             let acks = said.iter().filter_map(|m| if let FromBoard::Ack(ack) = m { Some(*ack) } else { None });
             let acks: Vec<_> = acks.collect();
-            assert!(matches!(acks[..], [Ack { session: of, id: numbered, verdict: Verdict::Accepted, .. }]
-                if (of, numbered) == (session, id)), "{said:?}");
+            assert!(
+                matches!(acks[..], [Ack { session: of, id: numbered, verdict: Verdict::Accepted, .. }]
+                if (of, numbered) == (session, id)),
+                "{said:?}"
+            );
             bench.pass(3_000, Some(FIRST));
             assert_eq!(bench.phase(), Phase::Disabled, "{category:?} from {session}");
             // Its answer is not taken for the first one's: the next request of that number is a new one.

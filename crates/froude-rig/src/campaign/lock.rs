@@ -63,7 +63,8 @@ impl FolderLock {
                 let mut by = String::new();
                 // Where a locked file cannot be read, or is not written yet, there is only less to say.
                 let _ = file.read_to_string(&mut by);
-                let by = if by.trim().is_empty() { "who, it has not said yet".to_owned() } else { by.trim().to_owned() };
+                let by =
+                    if by.trim().is_empty() { "who, it has not said yet".to_owned() } else { by.trim().to_owned() };
                 return Err(LockError::Taken { folder: folder.to_owned(), by });
             }
             Err(TryLockError::Error(e)) => return Err(failed(e)),

@@ -26,7 +26,9 @@ impl Port {
     /// [`RigError::InUse`] when another program has it, else [`RigError::Port`].
     pub fn open(port: &str, baud: u32) -> Result<Self, RigError> {
         let failed = |e: std::io::Error| match e.kind() {
-            std::io::ErrorKind::WouldBlock | std::io::ErrorKind::ResourceBusy => RigError::InUse { port: port.to_owned() },
+            std::io::ErrorKind::WouldBlock | std::io::ErrorKind::ResourceBusy => {
+                RigError::InUse { port: port.to_owned() }
+            }
             _ => RigError::Port { port: port.to_owned(), reason: e.to_string() },
         };
         let mut line = alone(port, baud).map_err(failed)?;

@@ -123,7 +123,8 @@ impl Spec {
         });
         let (latched_us, is_estop_open) = (latched.latched_us, latched.is_estop_open);
         let is_host_heard = std::mem::take(&mut self.is_heard);
-        let tick = Tick { latched_us, axes, is_estop_open, is_host_heard, request: next.map(|(_, _, request)| request) };
+        let tick =
+            Tick { latched_us, axes, is_estop_open, is_host_heard, request: next.map(|(_, _, request)| request) };
         if let Some(controller) = &mut self.controller {
             self.output = controller.step(&tick);
         }
@@ -145,7 +146,8 @@ impl Spec {
             && session != self.holder
             && (self.holder == NOBODY || self.silent_us >= u64::from(self.silence_us + AFTER_SILENCE_US))
         {
-            let has_torque = self.output.status.axes.iter().any(|a| !matches!(a.phase, Phase::Disabled | Phase::Coasting));
+            let has_torque =
+                self.output.status.axes.iter().any(|a| !matches!(a.phase, Phase::Disabled | Phase::Coasting));
             self.has_slipped |= has_torque && self.output.status.fault.is_none();
             (self.holder, self.answered) = (session, None);
         }
@@ -466,7 +468,8 @@ impl Hosts {
         ending.has_arrived = ended.phase == Phase::Holding && (ended.reference_m - ended.position_m).abs() < ARRIVED_M;
         for _ in 0..REST {
             bench.step();
-            let is_off = bench.output().status.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Coasting));
+            let is_off =
+                bench.output().status.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Coasting));
             ending.is_at_rest = is_off && (0..AXES).all(|i| bench.board.twin.truth(i).load_speed_m_s == 0.0);
             if ending.is_at_rest {
                 break;
@@ -541,8 +544,9 @@ impl Sweep {
     pub fn of(hosts: &Hosts, runs: u64) -> Self {
         let workers = std::thread::available_parallelism().map_or(1, usize::from);
         std::thread::scope(|scope| {
-            let parts: Vec<_> =
-                (0..workers).map(|first| scope.spawn(move || hosts.sweep((first as u64..runs).step_by(workers)))).collect();
+            let parts: Vec<_> = (0..workers)
+                .map(|first| scope.spawn(move || hosts.sweep((first as u64..runs).step_by(workers))))
+                .collect();
             parts.into_iter().filter_map(|part| part.join().ok()).fold(Self::default(), Self::joined)
         })
     }
@@ -602,7 +606,8 @@ impl First {
         }
         if tick < 2 {
             let (axis, id) = (tick as usize, 50 + tick as u16);
-            bench.send(FIRST, ToBoard::Request { id, request: Request::Move { axis, profile: self.scene.moves[axis] } });
+            bench
+                .send(FIRST, ToBoard::Request { id, request: Request::Move { axis, profile: self.scene.moves[axis] } });
         }
         if tick.is_multiple_of(HEARTBEAT) {
             bench.send(FIRST, ToBoard::Heartbeat);
@@ -634,7 +639,12 @@ struct Second {
 impl Second {
     fn drawn(rng: &mut impl Rng) -> Self {
         let every = [f64::INFINITY, 3.0, 40.0, 300.0, 2_000.0][rng.random_range(0..5_usize)];
-        Self { rng: Pcg64Mcg::seed_from_u64(rng.random()), every, stops: rng.random_bool(0.3), id: rng.random_range(45..55) }
+        Self {
+            rng: Pcg64Mcg::seed_from_u64(rng.random()),
+            every,
+            stops: rng.random_bool(0.3),
+            id: rng.random_range(45..55),
+        }
     }
 
     fn speak(&mut self, _: u64, bench: &mut Bench, ending: &mut Ending) {
