@@ -168,7 +168,7 @@ impl<R: Read + Seek> Walk<R> {
                 self.go_to(offset)?;
                 let is_last = offset + FOOTER + MAGIC.len() as u64 == self.length;
                 return if is_last {
-                    Ok(Step::End(End::Whole))
+                    Ok(Step::End(End::Changed { problem: "the mark of the end of its data is not there".to_owned() }))
                 } else {
                     broken(format!("a footer stands there, and the file goes on for {lost} bytes"))
                 };

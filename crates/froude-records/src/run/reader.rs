@@ -339,6 +339,9 @@ impl<R: Read + Seek> RunReader<R> {
         let summary = self.walk.go_to_summary().map_err(|e| self.failed(&e))?;
         if let Summary::Damaged(problem) = summary {
             self.damage.get_or_insert(problem);
+        } else if summary == Summary::None && self.meta.log.is_some() {
+            // A log that was finished has one.
+            self.damage.get_or_insert_with(|| "its end cannot be found".to_owned());
         } else if summary == Summary::Here {
             while let Some(opcode) = self.walk.next_of_summary().map_err(|e| self.failed(&e))? {
                 let body = std::mem::take(&mut self.walk.body);
@@ -441,15 +444,28 @@ impl<R: Read + Seek> RunReader<R> {
     }
 
     fn take_metadata(&mut self, offset: u64, body: &[u8]) -> Result<(), RecordError> {
-        let refuse = |problem: String| RecordError::Syntax { place: Place::byte(&self.path, offset), problem };
         let Some((name, entries)) = metadata(body) else {
             return self.damaged(offset, "the metadata there does not fit into its record".to_owned());
         };
         if ![RECORD_NAME, END_RECORD_NAME].contains(&name) {
             return Ok(());
         }
-        let own = of_record(&self.path, &entries)
-            .map_err(|e| refuse(format!("what is said of the run cannot be read: {e}")))?;
+        let own = match of_record(&self.path, &entries) {
+            Ok(own) => own,
+            Err(error @ RecordError::NewerSchema { .. }) => return Err(error),
+            Err(error) => {
+                let problem = match error {
+                    RecordError::Checksum { .. } => "it was changed".to_owned(),
+                    other => other.to_string(),
+                };
+                let problem = format!("what is said of the run at byte {offset} cannot be read: {problem}");
+                if self.refuses_damage {
+                    return self.damaged(offset, problem);
+                }
+                self.damage.get_or_insert(problem);
+                return Ok(());
+            }
+        };
         let is_end = name == END_RECORD_NAME;
         if !self.has_sidecar {
             self.meta = own;
