@@ -9,7 +9,7 @@ use froude_mesh::parts::part_troubles;
 use froude_mesh::repair::repaired;
 use froude_records::write::write_atomically;
 
-use super::body::{is_body_file, read_mesh};
+use super::load::{is_body_file, read_mesh};
 use crate::Error;
 
 /// What was done.
