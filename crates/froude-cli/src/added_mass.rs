@@ -3,15 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use froude::Error;
-use froude::added_mass::body::{self, BodyJob, BodyOutcome, Loaded, Origin};
+use froude::added_mass::body::{self, BodyJob, BodyOutcome};
+use froude::added_mass::frame::{Axes, Direction, Orientation, Point};
 use froude::added_mass::links::{LinksJob, LinksOutcome, links};
+use froude::added_mass::load::Loaded;
 use froude::added_mass::refine::{Forecast, Wanted, duration};
 use froude::added_mass::several::{Apart, SeveralOutcome, several};
 use froude::added_mass::{page, repair};
 use froude::records::units::{Dimension, parse_quantity, parse_unit};
 use froude::report::document::TextTable;
 
-use crate::args::{AddedMassArgs, Export, Vertical};
+use crate::args::{AddedMassArgs, BodyAxes, Export, MeshAxis};
 use crate::out::say;
 use crate::print;
 
@@ -19,6 +21,7 @@ use crate::print;
 const MOST_LINKS: usize = 100;
 
 pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
+    renamed(&args)?;
     if let Some(target) = &args.repair {
         return put_right(&args, target, json);
     }
@@ -35,6 +38,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
             body: args.input,
             links: numbers.clone(),
             density_kg_m3,
+            axes: args.axes.map_or(Axes::Mesh, axes),
             wanted,
             out: args.out,
             date: Some(crate::today()),
@@ -52,9 +56,10 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         input: args.input,
         links: counted.as_ref().map(|n| n[0]),
         density_kg_m3,
-        origin: args.origin.as_deref().map_or(Ok(Origin::At([0.0; 3])), origin)?,
+        axes: args.axes.map_or(Axes::Mesh, axes),
+        at: args.at.as_deref().map_or(Ok(Point::At([0.0; 3])), point)?,
         unit_m: args.unit.as_deref().map(unit).transpose()?,
-        is_z_up: args.z == Vertical::Up,
+        orientation: orientation(args.forward, args.up)?,
         tank_m: args.tank.as_deref().map(tank).transpose()?,
         surface_m: args.surface.as_deref().map(|h| length("--surface", h)).transpose()?,
         wanted,
@@ -72,9 +77,15 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         (false, false) => None,
     };
     if let Some(apart) = apart {
-        let given = [("--surface", job.surface_m.is_some()), ("--origin", args.origin.is_some())];
-        if let Some((option, _)) = given.into_iter().find(|(_, is_given)| *is_given) {
-            return Err(Error::Nothing(format!("{option} goes with one rigid body, not with --chain or --apart")));
+        let why = if job.surface_m.is_some() {
+            "--surface goes with one rigid body, not with --chain or --apart"
+        } else if args.at.is_some() {
+            "--at goes with one rigid body; with --chain or --apart every part is about its own point"
+        } else {
+            ""
+        };
+        if !why.is_empty() {
+            return Err(Error::Nothing(why.to_owned()));
         }
         let bar = crate::spinner();
         let outcome = several(&job, apart, &|step| bar.set_message(step.to_owned()))?;
@@ -163,16 +174,66 @@ fn link_numbers(text: &str) -> Result<Vec<usize>, Error> {
     Ok(out)
 }
 
-/// Three lengths, or `buoyancy`.
-fn origin(text: &str) -> Result<Origin, Error> {
-    if text.trim() == "buoyancy" {
-        return Ok(Origin::Buoyancy);
+/// What an option was called before says what it is called now.
+fn renamed(args: &AddedMassArgs) -> Result<(), Error> {
+    if let Some(z) = &args.z {
+        let up = if z == "down" { "--up -z" } else { "--up z" };
+        return Err(Error::Nothing(format!(
+            "--z is now --up: write {up} for how the mesh lies, and --axes ned or enu for the axes of the result"
+        )));
+    }
+    if let Some(origin) = &args.origin {
+        let at = if origin.trim() == "buoyancy" { "cb".to_owned() } else { format!("{origin:?}") };
+        return Err(Error::Nothing(format!("--origin is now --at: write --at {at}")));
+    }
+    Ok(())
+}
+
+const fn axes(axes: BodyAxes) -> Axes {
+    match axes {
+        BodyAxes::Ned | BodyAxes::Fossen => Axes::Ned,
+        BodyAxes::Enu => Axes::Enu,
+    }
+}
+
+const fn direction(axis: MeshAxis) -> Direction {
+    let (axis, is_against) = match axis {
+        MeshAxis::X => (0, false),
+        MeshAxis::AgainstX => (0, true),
+        MeshAxis::Y => (1, false),
+        MeshAxis::AgainstY => (1, true),
+        MeshAxis::Z => (2, false),
+        MeshAxis::AgainstZ => (2, true),
+    };
+    Direction { axis, is_against }
+}
+
+/// How a mesh lies, where it was said.
+fn orientation(forward: Option<MeshAxis>, up: Option<MeshAxis>) -> Result<Option<Orientation>, Error> {
+    if forward.is_none() && up.is_none() {
+        return Ok(None);
+    }
+    let (forward, up) = (forward.map_or(Direction::X, direction), up.map_or(Direction::Z, direction));
+    let lies = Orientation::new(forward, up).ok_or_else(|| {
+        Error::Nothing(format!(
+            "--forward {forward} and --up {up} lie along one axis of the mesh: say both, two different ones"
+        ))
+    })?;
+    Ok(Some(lies))
+}
+
+/// `cg`, `cb`, or three lengths.
+fn point(text: &str) -> Result<Point, Error> {
+    match text.trim() {
+        "cg" => return Ok(Point::Gravity),
+        "cb" => return Ok(Point::Buoyancy),
+        _ => {}
     }
     let parts: Vec<&str> = text.split(',').collect();
     let [x, y, z] = parts[..] else {
-        return Err(wrong("--origin", text, "write three lengths, \"0 m, 0 m, -0.2 m\", or \"buoyancy\""));
+        return Err(wrong("--at", text, "write cg, cb, or three lengths: \"0 m, 0 m, -0.2 m\""));
     };
-    Ok(Origin::At([length("--origin", x.trim())?, length("--origin", y.trim())?, length("--origin", z.trim())?]))
+    Ok(Point::At([length("--at", x.trim())?, length("--at", y.trim())?, length("--at", z.trim())?]))
 }
 
 /// Length, breadth, depth of water: `1.5 m x 0.9 m x 1 m`.
@@ -215,9 +276,10 @@ fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Erro
 /// What has no meaning for several numbers of links is refused, not passed over.
 fn only_one(args: &AddedMassArgs) -> Result<(), Error> {
     let given = [
-        ("--origin", args.origin.is_some()),
+        ("--at", args.at.is_some()),
         ("--unit", args.unit.is_some()),
-        ("--z", args.z == Vertical::Down),
+        ("--forward", args.forward.is_some()),
+        ("--up", args.up.is_some()),
         ("--surface", args.surface.is_some()),
         ("--export", !args.export.is_empty()),
         ("--chain", args.chain),
@@ -289,6 +351,7 @@ fn table(text: &TextTable) {
 
 fn table_of_links(outcome: &LinksOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
+    say!("{}", print::wrapped(&outcome.place));
     table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
     if !outcome.fits.is_empty() {
         table(&page::fits_table(&outcome.fits));
@@ -299,6 +362,7 @@ fn table_of_links(outcome: &LinksOutcome) {
 
 fn one_body(outcome: &BodyOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
+    say!("{}", print::wrapped(&outcome.place));
     if let Some(limits) = froude::added_mass::limits::table(&outcome.cases, outcome.density_kg_m3) {
         table(&limits);
     }
@@ -327,6 +391,7 @@ fn one_body(outcome: &BodyOutcome) {
 
 fn parts(outcome: &SeveralOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
+    say!("{}", print::wrapped(&outcome.place));
     for text in &outcome.tables {
         table(text);
     }

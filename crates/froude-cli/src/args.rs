@@ -165,15 +165,27 @@ pub struct AddedMassArgs {
     /// Density of the water, with its unit [default: the body file's].
     #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
     pub density: Option<String>,
-    /// The point that moments are about, in the axes of the mesh: "0 m, 0 m, -0.2 m", or "buoyancy" [default: its origin].
-    #[arg(long, value_name = "POINT", allow_hyphen_values = true)]
-    pub origin: Option<String>,
+    /// Axes of the result: x forward in all of them, ned and fossen with y to starboard and z down, enu with y to port and z up [default: those of the mesh].
+    #[arg(long, value_enum)]
+    pub axes: Option<BodyAxes>,
+    /// The point that moments are about: cg (of the body file), cb (centre of buoyancy), or "0 m, 0 m, -0.2 m" in the axes of the mesh [default: its origin].
+    #[arg(long, value_name = "cg|cb|X, Y, Z", allow_hyphen_values = true)]
+    pub at: Option<String>,
     /// Unit of a mesh that says none: m, mm, cm, in.
     #[arg(long)]
     pub unit: Option<String>,
-    /// Where z points in the mesh.
-    #[arg(long, value_enum, default_value_t = Vertical::Up)]
-    pub z: Vertical,
+    /// Axis of the mesh that points forward [default: x].
+    #[arg(long, value_enum, allow_hyphen_values = true)]
+    pub forward: Option<MeshAxis>,
+    /// Axis of the mesh that points up [default: z].
+    #[arg(long, value_enum, allow_hyphen_values = true)]
+    pub up: Option<MeshAxis>,
+    /// What --up was called.
+    #[arg(long, hide = true)]
+    pub z: Option<String>,
+    /// What --at was called.
+    #[arg(long, hide = true, allow_hyphen_values = true)]
+    pub origin: Option<String>,
     /// Largest numerical uncertainty of an entry: "1 %".
     #[arg(long, default_value = "1 %", value_name = "QUANTITY", allow_hyphen_values = true)]
     pub tolerance: String,
@@ -212,13 +224,38 @@ pub struct AddedMassArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Where an axis points.
+/// Axes of a body, x forward.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Vertical {
-    /// Against gravity.
-    Up,
-    /// With gravity.
-    Down,
+pub enum BodyAxes {
+    /// y to starboard, z down (SNAME).
+    Ned,
+    /// The same.
+    Fossen,
+    /// y to port, z up (ROS REP 103).
+    Enu,
+}
+
+/// A direction along an axis of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum MeshAxis {
+    /// Along x.
+    #[value(name = "x")]
+    X,
+    /// Against x.
+    #[value(name = "-x")]
+    AgainstX,
+    /// Along y.
+    #[value(name = "y")]
+    Y,
+    /// Against y.
+    #[value(name = "-y")]
+    AgainstY,
+    /// Along z.
+    #[value(name = "z")]
+    Z,
+    /// Against z.
+    #[value(name = "-z")]
+    AgainstZ,
 }
 
 /// A format of other programs.

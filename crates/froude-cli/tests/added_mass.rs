@@ -13,9 +13,10 @@ use froude::mesh::files::{write_obj, write_stl_binary};
 use froude::mesh::measure::Measure;
 use froude::mesh::panel::facets;
 use froude::mesh::sections::{Resolution, SectionBody};
-use froude::mesh::vector::{Vec3, cross, sub};
+use froude::mesh::vector::Vec3;
 use froude::mesh::{Mesh, Panel};
-use froude::panel::matrix::AddedMass;
+use froude::panel::matrix::{AddedMass, congruent};
+use froude::panel::problem::Frame;
 use froude::records::added_mass_files::read_wamit;
 use froude::records::table::read_table;
 use froude::records::units::Dimension;
@@ -250,7 +251,7 @@ fn exports_hold_the_matrix_of_the_record() {
 
     // The same body in axes with z down: half a turn about x. Wave programs get the same numbers.
     write(at, "down.obj", &hull().mapped(|[x, y, z]| [x, -y, -z]));
-    let args = [&["down.obj", "--z", "down", "--export", "wamit", "--out", "down"], &ONE_MESH[..]].concat();
+    let args = [&["down.obj", "--up", "-z", "--export", "wamit", "--out", "down"], &ONE_MESH[..]].concat();
     let down = record(at, &args);
     assert_eq!(down["estimates"][0]["frame"], "axes of the mesh, z down");
     assert!((matrix(&down, 0)[0][1] + a[0][1]).abs() < 1e-9 * a[0][0] && a[0][1].abs() > 1e-3 * a[0][0]);
@@ -266,7 +267,7 @@ fn array(text: &str, attribute: &str) -> Vec<f64> {
 }
 
 /// −Σ p n dA and its moment are minus the matrix: the pressure of a unit acceleration is that of its column.
-fn assert_pressure_is_the_matrix(vtp: &Path, a: &Matrix, about_m: Vec3) {
+fn assert_pressure_is_the_matrix(vtp: &Path, a: &Matrix, frame: &Frame) {
     let text = std::fs::read_to_string(vtp).unwrap();
     let vertices = array(&text, "NumberOfComponents=\"3\"").chunks(3).map(|c| [c[0], c[1], c[2]]).collect();
     let corners: Vec<u32> = array(&text, "Name=\"connectivity\"").into_iter().map(|x| x as u32).collect();
@@ -288,9 +289,8 @@ fn assert_pressure_is_the_matrix(vtp: &Path, a: &Matrix, about_m: Vec3) {
         let pressure = array(&text, &format!("Name=\"pressure {motion} [Pa/({unit}/s^2)]\""));
         assert_eq!(pressure.len(), mesh.panels.len());
         for (facet, p) in facets(&mesh).iter().zip(pressure) {
-            let lever = cross(sub(facet.centroid, about_m), facet.normal);
-            for i in 0..6 {
-                sum[i][j] += p * facet.area * if i < 3 { facet.normal[i] } else { lever[i - 3] };
+            for (i, v) in frame.normal_velocities(facet).into_iter().enumerate() {
+                sum[i][j] += p * facet.area * v;
             }
         }
     }
@@ -303,16 +303,20 @@ fn assert_pressure_is_the_matrix(vtp: &Path, a: &Matrix, about_m: Vec3) {
 fn the_pressure_on_the_panels_adds_up_to_the_matrix() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let origin = ["--origin", "0.3 m, -20 cm, 0.1 m"];
+    let origin = ["--at", "0.3 m, -20 cm, 0.1 m"];
     write(at, "hull.obj", &hull());
     let a = matrix(&record(at, &[&["hull.obj", "--out", "hull"], &ONE_MESH[..], &origin].concat()), 0);
-    assert_pressure_is_the_matrix(&at.join("hull/pressure.vtp"), &a, [0.3, -0.2, 0.1]);
+    assert_pressure_is_the_matrix(&at.join("hull/pressure.vtp"), &a, &Frame::at([0.3, -0.2, 0.1]));
+    // Motions in other axes; the points stay those of the mesh.
+    let ned =
+        matrix(&record(at, &[&["hull.obj", "--out", "ned", "--axes", "ned"], &ONE_MESH[..], &origin].concat()), 0);
+    assert_pressure_is_the_matrix(&at.join("ned/pressure.vtp"), &ned, &starboard([0.3, -0.2, 0.1]));
     // A quarter or an eighth is solved for, and the whole is written; with and without a wall.
     std::fs::write(at.join("egg.toml"), body_file(EGG)).unwrap();
     for surface in [&[][..], &["--surface", "0.4 m"]] {
         let args = [&["egg.toml", "--out", "egg", "--most-panels", "400"], surface, &origin].concat();
         let a = matrix(&record(at, &args), 0);
-        assert_pressure_is_the_matrix(&at.join("egg/pressure.vtp"), &a, [0.3, -0.2, 0.1]);
+        assert_pressure_is_the_matrix(&at.join("egg/pressure.vtp"), &a, &Frame::at([0.3, -0.2, 0.1]));
     }
 }
 
@@ -322,13 +326,270 @@ fn an_origin_moves_the_matrix_by_the_parallel_axes() {
     let at = folder.path();
     write(at, "hull.obj", &hull());
     let about = |origin: &[&str]| record(at, &[&["hull.obj"], &ONE_MESH[..], origin].concat());
-    let a = AddedMass { matrix: matrix(&about(&[]), 0), asymmetry: 0.0, origin_m: [0.0; 3] };
-    let there = about(&["--origin", "-0.3 m, 20 cm, 100 mm"]);
+    let a = AddedMass { matrix: matrix(&about(&[]), 0), asymmetry: 0.0, frame: Frame::at([0.0; 3]) };
+    let there = about(&["--at", "-0.3 m, 20 cm, 100 mm"]);
     assert!(apart(&a.about([-0.3, 0.2, 0.1]).matrix, &matrix(&there, 0)) < 1e-10);
     assert_eq!(there["estimates"][0]["reference_point"], "(−0.3, 0.2, 0.1) m from the origin of the mesh");
-    let buoyancy = about(&["--origin", "buoyancy"]);
+    let buoyancy = about(&["--at", "cb"]);
     let centre = Measure::of(&hull()).centroid_m;
     assert!(apart(&a.about(centre).matrix, &matrix(&buoyancy, 0)) < 1e-10);
+}
+
+/// Standard uncertainties of an estimate, kg, kg m, kg m².
+fn standard(record: &Value, estimate: usize) -> Matrix {
+    let coefficients = &record["estimates"][estimate]["coefficients"];
+    core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            let name = format!("A{}{}", i.min(j) + 1, i.max(j) + 1);
+            coefficients[&name]["standard_uncertainty"].as_f64().unwrap_or_else(|| panic!("{name} of {coefficients}"))
+        })
+    })
+}
+
+/// The covariance of the 21 entries.
+fn covariance(record: &Value, estimate: usize) -> Vec<Vec<f64>> {
+    let covariance = &record["estimates"][estimate]["covariance"];
+    assert_eq!(covariance["names"].as_array().unwrap().len(), 21);
+    serde_json::from_value(covariance["matrix"].clone()).unwrap()
+}
+
+/// Signs of y and z turned: from y port, z up to y starboard, z down.
+const STARBOARD: [f64; 6] = [1.0, -1.0, -1.0, 1.0, -1.0, -1.0];
+
+fn turned(a: &Matrix) -> Matrix {
+    core::array::from_fn(|i| core::array::from_fn(|j| STARBOARD[i] * STARBOARD[j] * a[i][j]))
+}
+
+/// Three meshes of the hull: 64, 256 and 1,024 panels.
+const THREE_MESHES: [&str; 6] = ["--density", "1000 kg/m^3", "--most-panels", "1024", "--tolerance", "0.001 %"];
+
+#[test]
+fn body_axes_turn_matrix_and_covariance_however_the_mesh_lies() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    // The same hull, as drawing programs have it: z up; z down; x aft; y up; all three axes exchanged.
+    let lies: [(&str, fn(Vec3) -> Vec3, &[&str]); 5] = [
+        ("hull.obj", |v| v, &[]),
+        ("down.obj", |[x, y, z]| [x, -y, -z], &["--up", "-z"]),
+        ("aft.obj", |[x, y, z]| [-x, -y, z], &["--forward", "-x"]),
+        ("y-up.obj", |[x, y, z]| [x, z, -y], &["--forward", "x", "--up", "y"]),
+        ("turned.obj", |[x, y, z]| [-z, x, -y], &["--forward", "y", "--up", "-x"]),
+    ];
+    for (name, place, _) in &lies {
+        write(at, name, &hull().mapped(place));
+    }
+    let of = |name: &str, args: &[&str]| record(at, &[&[name], args, &THREE_MESHES[..]].concat());
+    let own = of("hull.obj", &[]);
+    let [a, u] = [matrix(&own, 0), standard(&own, 0)];
+    assert_eq!(own["estimates"][0]["frame"], "axes of the mesh, z up");
+    // The bow is not the stern, the keel is not the deck: every coupling is there, and of ned the usual three have the other sign.
+    let ned = of("hull.obj", &["--axes", "ned"]);
+    let down = matrix(&ned, 0);
+    for (i, j) in [(0, 4), (1, 3), (3, 5)] {
+        assert!(a[i][j].abs() > 1e-2 * (a[i][i] * a[j][j]).sqrt(), "A{}{} is {}", i + 1, j + 1, a[i][j]);
+        assert_eq!(down[i][j], -a[i][j]);
+    }
+    assert_eq!((down, standard(&ned, 0)), (turned(&a), u), "turned, and every uncertainty kept");
+    let sign: Vec<f64> = (0..6).flat_map(|i| (i..6).map(move |j| STARBOARD[i] * STARBOARD[j])).collect();
+    let c = covariance(&own, 0);
+    let expected: Vec<Vec<f64>> = (0..21).map(|i| (0..21).map(|j| sign[i] * sign[j] * c[i][j]).collect()).collect();
+    assert_eq!(covariance(&ned, 0), expected);
+    // Half of the interval of 95 % squared on its diagonal, and no correlation beyond one.
+    for (k, (i, j)) in (0..6).flat_map(|i| (i..6).map(move |j| (i, j))).enumerate() {
+        assert!((c[k][k] / u[i][j].powi(2) - 1.0).abs() < 1e-12);
+        assert!((0..21).all(|l| c[k][l].powi(2) <= c[k][k] * c[l][l] * (1.0 + 1e-9)));
+    }
+    for (axes, expected, words) in [
+        ("enu", a, "x forward, y port, z up (ROS REP 103)"),
+        ("ned", down, "x forward, y starboard, z down (SNAME, Fossen)"),
+        ("fossen", down, "x forward, y starboard, z down (SNAME, Fossen)"),
+    ] {
+        for (name, _, how) in &lies {
+            let found = of(name, &[&["--axes", axes], *how].concat());
+            assert!(apart(&expected, &matrix(&found, 0)) < 1e-9, "{name} {axes}: {:?}", matrix(&found, 0));
+            let scale = |i: usize, j: usize| (a[i][i] * a[j][j]).sqrt();
+            let w = standard(&found, 0);
+            assert!(
+                (0..36).all(|k| (w[k / 6][k % 6] - u[k / 6][k % 6]).abs() < 1e-9 * scale(k / 6, k % 6)),
+                "{name} {axes}"
+            );
+            let frame = found["estimates"][0]["frame"].as_str().unwrap();
+            assert!(frame.starts_with(words), "{frame}");
+            if *name == "turned.obj" {
+                assert!(frame.ends_with("; in the mesh y is forward and -x up"), "{frame}");
+            }
+        }
+    }
+}
+
+/// The frame of a record with y to starboard and z down, about a point of a mesh with z up.
+fn starboard(origin_m: Vec3) -> Frame {
+    Frame { origin_m, axes: [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [0.0, 0.0, -1.0]] }
+}
+
+#[test]
+fn a_turn_with_a_shift_keeps_the_energy_and_an_ellipsoid_is_lambs_about_any_point() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    let of = |args: &[&str]| matrix(&record(at, &[&["hull.obj"], args, &ONE_MESH[..]].concat()), 0);
+    let (a, b) = (of(&[]), of(&["--axes", "ned", "--at", "-0.3 m, 20 cm, 100 mm"]));
+    let t = Frame::at([0.0; 3]).motions_from(&starboard([-0.3, 0.2, 0.1]));
+    assert!(apart(&congruent(&a, &t), &b) < 1e-10);
+    let there = [0.7, -0.2, 0.4, 0.9, -1.3, 0.6];
+    let here: [f64; 6] = t.map(|row| row.iter().zip(there).map(|(t, v)| t * v).sum());
+    let energy = |m: &Matrix, v: &[f64; 6]| (0..36).map(|k| 0.5 * v[k / 6] * m[k / 6][k % 6] * v[k % 6]).sum::<f64>();
+    assert!((energy(&a, &here) / energy(&b, &there) - 1.0).abs() < 1e-10);
+
+    // An ellipsoid whose point lies astern of its centre and below it; the body file says where its centre of gravity is.
+    let gravity = EGG.to_owned() + "centre_of_gravity = [\"-0.3 m\", \"0 m\", \"-10 cm\"]\n";
+    let exact = ellipsoid_added_mass([0.5, 0.3, 0.2]).unwrap();
+    let lamb: Matrix = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { 1025.0 * exact[i] } else { 0.0 }));
+    for (axes, z) in [("ned", -0.1), ("enu", 0.1)] {
+        let found = of_shape(&gravity, &["--axes", axes, "--at", "cg", "--tolerance", "0.2 %"]);
+        let (a, u) = (matrix(&found, 0), standard(&found, 0));
+        let point = &found["estimates"][0]["reference_point"];
+        assert_eq!(
+            point,
+            "(−0.3, 0, −0.1) m from the origin of the mesh, in the axes of the mesh (the centre of gravity)"
+        );
+        for (i, j, expected) in [
+            (0, 4, z * lamb[0][0]),
+            (1, 3, -z * lamb[1][1]),
+            (1, 5, 0.3 * lamb[1][1]),
+            (2, 4, -0.3 * lamb[2][2]),
+            (3, 5, -z * 0.3 * lamb[1][1]),
+            (3, 3, lamb[3][3] + z * z * lamb[1][1]),
+            (4, 4, lamb[4][4] + z * z * lamb[0][0] + 0.09 * lamb[2][2]),
+            (5, 5, lamb[5][5] + 0.09 * lamb[1][1]),
+        ] {
+            let error = (a[i][j] - expected).abs();
+            assert!(
+                error < 2.0 * u[i][j] + 1e-9,
+                "{axes} A{}{}: {} ± {} and {expected}",
+                i + 1,
+                j + 1,
+                a[i][j],
+                2.0 * u[i][j]
+            );
+            assert!(u[i][j] < 1e-3 * (a[i][i] * a[j][j]).sqrt());
+        }
+    }
+}
+
+#[test]
+fn axes_hold_with_a_surface_a_tank_links_a_chain_and_parts() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    write(at, "two.obj", &cube(0.3).with(&hull().mapped(|[x, y, z]| [x, y + 1.0, z])));
+    std::fs::write(at.join("r.toml"), body_file(ROBOT)).unwrap();
+    let cases: [(&[&str], usize); 4] = [
+        (&["hull.obj", "--surface", "0.6 m", "--most-panels", "64", "--density", "1000 kg/m^3"], 3),
+        (
+            &[
+                "hull.obj",
+                "--surface",
+                "1 m",
+                "--tank",
+                "6 m x 4 m x 2 m",
+                "--most-panels",
+                "64",
+                "--density",
+                "1000 kg/m^3",
+            ],
+            3,
+        ),
+        (&["r.toml", "--links", "2", "--tolerance", "20 %"], 1),
+        (&["r.toml", "--links", "1,2", "--tolerance", "20 %"], 2),
+    ];
+    for (args, estimates) in cases {
+        let of = |axes: &[&str]| record(at, &[args, axes].concat());
+        let (own, ned) = (of(&[]), of(&["--axes", "ned"]));
+        for estimate in 0..estimates {
+            let (a, b) = (matrix(&own, estimate), matrix(&ned, estimate));
+            // As for numbers: zeros have no sign.
+            assert!((0..36).all(|k| turned(&a)[k / 6][k % 6] == b[k / 6][k % 6]), "{args:?} {estimate}: {a:?} {b:?}");
+            let frame = ned["estimates"][estimate]["frame"].as_str().unwrap();
+            assert!(frame.starts_with("x forward, y starboard, z down"), "{frame}");
+        }
+    }
+    // Part by part: every block is turned, each part keeps its own point; the files for wave programs do not notice.
+    let parts: [&[&str]; 2] = [
+        &["two.obj", "--apart", "--density", "1000 kg/m^3", "--most-panels", "300", "--export", "wamit"],
+        &["r.toml", "--links", "1", "--joint-angle", "12 deg", "--most-panels", "1500", "--export", "wamit"],
+    ];
+    for args in parts {
+        let of = |axes: &[&str]| record(at, &[args, axes].concat());
+        let wamit = || {
+            let folder = if args[0] == "two.obj" { "two-added-mass" } else { "r-added-mass" };
+            std::fs::read_to_string(at.join(folder).join("added-mass.1")).unwrap()
+        };
+        let own = of(&[]);
+        let of_waves = wamit();
+        let ned = of(&["--axes", "fossen"]);
+        assert_eq!(wamit(), of_waves, "{args:?}");
+        let frame = ned["estimates"][0]["frame"].as_str().unwrap();
+        assert!(frame.contains("starboard, z down (SNAME, Fossen)"), "{frame}");
+        for (name, own) in own["estimates"][0]["coefficients"].as_object().unwrap() {
+            let (i, j) = name[1..].split_once('_').unwrap();
+            let sign = [i, j].map(|k| STARBOARD[(k.parse::<usize>().unwrap() - 1) % 6]).iter().product::<f64>();
+            let ned = &ned["estimates"][0]["coefficients"][name];
+            let value = |c: &Value| c["value"].as_f64().unwrap();
+            let size = 1e-9 * (1.0 + value(own).abs());
+            assert!((value(ned) - sign * value(own)).abs() < size, "{args:?} {name}: {} {}", value(own), value(ned));
+        }
+    }
+}
+
+#[test]
+fn files_for_wave_programs_keep_their_frame_whatever_the_record_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    let of = |args: &[&str], out: &str| {
+        let all = [&["hull.obj", "--export", "wamit,capytaine,csv", "--out", out], args, &ONE_MESH[..]].concat();
+        (lines(at, &all), read_wamit(&at.join(out).join("added-mass.1"), 1000.0, 1.0).unwrap().zero_frequency.unwrap())
+    };
+    let (_, plain) = of(&[], "plain");
+    let (said, turned) = of(&["--axes", "ned", "--at", "0.3 m, -20 cm, 0.1 m"], "turned");
+    for i in 0..6 {
+        for j in 0..6 {
+            let size = (plain[i][i] * plain[j][j]).sqrt();
+            assert!((plain[i][j] - turned[i][j]).abs() < 1e-12 * size * 10.0, "{i} {j}");
+        }
+    }
+    assert!(
+        said.contains(
+            "The files for WAMIT and Capytaine are about the origin of the mesh, in the axes of the mesh, z up"
+        ),
+        "{said}"
+    );
+    assert!(said.contains("The CSV has the axes and the point of the record."), "{said}");
+    let record = matrix(&serde_json::from_slice(&std::fs::read(at.join("turned/estimate.json")).unwrap()).unwrap(), 0);
+    let table = read_table(&at.join("turned/added-mass.csv"), None).unwrap();
+    assert_eq!(table.number("A11", Dimension::MASS).unwrap(), [record[0][0]; 2]);
+    let with_length = Dimension::MASS.checked_mul(Dimension::LENGTH).unwrap();
+    assert_eq!(table.number("A15", with_length).unwrap(), [record[0][4]; 2]);
+}
+
+#[test]
+fn page_and_terminal_have_the_matrix_once_with_its_frame() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    let once = |args: &[&str], tables: usize| {
+        let text = lines(at, &[&["hull.obj", "--axes", "ned", "--at", "cb"], args, &ONE_MESH[..]].concat());
+        let page = std::fs::read_to_string(at.join("hull-added-mass/report.html")).unwrap();
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        for said in [words(&text), words(&page)] {
+            assert_eq!(said.matches("force (first three rows) and moment").count(), tables, "{said}");
+            assert_eq!(said.matches("Frame: x forward, y starboard, z down (SNAME, Fossen); in the mesh x is forward and z up; moments about (").count(), 1, "{said}");
+            assert_eq!(said.matches("(the centre of buoyancy)").count(), 1, "{said}");
+        }
+    };
+    once(&[], 1);
+    once(&["--surface", "0.6 m"], 3);
 }
 
 #[test]
@@ -359,7 +620,7 @@ fn a_surface_has_two_limits_about_the_unbounded_one() {
     assert!((written.zero_frequency.unwrap()[2][2] / lid[2][2] - 1.0).abs() < 1e-12);
     assert!((written.infinite_frequency.unwrap()[2][2] / fast[2][2] - 1.0).abs() < 1e-12);
     // The surface lies above the origin, wherever z points.
-    let down = of(&["down.obj", "--surface", "0.45 m", "--z", "down"]);
+    let down = of(&["down.obj", "--surface", "0.45 m", "--up", "-z"]);
     for (estimate, up) in [lid, fast].into_iter().enumerate() {
         let down = matrix(&down, estimate + 1);
         assert!((0..6).all(|i| (down[i][i] / up[i][i] - 1.0).abs() < 1e-9), "{down:?} {up:?}");
@@ -534,7 +795,7 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
     refuses(
         &small,
         &[&["m.obj", "--surface", "-1 m"], &WATER[..]].concat(),
-        "m.obj: the body lies above the water's surface at z = -1 m; give --surface the height of the surface over the origin of the mesh, and --z up or down as the mesh has it",
+        "m.obj: the body lies above the water's surface at z = -1 m; give --surface the height of the surface over the origin of the mesh, and --up the axis of the mesh that points up, as --up -z",
     );
     refuses(
         &small,
@@ -572,6 +833,60 @@ fn a_file_that_is_no_mesh_is_told_with_its_place() {
 }
 
 #[test]
+fn what_an_option_was_called_is_told_with_its_new_name() {
+    let metre = write_obj(&cube(1.0));
+    let told = |args: &[&str], message: &str| {
+        refuses(&[("m.obj", metre.as_bytes())], &[&["m.obj"], &WATER[..], args].concat(), message);
+    };
+    let z = |up| {
+        format!("--z is now --up: write {up} for how the mesh lies, and --axes ned or enu for the axes of the result")
+    };
+    told(&["--z", "down"], &z("--up -z"));
+    told(&["--z", "up"], &z("--up z"));
+    told(&["--origin", "buoyancy"], "--origin is now --at: write --at cb");
+    told(&["--origin", "0 m, 0 m, -0.2 m"], "--origin is now --at: write --at \"0 m, 0 m, -0.2 m\"");
+}
+
+#[test]
+fn a_frame_that_cannot_be_is_refused_with_what_to_do() {
+    let metre = write_obj(&cube(1.0).with(&cube(1.0).mapped(|[x, y, z]| [x + 3.0, y, z])));
+    let (robot, egg) = (body_file(ROBOT), body_file(EGG));
+    let files = [("m.obj", metre.as_bytes()), ("r.toml", robot.as_bytes()), ("e.toml", egg.as_bytes())];
+    let told = |args: &[&str], message: &str| refuses(&files, &[args, &WATER[..]].concat(), message);
+    told(
+        &["m.obj", "--up", "-x"],
+        "--forward x and --up -x lie along one axis of the mesh: say both, two different ones",
+    );
+    for args in [
+        &["e.toml", "--up", "z"][..],
+        &["r.toml", "--links", "2", "--forward", "-x"],
+        &["r.toml", "--links", "2", "--chain", "--up", "y"],
+    ] {
+        let message = format!(
+            "{}: --forward and --up are for a mesh; a body file has x forward along the body and z up",
+            args[0]
+        );
+        told(args, &message);
+    }
+    told(
+        &["m.obj", "--at", "cg"],
+        "m.obj: --at cg: a mesh says nothing of masses; write the point in the axes of the mesh: --at \"0 mm, 0 mm, -12 mm\"",
+    );
+    told(
+        &["e.toml", "--at", "cg"],
+        "e.toml: --at cg: no centre of gravity is known; write centre_of_gravity = [\"0 mm\", \"0 mm\", \"-12 mm\"] in [body], or the point: \
+         --at \"0 mm, 0 mm, -12 mm\"",
+    );
+    let apart = "--at goes with one rigid body; with --chain or --apart every part is about its own point";
+    told(&["m.obj", "--apart", "--at", "cb"], apart);
+    told(&["r.toml", "--links", "2", "--chain", "--at", "cb"], apart);
+    told(
+        &["m.obj", "--surface", "2 m", "--tank", "9 m x 9 m x 9 m", "--up", "y", "--forward", "x"],
+        "m.obj: in a tank the z axis of the mesh must point up, and here y does; export the mesh with z up",
+    );
+}
+
+#[test]
 fn options_that_say_nothing_sensible_are_told_what_they_take() {
     let metre = write_obj(&cube(1.0));
     let robot = body_file(ROBOT);
@@ -599,13 +914,10 @@ fn options_that_say_nothing_sensible_are_told_what_they_take() {
         "--tolerance \"200 %\": write a part above 0 and below 100 %: \"1 %\"",
     );
     mesh(
-        &["--density", "1 kg/m^3", "--origin", "1 m, 2 m"],
-        "--origin \"1 m, 2 m\": write three lengths, \"0 m, 0 m, -0.2 m\", or \"buoyancy\"",
+        &["--density", "1 kg/m^3", "--at", "1 m, 2 m"],
+        "--at \"1 m, 2 m\": write cg, cb, or three lengths: \"0 m, 0 m, -0.2 m\"",
     );
-    mesh(
-        &["--density", "1 kg/m^3", "--origin", "1 m, 2, 3 m"],
-        "--origin \"2\": `2` has no unit; write for example `2 m`",
-    );
+    mesh(&["--density", "1 kg/m^3", "--at", "1 m, 2, 3 m"], "--at \"2\": `2` has no unit; write for example `2 m`");
     mesh(&["--density", "1 kg/m^3", "--surface", "3 s"], "--surface \"3 s\": expected a length (m), found a time (s)");
     mesh(&["--density", "1 kg/m^3", "--unit", "kg"], "--unit \"kg\": write a unit of length: mm, cm, m, in");
     mesh(&["--repair", "m.obj"], "m.obj: name another file than the input; it stays as it is");
@@ -618,10 +930,7 @@ fn options_that_say_nothing_sensible_are_told_what_they_take() {
         robot(&["--links", links], &message);
     }
     robot(&["--links", "3", "--unit", "mm"], "r.toml: --unit is for a mesh; a body file has a unit at each length");
-    robot(
-        &["--links", "1..3", "--origin", "buoyancy"],
-        "--origin is for one body; give one number of links with it: --links 3",
-    );
+    robot(&["--links", "1..3", "--at", "cb"], "--at is for one body; give one number of links with it: --links 3");
     robot(&["--repair", "n.obj"], "r.toml: --repair is for a mesh; a body file has none");
     refuses(
         &[("e.toml", body_file(EGG).as_bytes())],

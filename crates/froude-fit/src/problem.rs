@@ -1,6 +1,6 @@
 //! What is to be fitted: rows, components, weights and clusters.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use faer::Mat;
 
@@ -107,7 +107,7 @@ impl Problem {
         if let Some(cluster) = &self.cluster {
             size("cluster", cluster.len(), n, of_rows)?;
         }
-        let mut seen = HashMap::new();
+        let mut seen = BTreeMap::new();
         for (second, name) in self.names.iter().enumerate() {
             if let Some(first) = seen.insert(name.as_str(), second) {
                 return Err(FitError::DuplicateName { name: name.clone(), first, second });

@@ -3,11 +3,10 @@
 //! A lint changes nothing except that identical copies are dropped, and says so.
 //! Every limit is a constant with its reason.
 
-use std::collections::HashMap;
-
 use froude_records::campaign::{BodySpec, Campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::table::{ColumnData, Table};
+use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, LOADS, distinct};
 
@@ -67,7 +66,7 @@ pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
 /// Repeats differ in their measured loads; a copy does not, and would count twice.
 #[must_use]
 pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
-    let mut seen: HashMap<Vec<u64>, usize> = HashMap::new();
+    let mut seen: IndexMap<Vec<u64>, usize> = IndexMap::new();
     let mut keep = Vec::new();
     let mut copies = Vec::new();
     let configurations = crate::dataset::labels(&data.configuration);
@@ -348,7 +347,7 @@ pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
             keys.push(within(&channel.values, REPEATS_WITHIN));
         }
     }
-    let mut seen: HashMap<Vec<usize>, usize> = HashMap::new();
+    let mut seen: IndexMap<Vec<usize>, usize> = IndexMap::new();
     (0..data.rows)
         .map(|i| {
             let next = seen.len();

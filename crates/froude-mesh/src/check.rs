@@ -3,7 +3,7 @@
 //! Closed means that each edge is passed once in each direction. A volume below zero means that the surface is inside out. A sliver is
 //! a panel whose area is small against the square of its longest edge.
 
-use std::collections::HashMap;
+use indexmap::IndexMap;
 
 use crate::measure::Measure;
 use crate::mesh::{Mesh, Panel};
@@ -192,7 +192,7 @@ pub fn check(mesh: &Mesh) -> Vec<Trouble> {
     let extent = extent(mesh);
     let mut thinnest: Option<(usize, f64)> = None;
     let mut slivers = 0;
-    let mut seen: HashMap<Vec<u32>, usize> = HashMap::new();
+    let mut seen: IndexMap<Vec<u32>, usize> = IndexMap::new();
     for (number, panel) in mesh.panels.iter().enumerate() {
         let facet = Facet::of(mesh, *panel);
         let corners: Vec<Vec3> = mesh.corners(*panel).collect();
@@ -271,7 +271,7 @@ pub fn extent(mesh: &Mesh) -> f64 {
 /// Edges that are not passed once each way.
 fn edges(mesh: &Mesh) -> Vec<Trouble> {
     // Smaller vertex first: how often it is passed that way, and the other.
-    let mut passed: HashMap<(u32, u32), (usize, usize)> = HashMap::new();
+    let mut passed: IndexMap<(u32, u32), (usize, usize)> = IndexMap::new();
     for panel in &mesh.panels {
         let corners = panel.corners();
         for (i, &from) in corners.iter().enumerate() {

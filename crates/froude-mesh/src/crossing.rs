@@ -12,8 +12,7 @@
 //!
 //! Shewchuk (1997), Adaptive precision floating-point arithmetic and fast robust geometric predicates (crate `robust`).
 
-use std::collections::HashMap;
-
+use indexmap::IndexMap;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::check::{Trouble, is_readable};
@@ -68,7 +67,7 @@ struct Triangle {
 }
 
 fn triangles(mesh: &Mesh) -> Vec<Triangle> {
-    let mut first_at: HashMap<[u64; 3], u32> = HashMap::with_capacity(mesh.vertices.len());
+    let mut first_at: IndexMap<[u64; 3], u32> = IndexMap::with_capacity(mesh.vertices.len());
     let ids: Vec<u32> = (0..).zip(&mesh.vertices).map(|(id, v)| *first_at.entry(bits(*v)).or_insert(id)).collect();
     let mut out = Vec::with_capacity(2 * mesh.panels.len());
     for (number, panel) in (0..).zip(&mesh.panels) {

@@ -15,7 +15,7 @@
 //! Vlachos, Peters, Boyd, Mitchell (2001), Curved PN triangles, for the idea; arcs for their cubics are ours. Max (1999), Weights for
 //! computing vertex normals from facet normals. Coons (1967).
 
-use std::collections::HashMap;
+use indexmap::IndexMap;
 
 use crate::mesh::{Mesh, Panel};
 use crate::panel::{Facet, halves};
@@ -76,7 +76,7 @@ fn arc_middle(p: Vec3, q: Vec3, at_p: Vec3, at_q: Vec3) -> Vec3 {
 /// Every panel into four, with a rule for the middle of an edge given by its vertices (the smaller number first) and their points.
 fn divided(mesh: &Mesh, middle: impl Fn((u32, u32), [Vec3; 2]) -> Vec3) -> Mesh {
     let mut out = Mesh { vertices: mesh.vertices.clone(), panels: Vec::with_capacity(4 * mesh.panels.len()) };
-    let mut middles: HashMap<(u32, u32), u32> = HashMap::with_capacity(2 * mesh.panels.len());
+    let mut middles: IndexMap<(u32, u32), u32> = IndexMap::with_capacity(2 * mesh.panels.len());
     let point = |v: u32| mesh.vertices[v as usize];
     for panel in &mesh.panels {
         let corners = panel.corners();
@@ -115,9 +115,9 @@ const fn triangle([a, b, c]: [u32; 3]) -> Panel {
 /// Directions of the surface at the ends of edges.
 struct Tangents {
     /// Of a smooth edge: unit normals at its ends.
-    normals: HashMap<(u32, u32), [Vec3; 2]>,
+    normals: IndexMap<(u32, u32), [Vec3; 2]>,
     /// Of a vertex between two edges of a crease: the direction of the circle through the three vertices.
-    creases: HashMap<u32, Vec3>,
+    creases: IndexMap<u32, Vec3>,
 }
 
 impl Tangents {
@@ -137,7 +137,7 @@ impl Tangents {
             4 * side.panel + place as u32
         };
         let mut groups = Groups::new(4 * mesh.panels.len());
-        let mut beside: HashMap<u32, Vec<u32>> = HashMap::new();
+        let mut beside: IndexMap<u32, Vec<u32>> = IndexMap::new();
         for edge in by_edge(&sides) {
             let (from, to) = edge[0].edge;
             if is_smooth(edge) {
@@ -161,7 +161,7 @@ impl Tangents {
                 }
             }
         }
-        let mut smooth = HashMap::new();
+        let mut smooth = IndexMap::new();
         for edge in by_edge(&sides).filter(|edge| is_smooth(edge)) {
             let (from, to) = edge[0].edge;
             let normal = |groups: &mut Groups, vertex| {

@@ -5,7 +5,7 @@
 //! **Orientation.** From panel to panel over the edges that have two of them; the greater number of panels stays. A closed surface is
 //! turned outward when its volume is negative.
 
-use std::collections::{HashMap, HashSet};
+use indexmap::{IndexMap, IndexSet};
 
 use crate::check::{Trouble, extent, first_unreadable, has_no_area};
 use crate::mesh::{Mesh, Panel};
@@ -142,7 +142,7 @@ fn welded(mesh: &Mesh, weld_m: f64, told: &mut Vec<Repair>) -> Mesh {
     // Cells that are too small would not be counted by whole numbers.
     let cell = weld_m.max(1e-12 * extent(mesh)).max(f64::MIN_POSITIVE);
     let cell_of = |v: Vec3| [0, 1, 2].map(|i| ((v[i] - low[i]) / cell).floor() as i64);
-    let mut grid: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+    let mut grid: IndexMap<[i64; 3], Vec<u32>> = IndexMap::new();
     let mut out = Mesh::default();
     let mut first = None;
     let mut numbers = Vec::with_capacity(mesh.vertices.len());
@@ -182,7 +182,7 @@ fn welded(mesh: &Mesh, weld_m: f64, told: &mut Vec<Repair>) -> Mesh {
 /// Takes out panels without area, and the later of two over the same corners.
 fn take_out(mesh: &mut Mesh, told: &mut Vec<Repair>) {
     let extent = extent(mesh);
-    let mut seen = HashSet::new();
+    let mut seen = IndexSet::new();
     let (mut empty, mut copies) = ((0, None), (0, None));
     let mut panels = Vec::with_capacity(mesh.panels.len());
     for (number, panel) in mesh.panels.iter().enumerate() {

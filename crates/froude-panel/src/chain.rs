@@ -11,7 +11,7 @@
 use froude_mesh::panel::facets;
 use froude_mesh::robot::ModularRobot;
 use froude_mesh::sections::{PartMesh, Resolution, SectionError};
-use froude_mesh::vector::{Vec3, add, cross, dot, scale, sub};
+use froude_mesh::vector::{Vec3, add, scale, sub};
 
 use crate::matrix::AddedMass;
 use crate::mirror::{Across, Mirror, positive_part};
@@ -187,7 +187,7 @@ impl CentreLine {
 /// The matrix of all parts moving as one rigid body with a frame: Σ T_iᵀ A_ij T_j, T_i from the motion of the body to that of part i.
 #[must_use]
 pub fn whole(solution: &Solution, body: &Frame) -> AddedMass {
-    let transforms: Vec<[[f64; 6]; 6]> = solution.frames.iter().map(|f| of_part(f, body)).collect();
+    let transforms: Vec<[[f64; 6]; 6]> = solution.frames.iter().map(|f| f.motions_from(body)).collect();
     let mut raw = [[0.0; 6]; 6];
     for (p, row) in solution.matrix.iter().enumerate() {
         for (q, a) in row.iter().enumerate() {
@@ -199,23 +199,7 @@ pub fn whole(solution: &Solution, body: &Frame) -> AddedMass {
             }
         }
     }
-    AddedMass::of(raw, body.origin_m)
-}
-
-/// Motions of a part in its own axes (rows) from those of the body (columns).
-fn of_part(part: &Frame, body: &Frame) -> [[f64; 6]; 6] {
-    let d = sub(part.origin_m, body.origin_m);
-    core::array::from_fn(|row| {
-        let own = part.axes[row % 3];
-        core::array::from_fn(|column| {
-            let axis = body.axes[column % 3];
-            match (row < 3, column < 3) {
-                (true, true) | (false, false) => dot(own, axis),
-                (true, false) => dot(own, cross(axis, d)),
-                (false, true) => 0.0,
-            }
-        })
-    })
+    AddedMass::of(raw, *body)
 }
 
 /// Error of a diagonal matrix with one lateral coefficient, for a pattern of lateral accelerations.
@@ -284,6 +268,7 @@ pub fn diagonal_form(solution: &Solution) -> DiagonalForm {
 mod tests {
     use super::*;
     use froude_mesh::measure::Measure;
+    use froude_mesh::vector::dot;
 
     const RESOLUTION: Resolution = Resolution { along: 1, around: 8 };
 

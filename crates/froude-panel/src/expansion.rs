@@ -7,7 +7,7 @@
 //! Only potentials are stored, times the half-width of their box: the charges, which are large and cancel, stay inside the matrices, which
 //! are formed in double precision. All are of order one then, the same at every level, and kept in single precision.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use faer::Mat;
 use froude_mesh::vector::{Vec3, norm, sub};
@@ -76,7 +76,7 @@ pub(crate) struct Expansion {
     /// From the potential coming into a box to that of its child, by octant.
     pub(crate) down: Vec<Mat<f32>>,
     /// From the potential going out of a box to that coming into another, by its offset seen from there.
-    pub(crate) across: HashMap<Cell, Mat<f32>>,
+    pub(crate) across: BTreeMap<Cell, Mat<f32>>,
 }
 
 /// Centre of a child in half-widths of the box around it.

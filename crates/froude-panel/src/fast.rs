@@ -3,7 +3,7 @@
 //! The near part of K is stored in single precision, the far part not at all; S acts once, while the near part is made. Work and memory
 //! grow in proportion to the panels.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatMut, MatRef, Par};
@@ -160,7 +160,7 @@ struct Operator<'a> {
     out: Vec<Attached>,
     into: Vec<Attached>,
     /// Pairs of boxes by level and offset: from, to; ordered by the box they act on.
-    pairs: Vec<HashMap<Cell, Vec<[u32; 2]>>>,
+    pairs: Vec<BTreeMap<Cell, Vec<[u32; 2]>>>,
     signs: Vec<Lane>,
     unknowns: usize,
 }
@@ -171,7 +171,7 @@ type Potentials = Vec<Vec<f32>>;
 impl<'a> Operator<'a> {
     /// Builds K, and S v beside it. `velocities` has the normal velocities, `signs` the sign of each column on each image.
     fn new(layout: &'a Layout, points: &[Vec3], velocities: &[Lane], signs: Vec<Lane>) -> (Self, Vec<Lane>) {
-        let mut pairs: Vec<HashMap<Cell, Vec<[u32; 2]>>> = vec![HashMap::new(); layout.to.levels.len()];
+        let mut pairs: Vec<BTreeMap<Cell, Vec<[u32; 2]>>> = vec![BTreeMap::new(); layout.to.levels.len()];
         for (level, boxes) in layout.to.levels.iter().enumerate().skip(2) {
             for (k, cell) in boxes.cells.iter().enumerate() {
                 for (other, offset) in layout.from.far(level as u32, *cell) {
@@ -369,9 +369,10 @@ impl<'a> Operator<'a> {
         sum
     }
 
-    /// Box on box over one level; each thread has a stretch of the boxes acted on.
-    fn across(&self, pairs: &HashMap<Cell, Vec<[u32; 2]>>, out: &Potentials, come: &mut Potentials) {
-        let share = come.len().div_ceil(2 * rayon::current_num_threads()).max(1);
+    /// Box on box over one level, stretch by stretch of the boxes acted on. Stretches, and the order of the sums, are the same on any number
+    /// of threads.
+    fn across(&self, pairs: &BTreeMap<Cell, Vec<[u32; 2]>>, out: &Potentials, come: &mut Potentials) {
+        let share = come.len().div_ceil(STRETCHES).max(BATCH);
         come.par_chunks_mut(share).enumerate().for_each(|(chunk, come)| {
             let (first, mut from, mut to) = (chunk * share, Vec::new(), Vec::new());
             for (offset, pairs) in pairs {
@@ -403,6 +404,8 @@ fn leaves(side: &Side) -> Vec<(usize, usize)> {
 
 /// Boxes multiplied together.
 const BATCH: usize = 32;
+/// Stretches of a level's boxes at most: enough for as many threads as there may be.
+const STRETCHES: usize = 64;
 
 /// Boxes of a level in an octant of the boxes around them: (child, parent).
 fn family(side: &Side, level: usize, octant: usize) -> Vec<[usize; 2]> {

@@ -35,6 +35,25 @@ impl Frame {
         let m = cross(sub(facet.centroid, self.origin_m), n);
         core::array::from_fn(|mode| dot(self.axes[mode % 3], if mode < 3 { n } else { m }))
     }
+
+    /// Motions along and about these axes (rows) of a rigid body whose motions are told in another frame (columns).
+    ///
+    /// With d from the other point to this one, the velocity here is v + ω × d.
+    #[must_use]
+    pub fn motions_from(&self, other: &Self) -> [[f64; 6]; 6] {
+        let d = sub(self.origin_m, other.origin_m);
+        core::array::from_fn(|row| {
+            let own = self.axes[row % 3];
+            core::array::from_fn(|column| {
+                let axis = other.axes[column % 3];
+                match (row < 3, column < 3) {
+                    (true, true) | (false, false) => dot(own, axis),
+                    (true, false) => dot(own, cross(axis, d)),
+                    (false, true) => 0.0,
+                }
+            })
+        })
+    }
 }
 
 /// Panel of no part.
@@ -152,6 +171,6 @@ impl Solution {
     #[must_use]
     pub fn added_mass(&self, part: usize) -> AddedMass {
         let raw = core::array::from_fn(|i| core::array::from_fn(|j| self.matrix[6 * part + i][6 * part + j]));
-        AddedMass::of(raw, self.frames[part].origin_m)
+        AddedMass::of(raw, self.frames[part])
     }
 }

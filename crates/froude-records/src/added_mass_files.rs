@@ -147,7 +147,7 @@ impl<'a> AddedMassFile<'a> {
         if !(1..=MOST_BODIES).contains(&self.bodies.len()) {
             return Err(AddedMassError::BodyCount { count: self.bodies.len() });
         }
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = std::collections::BTreeSet::new();
         for (index, name) in self.bodies.iter().enumerate() {
             let is_plain = name.chars().all(|c| c.is_alphanumeric() || " -._".contains(c));
             let problem = if name.trim().is_empty() {

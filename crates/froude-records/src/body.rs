@@ -12,6 +12,7 @@
 //! link = { major_semi_axis = "58.8 mm", minor_semi_axis = "39.4 mm", half_length = "90 mm" }
 //! joint = { length = "60 mm", scale = 0.7, ramp = "4 mm" }   # without it the chain is smooth
 //! ends = { length = "31 mm" }
+//! centre_of_gravity = ["0 mm", "0 mm", "-12 mm"]             # may be left out: moments about it are asked for by name
 //! ```
 //!
 //! The x axis runs along the body with the head to +x, y is lateral, z vertical; the origin is in the middle. The words are those of a
@@ -21,7 +22,7 @@ use std::path::Path;
 
 use crate::campaign_toml::one_of;
 use crate::error::{RecordError, read_bytes, utf8};
-use crate::section::{Section, Source, parse};
+use crate::section::{Section, Source, found, parse};
 use crate::units::Dimension;
 
 /// Largest body file.
@@ -34,6 +35,8 @@ pub struct BodyFile {
     pub name: String,
     /// Density of the water, kg/m³; `None` where the file does not say.
     pub density_kg_m3: Option<f64>,
+    /// Centre of gravity from the middle of the body, m; `None` where the file does not say.
+    pub centre_of_gravity_m: Option<[f64; 3]>,
     /// Shape.
     pub shape: Shape,
 }
@@ -125,7 +128,7 @@ pub fn parse_body(path: &Path, text: &str) -> Result<BodyFile, RecordError> {
     };
     let body = root.section("body")?.ok_or_else(|| root.missing("body", "describe the shape in [body]"))?;
     let name = root.text("name")?.unwrap_or("body").to_owned();
-    Ok(BodyFile { name, density_kg_m3, shape: shape(&body)? })
+    Ok(BodyFile { name, density_kg_m3, centre_of_gravity_m: centre_of_gravity(&body)?, shape: shape(&body)? })
 }
 
 /// How a shape is read.
@@ -144,6 +147,19 @@ fn shape(s: &Section<'_>) -> Result<Shape, RecordError> {
 
 /// Lengths that a body can have, m: from a grain to some ships. Beyond them stands a slip of the unit, and no mesh that resolves both ends.
 const LENGTHS_M: [f64; 2] = [1e-5, 1e3];
+
+/// Every shape may have it.
+const CENTRE_OF_GRAVITY: &str = "centre_of_gravity";
+
+fn centre_of_gravity(s: &Section<'_>) -> Result<Option<[f64; 3]>, RecordError> {
+    let Some(value) = s.get(CENTRE_OF_GRAVITY) else { return Ok(None) };
+    let Some([x, y, z]) = value.get_ref().as_array().map(|list| &list[..]) else {
+        let problem = format!("is {}; expected three lengths: [\"0 mm\", \"0 mm\", \"-12 mm\"]", found(value));
+        return Err(s.wrong(CENTRE_OF_GRAVITY, value, problem));
+    };
+    let length = |v| s.as_quantity_of(CENTRE_OF_GRAVITY, v, Dimension::LENGTH);
+    Ok(Some([length(x)?, length(y)?, length(z)?]))
+}
 
 fn need(s: &Section<'_>, key: &'static str) -> Result<f64, RecordError> {
     let length_m =
@@ -170,7 +186,7 @@ fn end(s: &Section<'_>) -> Result<f64, RecordError> {
 }
 
 fn robot(s: &Section<'_>) -> Result<Shape, RecordError> {
-    s.only(&["shape", "link", "joint", "ends"])?;
+    s.only(&["shape", "link", "joint", "ends", CENTRE_OF_GRAVITY])?;
     let link = s.section("link")?.ok_or_else(|| {
         s.missing(
             "link",
@@ -215,12 +231,12 @@ fn joint(j: &Section<'_>, pitch_m: f64) -> Result<Joint, RecordError> {
 }
 
 fn ellipsoid(s: &Section<'_>) -> Result<Shape, RecordError> {
-    s.only(&["shape", "semi_axis_x", "semi_axis_y", "semi_axis_z"])?;
+    s.only(&["shape", "semi_axis_x", "semi_axis_y", "semi_axis_z", CENTRE_OF_GRAVITY])?;
     Ok(Shape::Ellipsoid { semi_axes_m: [need(s, "semi_axis_x")?, need(s, "semi_axis_y")?, need(s, "semi_axis_z")?] })
 }
 
 fn capsule(s: &Section<'_>) -> Result<Shape, RecordError> {
-    s.only(&["shape", "length", "major_semi_axis", "minor_semi_axis", "ends"])?;
+    s.only(&["shape", "length", "major_semi_axis", "minor_semi_axis", "ends", CENTRE_OF_GRAVITY])?;
     let (length_m, end_m) = (need(s, "length")?, end(s)?);
     if 2.0 * end_m >= length_m {
         let problem = format!(
@@ -232,7 +248,7 @@ fn capsule(s: &Section<'_>) -> Result<Shape, RecordError> {
 }
 
 fn cylinder(s: &Section<'_>) -> Result<Shape, RecordError> {
-    s.only(&["shape", "length", "major_semi_axis", "minor_semi_axis"])?;
+    s.only(&["shape", "length", "major_semi_axis", "minor_semi_axis", CENTRE_OF_GRAVITY])?;
     Ok(Shape::Cylinder { length_m: need(s, "length")?, section: section_of(s)? })
 }
 
@@ -276,5 +292,19 @@ ends = { length = "31 mm" }
         assert!(told("scale = 0.7", "scale = 1.7").contains("between 0 and 1"));
         assert!(told("shape = \"robot\"", "").contains("shape"));
         assert!(told("ends = { length = \"31 mm\" }", "").contains("write ends"));
+        let gravity = |list: &str| told("ends =", &format!("centre_of_gravity = {list}\nends ="));
+        assert_eq!(
+            gravity("[\"0 mm\", \"1 mm\"]"),
+            "body.toml:10:21: `centre_of_gravity` is a list; expected three lengths: [\"0 mm\", \"0 mm\", \"-12 mm\"]"
+        );
+        assert!(gravity("[\"0 mm\", \"1 kg\", \"0 mm\"]").starts_with("body.toml:10"));
+        assert!(gravity("\"0 mm\"").contains("expected three lengths"));
+    }
+
+    #[test]
+    fn a_centre_of_gravity_is_read_where_there_is_one() {
+        assert_eq!(read(ROBOT).unwrap().centre_of_gravity_m, None);
+        let with = ROBOT.replace("ends =", "centre_of_gravity = [\"0 m\", \"1 cm\", \"-12 mm\"]\nends =");
+        assert_eq!(read(&with).unwrap().centre_of_gravity_m, Some([0.0, 0.01, -0.012]));
     }
 }

@@ -4,7 +4,7 @@
 //! is therefore an error when writing, never a silent null. Numbers read back to the
 //! bits that were written. Every record that is written carries a checksum of what it says.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::Path;
 
@@ -177,7 +177,7 @@ impl<'de> Visitor<'de> for Walk {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<UniqueKeys, A::Error> {
-        let mut keys = HashSet::new();
+        let mut keys = BTreeSet::new();
         while let Some(key) = map.next_key::<String>()? {
             if keys.contains(&key) {
                 return Err(A::Error::custom(format!("the key `{key}` appears twice")));
@@ -236,8 +236,8 @@ fn line_of(text: &str, key: &str, value: Option<&str>, nth: usize) -> Option<usi
 
 /// What the types cannot say.
 fn check(path: &Path, text: &str, file: &EstimateFile) -> Result<(), RecordError> {
-    let mut ids = HashSet::new();
-    let mut recommended = HashSet::new();
+    let mut ids = BTreeSet::new();
+    let mut recommended = BTreeSet::new();
     for estimate in &file.estimates {
         let line = |nth| line_of(text, "id", Some(&estimate.id), nth);
         let place = |nth| line(nth).map_or_else(|| Place::whole(path), |line| Place::line(path, line));
@@ -290,7 +290,7 @@ fn contradiction(c: &Coefficient) -> Option<String> {
 ///
 /// A number that JSON cannot hold, an id twice, or a file that cannot be written.
 pub fn write_estimates(path: &Path, file: &EstimateFile) -> Result<(), RecordError> {
-    let mut ids = HashSet::new();
+    let mut ids = BTreeSet::new();
     for estimate in &file.estimates {
         if !ids.insert(estimate.id.as_str()) {
             return Err(RecordError::DuplicateId { place: Place::whole(path), id: estimate.id.clone() });

@@ -115,7 +115,7 @@ pub(crate) fn recommended(section: &SourceSection) -> Option<&Estimate> {
 
 /// Distinct texts in the order of their appearance.
 fn distinct<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut seen = std::collections::HashSet::new();
+    let mut seen = std::collections::BTreeSet::new();
     texts.into_iter().filter(|t| seen.insert(*t)).collect()
 }
 

@@ -4,12 +4,12 @@
 //! filter amplifies them. They are relative to the largest number of a line.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use froude_signal::savitzky_golay::Window;
 use froude_signal::{butterworth, decimate, differences, gaussian, savitzky_golay, spectrum, zero_phase};
 
-fn golden() -> HashMap<&'static str, Vec<f64>> {
+fn golden() -> BTreeMap<&'static str, Vec<f64>> {
     include_str!("golden/scipy.txt")
         .lines()
         .filter(|l| !l.starts_with('#'))

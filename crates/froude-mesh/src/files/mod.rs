@@ -31,8 +31,9 @@ mod stl;
 pub mod vtk;
 mod write;
 
-use std::collections::HashMap;
 use std::fmt;
+
+use indexmap::IndexMap;
 
 use crate::mesh::{Mesh, Panel};
 use crate::vector::Vec3;
@@ -245,7 +246,7 @@ type Read = Result<(Mesh, Vec<String>), ReadError>;
 #[derive(Default)]
 struct Soup {
     mesh: Mesh,
-    numbers: HashMap<[u64; 3], u32>,
+    numbers: IndexMap<[u64; 3], u32>,
 }
 
 impl Soup {

@@ -3,7 +3,9 @@
 //! Other elements are counted, named and left out; so are vertices that no panel uses, such as those inside a volume. Nodes may have
 //! any numbers.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
+
+use indexmap::IndexMap;
 
 use super::cursor::Cursor;
 use super::{Place, Read, ReadError, counted};
@@ -56,7 +58,7 @@ struct Msh<'a> {
     cursor: Cursor<'a>,
     is_binary: bool,
     /// Vertex of a node.
-    vertices: HashMap<u64, u32>,
+    vertices: IndexMap<u64, u32>,
     points: Vec<Vec3>,
     panels: Vec<Panel>,
     left_out: BTreeMap<&'static str, u64>,
@@ -67,7 +69,7 @@ pub(super) fn read(mut cursor: Cursor<'_>) -> Read {
     let mut msh = Msh {
         cursor,
         is_binary,
-        vertices: HashMap::new(),
+        vertices: IndexMap::new(),
         points: Vec::new(),
         panels: Vec::new(),
         left_out: BTreeMap::new(),

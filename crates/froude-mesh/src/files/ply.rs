@@ -2,7 +2,7 @@
 //!
 //! Of the element `vertex` x, y, z are read, of `face` the list `vertex_indices` (or `vertex_index`).
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 
 use super::cursor::Cursor;
 use super::{Polygons, Read, ReadError, counted};
@@ -149,7 +149,7 @@ pub(super) fn read(mut cursor: Cursor<'_>) -> Read {
 fn header<'a>(cursor: &mut Cursor<'a>) -> Result<(bool, Vec<Element<'a>>), ReadError> {
     let mut is_binary = None;
     let mut elements: Vec<Element<'a>> = Vec::new();
-    let mut names = HashSet::new();
+    let mut names = BTreeSet::new();
     let first = cursor.line().ok_or_else(|| cursor.ends("ply"))?;
     if first.text != b"ply" {
         return Err(cursor.unexpected(first.at, &first.shown(), "ply"));

@@ -3,7 +3,7 @@
 //! One figure per load component and abscissa, one panel per configuration.
 //! Lines that hold different angles or speeds have colours of one ramp.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, evenly, recommended, thinned};
@@ -204,7 +204,7 @@ fn component_drawings(
     let configurations = distinct(
         points.iter().map(|p| p.configuration.as_str()).chain(curves.iter().map(|c| c.configuration.as_str())),
     );
-    let mut by_configuration: HashMap<&str, Vec<&Point>> = HashMap::new();
+    let mut by_configuration: BTreeMap<&str, Vec<&Point>> = BTreeMap::new();
     for &point in points {
         by_configuration.entry(&point.configuration).or_default().push(point);
     }

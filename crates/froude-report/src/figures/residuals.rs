@@ -1,6 +1,6 @@
 //! Residuals: against the fitted load, against the abscissa, against normal quantiles.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, evenly, recommended, thinned};
 use crate::canvas::{Align, Canvas, shortened};
@@ -36,7 +36,7 @@ fn draw_residuals(
     configurations: &[&str],
     part: &str,
 ) -> Drawing {
-    let rank: HashMap<&str, usize> = configurations.iter().enumerate().map(|(i, c)| (*c, i)).collect();
+    let rank: BTreeMap<&str, usize> = configurations.iter().enumerate().map(|(i, c)| (*c, i)).collect();
     let ink_of = |p: &Point| {
         if configurations.len() < 2 {
             ACCENT

@@ -115,7 +115,9 @@ fn independent(
                 (0..p).map(|j| fit::Factored::interval(&solved, j, factors[j], fit::Bound::FREE)).collect();
             count(&intervals, values)
         })
-        .reduce(|| vec![0; p], add);
+        .collect::<Vec<_>>()
+        .into_iter()
+        .fold(vec![0; p], add);
     Ok(Case { name: name.to_owned(), coefficients: problem.names, hits, repetitions: repetitions as u64 })
 }
 
@@ -262,7 +264,9 @@ fn robust(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<(), Bo
                         (0..p).map(|j| fit::Factored::interval(&solved, j, factors[j], fit::Bound::FREE)).collect();
                     count(&intervals, &values)
                 })
-                .reduce(|| vec![0; p], add);
+                .collect::<Vec<_>>()
+                .into_iter()
+                .fold(vec![0; p], add);
             let text: Vec<String> = problem
                 .names
                 .iter()

@@ -63,7 +63,9 @@ pub fn cases(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<Vec
             (0..repetitions)
                 .into_par_iter()
                 .map(|k| count(&intervals(&noisy(k)), &values))
-                .reduce(|| vec![0; values.len()], add)
+                .collect::<Vec<_>>()
+                .into_iter()
+                .fold(vec![0; values.len()], add)
         };
         let hits = coverage(repetitions, &|data| {
             let standard = Mat::from_fn(rows, 2, |_, k| if k == 0 { SPEED_M_S } else { ANGLE_RAD });

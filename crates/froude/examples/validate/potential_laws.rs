@@ -2,7 +2,8 @@
 
 use std::error::Error;
 
-use froude::added_mass::body::{BodyJob, Origin, body};
+use froude::added_mass::body::{BodyJob, body};
+use froude::added_mass::frame::{Axes, Point};
 use froude::added_mass::refine::Wanted;
 use froude::hydro::ellipsoid::ellipsoid_added_mass;
 use froude::hydro::near_wall::{Boundary, Direction, sphere_far_from_plane};
@@ -185,9 +186,10 @@ fn pool(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
         input,
         links: Some(2),
         density_kg_m3: None,
-        origin: Origin::At([0.0; 3]),
+        axes: Axes::Mesh,
+        at: Point::At([0.0; 3]),
         unit_m: None,
-        is_z_up: true,
+        orientation: None,
         surface_m: Some(0.5),
         tank_m: Some([1.5, 0.9, 1.0]),
         wanted: Wanted { tolerance: 0.01, ..Wanted::default() },

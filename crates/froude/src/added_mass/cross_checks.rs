@@ -5,6 +5,7 @@ use froude_hydro::strip::{Station, strip_added_mass};
 use froude_hydro::tabulated::circular_cylinder_added_mass_m3;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::matrix::AddedMass;
+use froude_panel::problem::Frame;
 use froude_records::body::Shape;
 use froude_report::document::TextTable;
 use froude_report::number;
@@ -18,7 +19,7 @@ const SAME: f64 = 1e-9;
 
 /// The table.
 #[must_use]
-pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m3: f64, origin_m: Vec3) -> TextTable {
+pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m3: f64, frame: &Frame) -> TextTable {
     let line = |name: &str, diagonal: [Option<f64>; 6]| {
         let cells = diagonal.map(|a| a.map_or_else(|| "–".to_owned(), |a| number::plain(density_kg_m3 * a, 5)));
         std::iter::once(name.to_owned()).chain(cells).collect::<Vec<_>>()
@@ -33,7 +34,7 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
     {
         let mut matrix = [[0.0; 6]; 6];
         (0..6).for_each(|i| matrix[i][i] = diagonal[i]);
-        let moved = AddedMass { matrix, asymmetry: 0.0, origin_m: centre }.about(origin_m).matrix;
+        let moved = AddedMass { matrix, asymmetry: 0.0, frame: Frame::at(centre) }.seen_from(frame).matrix;
         let name = if matches!(shape, Some(Shape::Ellipsoid { .. })) {
             "ellipsoid, exact (Lamb)"
         } else {
@@ -44,7 +45,7 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
     if shape.is_some()
         && let Ok(strips) = strip_added_mass(&stations(mesh))
     {
-        let matrix = AddedMass { matrix: strips, asymmetry: 0.0, origin_m: [0.0; 3] }.about(origin_m).matrix;
+        let matrix = AddedMass { matrix: strips, asymmetry: 0.0, frame: Frame::at([0.0; 3]) }.seen_from(frame).matrix;
         rows.push(line(
             "strips of elliptic sections (Newman)",
             core::array::from_fn(|i| (i > 0).then_some(matrix[i][i])),

@@ -5,6 +5,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use froude_panel::problem::Frame;
 use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
@@ -13,8 +14,9 @@ use froude_records::json::write_estimates;
 use froude_records::write::write_atomically;
 use indexmap::IndexMap;
 
-use super::body::is_body_file;
 use super::family::{Family, robot};
+use super::frame::{Axes, Orientation, sentence};
+use super::load::is_body_file;
 use super::page;
 use super::record::{About, estimate};
 use super::refine::{Refined, Wanted, refine};
@@ -30,7 +32,9 @@ pub struct LinksJob {
     pub links: Vec<usize>,
     /// Density instead of the file's, kg/m³.
     pub density_kg_m3: Option<f64>,
-    /// Origin, tolerance, limits.
+    /// Axes of the matrices.
+    pub axes: Axes,
+    /// Tolerance, limits.
     pub wanted: Wanted,
     /// Folder of the results; beside the body file, unless said.
     pub out: Option<PathBuf>,
@@ -58,6 +62,8 @@ pub struct LinksOutcome {
     pub name: String,
     /// Density, kg/m³.
     pub density_kg_m3: f64,
+    /// Axes and point of the matrices, in words.
+    pub place: String,
     /// The configurations.
     pub configurations: Vec<Configuration>,
     /// Least squares over them: `displaced_volume`, `per_link`, `affine`.
@@ -72,6 +78,8 @@ pub struct LinksOutcome {
     pub table: PathBuf,
 }
 
+/// Where the moments of every configuration are taken about.
+const MIDDLE: &str = "the middle of the body";
 /// Fewest configurations that the least squares make sense with.
 const FIT: usize = 3;
 
@@ -89,11 +97,15 @@ pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error>
     let density_kg_m3 = job.density_kg_m3.or(body.density_kg_m3).ok_or_else(|| no_density(&job.body))?;
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.body));
     crate::results::can_be_written(&out)?;
+    let wanted = Wanted {
+        frame: Frame { axes: job.axes.vectors(Orientation::default()), ..Frame::at([0.0; 3]) },
+        ..job.wanted.clone()
+    };
     let mut configurations = Vec::new();
     for &links in &job.links {
         let name = format!("H{links}LT");
         let family = Family::of(&body.shape, links);
-        let refined = refine(&family, &job.wanted, &|step| told(&format!("{name}: {step}")))?;
+        let refined = refine(&family, &wanted, &|step| told(&format!("{name}: {step}")))?;
         let length_m = robot(&body.shape).length_m(links);
         configurations.push(Configuration { links, name, length_m, refined });
     }
@@ -141,8 +153,8 @@ fn written(
         let about = About {
             source: c.name.clone(),
             density_kg_m3,
-            frame: "x forward along the body, y lateral, z vertical".to_owned(),
-            reference_point: page::point(job.wanted.origin_m, "the middle of the body"),
+            frame: job.axes.own_words().to_owned(),
+            reference_point: MIDDLE.to_owned(),
             length_m: c.length_m,
             surroundings: "unbounded water".to_owned(),
         };
@@ -155,11 +167,12 @@ fn written(
         estimates: fits.iter().cloned().chain(matrices).collect(),
         findings,
     };
-    let html = page::links(name, density_kg_m3, &configurations, &fits, &file, job.date.clone()).html()?;
-    let (estimate, report) = (folder.join("estimate.json"), folder.join("report.html"));
+    let place = sentence(job.axes.own_words(), MIDDLE);
+    let html = page::links(name, density_kg_m3, &place, &configurations, &fits, &file, job.date.clone()).html()?;
+    let (estimate, page) = (folder.join("estimate.json"), folder.join("report.html"));
     write_estimates(&estimate, &file)?;
-    write_atomically(&report, html.as_bytes())?;
-    Ok(LinksOutcome { name: name.to_owned(), density_kg_m3, configurations, fits, file, estimate, page: report, table })
+    write_atomically(&page, html.as_bytes())?;
+    Ok(LinksOutcome { name: name.to_owned(), density_kg_m3, place, configurations, fits, file, estimate, page, table })
 }
 
 /// Why nothing in kilograms can be said.

@@ -103,19 +103,14 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
         .iter()
         .map(|s| {
             let a = &s.added_mass.matrix;
-            let mut row = vec![
-                s.panels.to_string(),
-                s.unknowns.to_string(),
-                s.iterations.to_string(),
-                number::plain(s.seconds, 2),
-            ];
+            let mut row = vec![s.panels.to_string(), s.unknowns.to_string(), s.iterations.to_string()];
             let is_zero = |i: usize| a[i][i].abs() < 1e-12 * kind(refined, i);
             row.extend((0..6).map(|i| number::plain(if is_zero(i) { 0.0 } else { density_kg_m3 * a[i][i] }, 6)));
             row.push(format!("{:.1e}", s.added_mass.asymmetry));
             row
         })
         .collect();
-    let head = ["panels", "unknowns", "iterations", "time [s]"].map(str::to_owned).into_iter();
+    let head = ["panels", "unknowns", "iterations"].map(str::to_owned).into_iter();
     let masses = (0..6).map(|i| format!("A{0}{0} [{1}]", i + 1, unit(i, i).replace('*', " ").replace("^2", "²")));
     TextTable {
         caption: "Meshes from the coarsest on. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): a flag, no estimate \
@@ -275,6 +270,7 @@ fn links_chart(configurations: &[Configuration], density_kg_m3: f64) -> Chart {
 pub fn links(
     name: &str,
     density_kg_m3: f64,
+    place: &str,
     configurations: &[Configuration],
     fits: &[Estimate],
     file: &EstimateFile,
@@ -282,9 +278,7 @@ pub fn links(
 ) -> Document {
     let mut sections = vec![DocumentSection {
         title: "Configurations".to_owned(),
-        paragraphs: vec![format!(
-            "Density {density_kg_m3} kg/m³. The x axis runs along the body, y is lateral, z vertical."
-        )],
+        paragraphs: vec![format!("Density {density_kg_m3} kg/m³. {place}")],
         tables: vec![links_table(configurations, density_kg_m3)],
         charts: vec![links_chart(configurations, density_kg_m3)],
     }];
@@ -331,7 +325,7 @@ pub fn body(outcome: &BodyOutcome, date: Option<String>) -> Document {
     let first = &outcome.cases[0];
     let mut sections = vec![DocumentSection {
         title: "Result".to_owned(),
-        paragraphs: outcome.notes.clone(),
+        paragraphs: std::iter::once(outcome.place.clone()).chain(outcome.notes.iter().cloned()).collect(),
         tables: vec![super::limits::table(&outcome.cases, rho).unwrap_or_else(|| matrix_table(&first.refined, rho))],
         charts: Vec::new(),
     }];
@@ -341,11 +335,12 @@ pub fn body(outcome: &BodyOutcome, date: Option<String>) -> Document {
             paragraphs: std::iter::once(format!("{}.", case.surroundings))
                 .chain(convergence_words(&case.refined))
                 .collect(),
-            tables: vec![
-                matrix_table(&case.refined, rho),
-                dimensionless_table(&case.refined, outcome.length_m),
-                steps_table(&case.refined, rho),
-            ],
+            // The only matrix stands above, as the result.
+            tables: (outcome.cases.len() > 1)
+                .then(|| matrix_table(&case.refined, rho))
+                .into_iter()
+                .chain([dimensionless_table(&case.refined, outcome.length_m), steps_table(&case.refined, rho)])
+                .collect(),
             charts: vec![convergence_chart(&case.refined)],
         });
     }

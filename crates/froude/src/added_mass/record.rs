@@ -8,6 +8,9 @@ use super::refine::Refined;
 /// Coverage factor of a numerical uncertainty: it is stated as an interval of 95 %.
 const COVERAGE: f64 = 2.0;
 
+/// What the covariance says, and what it takes for granted.
+const COVARIANCE: &str = "numerical uncertainty, 95 % taken as k = 2: what the meshes have in common fully correlated, the rest of each entry alone";
+
 /// Motions in the order of the matrix.
 pub const MOTIONS: [&str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
 
@@ -38,33 +41,55 @@ pub struct About {
     pub surroundings: String,
 }
 
+/// Entries on and above the diagonal, in the order of the record.
+fn entries() -> impl Iterator<Item = (usize, usize)> + Clone {
+    (0..6).flat_map(|i| (i..6).map(move |j| (i, j)))
+}
+
+fn entry_name((i, j): (usize, usize)) -> String {
+    format!("A{}{}", i + 1, j + 1)
+}
+
+/// Covariance of the entries: on its diagonal the squares of their standard uncertainties, beside it what they have in common. `None` where
+/// there is one mesh only.
+fn covariance(refined: &Refined, rho: f64) -> Option<Covariance> {
+    let common = |(i, j): (usize, usize), (k, l): (usize, usize)| -> f64 {
+        refined.shared.iter().map(|s| rho * s[i][j] * rho * s[k][l]).sum()
+    };
+    let element = |a: (usize, usize), b: (usize, usize)| {
+        let alone = (rho * refined.uncertainty[a.0][a.1] / COVERAGE).powi(2);
+        if a == b { alone.max(common(a, a)) } else { common(a, b) }
+    };
+    let matrix: Vec<Vec<f64>> = entries().map(|a| entries().map(|b| element(a, b)).collect()).collect();
+    let is_known = matrix.iter().flatten().all(|c| c.is_finite());
+    is_known.then(|| Covariance { names: entries().map(entry_name).collect(), matrix })
+}
+
 /// The estimate of model `added_mass_6x6`: entries A11 to A66 on and above the diagonal; the matrix is symmetric.
 #[must_use]
 pub fn estimate(refined: &Refined, about: &About) -> Estimate {
     let rho = about.density_kg_m3;
     let mut coefficients = IndexMap::new();
-    for i in 0..6 {
-        for j in i..6 {
-            let (value, expanded) = (rho * refined.value[i][j], rho * refined.uncertainty[i][j]);
-            let known = expanded.is_finite();
-            coefficients.insert(
-                format!("A{}{}", i + 1, j + 1),
-                Coefficient {
-                    value: Some(value),
-                    unit: unit(i, j).to_owned(),
-                    status: Status::Free,
-                    standard_uncertainty: known.then_some(expanded / COVERAGE),
-                    type_a: None,
-                    type_b: known.then_some(expanded / COVERAGE),
-                    interval_95: known.then_some([value - expanded, value + expanded]),
-                    effective_dof: None,
-                },
-            );
-        }
+    for (i, j) in entries() {
+        let (value, expanded) = (rho * refined.value[i][j], rho * refined.uncertainty[i][j]);
+        let known = expanded.is_finite();
+        coefficients.insert(
+            entry_name((i, j)),
+            Coefficient {
+                value: Some(value),
+                unit: unit(i, j).to_owned(),
+                status: Status::Free,
+                standard_uncertainty: known.then_some(expanded / COVERAGE),
+                type_a: None,
+                type_b: known.then_some(expanded / COVERAGE),
+                interval_95: known.then_some([value - expanded, value + expanded]),
+                effective_dof: None,
+            },
+        );
     }
     let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
     let steps = refined.steps.iter().map(|s| s.panels.to_string()).collect::<Vec<_>>().join(", ");
-    let covariance: Option<Covariance> = None;
+    let covariance = covariance(refined, rho);
     Estimate {
         id: format!("{}/added_mass_6x6", about.source),
         source: about.source.clone(),
@@ -83,7 +108,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
             about.surroundings,
             if refined.steps.len() > 1 { ", extrapolated" } else { "" }
         ),
-        covariance_kind: "numerical uncertainty of each entry alone, 95 %".to_owned(),
+        covariance_kind: if covariance.is_some() { COVARIANCE } else { "none stated" }.to_owned(),
         dof: IndexMap::new(),
         sigma: IndexMap::new(),
         n_observations: refined.steps.len(),

@@ -1,10 +1,8 @@
 //! Finer and finer until the tolerance holds, told beforehand what it takes.
 
-use std::time::Instant;
-
+use froude_mesh::Mesh;
 use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
-use froude_mesh::{Mesh, Vec3};
 use froude_panel::convergence::converged;
 use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
@@ -20,8 +18,8 @@ use crate::Error;
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
-    /// The point that moments are about, m.
-    pub origin_m: Vec3,
+    /// Axes of the matrix and the point that it is about, as the mesh has them.
+    pub frame: Frame,
     /// Largest numerical uncertainty: of a diagonal entry as part of itself, of another as part of √(A_ii A_jj).
     pub tolerance: f64,
     /// Panels at most.
@@ -57,7 +55,7 @@ impl Step {
 impl Default for Wanted {
     fn default() -> Self {
         Self {
-            origin_m: [0.0; 3],
+            frame: Frame::at([0.0; 3]),
             tolerance: 0.01,
             most_panels: 120_000,
             memory_bytes: None,
@@ -78,8 +76,6 @@ pub struct Step {
     pub size: f64,
     /// Iterations; 0 for a direct solution.
     pub iterations: usize,
-    /// Time, s.
-    pub seconds: f64,
     /// Matrix over ρ.
     pub added_mass: AddedMass,
     /// Volume, area, centre of buoyancy of this mesh.
@@ -93,6 +89,9 @@ pub struct Refined {
     pub value: [[f64; 6]; 6],
     /// Their numerical uncertainty, as an expanded one; infinite where there is one mesh only.
     pub uncertainty: [[f64; 6]; 6],
+    /// Parts of the standard uncertainty (half of the numerical one) that all entries have in common, over ρ: each goes through turns and
+    /// shifts as the matrix does. What an entry has beyond them is its own.
+    pub shared: Vec<[[f64; 6]; 6]>,
     /// Observed order of convergence; `None` where the values do not fall in a row.
     pub order: [[Option<f64>; 6]; 6],
     /// Volume, extrapolated, m³.
@@ -136,6 +135,7 @@ pub struct Forecast {
 struct Entry {
     value: f64,
     uncertainty: f64,
+    shared: f64,
     order: Option<f64>,
 }
 
@@ -257,7 +257,6 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             duration(forecast.seconds),
             forecast.memory_bytes / 1e6
         ));
-        let started = Instant::now();
         let solution = solve(&problem);
         if solution.report.residual > LOOSE {
             return Err(Error::Nothing(format!(
@@ -271,8 +270,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             unknowns: problem.facets.len(),
             size: member.size,
             iterations: solution.report.iterations,
-            seconds: started.elapsed().as_secs_f64(),
-            added_mass: solution.added_mass(0).about(wanted.origin_m),
+            added_mass: solution.added_mass(0).seen_from(&wanted.frame),
             measure: Measure::of(&member.mesh.mesh),
         });
         finest = Some(Finest { mesh: solved, mirrors: problem.mirrors, solution });
@@ -292,9 +290,11 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     if !is_within && stopped.is_none() {
         stopped = Some("no finer mesh is made".to_owned());
     }
+    let shared = if steps.len() > 1 { vec![entries.map(|row| row.map(|e| e.shared))] } else { Vec::new() };
     Ok(Refined {
         value: entries.map(|row| row.map(|e| e.value)),
         uncertainty: entries.map(|row| row.map(|e| e.uncertainty)),
+        shared,
         order: entries.map(|row| row.map(|e| e.order)),
         volume_m3,
         steps,
@@ -339,10 +339,10 @@ fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
     let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
     let solutions: Vec<Solution> = steps.iter().map(Step::solution).collect();
     let Some(last) = steps.last() else {
-        return [[Entry { value: f64::NAN, uncertainty: f64::INFINITY, order: None }; 6]; 6];
+        return [[Entry { value: f64::NAN, uncertainty: f64::INFINITY, shared: 0.0, order: None }; 6]; 6];
     };
     if steps.len() == 1 {
-        let alone = |value| Entry { value, uncertainty: f64::INFINITY, order: None };
+        let alone = |value| Entry { value, uncertainty: f64::INFINITY, shared: 0.0, order: None };
         return last.added_mass.matrix.map(|row| row.map(alone));
     }
     let size = Size { volume_m3: last.measure.volume_m3, length_m };
@@ -361,6 +361,7 @@ fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
             Entry {
                 value: c.extrapolated.value,
                 uncertainty: c.extrapolated.uncertainty.max(broken).max(edges * off),
+                shared: c.shared,
                 order: c.order,
             }
         })

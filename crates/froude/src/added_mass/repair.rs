@@ -10,7 +10,7 @@ use froude_mesh::parts::part_troubles;
 use froude_mesh::repair::repaired;
 use froude_records::write::Prepared;
 
-use super::body::{is_body_file, read_mesh};
+use super::load::{is_body_file, read_mesh};
 use crate::Error;
 
 /// What was done.

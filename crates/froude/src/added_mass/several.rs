@@ -26,9 +26,12 @@ use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 use indexmap::IndexMap;
 
-use super::body::{BodyJob, TURNED, for_program, is_body_file, load};
+use super::body::BodyJob;
+use super::exports::{G_M_S2, of_parts_for_program, words_of_parts};
 use super::family::{Family, robot};
+use super::frame::{Axes, sentence};
 use super::links::{default_out, file_name, no_density};
+use super::load::{is_body_file, load, of_a_mesh_only};
 use super::record::{MOTIONS, unit};
 use super::refine::{LOOSE, ZERO};
 use crate::Error;
@@ -52,6 +55,8 @@ pub struct SeveralOutcome {
     pub name: String,
     /// Density, kg/m³.
     pub density_kg_m3: f64,
+    /// Axes and points, in words.
+    pub place: String,
     /// Names of the parts, in the order of the matrix.
     pub parts: Vec<String>,
     /// Entries over ρ, `6n × 6n`.
@@ -76,8 +81,6 @@ pub struct SeveralOutcome {
 const LEVELS: [usize; 3] = [3, 4, 6];
 /// Subdivisions of a mesh from elsewhere.
 const SUBDIVISIONS: usize = 3;
-/// Standard acceleration of gravity, m/s².
-const G_M_S2: f64 = 9.80665;
 
 /// One mesh of the family: its cells' size, its equations, panels of the whole.
 struct Level {
@@ -152,11 +155,12 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     }
     let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
     let mut notes = loaded.notes;
-    if !job.is_z_up && !job.export.is_empty() {
-        notes.push(TURNED.to_owned());
-    }
+    notes.extend(words_of_parts(job));
     tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3));
-    let together = whole(&Solution { matrix: value.clone(), ..finest.clone() }, &Frame::at([0.0; 3]));
+    let together = whole(
+        &Solution { matrix: value.clone(), ..finest.clone() },
+        &Frame { axes: axes_of(job), ..Frame::at([0.0; 3]) },
+    );
     tables.push(whole_table(&together, density_kg_m3));
     if let Apart::Links { .. } = apart {
         let form = diagonal_form(&Solution { matrix: value.clone(), ..finest });
@@ -174,8 +178,8 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     }
     let name = loaded.name;
     let frame = match apart {
-        Apart::Links { .. } => "each part's own axes: x along it towards the head, z vertical".to_owned(),
-        Apart::Parts => format!("axes of the mesh, z {}", if job.is_z_up { "up" } else { "down" }),
+        Apart::Links { .. } => format!("each part's own axes: {}", own_axes(job.axes)),
+        Apart::Parts => job.axes.words(job.orientation.unwrap_or_default()),
     };
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
@@ -184,6 +188,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, meshes, &frame, &notes)],
         findings,
     };
+    let place = sentence(&frame, "each part's own point");
     let page = Document {
         sort: "Added mass · potential flow".to_owned(),
         title: name.clone(),
@@ -191,7 +196,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         date: job.date.clone(),
         sections: vec![DocumentSection {
             title: "Matrix".to_owned(),
-            paragraphs: notes.clone(),
+            paragraphs: std::iter::once(place.clone()).chain(notes.iter().cloned()).collect(),
             tables: tables.clone(),
             ..DocumentSection::default()
         }],
@@ -200,6 +205,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     let mut outcome = SeveralOutcome {
         name,
         density_kg_m3,
+        place,
         parts: loaded.parts,
         value,
         uncertainty,
@@ -230,12 +236,26 @@ struct Several {
     findings: Vec<Finding>,
 }
 
+/// Axes of the result in those of the mesh, or of a link.
+fn axes_of(job: &BodyJob) -> [[f64; 3]; 3] {
+    job.axes.vectors(job.orientation.unwrap_or_default())
+}
+
+const fn own_axes(axes: Axes) -> &'static str {
+    match axes {
+        Axes::Mesh => "x along it towards the head, z vertical",
+        Axes::Ned => "x along it towards the head, y to starboard, z down (SNAME, Fossen)",
+        Axes::Enu => "x along it towards the head, y to port, z up (ROS REP 103)",
+    }
+}
+
 fn links_of(job: &BodyJob, angle_rad: f64) -> Result<Several, Error> {
     let why =
         || Error::Nothing(format!("{}: a chain is a body file of shape \"robot\" with --links", job.input.display()));
     if !is_body_file(&job.input) {
         return Err(why());
     }
+    of_a_mesh_only(job)?;
     let body = read_body(&job.input)?;
     let (Shape::Robot { .. }, Some(links)) = (body.shape, job.links) else { return Err(why()) };
     Ok(Several { density_kg_m3: body.density_kg_m3, ..chain(&body.name, &body.shape, links, angle_rad, job)? })
@@ -246,7 +266,11 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
     let mut problems = Vec::new();
     for along in LEVELS {
         let resolution = Resolution { along, around: 8 * along };
-        let chain = Chain::new(&robot, links, &vec![angle; links + 1], robot.pitch_m / 4.0, resolution)?;
+        let mut chain = Chain::new(&robot, links, &vec![angle; links + 1], robot.pitch_m / 4.0, resolution)?;
+        for frame in &mut chain.frames {
+            let own = frame.axes;
+            frame.axes = axes_of(job).map(|a| core::array::from_fn(|k| (0..3).map(|m| a[m] * own[m][k]).sum()));
+        }
         if chain.surface.mesh.panels.len() > job.wanted.most_panels {
             break;
         }
@@ -258,7 +282,7 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
     parts.push("head".to_owned());
     let notes = vec![format!(
         "Joints bent by {} each about z, the tail's end lies as in the straight robot; every link has its point half-way between its joints, an \
-         end half-way between joint and tip; x along it towards the head, z vertical. Links count from the tail.",
+         end half-way between joint and tip. Links count from the tail.",
         number::degrees(angle)
     )];
     let name = format!("{name}, H{links}LT, link by link");
@@ -294,7 +318,9 @@ fn parts_of(job: &BodyJob) -> Result<Several, Error> {
             p.panels.iter().for_each(|panel| tags[*panel] = part);
         }
         if frames.is_empty() {
-            frames = (0..found.len()).map(|part| Frame::at(centroid(&finer, &tags, part))).collect();
+            frames = (0..found.len())
+                .map(|part| Frame { origin_m: centroid(&finer, &tags, part), axes: axes_of(job) })
+                .collect();
         }
         problems.push((0.5_f64.powi(number as i32), Problem::of_parts(&finer, &tags, &frames, &[])));
     }
@@ -302,8 +328,7 @@ fn parts_of(job: &BodyJob) -> Result<Several, Error> {
     let mut notes = loaded.notes;
     for (k, frame) in frames.iter().enumerate() {
         let [x, y, z] = frame.origin_m.map(|x| number::plain(x, 4));
-        notes
-            .push(format!("Part {}: about its centre of buoyancy, ({x}, {y}, {z}) m, in the axes of the mesh.", k + 1));
+        notes.push(format!("Part {}: about its centre of buoyancy, ({x}, {y}, {z}) m in the axes of the mesh.", k + 1));
     }
     let mut findings = loaded.findings;
     findings.extend(problems.first().and_then(|(_, p)| too_close(p)));
@@ -385,8 +410,8 @@ fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> O
 fn whole_table(together: &AddedMass, density_kg_m3: f64) -> TextTable {
     let row = (0..6).map(|i| number::plain(density_kg_m3 * together.matrix[i][i], 6));
     TextTable {
-        caption: "All parts as one rigid body, from the matrix, about the origin of the mesh and in its axes (a robot's are those of the straight \
-                  chain, whose tail stays where it was): kg, kg m²."
+        caption: "All parts as one rigid body, from the matrix, about the origin of the mesh (of a robot the middle of the straight chain, whose \
+                  tail stays where it was; its axes are the tail's): kg, kg m²."
             .to_owned(),
         head: std::iter::once(String::new()).chain(MOTIONS.map(str::to_owned)).collect(),
         rows: vec![std::iter::once("whole".to_owned()).chain(row).collect()],
@@ -469,13 +494,14 @@ fn record(
 
 /// Writes the matrix for other programs; the names of the files.
 fn exports(outcome: &SeveralOutcome, job: &BodyJob, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    // Zeros without a sign.
     let rows: Vec<Vec<f64>> =
-        outcome.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect();
+        outcome.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a + 0.0).collect()).collect();
     let mut formats = vec!["csv"];
     formats.extend(job.export.iter().filter(|e| **e != "csv"));
     let mut names = Vec::new();
     for extension in formats {
-        let turned = for_program(&rows, extension, job.is_z_up);
+        let turned = of_parts_for_program(&rows, extension, job);
         let file = AddedMassFile {
             density_kg_m3: outcome.density_kg_m3,
             gravity_m_s2: G_M_S2,

@@ -1,7 +1,7 @@
 //! Bodies of revolution: the matrix in azimuthal modes, to eight digits and more, and the meshes beside it as a check.
 
-use froude_mesh::Vec3;
 use froude_panel::matrix::AddedMass;
+use froude_panel::problem::Frame;
 use froude_panel::revolution::{Revolution, Stretch, rounded_cylinder, solve as modes, spheroid};
 use froude_records::body::Shape;
 
@@ -59,13 +59,22 @@ pub fn solve(shape: &Shape) -> Option<Spectral> {
 /// Along x: surge is axial, sway and heave transverse, pitch and yaw turn end over end; the middle is the centre.
 fn matrix(r: &Revolution) -> AddedMass {
     let diagonal = [r.axial_m3, r.transverse_m3, r.transverse_m3, 0.0, r.rotary_m5, r.rotary_m5];
+    of_diagonal(diagonal)
+}
+
+/// About the middle of the body, in its axes.
+fn of_diagonal(diagonal: [f64; 6]) -> AddedMass {
     let matrix = core::array::from_fn(|i| core::array::from_fn(|j| if i == j { diagonal[i] } else { 0.0 }));
-    AddedMass { matrix, asymmetry: 0.0, origin_m: [0.0; 3] }
+    AddedMass { matrix, asymmetry: 0.0, frame: Frame::at([0.0; 3]) }
 }
 
 /// Puts the spectral values in the place of those from meshes; says how far these are from them.
-pub fn replace(refined: &mut Refined, spectral: &Spectral, origin_m: Vec3) -> String {
-    let exact = spectral.added_mass.about(origin_m).matrix;
+///
+/// Three numbers make the matrix, each with the relative uncertainty r: then −rA ≤ E ≤ rA for the error E in every frame, and by Cauchy and
+/// Schwarz |E_ij| ≤ r √(A_ii A_jj) there.
+pub fn replace(refined: &mut Refined, spectral: &Spectral, frame: &Frame) -> String {
+    let middle = spectral.added_mass.matrix;
+    let exact = spectral.added_mass.seen_from(frame).matrix;
     let mut furthest = (0.0_f64, 0);
     for i in 0..6 {
         if exact[i][i] > 0.0 {
@@ -80,6 +89,16 @@ pub fn replace(refined: &mut Refined, spectral: &Spectral, origin_m: Vec3) -> St
     refined.uncertainty = core::array::from_fn(|i| {
         core::array::from_fn(|j| if exact[i][j] == 0.0 { 0.0 } else { spectral.relative * (size(i) * size(j)).sqrt() })
     });
+    let alike: [&[usize]; 3] = [&[0], &[1, 2], &[4, 5]];
+    refined.shared =
+        alike
+            .map(|motions| {
+                let part = core::array::from_fn(|i| {
+                    if motions.contains(&i) { 0.5 * spectral.relative * middle[i][i] } else { 0.0 }
+                });
+                of_diagonal(part).seen_from(frame).matrix
+            })
+            .to_vec();
     refined.worst = spectral.relative;
     refined.is_within = true;
     refined.stopped = None;

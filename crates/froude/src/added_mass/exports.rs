@@ -1,0 +1,114 @@
+//! Files beside the record: the pressure on the body, and what other programs read.
+
+use std::path::{Path, PathBuf};
+
+use froude_panel::matrix::{AddedMass, congruent};
+use froude_panel::problem::Frame;
+use froude_records::added_mass_files::AddedMassFile;
+use froude_records::write::write_atomically;
+
+use super::body::{BodyJob, BodyOutcome, Case};
+use super::frame::{Axes, Orientation};
+use super::pressure::pressure;
+use crate::Error;
+
+/// Standard acceleration of gravity, m/s².
+pub(super) const G_M_S2: f64 = 9.80665;
+
+/// The pressure on the body, and the files that were asked for; their names in the folder.
+pub(super) fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut names = vec![PathBuf::from("pressure.vtp")];
+    let pressure = pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, &outcome.frame);
+    write_atomically(&folder.join(&names[0]), pressure.as_bytes())?;
+    let body =
+        outcome.name.chars().map(|c| if c.is_ascii_alphanumeric() || " -.".contains(c) { c } else { '-' }).collect();
+    let bodies = [body];
+    for extension in &job.export {
+        let frame = if is_of_waves(extension) { wave_frame(job) } else { outcome.frame };
+        let rows = |case: &Case| -> Vec<Vec<f64>> {
+            let own = AddedMass { matrix: case.refined.value, asymmetry: 0.0, frame: outcome.frame };
+            let there = own.seen_from(&frame).matrix;
+            there.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a).collect()).collect()
+        };
+        // Deeply submerged both limits are the same.
+        let limit = |is_lid: bool| outcome.cases.iter().rfind(|c| c.is_lid.is_none_or(|l| l == is_lid)).map(rows);
+        let (zero, infinite) = (limit(true), limit(false));
+        let file = AddedMassFile {
+            density_kg_m3: outcome.density_kg_m3,
+            gravity_m_s2: G_M_S2,
+            length_m: 1.0,
+            bodies: &bodies,
+            zero_frequency: zero.as_deref(),
+            infinite_frequency: infinite.as_deref(),
+        };
+        let name = PathBuf::from(format!("added-mass.{extension}"));
+        file.write(&folder.join(&name))?;
+        names.push(name);
+    }
+    Ok(names)
+}
+
+/// Whether wave programs read a format: they take z up, about the origin of the mesh.
+fn is_of_waves(extension: &str) -> bool {
+    extension != "csv"
+}
+
+/// The frame of the files for wave programs.
+fn wave_frame(job: &BodyJob) -> Frame {
+    let mesh = job.orientation.unwrap_or_default();
+    Frame { axes: mesh.wave_axes().vectors(mesh), ..Frame::at([0.0; 3]) }
+}
+
+/// What is said of the exports of one body.
+pub(super) fn words(job: &BodyJob) -> Vec<String> {
+    let mut out = Vec::new();
+    if job.export.iter().any(|e| is_of_waves(e)) {
+        out.push(format!(
+            "The files for WAMIT and Capytaine are about the origin of the mesh, in {}, as wave programs ask for.",
+            wave_words(job.orientation.unwrap_or_default())
+        ));
+    }
+    if job.export.contains(&"csv") {
+        out.push("The CSV has the axes and the point of the record.".to_owned());
+    }
+    out
+}
+
+fn wave_words(mesh: Orientation) -> String {
+    match mesh.wave_axes() {
+        Axes::Mesh => "the axes of the mesh, z up".to_owned(),
+        axes => format!("axes with {}", axes.own_words()),
+    }
+}
+
+/// The same of parts, each about its own point.
+pub(super) fn words_of_parts(job: &BodyJob) -> Option<String> {
+    job.export.iter().any(|e| is_of_waves(e)).then(|| {
+        let z = if job.axes == Axes::Mesh && job.orientation.unwrap_or_default().wave_axes() == Axes::Mesh {
+            "the axes of the record"
+        } else {
+            "axes with z up and y to port"
+        };
+        format!("The files for WAMIT and Capytaine are in {z}, as wave programs ask for, every part about its own point; the CSV is that of the record.")
+    })
+}
+
+/// A matrix of parts in the axes that a format has, each part about its own point.
+pub(super) fn of_parts_for_program(matrix: &[Vec<f64>], extension: &str, job: &BodyJob) -> Vec<Vec<f64>> {
+    let mesh = job.orientation.unwrap_or_default();
+    if !is_of_waves(extension) || job.axes == mesh.wave_axes() {
+        return matrix.to_vec();
+    }
+    let own = Frame { axes: job.axes.vectors(mesh), ..Frame::at([0.0; 3]) };
+    let t = own.motions_from(&wave_frame(job));
+    let mut out = matrix.to_vec();
+    for p in (0..matrix.len()).step_by(6) {
+        for q in (0..matrix.len()).step_by(6) {
+            let block = core::array::from_fn(|i| core::array::from_fn(|j| matrix[p + i][q + j]));
+            for (i, row) in congruent(&block, &t).iter().enumerate() {
+                out[p + i][q..q + 6].copy_from_slice(row);
+            }
+        }
+    }
+    out
+}

@@ -1,0 +1,202 @@
+//! A body file or a mesh, read and checked.
+
+use std::path::Path;
+
+use froude_mesh::check::{Trouble, check, extent};
+use froude_mesh::crossing::crossings;
+use froude_mesh::files;
+use froude_mesh::panel::Facet;
+use froude_mesh::parts::part_troubles;
+use froude_mesh::plausible::too_large;
+use froude_mesh::refine::without_warp;
+use froude_mesh::vector::{norm, sub};
+use froude_mesh::{Mesh, Vec3};
+use froude_records::body::{Shape, read_body};
+use froude_records::finding::{Finding, Severity};
+
+use super::body::BodyJob;
+use super::family::Family;
+use super::links::{file_name, not_links};
+use crate::Error;
+
+/// A body that was read, with everything that was found.
+#[derive(Debug, Clone)]
+pub struct Loaded {
+    /// Name.
+    pub name: String,
+    /// Its meshes.
+    pub family: Family,
+    /// Its dimensions, where a body file gives them.
+    pub shape: Option<Shape>,
+    /// Density that the file gives, kg/m³.
+    pub density_kg_m3: Option<f64>,
+    /// Centre of gravity that the file gives, m.
+    pub centre_of_gravity_m: Option<Vec3>,
+    /// What was found, a sentence each.
+    pub notes: Vec<String>,
+    /// Doubts.
+    pub findings: Vec<Finding>,
+}
+
+/// Warp of a quadrilateral, as part of its radius, from which it is divided into triangles.
+pub(super) const WARP: f64 = 1e-6;
+/// Largest mesh file, bytes.
+const LARGEST_FILE: u64 = 1 << 30;
+/// Whether a path is a body file and not a mesh.
+#[must_use]
+pub fn is_body_file(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
+}
+
+/// Reads a mesh as it is, in metres.
+///
+/// # Errors
+///
+/// A file that cannot be read.
+pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>), Error> {
+    let bytes = froude_records::read::whole(path, LARGEST_FILE, "a mesh")?;
+    let file = files::read(&path.display().to_string(), &bytes)?;
+    let unit_m = unit_m.unwrap_or(1.0);
+    let mesh = if unit_m == 1.0 { file.mesh } else { file.mesh.mapped(|v| v.map(|x| unit_m * x)) };
+    Ok((mesh, file.notes))
+}
+
+/// Refuses for a body file what only a mesh needs.
+pub(super) fn of_a_mesh_only(job: &BodyJob) -> Result<(), Error> {
+    let why = if job.unit_m.is_some() {
+        "--unit is for a mesh; a body file has a unit at each length"
+    } else if job.orientation.is_some() {
+        "--forward and --up are for a mesh; a body file has x forward along the body and z up"
+    } else {
+        return Ok(());
+    };
+    Err(Error::Nothing(format!("{}: {why}", job.input.display())))
+}
+
+/// Reads and checks.
+///
+/// # Errors
+///
+/// A file that cannot be read, and a mesh that potential flow cannot be computed on, with everything that is wrong with it.
+pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
+    if is_body_file(&job.input) {
+        of_a_mesh_only(job)?;
+        let body = read_body(&job.input)?;
+        let links = match (&body.shape, job.links) {
+            (Shape::Robot { .. }, Some(links)) => links,
+            (Shape::Robot { .. }, None) => {
+                return Err(Error::Nothing(format!(
+                    "{}: a robot has links; say how many: --links 3, or --links 1..9 for a table",
+                    job.input.display()
+                )));
+            }
+            (_, Some(_)) => return Err(not_links(&job.input)),
+            (_, None) => 0,
+        };
+        let name = if job.links.is_some() { format!("{}, H{links}LT", body.name) } else { body.name };
+        let family = Family::of(&body.shape, links);
+        let notes = vec!["Meshes from the dimensions; every mesh is similar to the others.".to_owned()];
+        return Ok(Loaded {
+            name,
+            family,
+            shape: Some(body.shape),
+            density_kg_m3: body.density_kg_m3,
+            centre_of_gravity_m: body.centre_of_gravity_m,
+            notes,
+            findings: Vec::new(),
+        });
+    }
+    if job.links.is_some() {
+        return Err(not_links(&job.input));
+    }
+    let (mesh, mut notes) = read_mesh(&job.input, job.unit_m)?;
+    let mut findings = Vec::new();
+    let mut wrong = Vec::new();
+    let mut troubles = check(&mesh);
+    if !troubles.iter().any(Trouble::is_fatal) {
+        troubles.extend(part_troubles(&mesh));
+        troubles.extend(crossings(&mesh));
+    }
+    let is_unreadable =
+        |t: &Trouble| matches!(t, Trouble::Empty | Trouble::NotFinite { .. } | Trouble::NoSuchVertex { .. });
+    // A repair merges, turns and takes out; bodies that cross must be united where they were drawn.
+    let is_crossing = |t: &Trouble| matches!(t, Trouble::Crossing { .. });
+    let is_nested = |t: &Trouble| matches!(t, Trouble::Nested { .. });
+    let is_repairable = !troubles.iter().any(is_unreadable)
+        && !troubles.iter().all(|t| is_crossing(t) || is_nested(t) || !t.is_fatal());
+    let is_open = troubles.iter().any(|t| matches!(t, Trouble::Open { .. }));
+    for trouble in troubles {
+        if trouble.is_fatal() {
+            wrong.push(format!("  {trouble}"));
+        } else {
+            findings.push(Finding::new(Severity::Warning, "mesh", trouble.to_string()));
+        }
+    }
+    if !wrong.is_empty() {
+        let rest = wrong.len().saturating_sub(MOST_TOLD);
+        wrong.truncate(MOST_TOLD);
+        if rest > 0 {
+            wrong.push(format!("  and {rest} more"));
+        }
+        if is_open {
+            wrong.push(
+                "  where it looks closed and is not, corners lie within edges of neighbours (T-junctions): let the drawing program mesh it anew"
+                    .to_owned(),
+            );
+        }
+        if is_repairable {
+            wrong.push(format!(
+                "  froude added-mass {}{} --repair repaired.obj writes a mesh with what can be decided put right",
+                job.input.display(),
+                job.unit_m.map_or_else(String::new, |m| format!(" --unit \"{m} m\""))
+            ));
+        }
+        return Err(Error::Nothing(format!(
+            "{}: potential flow cannot be computed on this mesh:\n{}",
+            job.input.display(),
+            wrong.join("\n")
+        )));
+    }
+    if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
+        return Err(Error::Nothing(format!("{}: {doubt}", job.input.display())));
+    }
+    findings.extend(thin_panels(&mesh));
+    let flat = without_warp(&mesh, WARP);
+    if flat.panels.len() > mesh.panels.len() {
+        notes.push(format!(
+            "{} quadrilaterals whose corners do not lie in one plane were divided into triangles.",
+            flat.panels.len() - mesh.panels.len()
+        ));
+    }
+    let name = file_name(&job.input);
+    let family = Family::Mesh(flat);
+    Ok(Loaded { name, family, shape: None, density_kg_m3: None, centre_of_gravity_m: None, notes, findings })
+}
+
+/// Area over the square of the longest edge, and longest edge over the extent, from which a panel is long and thin.
+const THIN: f64 = 0.05;
+const LONG: f64 = 0.1;
+
+/// Long thin panels, as drawing programs leave on flat sides: dividing them keeps their shape, and convergence slow.
+fn thin_panels(mesh: &Mesh) -> Option<Finding> {
+    let extent_m = extent(mesh);
+    let longest = |p: &froude_mesh::Panel| {
+        let corners: Vec<Vec3> = mesh.corners(*p).collect();
+        (0..corners.len()).map(|i| norm(sub(corners[(i + 1) % corners.len()], corners[i]))).fold(0.0, f64::max)
+    };
+    let lengths = mesh.panels.iter().map(|p| (longest(p), Facet::of(mesh, *p)));
+    let thin: Vec<(f64, Facet)> = lengths.filter(|(l, f)| *l > LONG * extent_m && f.area < THIN * l * l).collect();
+    let (length, facet) = thin.first()?;
+    let message = format!(
+        "{} of {} panels are long and thin, the first at {:.4?} m is {length:.4} m long; finer meshes keep their shape, and converge slowly \
+         where they meet an edge: let the drawing program mesh the surface with edges of {:.3} m or less",
+        thin.len(),
+        mesh.panels.len(),
+        facet.centroid,
+        extent_m / 30.0
+    );
+    Some(Finding::new(Severity::Note, "thin-panels", message))
+}
+
+/// Troubles of a mesh that are told one by one.
+const MOST_TOLD: usize = 12;
