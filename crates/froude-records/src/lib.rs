@@ -38,6 +38,7 @@ pub mod memory;
 pub mod nearest;
 mod parquet_sums;
 pub mod parquet_table;
+pub mod plausible;
 pub mod read;
 pub mod run;
 pub mod scale;
