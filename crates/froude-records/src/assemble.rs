@@ -1,6 +1,6 @@
 //! From headers and raw cells to a checked table, the same for every format.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::error::{Place, RecordError};
@@ -78,7 +78,7 @@ pub(crate) fn plan<'s>(
     }
     let wants = match sidecar {
         Some(sidecar) => {
-            let known: HashSet<&str> = header.iter().map(String::as_str).collect();
+            let known: BTreeSet<&str> = header.iter().map(String::as_str).collect();
             for (written, mapping) in &sidecar.columns {
                 if !known.contains(written.as_str()) {
                     return Err(RecordError::UnknownColumn {
@@ -104,7 +104,7 @@ pub(crate) fn plan<'s>(
 
 /// The first name that was there before.
 fn first_twice<'a>(names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let mut seen = HashSet::new();
+    let mut seen = BTreeSet::new();
     names.into_iter().find(|name| !seen.insert(*name))
 }
 
@@ -348,7 +348,7 @@ pub(crate) fn assemble(
     };
     match sidecar {
         Some(sidecar) => {
-            let mut named: HashMap<&str, Raw> = header.iter().map(String::as_str).zip(raws).collect();
+            let mut named: BTreeMap<&str, Raw> = header.iter().map(String::as_str).zip(raws).collect();
             let mut take = |written: &str| named.remove(written);
             table.columns = sidecar.columns(&mut take, &|row| table.place_of_row(row))?;
         }

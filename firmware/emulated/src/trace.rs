@@ -18,7 +18,7 @@
 //!
 //! Caches are on and warm; a miss is not in the bound.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::io::{self, Read, Write};
 use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::Path;
@@ -86,7 +86,7 @@ fn count_registers(list: &str) -> u32 {
 }
 
 /// Class and cost of the instruction at each address.
-pub type Listing = HashMap<u32, (usize, u32)>;
+pub type Listing = BTreeMap<u32, (usize, u32)>;
 
 /// The disassembly: what stands at each address, and where `symbol` is.
 ///
@@ -96,7 +96,7 @@ pub type Listing = HashMap<u32, (usize, u32)>;
 pub fn disassemble(image: &Path, symbol: &str) -> io::Result<(Listing, u32)> {
     let output = Command::new("arm-none-eabi-objdump").args(["-d", "--no-show-raw-insn"]).arg(image).output()?;
     let text = String::from_utf8_lossy(&output.stdout);
-    let mut instructions = HashMap::new();
+    let mut instructions = BTreeMap::new();
     let mut found = 0;
     for line in text.lines() {
         if let Some((address, name)) = line.split_once(" <").filter(|(_, name)| name.ends_with(">:")) {

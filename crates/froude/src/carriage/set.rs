@@ -3,7 +3,7 @@
 //! A log in two folders, or under two names, narrows every interval for nothing. Two logs are one run when their bytes are the
 //! same, or when both say the same campaign (name and SHA-256 of its file) and the same run of it.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use froude_records::RecordError;
@@ -54,8 +54,8 @@ pub(crate) fn is_put_aside(log: &Path, meta: &RunMeta) -> bool {
 
 /// A finding for every member that is there before.
 pub(crate) fn doubles(members: &[Member]) -> Vec<Finding> {
-    let mut by_hash: HashMap<&str, &Member> = HashMap::new();
-    let mut by_id: HashMap<&str, Vec<&Member>> = HashMap::new();
+    let mut by_hash: BTreeMap<&str, &Member> = BTreeMap::new();
+    let mut by_id: BTreeMap<&str, Vec<&Member>> = BTreeMap::new();
     let mut out = Vec::new();
     for member in members {
         let same_bytes = by_hash.get(member.sha256.as_str());

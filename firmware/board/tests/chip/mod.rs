@@ -6,7 +6,7 @@
 #![allow(dead_code)]
 
 use std::cell::RefCell;
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::rc::Rc;
 
 use froude_board::am335x::Blocks;
@@ -60,7 +60,7 @@ pub struct Decoder {
 
 #[derive(Debug, Default)]
 pub struct State {
-    pub registers: HashMap<(At, usize), u32>,
+    pub registers: BTreeMap<(At, usize), u32>,
     /// Modules that never come up.
     pub dead: Vec<(At, usize)>,
     pub sent: Vec<u8>,
