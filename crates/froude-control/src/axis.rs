@@ -11,8 +11,8 @@ use crate::config::AxisConfig;
 use crate::encoder::Unwrap;
 use crate::excite::{Asked, Exciter};
 use crate::fault::{Fault, StopCategory};
-use crate::feedback::{Cut, Feedback};
-use crate::homing::{Homing, Next};
+use crate::feedback::{Cut, Ends, Feedback};
+use crate::homing::{Homing, Next, Seen};
 use crate::law::{Law, settled};
 use crate::monitor::{Applied, Monitor};
 use crate::profile::{Profile, State};
@@ -225,7 +225,7 @@ impl Axis {
         let (homing, speed_m_s) = Homing::start(&self.law, self.reference.position_m, input.is_low_end);
         self.homing = homing;
         self.begin_from_rest(Phase::Homing);
-        self.ramp_to(speed_m_s, self.law.limits.acceleration_m_s2, 0.0);
+        self.change_gently(speed_m_s);
         Ok(())
     }
 
@@ -354,6 +354,12 @@ impl Axis {
         self.plan = Plan::Ramp(SpeedRamp::plan(self.reference, speed_m_s, acceleration_m_s2, jerk_m_s3));
     }
 
+    /// A change of speed in homing that leaves the load hanging still.
+    fn change_gently(&mut self, speed_m_s: f64) {
+        let bounds = Homing::bounds(&self.law);
+        self.ramp_to(speed_m_s, bounds.acceleration_m_s2, bounds.jerk_m_s3);
+    }
+
     // --- Each tick ----------------------------------------------------------------------------------------------------
 
     /// The command of this tick.
@@ -391,7 +397,7 @@ impl Axis {
         let is_over = time_s >= self.plan.duration_s();
         if let Asked::Open(volts) = asked {
             self.reference = State { position_m: self.position_m, speed_m_s: self.speed_m_s, acceleration_m_s2: 0.0 };
-            self.give(Cut { volts, is_saturated: false });
+            self.give(Cut { volts, is_saturated: false, is_blocked: false });
             return;
         }
         self.reference = self.plan.sample(time_s);
@@ -409,7 +415,11 @@ impl Axis {
             self.pending = Some(Fault::FollowingError);
         }
         let added_v = if let Asked::Added(volts) = asked { volts } else { 0.0 };
-        let cut = self.feedback.step(&self.law, self.reference, self.position_m, added_v);
+        let ends = Ends { is_low: input.is_low_end, is_high: input.is_high_end };
+        let cut = self.feedback.step(&self.law, self.reference, self.position_m, added_v, ends);
+        if cut.is_blocked && self.phase == Phase::Homing && self.homing.is_settling() {
+            self.stand_here();
+        }
         self.give(cut);
     }
 
@@ -454,18 +464,38 @@ impl Axis {
         self.speed_m_s + libm::copysign(push_v * self.law.lag_m_s_v, self.command.volts)
     }
 
+    /// The load has lifted the axis from where it was to stand and nothing may pull it back: it stands where it is.
+    fn stand_here(&mut self) {
+        self.reference = State::at_rest(self.position_m);
+        self.plan = Plan::Still(self.position_m);
+        self.feedback = Feedback::default();
+    }
+
     fn find_home(&mut self, input: &AxisInput) {
         let limits = self.law.limits;
-        let is_over = f64::from(self.elapsed_ticks) * self.law.tick_s >= self.plan.duration_s();
-        match self.homing.step(&self.law, self.reference.position_m, input.is_low_end, is_over) {
+        let elapsed_s = f64::from(self.elapsed_ticks) * self.law.tick_s;
+        let seen = Seen {
+            reference_m: self.reference.position_m,
+            is_low_end: input.is_low_end,
+            is_over: elapsed_s >= self.plan.duration_s(),
+            is_at_rest: self.monitor.is_at_rest(&self.law),
+            elapsed_s,
+        };
+        match self.homing.step(&self.law, seen) {
             Next::Carry => {}
-            Next::Speed(speed_m_s) => self.ramp_to(speed_m_s, limits.acceleration_m_s2, 0.0),
-            Next::Mark => {
-                let shift_m = limits.low_switch_m - self.position_m;
-                self.zero_m += shift_m;
-                self.position_m += shift_m;
-                self.reference.position_m += shift_m;
+            Next::Speed(speed_m_s) => self.change_gently(speed_m_s),
+            Next::Brake { is_mark } => {
+                if is_mark {
+                    let shift_m = limits.low_switch_m - self.position_m;
+                    self.zero_m += shift_m;
+                    self.position_m += shift_m;
+                    self.reference.position_m += shift_m;
+                }
                 self.ramp_to(0.0, limits.acceleration_m_s2, 0.0);
+            }
+            Next::Settle => {
+                self.elapsed_ticks = 0;
+                self.plan = Plan::Still(self.reference.position_m);
             }
             Next::Retreat(target_m) => {
                 self.elapsed_ticks = 0;

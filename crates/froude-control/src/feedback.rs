@@ -3,6 +3,8 @@
 //! v_c = K_p e + K_d ė + K_i ∫e dt + feed-forward, e the motor angle's error \[rad\]. ė is filtered (first order). Anti-windup is
 //! conditional: while the command is cut, the integral takes nothing that would push it further. At a standing reference
 //! it also leaves an error of one count alone: it would only hunt in the friction.
+//! Beyond an open end switch the command is cut at zero: the switch blocks what goes further, and a command that no current follows
+//! would look like a fault of the amplifier.
 //! Feed-forward is inertia, viscous friction, drag and Coulomb friction with the sign of the *reference* speed, smoothed: the measured
 //! speed's sign would chatter.
 //!
@@ -24,11 +26,21 @@ pub(crate) struct Feedback {
     last_v: f64,
 }
 
-/// A command and whether the range cut it.
+/// A command and what cut it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cut {
     pub volts: f64,
+    /// The range did.
     pub is_saturated: bool,
+    /// An open end switch did: it blocks the drive towards its end, so nothing is asked there.
+    pub is_blocked: bool,
+}
+
+/// Which ends are open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Ends {
+    pub is_low: bool,
+    pub is_high: bool,
 }
 
 impl Feedback {
@@ -37,7 +49,7 @@ impl Feedback {
         self.last_v
     }
 
-    pub(crate) fn step(&mut self, law: &Law, reference: State, position_m: f64, added_v: f64) -> Cut {
+    pub(crate) fn step(&mut self, law: &Law, reference: State, position_m: f64, added_v: f64, ends: Ends) -> Cut {
         let error = (reference.position_m - position_m) * law.rad_per_m;
         let slope = (error - self.last_error_rad) * law.per_tick_s;
         self.last_error_rad = settled(error);
@@ -51,11 +63,15 @@ impl Feedback {
         let integral = self.integral_v + step_v;
         self.last_v = law.proportional * error + law.derivative * self.derivative_rad_s + integral;
         let wanted = self.last_v + forward + added_v;
-        let volts = held_within(wanted, law.limit_v);
-        let is_saturated = volts != wanted;
-        if !is_saturated || step_v * wanted < 0.0 {
+        let is_blocked = (ends.is_low && wanted < 0.0) || (ends.is_high && wanted > 0.0);
+        let volts = if is_blocked { 0.0 } else { held_within(wanted, law.limit_v) };
+        if is_blocked {
+            // What the loop wanted has not acted: no detector may wait for its way.
+            self.last_v = -(forward + added_v);
+        }
+        if volts == wanted || step_v * wanted < 0.0 {
             self.integral_v = settled(held_within(integral, law.limit_v));
         }
-        Cut { volts, is_saturated }
+        Cut { volts, is_saturated: !is_blocked && volts != wanted, is_blocked }
     }
 }

@@ -55,6 +55,8 @@ pub(crate) struct Law {
     pub stopping: StoppingWay,
     pub coast: Coast,
     pub shaper: Shaper,
+    /// Mode that is left unexcited, Hz; 0 is none.
+    pub mode_hz: f64,
     /// Where targets may lie, m.
     pub soft_low_m: f64,
     pub soft_high_m: f64,
@@ -140,6 +142,7 @@ impl Law {
             stopping: StoppingWay::new(coast, limits.acceleration_m_s2),
             coast,
             shaper: config.shaper(),
+            mode_hz: config.mode_hz,
             soft_low_m: libm::fmax(limits.hard_low_m, limits.low_switch_m) + limits.following_error_m,
             soft_high_m: libm::fmin(limits.hard_high_m, limits.high_switch_m) - limits.following_error_m,
         }

@@ -6,6 +6,7 @@
 
 use crate::axis::SPEED_NOISE_M_S;
 use crate::config::{AxisConfig, Config};
+use crate::excite::{Asked, Exciter};
 use crate::law::Law;
 use crate::profile::{Bounds, Profile};
 use crate::request::{Excitation, Move};
@@ -85,6 +86,63 @@ pub fn preflight(config: &Config, axis: &AxisConfig, start_m: f64, asked: &Move)
 pub fn preflight_excitation(config: &Config, axis: &AxisConfig, start_m: f64, asked: &Excitation) -> Option<Refusal> {
     let law = Law::new(axis, config.tick_us, config.late_us);
     checked_excitation(&law, start_m, true, asked).err()
+}
+
+/// Where an open-loop excitation takes a rigid axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Excursion {
+    /// When the controller ends it because it would leave the soft limits, s; `None` where it is done to its end.
+    pub cut_s: Option<f64>,
+    /// Where it ends or is cut, m.
+    pub end_m: f64,
+}
+
+/// What moves under an open-loop excitation, referred to the motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rigid {
+    /// Inertia with what rides along, kg m².
+    pub inertia_kg_m2: f64,
+    /// Viscous friction, N m s/rad.
+    pub viscous_n_m_s_rad: f64,
+    /// Coulomb friction, N m.
+    pub coulomb_n_m: f64,
+}
+
+/// Foresees pulses, a relay or a jog that the controller accepts on a homed axis at rest at `start_m`: the controller's own signal, speed
+/// cap and soft limits on a rigid axis, tick by tick. A sweep, whose loop is closed, ends where its reference does.
+#[must_use]
+pub fn foresee_excitation(
+    config: &Config,
+    axis: &AxisConfig,
+    start_m: f64,
+    asked: &Excitation,
+    on: Rigid,
+) -> Excursion {
+    let law = Law::new(axis, config.tick_us, config.late_us);
+    let mut exciter = Exciter::new(asked, &law, start_m);
+    let mut excursion = Excursion { cut_s: None, end_m: start_m };
+    if !exciter.is_open_loop() || checked_excitation(&law, start_m, true, asked).is_err() {
+        return excursion;
+    }
+    let m_s2_per_n_m = 1.0 / (law.rad_per_m * on.inertia_kg_m2);
+    let m_s2_per_v = axis.drive.torque_constant_n_m_a * axis.drive.amplifier_a_v * m_s2_per_n_m;
+    let (coulomb_m_s2, viscous_1_s) = (on.coulomb_n_m * m_s2_per_n_m, on.viscous_n_m_s_rad / on.inertia_kg_m2);
+    let (mut position_m, mut speed_m_s, mut ticks) = (start_m, 0.0_f64, 0_u32);
+    while is_inside_soft(&law, position_m, speed_m_s) {
+        let Asked::Open(volts) = exciter.step(position_m, true) else {
+            excursion.end_m = position_m;
+            return excursion;
+        };
+        let is_capped = libm::copysign(1.0, volts) * speed_m_s >= law.limits.speed_m_s;
+        let free_m_s =
+            speed_m_s + law.tick_s * (if is_capped { 0.0 } else { m_s2_per_v * volts } - viscous_1_s * speed_m_s);
+        // Friction takes at most what there is.
+        let lost_m_s = libm::fmin(coulomb_m_s2 * law.tick_s, libm::fabs(free_m_s));
+        speed_m_s = free_m_s - libm::copysign(lost_m_s, free_m_s);
+        position_m += speed_m_s * law.tick_s;
+        ticks = ticks.saturating_add(1);
+    }
+    Excursion { cut_s: Some(f64::from(ticks) * law.tick_s), end_m: position_m }
 }
 
 /// Checks a move from rest at `start_m` and plans it.
