@@ -45,10 +45,11 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
     progress.end();
     let outcome = outcome?;
     if is_json {
-        return print::json(&json!({
+        print::json(&json!({
             "folder": prepared.folder, "driven": outcome.driven, "resumed": outcome.resumed, "spared": outcome.spared,
-            "enough": outcome.enough,
-        }));
+            "enough": outcome.enough, "cut": outcome.cut,
+        }))?;
+        return Ok(outcome.whole()?);
     }
     say!(
         "\n{} runs driven, {} were there already, {} left out. Runs in {}",
@@ -61,7 +62,7 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
         say!("{why}");
     }
     say!("\nNext: froude carriage drag {0}\n      froude carriage identify {0}", prepared.folder.display());
-    Ok(())
+    Ok(outcome.whole()?)
 }
 
 fn drive_job(campaign: PathBuf, out: Option<PathBuf>) -> DriveJob {

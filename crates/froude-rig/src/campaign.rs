@@ -4,7 +4,8 @@
 //! |---------------|-----------------------------------------------------------------------------|
 //! | [`plan`]      | from the schedule to runs in order, with the operator's steps in between       |
 //! | [`preflight`] | travel, coast, speed, command, current and heating of every run, before it moves |
-//! | [`runner`]    | drives and records one run after the other; stops, resumes                     |
+//! | [`runner`]    | drives and records one run after the other; stops                              |
+//! | `resume`      | what lies of a run already, and putting aside what is not complete              |
 //! | [`setup`]     | controller and twin from the campaign's `[rig]` section                            |
 //! | [`stop`]      | Ctrl-C: once is a controlled stop, twice cuts the torque                        |
 //!
@@ -13,6 +14,7 @@
 
 pub mod plan;
 pub mod preflight;
+mod resume;
 pub mod runner;
 pub mod setup;
 pub mod stop;

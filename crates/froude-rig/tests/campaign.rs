@@ -3,15 +3,18 @@
 
 use std::path::Path;
 
+use froude_control::fault::StopCategory;
+use froude_control::request::Request;
+use froude_control::status::Phase;
 use froude_records::Place;
-use froude_records::carriage::{Calibration, CarriagePlan, Directions, Order};
+use froude_records::carriage::{Calibration, CarriagePlan, Directions, Order, PulseTrain};
 use froude_records::run::{Axis, RunKind, RunStatus, read_run};
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::defaults::control_config;
-use froude_rig::drive::Sample;
 use froude_rig::drive::twin::TwinRig;
+use froude_rig::drive::{Rig, RigError, Sample};
 use froude_rig::load::{Load, Mounting};
 use froude_rig::twin::TwinConfig;
 use froude_rig::{Injection, Scheduled};
@@ -199,5 +202,98 @@ fn a_fault_ends_the_run_and_the_run_is_kept_and_marked() {
             assert_eq!(category, fault.category() as u8);
         }
         other => panic!("{other}"),
+    }
+}
+
+/// Pulses that drive the carriage to its far soft limit.
+#[test]
+fn an_excitation_that_ends_before_its_time_is_cut_and_the_campaign_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let long = PulseTrain { amplitude_v: 2.0, period_s: 8.0, duty: 0.6, duration_s: 20.0 };
+    let asked = CarriagePlan { excitation: Some(long), calibration: None, ..asked() };
+    let steps = plan(&asked, 1.5, 1);
+    let setting = Setting { asked, ..setting(folder.path()) };
+    let run = |rig: &mut TwinRig| {
+        let (mut hand, mut begun) = (Hand::default(), Vec::new());
+        let switch = StopSwitch::default();
+        let mut watch = Watch(&mut begun, None, switch.clone());
+        (drive(&steps, &setting, rig, &switch, &mut hand, &mut watch, &mut |_, _| None).unwrap(), begun)
+    };
+    let (outcome, begun) = run(&mut rig());
+    assert_eq!(outcome.driven, names(&steps).len(), "the campaign went on");
+    assert_eq!(outcome.cut.len(), 1, "{:?}", outcome.cut);
+    let told = &outcome.cut[0];
+    assert!(told.starts_with("003-pulses was cut: the pulses ended after "), "{told}");
+    assert!(told.contains(" s of 20 s, at 4.") && told.ends_with("what would leave the soft limits"), "{told}");
+    let log = read_run(&folder.path().join("003-pulses.mcap")).unwrap();
+    assert_eq!(log.meta.status, RunStatus::Cut);
+    assert!(told.ends_with(&log.meta.note), "{}", log.meta.note);
+    assert!(log.events.iter().any(|e| e.text == log.meta.note), "{:?}", log.events);
+    assert_eq!(begun.len(), outcome.driven);
+
+    // Driven again it is the only one, and the first is kept.
+    let (outcome, begun) = run(&mut rig());
+    assert_eq!((begun, outcome.driven), (vec!["003-pulses".to_owned()], 1));
+    assert!(folder.path().join("003-pulses.interrupted-1.mcap").exists());
+}
+
+/// 17 mm from zero: the way back ends at the soft limit at 10 mm, a little before the 10 mm of the jog.
+#[test]
+fn a_jog_that_a_soft_limit_ends_is_cut() {
+    let folder = tempfile::tempdir().unwrap();
+    let steps: Vec<Step> = plan(&asked(), 0.017, 1).into_iter().take(2).collect();
+    let (mut hand, mut begun) = (Hand::default(), Vec::new());
+    let switch = StopSwitch::default();
+    let mut watch = Watch(&mut begun, None, switch.clone());
+    let outcome =
+        drive(&steps, &setting(folder.path()), &mut rig(), &switch, &mut hand, &mut watch, &mut |_, _| None).unwrap();
+    assert_eq!((outcome.driven, outcome.cut.len()), (2, 1), "{:?}", outcome.cut);
+    let told = &outcome.cut[0];
+    assert!(told.starts_with("002-jog-backward was cut: the jog of -1 V went "), "{told}");
+    assert!(told.contains(" mm of 10.0 mm: a soft limit or its 1 s ended it"), "{told}");
+}
+
+/// Somebody else stops the carriage in the middle of a tow: a stop that the board obeys from anybody, without a fault.
+struct Stopped {
+    rig: TwinRig,
+    ticks: u32,
+}
+
+impl Rig for Stopped {
+    fn tick(&mut self, request: Option<Request>) -> Result<Sample, RigError> {
+        let sample = self.rig.tick(request)?;
+        let is_towing = sample.axes[0].phase == Phase::Moving && sample.axes[0].reference_m_s > 0.19;
+        self.ticks += u32::from(is_towing);
+        if self.ticks == 8_000 {
+            self.ticks += 1;
+            return self.rig.tick(Some(Request::Stop(StopCategory::Two)));
+        }
+        Ok(sample)
+    }
+    fn rate_hz(&self) -> f64 {
+        self.rig.rate_hz()
+    }
+    fn begin_run(&mut self, load: &Load, number: u64) {
+        self.rig.begin_run(load, number);
+    }
+    fn version(&self) -> String {
+        self.rig.version()
+    }
+}
+
+#[test]
+fn a_tow_that_somebody_else_stopped_is_not_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    let steps = plan(&asked(), 1.5, 1);
+    let mut driven = Stopped { rig: rig(), ticks: 0 };
+    let (mut hand, mut begun) = (Hand::default(), Vec::new());
+    let switch = StopSwitch::default();
+    let mut watch = Watch(&mut begun, None, switch.clone());
+    let error = drive(&steps, &setting(folder.path()), &mut driven, &switch, &mut hand, &mut watch, &mut |_, _| None)
+        .unwrap_err();
+    let RunnerError::Elsewhere { run, target_m, at_m } = &error else { panic!("{error}") };
+    assert!((target_m - at_m).abs() > 0.01, "{error}");
+    if let Ok(log) = read_run(&folder.path().join(format!("{run}.mcap"))) {
+        assert_eq!(log.meta.status, RunStatus::Interrupted);
     }
 }

@@ -195,17 +195,20 @@ pub enum RunStatus {
     /// It has not ended: only while a recorder holds the file.
     #[default]
     Running,
-    /// As planned.
+    /// As planned: the whole motion was done.
     Complete,
     /// Before its plan, without a fault of the rig: Ctrl-C, power, kill, full disk.
     Interrupted,
     /// By a latched fault.
     Faulted,
+    /// By the controller, without a fault, before its planned motion was done: an excitation that came to a soft limit, a jog that
+    /// did not get as far as it should.
+    Cut,
 }
 
 impl RunStatus {
-    pub(crate) const ALL: [Self; 4] = [Self::Running, Self::Complete, Self::Interrupted, Self::Faulted];
-    pub(crate) const NAMES: [&'static str; 4] = ["running", "complete", "interrupted", "faulted"];
+    pub(crate) const ALL: [Self; 5] = [Self::Running, Self::Complete, Self::Interrupted, Self::Faulted, Self::Cut];
+    pub(crate) const NAMES: [&'static str; 5] = ["running", "complete", "interrupted", "faulted", "cut"];
 
     /// As it stands in files.
     #[must_use]

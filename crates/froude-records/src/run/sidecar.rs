@@ -233,8 +233,9 @@ fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
         body: one_of(s, "body", &BodyState::NAMES, &BodyState::ALL)?.unwrap_or_default(),
         is_ballasted: s.flag("ballasted")?.unwrap_or(false),
         hung_weight_n: s.quantity("hung_weight", Dimension::FORCE)?,
-        status: one_of(s, "status", &RunStatus::NAMES, &RunStatus::ALL)?
-            .ok_or_else(|| s.missing("status", "say how it ended: \"complete\", \"interrupted\" or \"faulted\""))?,
+        status: one_of(s, "status", &RunStatus::NAMES, &RunStatus::ALL)?.ok_or_else(|| {
+            s.missing("status", "say how it ended: \"complete\", \"interrupted\", \"faulted\" or \"cut\"")
+        })?,
         note: text("note")?,
         twin_seed: s.integer("twin_seed")?,
         log_rate_hz: s.quantity("log_rate", Dimension::ANGULAR_SPEED)?.unwrap_or(0.0),

@@ -68,8 +68,10 @@ pub enum Drive {
         /// Length, s.
         duration_s: f64,
     },
-    /// A short open-loop jog from where it stands.
+    /// A short open-loop jog from `from_m`: far enough from the soft limits that they do not end it.
     Jog {
+        /// Start, m.
+        from_m: f64,
         /// Command, V.
         volts: f64,
         /// It ends after this way, m.
@@ -161,7 +163,7 @@ pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
     let mut planner =
         Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
     for (name, volts) in [("jog-forward", JOG_V), ("jog-backward", -JOG_V)] {
-        planner.run(name, RunKind::Jog, Drive::Jog { volts, distance_m: JOG_M }, None);
+        planner.run(name, RunKind::Jog, Drive::Jog { from_m: start_m, volts, distance_m: JOG_M }, None);
     }
     planner.warm_up();
     if let Some(p) = &asked.excitation {

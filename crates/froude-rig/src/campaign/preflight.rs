@@ -10,7 +10,7 @@ use froude_control::config::{AxisConfig, Config};
 use froude_control::profile::{Bounds, Profile};
 use froude_control::request::{Excitation, Move};
 use froude_control::shaper::ShapedProfile;
-use froude_control::travel::{preflight, preflight_excitation};
+use froude_control::travel::{Rigid, foresee_excitation, preflight, preflight_excitation};
 use froude_records::carriage::{CarriagePlan, RigSpec};
 use froude_records::run::{BodyState, RunKind};
 
@@ -360,13 +360,12 @@ fn beyond_the_drive(
     out
 }
 
-/// Pulses, relay, sweep and jog: the controller itself holds them inside the soft limits.
+/// Pulses, relay, sweep and jog. The controller holds them inside the soft limits by ending them: what would be ended is refused here.
 fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forecast, Vec<Objection>) {
     let axis = &control.axes[run.axis as usize];
     let (drive, limits) = (&axis.drive, &axis.limits);
     let n_m_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
     // Largest command, its root mean square, what the controller is asked, from where, and what to do about too much.
-    let middle_m = 0.5 * (limits.low_switch_m + limits.high_switch_m);
     let (command_v, rms_v, duration_s, asked, from_m, advice) = match run.drive {
         Drive::Profile { .. } => unreachable!("a tow is no excitation"),
         Drive::Pulses { from_m, volts, period_s, duty, duration_s } => (
@@ -397,12 +396,12 @@ fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forec
                 "the sweep's amplitude is fixed, this drive is too weak for it",
             )
         }
-        Drive::Jog { volts, distance_m } => (
+        Drive::Jog { from_m, volts, distance_m } => (
             volts.abs(),
             volts.abs(),
             JOG_S,
             Excitation::Jog { volts, distance_m, duration_s: JOG_S },
-            middle_m,
+            from_m,
             "the jog's command is fixed, this drive is too weak for it",
         ),
     };
@@ -420,6 +419,11 @@ fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forec
         };
         out.push(("controller", text));
     }
+    if out.is_empty()
+        && let Some(text) = excursion(run, &asked, from_m, duration_s, control, expected)
+    {
+        out.push(("travel", text));
+    }
     let forecast = Forecast {
         id: run.id.clone(),
         duration_s,
@@ -432,6 +436,40 @@ fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forec
         drag_n: None,
     };
     (forecast, out.into_iter().map(|(kind, text)| Objection { id: run.id.clone(), kind, text }).collect())
+}
+
+/// Where the controller would end an excitation before its time, with the declared friction or with its lower end.
+fn excursion(
+    run: &PlannedRun,
+    asked: &Excitation,
+    from_m: f64,
+    duration_s: f64,
+    control: &Config,
+    expected: &Expected,
+) -> Option<String> {
+    let (what, are, advice) = match asked {
+        Excitation::Pulses { .. } => {
+            ("pulses", "are", "Write a lower amplitude or a shorter period in [carriage.excitation], or move the start")
+        }
+        Excitation::Relay { .. } => ("relay", "is", "Start further from the ends"),
+        Excitation::Jog { .. } => ("jog", "is", "Start further from the ends"),
+        Excitation::Sweep { .. } => return None,
+    };
+    let axis = &control.axes[run.axis as usize];
+    let drive = &axis.drive;
+    let inertia_kg_m2 = Load::of(run, 0.0, axis, expected).inertia_kg_m2;
+    let frictions =
+        [[drive.viscous_n_m_s_rad, drive.coulomb_n_m], [drive.viscous_lower_n_m_s_rad, drive.coulomb_lower_n_m]];
+    let cuts = frictions.map(|[viscous_n_m_s_rad, coulomb_n_m]| {
+        let on = Rigid { inertia_kg_m2, viscous_n_m_s_rad, coulomb_n_m };
+        let excursion = foresee_excitation(control, axis, from_m, asked, on);
+        excursion.cut_s.map(|cut_s| (cut_s, excursion.end_m))
+    });
+    let (cut_s, end_m) = cuts.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "its {what} {are} foreseen to come to {end_m:.3} m after {cut_s:.1} s of {duration_s} s, where the controller ends what could not be \
+         stopped inside the soft limits any more. {advice}"
+    ))
 }
 
 /// What a hung weight does when the torque fails, where that does not end inside the travel.
@@ -583,6 +621,25 @@ mod tests {
         let loud = Experiments { sweep_v: 9.4, ..Experiments::default() };
         let steps = tuning(example.plan.as_ref().unwrap(), 1.35, &loud);
         assert_eq!(kinds(&judged(&example, &steps, None).1, "sweep"), ["command", "current", "heating"]);
+    }
+
+    #[test]
+    fn pulses_that_a_soft_limit_would_end_are_refused_with_where_and_when() {
+        let period = |to: &str| objections(&[(r#"period = "1 s""#, to)]);
+        assert_eq!(period(r#"period = "2 s""#), []);
+        let found = period(r#"period = "6 s""#);
+        assert_eq!(kinds(&found, "pulses"), ["travel"]);
+        // From 2.45 m at up to 0.6 m/s; without torque the axis with the heaviest body goes on for 1.5 m, to the soft limit at 4.89 m.
+        let text = &found[0].text;
+        let (end_m, cut_s) = (between(text, "come to ", " m after"), between(text, " m after ", " s of"));
+        assert!((3.2..3.4).contains(&end_m) && (1.4..1.8).contains(&cut_s), "{text}");
+        assert!(
+            text.contains("of 20 s, where the controller ends") && text.contains("[carriage.excitation]"),
+            "{text}"
+        );
+        // Near an end they are cut sooner.
+        let near = objections(&[(r#"distance = "2.2 m""#, "start = \"2.3 m\"\ndistance = \"2.2 m\"")]);
+        assert!(kinds(&near, "pulses").contains(&"travel"), "{near:?}");
     }
 
     #[test]

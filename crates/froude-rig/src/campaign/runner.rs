@@ -3,7 +3,8 @@
 //! A run is: go to its start, wait for the water, record the still rig, record the motion, record the still rig again. What ends it
 //! early is told apart and kept: the operator (category 2), a fault of the controller (its own category), a recorder that can
 //! write no more (category 1), a rig that no longer answers (its own watchdog). Whatever was recorded by then stays, marked
-//! `interrupted` or `faulted`; a resumed campaign does that run again.
+//! `interrupted` or `faulted`; a resumed campaign does that run again. A run is `complete` only when its planned motion was done: an
+//! excitation that came to a soft limit before its end leaves it `cut`; the campaign goes on, and tells it at its end.
 
 use std::path::{Path, PathBuf};
 
@@ -13,13 +14,14 @@ use froude_control::status::{Phase, Refusal};
 use froude_records::RecordError;
 use froude_records::run::{
     AxisConstants, AxisSample, BodyState, CarriageSample, ClockAlignment, EventKind, Layout, Packing, Recorder,
-    RunMeta, RunStatus, read_run_meta,
+    RunMeta, RunStatus,
 };
 use indexmap::IndexMap;
 
 use froude_records::carriage::CarriagePlan;
 
 use super::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
+use super::resume::{Found, look};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample};
 use crate::load::Load;
@@ -75,6 +77,39 @@ pub enum RunnerError {
         what: &'static str,
         /// Why not.
         refusal: Refusal,
+    },
+    /// A request was neither carried out nor refused.
+    #[error(
+        "{run}: the controller neither carried out nor refused to {what}; the carriage was stopped. Run the campaign again"
+    )]
+    Unanswered {
+        /// The run.
+        run: String,
+        /// What was asked.
+        what: &'static str,
+    },
+    /// A move ended elsewhere.
+    #[error(
+        "{run}: the move to {target_m:.3} m ended at {at_m:.3} m without a fault: something else stopped the carriage. Run the campaign \
+         again: it goes on from there"
+    )]
+    Elsewhere {
+        /// The run.
+        run: String,
+        /// Where it was to end, m.
+        target_m: f64,
+        /// Where it ended, m.
+        at_m: f64,
+    },
+    /// All was driven, and some of it not to its end.
+    #[error(
+        "runs that ended before their planned motion was done are marked cut: {}. The same command drives them again; where that ends alike, \
+         change the campaign and name another folder with --out",
+        runs.join("; ")
+    )]
+    Cut {
+        /// What became of each.
+        runs: Vec<String>,
     },
     /// Something took longer than it can.
     #[error("{run}: {what} did not end within {limit_s:.0} s; the carriage was stopped")]
@@ -171,10 +206,23 @@ pub struct Outcome {
     pub spared: usize,
     /// Why it stopped early, where it did.
     pub enough: Option<String>,
+    /// Runs whose planned motion was not done, each with the reason.
+    pub cut: Vec<String>,
 }
 
-/// Drives a whole plan. Runs that lie complete in the folder are not driven again; an interrupted one is put aside as
-/// `ID.interrupted-N` and driven anew.
+impl Outcome {
+    /// An error where a run's planned motion was not done.
+    ///
+    /// # Errors
+    ///
+    /// [`RunnerError::Cut`].
+    pub fn whole(&self) -> Result<(), RunnerError> {
+        if self.cut.is_empty() { Ok(()) } else { Err(RunnerError::Cut { runs: self.cut.clone() }) }
+    }
+}
+
+/// Drives a whole plan. Runs that lie complete in the folder are not driven again; anything else that lies there of a run is put aside
+/// as `ID.interrupted-N`, and the run driven anew.
 ///
 /// # Errors
 ///
@@ -189,7 +237,7 @@ pub fn drive(
     enough: &mut Enough<'_>,
 ) -> Result<Outcome, RunnerError> {
     let total = steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
-    let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None };
+    let mut outcome = Outcome { driven: 0, resumed: 0, spared: 0, enough: None, cut: Vec::new() };
     let mut mounted: Option<OperatorStep> = None;
     let mut is_prepared = false;
     let mut number = 0;
@@ -207,12 +255,16 @@ pub fn drive(
             outcome.spared += 1;
             continue;
         }
-        if is_complete(&setting.folder, &run.id)? {
-            outcome.resumed += 1;
-            // What was known then is known now: a campaign that had stopped stays stopped.
-            let known = enough(&setting.folder.join(format!("{}.mcap", run.id)), run);
-            outcome.enough = outcome.enough.or(known);
-            continue;
+        match look(&setting.folder, &run.id)? {
+            Found::Complete => {
+                outcome.resumed += 1;
+                // What was known then is known now: a campaign that had stopped stays stopped.
+                let known = enough(&setting.folder.join(format!("{}.mcap", run.id)), run);
+                outcome.enough = outcome.enough.or(known);
+                continue;
+            }
+            Found::Nothing { aside: Some(what) } => progress.say(&what),
+            Found::Nothing { aside: None } => {}
         }
         if let Some(step) = mounted.take()
             && !operator.confirm(&step.prompt)
@@ -226,37 +278,20 @@ pub fn drive(
             session.prepare()?;
             is_prepared = true;
         }
-        let path = session.drive_run()?;
+        let (path, cut) = session.drive_run()?;
         outcome.driven += 1;
+        if let Some(why) = cut {
+            let told = format!("{} was cut: {why}", run.id);
+            progress.say(&told);
+            outcome.cut.push(told);
+            continue;
+        }
         if let Some(why) = enough(&path, run) {
             progress.say(&why);
             outcome.enough = Some(why);
         }
     }
     Ok(outcome)
-}
-
-/// Whether a run lies there complete; an incomplete one is put aside.
-fn is_complete(folder: &Path, id: &str) -> Result<bool, RunnerError> {
-    let sidecar = folder.join(format!("{id}.toml"));
-    if !sidecar.exists() {
-        return Ok(false);
-    }
-    if read_run_meta(&sidecar)?.status == RunStatus::Complete {
-        return Ok(true);
-    }
-    let aside =
-        (1..10_000).map(|n| format!("{id}.interrupted-{n}")).find(|name| !folder.join(format!("{name}.toml")).exists());
-    if let Some(aside) = aside {
-        for extension in ["mcap", "toml"] {
-            let from = folder.join(format!("{id}.{extension}"));
-            if from.exists() {
-                std::fs::rename(&from, folder.join(format!("{aside}.{extension}")))
-                    .map_err(|e| RunnerError::Folder { path: from, reason: e.to_string() })?;
-            }
-        }
-    }
-    Ok(false)
 }
 
 /// The load of a run: a ballasted wet run carries what buoyancy takes off its wheels.
@@ -284,8 +319,14 @@ fn load_of(run: &PlannedRun, base: &Load) -> Load {
 const HOMING_S: f64 = 300.0;
 /// Longest that a stop may take, s.
 const STOP_S: f64 = 20.0;
-/// A request that is neither carried out nor refused within this many ticks is asked again on a line that loses frames.
-const PATIENCE: usize = 400;
+/// Ticks within which a request is carried out or refused; a line that loses frames repeats it in the meantime.
+const PATIENCE: usize = 4_000;
+/// Further from its target than this no move has ended there, m: telemetry rounds to 0.1 µm.
+const ARRIVED_M: f64 = 1e-5;
+/// An excitation may seem this much shorter than it was, s: ticks before it was seen, and frames that were lost at its ends.
+const UNSEEN_S: f64 = 0.05;
+/// Part of a jog's way that must have been gone.
+const JOGGED_PART: f64 = 0.9;
 
 struct Session<'a> {
     setting: &'a Setting,
@@ -319,20 +360,24 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// The whole run; the record is closed whatever happens.
-    fn drive_run(mut self) -> Result<PathBuf, RunnerError> {
+    /// The whole run; the record is closed whatever happens. Gives its file, and why the planned motion was not done where it was not.
+    fn drive_run(mut self) -> Result<(PathBuf, Option<String>), RunnerError> {
         self.approach()?;
         self.wait(self.run.settle_s)?;
         self.begin_record()?;
         let driven = self.motion();
-        let status = driven.as_ref().map_or_else(RunnerError::status, |()| RunStatus::Complete);
-        if let (Some(recorder), Err(error)) = (&mut self.recorder, &driven) {
-            recorder.meta_mut().note = error.to_string();
+        let (status, note) = match &driven {
+            Ok(None) => (RunStatus::Complete, None),
+            Ok(Some(why)) => (RunStatus::Cut, Some(why.clone())),
+            Err(error) => (error.status(), Some(error.to_string())),
+        };
+        if let (Some(recorder), Some(note)) = (&mut self.recorder, note) {
+            recorder.meta_mut().note = note;
         }
         self.align_clock();
         let path = self.recorder.take().map(|r| r.finish(status)).transpose();
-        driven?;
-        Ok(path?.unwrap_or_default())
+        let cut = driven?;
+        Ok((path?.unwrap_or_default(), cut))
     }
 
     /// Goes to where the run starts: as fast as allowed, with a hung weight no faster than the run itself; more slowly where the coast
@@ -346,8 +391,10 @@ impl Session<'_> {
                 }
                 from_m
             }
-            Drive::Pulses { from_m, .. } | Drive::Relay { from_m, .. } | Drive::Sweep { from_m, .. } => from_m,
-            Drive::Jog { .. } => return Ok(()),
+            Drive::Pulses { from_m, .. }
+            | Drive::Relay { from_m, .. }
+            | Drive::Sweep { from_m, .. }
+            | Drive::Jog { from_m, .. } => from_m,
         };
         loop {
             match self.go(target_m, speed_m_s) {
@@ -374,7 +421,11 @@ impl Session<'_> {
         self.ask("move", Request::Move { axis, profile })?;
         // The longest way at this speed, and time for ramps and shaping.
         let limit_s = 10.0 / speed_m_s.max(1e-3) + 30.0;
-        self.until("the move", limit_s, |s| s.axes[axis].phase == Phase::Holding)
+        let at_m = self.until("the move", limit_s, |s| s.axes[axis].phase == Phase::Holding)?.axes[axis].reference_m;
+        if (at_m - target_m).abs() > ARRIVED_M {
+            return Err(RunnerError::Elsewhere { run: self.run.id.clone(), target_m, at_m });
+        }
+        Ok(())
     }
 
     /// Where the record's first tick lies on the host's clock.
@@ -389,35 +440,72 @@ impl Session<'_> {
         }
     }
 
-    /// Still, motion, still.
-    fn motion(&mut self) -> Result<(), RunnerError> {
+    /// Still, motion, still. Gives why the planned motion was not done, where it was not.
+    fn motion(&mut self) -> Result<Option<String>, RunnerError> {
         let still_s = self.setting.asked.still_s;
         self.wait(still_s)?;
         self.event(EventKind::Phase, "the motion begins")?;
-        match self.run.drive {
-            Drive::Profile { to_m, speed_m_s, .. } => self.go(to_m, speed_m_s)?,
+        let cut = match self.run.drive {
+            Drive::Profile { to_m, speed_m_s, .. } => {
+                self.go(to_m, speed_m_s)?;
+                None
+            }
             Drive::Pulses { volts, period_s, duty, duration_s, .. } => {
-                self.excite("the pulses", Excitation::Pulses { volts, period_s, duty, duration_s }, duration_s)?;
+                self.excite("pulses", Excitation::Pulses { volts, period_s, duty, duration_s }, duration_s)?
             }
             Drive::Relay { volts, hysteresis_m, duration_s, .. } => {
-                self.excite("the relay", Excitation::Relay { volts, hysteresis_m, duration_s }, duration_s)?;
+                self.excite("relay", Excitation::Relay { volts, hysteresis_m, duration_s }, duration_s)?
             }
             Drive::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s, .. } => {
                 let sweep = Excitation::Sweep { volts, from_hz, to_hz, duration_s, speed_m_s };
-                self.excite("the sweep", sweep, duration_s)?;
+                self.excite("sweep", sweep, duration_s)?
             }
-            Drive::Jog { volts, distance_m } => {
-                self.excite("the jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?;
+            Drive::Jog { volts, distance_m, .. } => {
+                self.excite("jog", Excitation::Jog { volts, distance_m, duration_s: JOG_S }, JOG_S)?
             }
+        };
+        if let Some(why) = &cut {
+            self.event(EventKind::Warning, why)?;
         }
         self.event(EventKind::Phase, "the motion has ended")?;
-        self.wait(still_s)
+        self.wait(still_s)?;
+        Ok(cut)
     }
 
-    fn excite(&mut self, what: &'static str, excitation: Excitation, duration_s: f64) -> Result<(), RunnerError> {
+    /// Excites the axis; gives why that was not all that was planned, where it was not.
+    fn excite(
+        &mut self,
+        what: &'static str,
+        excitation: Excitation,
+        duration_s: f64,
+    ) -> Result<Option<String>, RunnerError> {
         let axis = self.axis();
-        self.ask("excite", Request::Excite { axis, excitation })?;
-        self.until(what, duration_s + 30.0, |s| s.axes[axis].phase == Phase::Holding)
+        let begun = self.ask("excite", Request::Excite { axis, excitation })?;
+        let mut last = None;
+        let ended = self.until(what, duration_s + 30.0, |s| {
+            if s.axes[axis].phase == Phase::Exciting {
+                last = Some(s.tick);
+            }
+            s.axes[axis].phase == Phase::Holding
+        })?;
+        let rate_hz = self.rig.rate_hz() * self.rig.ticks_per_sample() as f64;
+        let lasted_s = last.map_or(0.0, |tick| tick.saturating_sub(begun.tick) as f64 / rate_hz);
+        let at_m = ended.axes[axis].position_m;
+        if let Excitation::Jog { volts, distance_m, .. } = excitation {
+            let gone_m = (at_m - begun.axes[axis].position_m).abs();
+            return Ok((gone_m < JOGGED_PART * distance_m).then(|| {
+                format!(
+                    "the jog of {volts} V went {:.1} mm of {:.1} mm: a soft limit or its {duration_s} s ended it; polarity and encoder are not checked",
+                    1e3 * gone_m,
+                    1e3 * distance_m
+                )
+            }));
+        }
+        Ok((lasted_s + UNSEEN_S < duration_s).then(|| {
+            format!(
+                "the {what} ended after {lasted_s:.2} s of {duration_s} s, at {at_m:.3} m: the controller ends what would leave the soft limits"
+            )
+        }))
     }
 
     fn wait(&mut self, seconds: f64) -> Result<(), RunnerError> {
@@ -427,42 +515,33 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Hands over a request and waits until it has taken effect.
-    fn ask(&mut self, what: &'static str, request: Request) -> Result<(), RunnerError> {
-        let sample = self.tick(Some(request))?;
-        let mut refusal = sample.refusal;
+    /// Hands over a request and waits until it has taken effect; gives the first sample that shows it.
+    fn ask(&mut self, what: &'static str, request: Request) -> Result<Sample, RunnerError> {
+        let mut sample = self.tick(Some(request))?;
         for _ in 0..PATIENCE {
-            if refusal.is_some() || self.has_begun(&request)? {
-                break;
+            if let Some(refusal) = sample.refusal {
+                return Err(RunnerError::Refused { run: self.run.id.clone(), what, refusal });
             }
-            refusal = self.tick(None)?.refusal;
+            if has_begun(&sample, &request) {
+                return Ok(sample);
+            }
+            sample = self.tick(None)?;
         }
-        match refusal {
-            Some(refusal) => Err(RunnerError::Refused { run: self.run.id.clone(), what, refusal }),
-            None => Ok(()),
-        }
+        self.come_to_rest(StopCategory::One)?;
+        Err(RunnerError::Unanswered { run: self.run.id.clone(), what })
     }
 
-    /// A request shows in the phase of its axis one tick later at the latest on the twin, a few on a line.
-    fn has_begun(&mut self, request: &Request) -> Result<bool, RunnerError> {
-        let sample = self.tick(None)?;
-        let phase = |axis: usize| sample.axes.get(axis).map_or(Phase::Disabled, |a| a.phase);
-        Ok(match *request {
-            Request::Enable { axis } => phase(axis) != Phase::Disabled,
-            Request::Home { axis } => phase(axis) == Phase::Homing,
-            Request::Move { axis, profile } => {
-                phase(axis) == Phase::Moving
-                    || sample.axes.get(axis).is_some_and(|a| (a.reference_m - profile.target_m).abs() < 1e-6)
-            }
-            Request::Excite { axis, .. } => phase(axis) == Phase::Exciting || sample.refusal.is_none(),
-            _ => true,
-        })
-    }
-
-    fn until(&mut self, what: &'static str, limit_s: f64, done: impl Fn(&Sample) -> bool) -> Result<(), RunnerError> {
+    /// Goes on until it is done; gives the sample that shows it.
+    fn until(
+        &mut self,
+        what: &'static str,
+        limit_s: f64,
+        mut done: impl FnMut(&Sample) -> bool,
+    ) -> Result<Sample, RunnerError> {
         for _ in 0..(limit_s * self.rig.rate_hz()) as u64 {
-            if done(&self.tick(None)?) {
-                return Ok(());
+            let sample = self.tick(None)?;
+            if done(&sample) {
+                return Ok(sample);
             }
         }
         self.come_to_rest(StopCategory::One)?;
@@ -632,6 +711,22 @@ impl Session<'_> {
         };
         row.row(sample.force_n.is_some(), &truths[..n], &mut self.row);
         recorder.record(number / self.setting.decimation, &self.row)
+    }
+}
+
+/// Whether a sample shows that a request is being carried out, or has been.
+fn has_begun(sample: &Sample, request: &Request) -> bool {
+    let phase = |axis: usize| sample.axes.get(axis).map_or(Phase::Disabled, |a| a.phase);
+    match *request {
+        Request::Enable { axis } => phase(axis) != Phase::Disabled,
+        Request::Home { axis } => phase(axis) == Phase::Homing,
+        Request::Move { axis, profile } => {
+            phase(axis) == Phase::Moving
+                || sample.axes.get(axis).is_some_and(|a| (a.reference_m - profile.target_m).abs() < ARRIVED_M)
+        }
+        // One that is ended at once is on its way to a stop already.
+        Request::Excite { axis, .. } => matches!(phase(axis), Phase::Exciting | Phase::Stopping),
+        _ => true,
     }
 }
 

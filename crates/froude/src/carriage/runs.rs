@@ -53,6 +53,11 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
         if !kinds.contains(&log.meta.kind) {
             continue;
         }
+        // A log without a sidecar says itself how it ended.
+        if log.meta.status != RunStatus::Complete {
+            out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&log.meta)));
+            continue;
+        }
         for gap in &log.lost {
             out.findings.push(Finding::new(Severity::Warning, "run-gap", format!("{}: {}", log.meta.id, gap.text)));
         }

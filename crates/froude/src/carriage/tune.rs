@@ -128,7 +128,7 @@ pub fn tune(
     let experiments = Experiments { sweep_hz: TUNING_HZ, ..Experiments::default() };
     let prepared = prepare_with(&with_folder(job, "tune"), &|asked, start_m, _| tuning(asked, start_m, &experiments))?
         .logging_every_tick();
-    drive(&prepared, switch, operator, progress)?;
+    drive(&prepared, switch, operator, progress)?.whole()?;
     let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Relay, RunKind::Sweep], None)?;
     let axis = prepared.axis();
     let sweep = runs.logs.iter().find(|l| l.meta.kind == RunKind::Sweep);
@@ -187,7 +187,7 @@ pub fn find_resonance(
     let experiments = Experiments::default();
     let prepared =
         prepare_with(&with_folder(job, "resonance"), &|asked, start_m, _| resonance(asked, start_m, &experiments))?;
-    drive(&prepared, switch, operator, progress)?;
+    drive(&prepared, switch, operator, progress)?.whole()?;
     let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Sweep], None)?;
     let states = runs
         .logs
