@@ -69,6 +69,31 @@ fn tracked(rig: &mut ClosedLoop, target_m: f64, speed_m_s: f64) -> Tracking {
     }
 }
 
+/// Whatever is mounted, from anywhere, with both axes told of the bare carriage only: the load does not swing when it comes to the switch,
+/// so that nothing trips. Before the changes of speed were gentle, the short axis failed with a third of the draws with the body wet and
+/// ballasted.
+#[test]
+fn homing_leaves_the_load_hanging_still() {
+    let wet = Load::mounted(Mounting::Wet);
+    let ballasted = Load { ballast_kg: wet.balancing_ballast_kg(), ..wet };
+    // Far, open already, and so near that the speed is not reached.
+    let starts_m = [[0.05, 0.05], [-0.01, -0.01], [0.0002, 0.0002], [0.004, 0.002]];
+    for (load, seeds) in [(Load::default(), 1), (Load::mounted(Mounting::Dry), 3), (ballasted, 8)] {
+        for (start_m, seed) in starts_m.iter().flat_map(|start_m| (1..=seeds).map(move |seed| (start_m, seed))) {
+            let mut config = TwinConfig::loaded(load);
+            (config.axes[0].start_m, config.axes[1].start_m) = (start_m[0], start_m[1]);
+            let mut rig = ClosedLoop::new(&config, control_config(&[Load::default(); 2]), seed).unwrap();
+            let is_homed = rig.home();
+            assert!(is_homed, "{load:?} from {start_m:?}, seed {seed}: {:?}", rig.output.status.fault);
+            for axis in [0, 1] {
+                let (status, truth) = (rig.output.status.axes[axis], rig.twin.truth(axis));
+                assert!((status.position_m - truth.motor_position_m).abs() < 2e-3, "{status:?} {truth:?}");
+                assert!(truth.load_speed_m_s.abs() < 5e-3, "{load:?} from {start_m:?}: {truth:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn tracking_is_within_table_3_dry_and_wet_and_its_position_within_a_tenth_of_it() {
     for mounting in [Mounting::Dry, Mounting::Wet] {

@@ -259,7 +259,7 @@ fn the_application_homes_a_rig_through_every_register() {
     let mut before = counts(&rig);
     let mut line_in = std::collections::VecDeque::new();
     application.announce(&mut board);
-    for tick in 0..6000_u32 {
+    for tick in 0..16_000_u32 {
         let message = match tick {
             10 => ToBoard::Hello,
             20 => ToBoard::Configure { id: 1, config: CONFIG },
@@ -317,7 +317,7 @@ fn the_application_homes_a_rig_through_every_register() {
     assert!(error_m.abs() < 0.05 * 250e-6 * 2.0 + 2.5e-6, "{error_m} m off after homing");
     // Every tick since the hello has been told, in order, and the last raw count is the rig's.
     assert!(telemetry.windows(2).all(|pair| pair[1].tick == pair[0].tick + 1), "a tick is missing");
-    assert!(telemetry.len() > 5_950 && heard > 5_960, "{} frames of telemetry", telemetry.len());
+    assert!(telemetry.len() > 15_950 && heard > 15_960, "{} frames of telemetry", telemetry.len());
     assert_eq!(application.overruns(), 0);
     assert!(!chip.with(|s| s.has_bitten));
 }

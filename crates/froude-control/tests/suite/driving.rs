@@ -42,6 +42,37 @@ fn homing_from_close_above_the_switch_is_as_good() {
     assert!((status.position_m - rig.plants[0].position_m).abs() <= tolerance_m, "{status:?}");
 }
 
+/// Beyond its open switch the drive can push the axis up and not hold it down: nothing is asked of it there, and a swing that lifts the
+/// axis while it waits is let go.
+#[test]
+fn a_load_that_swings_back_over_the_switch_is_let_go() {
+    for (push_n, ticks) in [(4.0, 400), (-6.0, 400), (4.0, 1_200), (6.0, 200)] {
+        let mut rig = Rig::new(&Config::PUBLISHED, 0.05);
+        rig.until(Some(Request::Enable { axis: 0 }), 0.1, |o| o.status.axes[0].phase == Phase::Holding);
+        rig.until(Some(Request::Home { axis: 0 }), 10.0, |o| o.status.axes[0].reference_m.abs() < 0.02);
+        rig.until(None, 10.0, |o| o.status.axes[0].reference_m_s == 0.0);
+        rig.plants[0].load_n = push_n;
+        let mut is_lifted = false;
+        for tick in 0..40_000 {
+            if tick == ticks {
+                rig.plants[0].load_n = 0.0;
+            }
+            let output = rig.step(None);
+            if rig.plants[0].input().is_low_end {
+                assert!(output.command.axes[0].volts >= 0.0, "{push_n} N: {:?}", output.command);
+            }
+            is_lifted |= tick < ticks && rig.plants[0].speed_m_s > 1e-3;
+            if output.status.axes[0].phase == Phase::Holding {
+                break;
+            }
+        }
+        let status = rig.output.status;
+        assert_eq!(is_lifted, push_n > 0.0, "{push_n} N");
+        assert!(status.axes[0].is_homed && status.fault.is_none(), "{push_n} N: {status:?}");
+        assert!((status.axes[0].position_m - rig.plants[0].position_m).abs() < 3e-5, "{push_n} N: {status:?}");
+    }
+}
+
 /// Counter, latch time and tick start just before their wraps: nothing changes but the tick's number.
 #[test]
 fn a_run_over_all_wraps_is_the_same_run() {

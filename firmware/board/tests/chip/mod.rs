@@ -13,7 +13,7 @@ use froude_board::am335x::Blocks;
 use froude_board::registers::Registers;
 
 /// Which block of registers.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum At {
     Per,
     WakeUp,
