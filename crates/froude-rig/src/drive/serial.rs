@@ -286,6 +286,8 @@ impl SerialRig {
         match message {
             // One of another session is the board's own at its start, or an answer to another host.
             FromBoard::Hello(hello) if hello.session == self.session => self.hello = Some(hello),
+            // Said late, of a hello before the one that was taken.
+            FromBoard::TurnedAway(refused) if refused.session == refused.holder => {}
             FromBoard::TurnedAway(refused) if refused.session == self.session => self.turned_away(refused)?,
             FromBoard::TurnedAway(TurnedAway { session, holder, .. }) if holder == self.session => {
                 // One that goes on asking is one line in the log.
