@@ -75,8 +75,8 @@ impl Spinner {
         Self(bar)
     }
 
-    pub fn set_message(&self, step: impl AsRef<str>) {
-        self.0.set_message(visible(step.as_ref()).into_owned());
+    pub fn set_message(&self, step: impl Into<String>) {
+        self.0.set_message(visible(&step.into()).into_owned());
     }
 
     pub fn finish_and_clear(&self) {

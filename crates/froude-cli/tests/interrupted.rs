@@ -4,6 +4,7 @@
 #![cfg(target_os = "linux")]
 
 use std::collections::BTreeMap;
+use std::os::unix::process::ExitStatusExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -62,7 +63,7 @@ fn froude(folder: &Path, args: &[&str]) -> Output {
 /// The program below strace; one thread computes, so that calls come in one order.
 fn traced(folder: &Path, args: &[&str], options: &[&str]) -> Output {
     Command::new("strace")
-        .args(["-f", "-qq", "--seccomp-bpf"])
+        .args(["-f", "-qq"])
         .args(options)
         .arg(env!("CARGO_BIN_EXE_froude"))
         .args(args)
@@ -138,6 +139,7 @@ fn endures(template: &Path, args: &[&str], results: Option<&str>) {
         let what = format!("{call} {k}, {kind}");
         let inject = format!("inject={call}:{kind}:when={k}");
         let done = traced(folder.path(), args, &["-o", "/dev/null", "-e", &format!("trace={call}"), "-e", &inject]);
+        assert!(kind != "signal=KILL" || done.status.signal() == Some(9), "{what}: it was not killed");
         let found = state(folder.path());
         let said = String::from_utf8_lossy(&done.stderr);
         if is_new(folder.path(), results, &old, &new) {
