@@ -28,13 +28,13 @@ fn diagonal(entries: [f64; 6]) -> Matrix {
 struct Draws(u64);
 
 impl Draws {
-    fn next(&mut self) -> f64 {
+    fn draw(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
+        low + (high - low) * self.draw()
     }
 
     /// Any axes, about a point within a reach along each.
