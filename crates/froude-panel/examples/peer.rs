@@ -98,6 +98,7 @@ fn main() {
             std::fs::write(file, text(&mesh(case))).unwrap();
             return;
         }
+        #[expect(clippy::disallowed_methods, reason = "it is printed, and nothing is divided by it")]
         let threads = rayon::current_num_threads();
         let (kind, count, seconds, peak_mib, matrix) = if case.starts_with("spectral") {
             let panels = meridian(case);

@@ -16,8 +16,8 @@ type Motion = [f64; 6];
 
 const OCTANT: [Mirror; 3] = [Mirror::body(0), Mirror::body(1), Mirror::body(2)];
 
-fn of(matrix: Matrix, frame: Frame) -> AddedMass {
-    AddedMass { matrix, asymmetry: 0.0, frame }
+fn of(matrix: &Matrix, frame: Frame) -> AddedMass {
+    AddedMass { matrix: *matrix, asymmetry: 0.0, frame }
 }
 
 fn diagonal(entries: [f64; 6]) -> Matrix {
@@ -28,13 +28,13 @@ fn diagonal(entries: [f64; 6]) -> Matrix {
 struct Draws(u64);
 
 impl Draws {
-    fn next(&mut self) -> f64 {
+    fn draw(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.next()
+        low + (high - low) * self.draw()
     }
 
     /// Any axes, about a point within a reach along each.
@@ -83,7 +83,7 @@ fn load(a: &Matrix, motion: &Motion) -> Motion {
 #[test]
 fn an_ellipsoid_about_another_point_has_the_couplings_of_the_axes_that_are_asked_for() {
     let a = ellipsoid_added_mass([0.5, 0.2, 0.3]).unwrap();
-    let here = of(diagonal(a), Frame::at([0.0; 3]));
+    let here = of(&diagonal(a), Frame::at([0.0; 3]));
     // The point lies astern of the centre and below it; x forward, y port, z up.
     let (astern, below) = (0.3, 0.1);
     let at = Frame::at([-astern, 0.0, -below]);
@@ -107,7 +107,7 @@ fn an_ellipsoid_about_another_point_has_the_couplings_of_the_axes_that_are_asked
 fn energy_and_load_of_a_motion_do_not_depend_on_the_frame() {
     let mut draws = Draws(1);
     for _ in 0..200 {
-        let a = of(draws.symmetric(), draws.frame(1.0));
+        let a = of(&draws.symmetric(), draws.frame(1.0));
         let other = draws.frame(3.0);
         let b = a.seen_from(&other);
         let there = draws.motion();
@@ -155,7 +155,7 @@ fn moved(l: &[Vec<f64>], c: &[Vec<f64>]) -> Vec<Vec<f64>> {
 fn there_and_back_is_the_same_matrix_with_the_same_covariance() {
     let mut draws = Draws(2);
     for _ in 0..20 {
-        let a = of(draws.symmetric(), Frame::at([0.0; 3]));
+        let a = of(&draws.symmetric(), Frame::at([0.0; 3]));
         let other = draws.frame(2.0);
         let back = a.seen_from(&other).seen_from(&a.frame);
         for (found, expected) in upper(&back.matrix).iter().zip(upper(&a.matrix)) {
@@ -195,7 +195,7 @@ fn the_uncertainty_holds_in_every_frame() {
         let width = draws.between(0.15, 0.9);
         let axes = [1.0, width, width * draws.between(0.55, 1.8)];
         let (solved, size) = solutions(axes, levels);
-        let exact = of(diagonal(ellipsoid_added_mass(axes).unwrap()), Frame::at([0.0; 3]));
+        let exact = of(&diagonal(ellipsoid_added_mass(axes).unwrap()), Frame::at([0.0; 3]));
         let own = study(&sizes, &solved, size).entries;
         let indices = || (0..6).flat_map(|i| (i..6).map(move |j| (i, j)));
         let mut covariance = vec![vec![0.0; 21]; 21];

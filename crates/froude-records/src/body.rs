@@ -153,8 +153,10 @@ const CENTRE_OF_GRAVITY: &str = "centre_of_gravity";
 
 fn centre_of_gravity(s: &Section<'_>) -> Result<Option<[f64; 3]>, RecordError> {
     let Some(value) = s.get(CENTRE_OF_GRAVITY) else { return Ok(None) };
-    let Some([x, y, z]) = value.get_ref().as_array().map(|list| &list[..]) else {
-        let problem = format!("is {}; expected three lengths: [\"0 mm\", \"0 mm\", \"-12 mm\"]", found(value));
+    let list = value.get_ref().as_array().map(|list| &list[..]);
+    let Some([x, y, z]) = list else {
+        let what = list.map_or_else(|| format!("is {}", found(value)), |list| format!("has {} entries", list.len()));
+        let problem = format!("{what}; expected three lengths: [\"0 mm\", \"0 mm\", \"-12 mm\"]");
         return Err(s.wrong(CENTRE_OF_GRAVITY, value, problem));
     };
     let length = |v| s.as_quantity_of(CENTRE_OF_GRAVITY, v, Dimension::LENGTH);
@@ -295,7 +297,7 @@ ends = { length = "31 mm" }
         let gravity = |list: &str| told("ends =", &format!("centre_of_gravity = {list}\nends ="));
         assert_eq!(
             gravity("[\"0 mm\", \"1 mm\"]"),
-            "body.toml:10:21: `centre_of_gravity` is a list; expected three lengths: [\"0 mm\", \"0 mm\", \"-12 mm\"]"
+            "body.toml:10:21: `centre_of_gravity` has 2 entries; expected three lengths: [\"0 mm\", \"0 mm\", \"-12 mm\"]"
         );
         assert!(gravity("[\"0 mm\", \"1 kg\", \"0 mm\"]").starts_with("body.toml:10"));
         assert!(gravity("\"0 mm\"").contains("expected three lengths"));
