@@ -142,7 +142,7 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
         if !file.exists() {
             match read_run_meta(&file.with_extension("toml")) {
                 Ok(meta) if meta.status == RunStatus::Complete && !is_put_aside(file, &meta) => {
-                    findings.push(runs::gone(file, &meta))
+                    findings.push(runs::gone(file, &meta));
                 }
                 _ => {}
             }
