@@ -13,7 +13,7 @@ const SHORT: [(&str, &str); 10] = [
     (r#"speeds = ["0.05 m/s", "0.15 m/s", "0.25 m/s", "0.35 m/s", "0.45 m/s", "0.55 m/s"]"#, r#"speeds = ["0.5 m/s"]"#),
     ("repeats = 5  ", "repeats = 2  "),
     (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
-    (r#"still = "5 s""#, r#"still = "1 s""#),
+    (r#"still = "5 s""#, r#"still = "2 s""#),
     ("[carriage.warm_up]\nduration = \"1 min\"\nspeed = \"0.3 m/s\"\n", ""),
     (
         "[carriage.friction_sweep]\nspeeds = [\"0.02 m/s\", \"0.05 m/s\", \"0.1 m/s\", \"0.2 m/s\", \"0.35 m/s\", \"0.55 m/s\"]\nrepeats = 2\n",
@@ -161,24 +161,24 @@ fn runs_as_they_were_driven_give_no_finding_and_a_folder_says_what_is_in_it() {
 #[test]
 fn a_log_that_is_gone_is_told_and_driven_again() {
     let bench = Bench::new();
-    let wet = &bench.logs("wet")[1];
-    std::fs::remove_file(wet).unwrap();
+    let log = &bench.logs("dry")[1];
+    std::fs::remove_file(log).unwrap();
     let told = format!(
         "the log {} is gone: its sidecar says that {} was driven to its end; copy it back, or froude run drives it again",
-        text(wet),
-        id(wet)
+        text(log),
+        id(log)
     );
     assert_eq!(findings(&bench.inspect()), [("run-gone".to_owned(), told.clone())]);
     assert_eq!(findings(&bench.drag()), [("run-gone".to_owned(), format!("{told}. It was left out"))]);
-    let error = refusal(&["inspect", text(&wet.with_extension("toml"))]);
+    let error = refusal(&["inspect", text(&log.with_extension("toml"))]);
     assert_eq!(error, format!("froude: {told}\n"));
 
     let (n, said) = bench.run();
     assert_eq!(n, 1);
     let reason =
-        format!("the log {0}.mcap is gone; {0}.toml says complete: {0} is put aside and driven again", id(wet));
+        format!("the log {0}.mcap is gone; {0}.toml says complete: {0} is put aside and driven again", id(log));
     assert!(said.contains(&reason), "{said}");
-    assert!(wet.exists());
+    assert!(log.exists());
     // What is left of the first drive lies aside and is counted nowhere.
     assert_eq!((findings(&bench.drag()), findings(&bench.inspect())), (vec![], vec![]));
 }
@@ -186,35 +186,35 @@ fn a_log_that_is_gone_is_told_and_driven_again() {
 #[test]
 fn a_log_that_was_cut_off_is_left_out_and_driven_again() {
     let bench = Bench::new();
-    let wet = &bench.logs("wet")[0];
-    let whole = std::fs::read(wet).unwrap();
-    std::fs::write(wet, &whole[..whole.len() / 2]).unwrap();
+    let log = &bench.logs("dry")[1];
+    let whole = std::fs::read(log).unwrap();
+    std::fs::write(log, &whole[..whole.len() / 2]).unwrap();
     let told = format!(
         "{} has {} of the {} bytes that were recorded: it was cut off; copy it again from where it was recorded",
-        text(wet),
+        text(log),
         whole.len() / 2,
         whole.len()
     );
     assert_eq!(findings(&bench.inspect()), [("run-damaged".to_owned(), told.clone())]);
-    assert_eq!(findings(&json(&["inspect", text(wet), "--json"]))[0], ("run-damaged".to_owned(), told.clone()));
+    assert_eq!(findings(&json(&["inspect", text(log), "--json"]))[0], ("run-damaged".to_owned(), told.clone()));
     assert_eq!(findings(&bench.drag()), [("run-damaged".to_owned(), format!("{told}. It was left out"))]);
     let (n, said) = bench.run();
     assert_eq!(n, 1);
     assert!(said.contains(": it was cut off; copy it again from where it was recorded: "), "{said}");
-    assert!(said.contains(&format!("{} is put aside and driven again", id(wet))), "{said}");
+    assert!(said.contains(&format!("{} is put aside and driven again", id(log))), "{said}");
 }
 
 #[test]
 fn a_log_with_other_bytes_is_left_out_and_driven_again() {
     let bench = Bench::new();
-    let wet = &bench.logs("wet")[0];
-    let mut bytes = std::fs::read(wet).unwrap();
+    let log = &bench.logs("dry")[1];
+    let mut bytes = std::fs::read(log).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 4;
-    std::fs::write(wet, &bytes).unwrap();
+    std::fs::write(log, &bytes).unwrap();
     let told = format!(
         "{} is not the file that was recorded, its SHA-256 is another: copy it again from where it was recorded",
-        text(wet)
+        text(log)
     );
     assert_eq!(findings(&bench.inspect()), [("run-damaged".to_owned(), told.clone())]);
     assert_eq!(findings(&bench.drag()), [("run-damaged".to_owned(), format!("{told}. It was left out"))]);
@@ -268,7 +268,7 @@ fn the_same_folder_twice_is_refused_by_every_verb() {
         let first = match verb {
             "drag" => bench.logs("")[0..].iter().find(|l| !text(l).contains("jog")).unwrap().clone(),
             "identify" => {
-                bench.logs("").into_iter().find(|l| ["dry", "excitation"].iter().any(|k| id(l).contains(k))).unwrap()
+                bench.logs("").into_iter().find(|l| ["dry", "pulses"].iter().any(|k| id(l).contains(k))).unwrap()
             }
             _ => bench.logs("jog")[0].clone(),
         };

@@ -72,7 +72,9 @@ fn json(sum: &mut Sha256, value: &Value) {
         Value::String(own) => text(sum, b's', own),
         Value::Array(list) => {
             part(sum, b'a', list.len(), &[]);
-            list.iter().for_each(|value| json(sum, value));
+            for value in list {
+                json(sum, value);
+            }
         }
         Value::Object(table) => keys(sum, table.iter().map(|(key, value)| (key.as_str(), value)).collect(), json),
     }
@@ -87,7 +89,9 @@ fn toml(sum: &mut Sha256, value: &DeValue<'_>) {
         DeValue::Datetime(time) => text(sum, b't', &time.to_string()),
         DeValue::Array(list) => {
             part(sum, b'a', list.len(), &[]);
-            list.iter().for_each(|value| toml(sum, value.get_ref()));
+            for value in list {
+                toml(sum, value.get_ref());
+            }
         }
         DeValue::Table(table) => {
             keys(sum, table.iter().map(|(key, value)| (key.get_ref().as_ref(), value.get_ref())).collect(), toml);

@@ -21,13 +21,19 @@ pub(crate) fn of_column(header: &str, cells: &Raw) -> String {
     };
     text(header);
     match cells {
-        Raw::Texts(texts) => texts.iter().for_each(|cell| text(cell)),
+        Raw::Texts(texts) => {
+            for cell in texts {
+                text(cell);
+            }
+        }
         Raw::Numbers(numbers) => {
             // In pieces: a call for each number would cost more than its hash.
             let mut piece = Vec::with_capacity(8 * 512);
             for numbers in numbers.chunks(512) {
                 piece.clear();
-                numbers.iter().for_each(|number| piece.extend_from_slice(&number.to_le_bytes()));
+                for number in numbers {
+                    piece.extend_from_slice(&number.to_le_bytes());
+                }
                 sum.update(&piece);
             }
         }

@@ -491,3 +491,25 @@ fn a_run_without_its_end_is_driven_again() {
     recorder.finish(RunStatus::Interrupted).unwrap();
     assert_eq!(reason(folder.path(), "next"), "next is interrupted: stopped by the operator");
 }
+
+#[test]
+fn logs_that_were_exchanged_are_told_once_each_and_by_what_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let short = recorded(folder.path(), "045-wet", 0..300, Packing::Lz4);
+    let long = recorded(folder.path(), "046-dry", 0..900, Packing::Lz4);
+    let aside = folder.path().join("aside");
+    std::fs::rename(&short, &aside).unwrap();
+    std::fs::rename(&long, &short).unwrap();
+    std::fs::rename(&aside, &long).unwrap();
+    for (path, own, said) in [(&short, "046-dry", "045-wet"), (&long, "045-wet", "046-dry")] {
+        let doubts = read_run(path).unwrap().doubts;
+        let [doubt] = doubts.as_slice() else { panic!("{doubts:?}") };
+        assert_eq!(doubt.kind, DoubtKind::Exchanged);
+        let text = "they were exchanged or renamed; give each log and each sidecar the name of its own run";
+        assert_eq!(
+            doubt.text,
+            format!("{} is the log of run {own} and its sidecar is that of {said}: {text}", path.display())
+        );
+        assert!(pair(folder.path(), said).unwrap_err().to_string().contains(text));
+    }
+}

@@ -142,7 +142,7 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
         if !file.exists() {
             match read_run_meta(&file.with_extension("toml")) {
                 Ok(meta) if meta.status == RunStatus::Complete && !is_put_aside(file, &meta) => {
-                    findings.push(runs::gone(file, &meta))
+                    findings.push(runs::gone(file, &meta));
                 }
                 _ => {}
             }
@@ -173,7 +173,9 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let counted = |name: &dyn Fn(&RunMeta) -> String| {
         let mut counts: IndexMap<String, usize> = IndexMap::new();
-        metas.iter().for_each(|meta| *counts.entry(name(meta)).or_default() += 1);
+        for meta in &metas {
+            *counts.entry(name(meta)).or_default() += 1;
+        }
         counts.iter().map(|(name, n)| format!("{n} {name}")).collect::<Vec<_>>().join(", ")
     };
     let aside = if n_aside == 0 { String::new() } else { format!("; {n_aside} more were put aside") };

@@ -302,8 +302,9 @@ impl<R: Read + Seek> RunReader<R> {
         match (&self.meta.log, &self.found) {
             (Some(recorded), Some(found)) => match (difference(recorded, found), damage) {
                 (None, _) => {}
+                // What it is instead is said already.
+                (Some(_), _) if is_exchanged => {}
                 (Some(what), Some(_)) => self.doubt(DoubtKind::Damaged, &what),
-                (Some(_), None) if is_exchanged => {}
                 (Some(_), None) => self.doubt(
                     DoubtKind::Exchanged,
                     &format!(
