@@ -671,7 +671,7 @@ impl<'a, 'o> Session<'a, 'o> {
     fn rig_tick(&mut self, request: Option<Request>) -> Result<Sample, RunnerError> {
         let sample = self.rig.tick(request)?;
         self.last = sample;
-        let number = sample.tick - *self.tick.get_or_insert(sample.tick);
+        let number = sample.tick.saturating_sub(*self.tick.get_or_insert(sample.tick));
         let is_due = self.is_recorded && number.is_multiple_of(self.setting.decimation);
         if is_due || number.is_multiple_of(TOLD_EVERY) {
             self.engine.offer(Entry::Sample(number, sample));
