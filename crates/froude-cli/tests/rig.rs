@@ -62,7 +62,8 @@ fn campaign(folder: &Path, port: Option<&Path>, has_warm_up: bool) -> PathBuf {
     let excitation = text.find("[carriage.excitation]").unwrap();
     text.truncate(excitation);
     if !has_warm_up {
-        let (begins, ends) = (text.find("[carriage.warm_up]").unwrap(), text.find("[carriage.friction_sweep]").unwrap());
+        let (begins, ends) =
+            (text.find("[carriage.warm_up]").unwrap(), text.find("[carriage.friction_sweep]").unwrap());
         text.replace_range(begins..ends, "");
     }
     let path = folder.join("campaign.toml");
@@ -287,7 +288,10 @@ fn without_a_terminal_and_without_yes_nothing_moves() {
         let out = command.args(verb).arg(&on_twin).stdin(Stdio::null()).output().unwrap();
         let error = String::from_utf8_lossy(&out.stderr);
         assert_eq!(out.status.code(), Some(2), "{error}");
-        assert!(error.contains("nothing was moved: nobody can confirm, because standard input is no terminal"), "{error}");
+        assert!(
+            error.contains("nothing was moved: nobody can confirm, because standard input is no terminal"),
+            "{error}"
+        );
         assert!(error.contains("or say --yes, which the twin takes"), "{error}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "only the campaign");
     }
@@ -307,6 +311,15 @@ fn without_a_terminal_and_without_yes_nothing_moves() {
     assert_eq!(out.status.code(), Some(2), "{error}");
     assert!(error.contains("Run it in a terminal") && !error.contains("--yes"), "{error}");
     assert_eq!((board.watched().moved_m, board.watched().phases), (0.0, [Phase::Disabled; 2]));
+}
+
+#[test]
+fn a_port_that_is_not_there_is_reported_before_anybody_is_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), Some(Path::new("/dev/no-such-port")), false);
+    let (status, said) = Driven::new(&["run", text(&campaign)]).end();
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert!(said.contains("/dev/no-such-port") && !said.contains("confirm with y"), "{said}");
 }
 
 #[test]
@@ -353,10 +366,8 @@ fn a_reader_who_goes_away_neither_stops_a_campaign_nor_leaves_it_undriven() {
     drop(child.stdout.take());
     let status = ended(&mut child);
     assert_eq!(status.code(), Some(0));
-    let again = Command::new(env!("CARGO_BIN_EXE_froude"))
-        .args(["run", text(&campaign), "--yes", "--json"])
-        .output()
-        .unwrap();
+    let again =
+        Command::new(env!("CARGO_BIN_EXE_froude")).args(["run", text(&campaign), "--yes", "--json"]).output().unwrap();
     let outcome: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
     assert_eq!(outcome["driven"], 0, "{outcome}");
     assert!(outcome["resumed"].as_u64().unwrap() >= 10, "{outcome}");

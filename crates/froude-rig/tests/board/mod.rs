@@ -263,6 +263,7 @@ fn terminal() -> std::io::Result<(OwnedFd, File, PathBuf)> {
     rustix::pty::unlockpt(&first)?;
     let name = rustix::pty::ptsname(&first, Vec::new())?;
     let path = PathBuf::from(name.to_string_lossy().into_owned());
-    let second = File::options().read(true).write(true).custom_flags(OFlags::NOCTTY.bits().cast_signed()).open(&path)?;
+    let second =
+        File::options().read(true).write(true).custom_flags(OFlags::NOCTTY.bits().cast_signed()).open(&path)?;
     Ok((first, second, path))
 }
