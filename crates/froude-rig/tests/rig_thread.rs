@@ -137,7 +137,7 @@ fn setting(folder: &Path) -> Setting {
 }
 
 /// Longest wait for something that has to happen.
-const PATIENCE: Duration = Duration::from_secs(60);
+const PATIENCE: Duration = Duration::from_mins(1);
 
 fn wait(is_done: impl Fn() -> bool) -> bool {
     let begun = Instant::now();
