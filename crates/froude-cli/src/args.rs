@@ -74,7 +74,7 @@ pub enum Verb {
         /// Only the pre-flight: nothing moves, nothing is written.
         #[arg(long)]
         check: bool,
-        /// Take the operator's steps as done; on the twin only.
+        /// Take the operator's steps as done, on the twin only; without it a person confirms at the terminal.
         #[arg(long)]
         yes: bool,
     },
@@ -149,7 +149,7 @@ pub struct Experiment {
     /// Folder of the runs and the report.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Take the operator's steps as done; on the twin only.
+    /// Take the operator's steps as done, on the twin only; without it a person confirms at the terminal.
     #[arg(long)]
     pub yes: bool,
 }

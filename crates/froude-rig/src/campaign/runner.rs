@@ -777,7 +777,7 @@ impl<'a, 'o> Session<'a, 'o> {
         if let Some(session) = sample.stranger {
             self.event(EventKind::Link, &turned_away(session));
         }
-        let number = sample.tick - *self.tick.get_or_insert(sample.tick);
+        let number = sample.tick.saturating_sub(*self.tick.get_or_insert(sample.tick));
         let is_due = self.is_recorded && number.is_multiple_of(self.setting.decimation);
         if is_due || number.is_multiple_of(TOLD_EVERY) {
             self.engine.offer(Entry::Sample(number, sample));

@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::os::fd::OwnedFd;
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
@@ -76,13 +77,8 @@ pub struct BoardAtTerminal {
 impl BoardAtTerminal {
     /// Powers up.
     pub fn new(config: &BoardConfig) -> std::io::Result<Self> {
-        let host_end = rustix::pty::openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
-        rustix::pty::grantpt(&host_end)?;
-        rustix::pty::unlockpt(&host_end)?;
-        let name = rustix::pty::ptsname(&host_end, Vec::new())?;
-        let port = PathBuf::from(name.to_string_lossy().into_owned());
+        let (host_end, held, port) = terminal()?;
         // Raw, so that no byte is read as a command to the terminal.
-        let held = File::options().read(true).write(true).open(&port)?;
         let mut raw = rustix::termios::tcgetattr(&held)?;
         raw.make_raw();
         rustix::termios::tcsetattr(&held, rustix::termios::OptionalActions::Now, &raw)?;
@@ -256,10 +252,18 @@ impl Board for TerminalBoard {
 
 /// A pseudo-terminal for a person: what is written to the first end is typed at the second.
 pub fn keyboard() -> std::io::Result<(File, OwnedFd)> {
-    let typed = rustix::pty::openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
-    rustix::pty::grantpt(&typed)?;
-    rustix::pty::unlockpt(&typed)?;
-    let name = rustix::pty::ptsname(&typed, Vec::new())?;
-    let read = File::options().read(true).write(true).open(name.to_string_lossy().as_ref())?;
+    let (typed, read, _) = terminal()?;
     Ok((File::from(typed), OwnedFd::from(read)))
+}
+
+/// Both ends of a pseudo-terminal, which is nobody's controlling one, and the second end's path.
+fn terminal() -> std::io::Result<(OwnedFd, File, PathBuf)> {
+    let first = rustix::pty::openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY)?;
+    rustix::pty::grantpt(&first)?;
+    rustix::pty::unlockpt(&first)?;
+    let name = rustix::pty::ptsname(&first, Vec::new())?;
+    let path = PathBuf::from(name.to_string_lossy().into_owned());
+    let second =
+        File::options().read(true).write(true).custom_flags(OFlags::NOCTTY.bits().cast_signed()).open(&path)?;
+    Ok((first, second, path))
 }

@@ -426,7 +426,9 @@ impl Live {
             return;
         }
         self.is_calibrated = true;
-        let runs: Vec<_> = self.calibration.iter().filter_map(|log| for_drag(log).ok().flatten()).collect();
+        // Not needed again, and megabytes each.
+        let logs = std::mem::take(&mut self.calibration);
+        let runs: Vec<_> = logs.iter().filter_map(|log| for_drag(log).ok().flatten()).collect();
         let (calibration, _) = calibration_of(&runs, Some(&self.campaign), &self.setup);
         self.setup.calibration = calibration.map(|c| c.force_per_volt);
     }

@@ -1,0 +1,384 @@
+//! `froude run` on a board at a pseudo-terminal, with a person at another: slow answers, signals, and readers that go away.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::fs::File;
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use froude::records::run::{RunStatus, read_run};
+use froude_control::status::Phase;
+use rustix::process::{Pid, Signal, kill_process};
+
+#[path = "../../froude-rig/tests/board/mod.rs"]
+mod board;
+use board::{BoardAtTerminal, BoardConfig, keyboard};
+
+/// Longest wait for something that has to happen, on a computer that is busy with other tests.
+const PATIENCE: Duration = Duration::from_mins(2);
+/// An answer that comes late: the host's patience with a silent board is 1 s, the board's with a silent host 0.2 s.
+const LATE: Duration = Duration::from_millis(2_500);
+/// What the board forgives a computer that is busy with other tests.
+const BUSY: Duration = Duration::from_secs(1);
+/// A motor that has moved no farther than this has not been driven, m.
+const STILL_M: f64 = 1e-4;
+
+/// The example, on the twin or on a board: two jogs, then runs with the body dry; the warm-up on request.
+fn campaign(folder: &Path, port: Option<&Path>, has_warm_up: bool) -> PathBuf {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml");
+    let mut text = std::fs::read_to_string(example).unwrap();
+    let mut changes = vec![
+        (r#"still = "5 s""#, r#"still = "2 s""#.to_owned()),
+        (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "0.5 s", wet = "0.5 s" }"#.to_owned()),
+        (r#"duration = "1 min""#, r#"duration = "10 s""#.to_owned()),
+        (r#"speed = "0.3 m/s""#, r#"speed = "0.55 m/s""#.to_owned()),
+        (
+            r#"speeds = ["0.05 m/s", "0.15 m/s", "0.25 m/s", "0.35 m/s", "0.45 m/s", "0.55 m/s"]"#,
+            r#"speeds = ["0.55 m/s"]"#.to_owned(),
+        ),
+        (
+            r#"speeds = ["0.02 m/s", "0.05 m/s", "0.1 m/s", "0.2 m/s", "0.35 m/s", "0.55 m/s"]"#,
+            r#"speeds = ["0.55 m/s"]"#.to_owned(),
+        ),
+        ("repeats = 5  ", "repeats = 1  ".to_owned()),
+        ("repeats = 6", "repeats = 1".to_owned()),
+        (r#"stop_when = "1.5 %""#, String::new() + "#"),
+    ];
+    if let Some(port) = port {
+        let serial = format!("kind = \"serial\"\nport = \"{}\"\nbaud = 3_000_000 #", port.display());
+        changes.extend([
+            ("kind = \"twin\"  ", serial),
+            ("seed = 1\n", String::new()),
+            ("[rig.twin]                        # the truth that identification has to find\n", String::new()),
+            ("drag = \"20 N s^2/m^2\"\npulley_friction = \"1 %\"\n", String::new()),
+        ]);
+    }
+    for (from, to) in &changes {
+        assert!(text.contains(from), "the example has no {from}");
+        text = text.replace(from, to);
+    }
+    let excitation = text.find("[carriage.excitation]").unwrap();
+    text.truncate(excitation);
+    if !has_warm_up {
+        let (begins, ends) =
+            (text.find("[carriage.warm_up]").unwrap(), text.find("[carriage.friction_sweep]").unwrap());
+        text.replace_range(begins..ends, "");
+    }
+    let path = folder.join("campaign.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn board() -> BoardAtTerminal {
+    BoardAtTerminal::new(&BoardConfig { start_m: [0.01, 0.01], patience: BUSY }).unwrap()
+}
+
+/// `froude`, with a person at its standard input.
+struct Driven {
+    child: Child,
+    keyboard: File,
+    /// What it wrote on standard error so far.
+    said: Arc<Mutex<String>>,
+}
+
+impl Driven {
+    fn new(args: &[&str]) -> Self {
+        let (keyboard, stdin) = keyboard().unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+            .args(args)
+            .stdin(stdin)
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let (mut stderr, said) = (child.stderr.take().unwrap(), Arc::new(Mutex::new(String::new())));
+        let heard = Arc::clone(&said);
+        std::thread::spawn(move || {
+            let mut chunk = [0_u8; 1_024];
+            while let Ok(n @ 1..) = stderr.read(&mut chunk) {
+                heard.lock().unwrap().push_str(&String::from_utf8_lossy(&chunk[..n]));
+            }
+        });
+        Self { child, keyboard, said }
+    }
+
+    fn said(&self) -> String {
+        self.said.lock().unwrap().clone()
+    }
+
+    /// Waits until it is so, or fails with what the program said.
+    fn until(&mut self, what: &str, is_so: impl Fn(&str) -> bool) {
+        let begun = Instant::now();
+        while !is_so(&self.said()) {
+            let ended = self.child.try_wait().unwrap();
+            std::thread::sleep(Duration::from_millis(10));
+            assert!(ended.is_none() || is_so(&self.said()), "{what}: it ended with {ended:?}: {}", self.said());
+            assert!(begun.elapsed() < PATIENCE, "{what}: {}", self.said());
+        }
+    }
+
+    /// Waits until it has asked so many times.
+    fn until_asked(&mut self, times: usize) {
+        self.until("a question", |said| said.matches("confirm with y").count() >= times);
+    }
+
+    fn type_in(&mut self, text: &str) {
+        self.keyboard.write_all(text.as_bytes()).unwrap();
+    }
+
+    fn signal(&self, signal: Signal) {
+        send(&self.child, signal);
+    }
+
+    fn end(&mut self) -> (ExitStatus, String) {
+        let status = ended(&mut self.child);
+        // What it said last is read by another thread.
+        std::thread::sleep(Duration::from_millis(100));
+        (status, self.said())
+    }
+}
+
+impl Drop for Driven {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn send(child: &Child, signal: Signal) {
+    kill_process(Pid::from_child(child), signal).unwrap();
+}
+
+fn ended(child: &mut Child) -> ExitStatus {
+    let begun = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        assert!(begun.elapsed() < PATIENCE, "it does not end");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+/// The run that a campaign with a warm-up drives third, 2.2 m at 0.55 m/s.
+const WARM_UP: &str = "003-warm-up-forward";
+
+/// Waits until the carriage is at speed in its third run.
+fn until_at_speed(board: &BoardAtTerminal, runs: &Path) {
+    let begun = Instant::now();
+    while !(runs.join(format!("{WARM_UP}.mcap")).exists() && board.watched().speed_m_s[0] > 0.5) {
+        assert!(begun.elapsed() < PATIENCE, "it never came to speed: {:?}", board.watched());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// How the third run is marked, and the last state of its axis: 0 disabled, 1 holding.
+fn end_of_record(runs: &Path) -> (RunStatus, f64) {
+    let log = read_run(&runs.join(format!("{WARM_UP}.mcap"))).unwrap();
+    (log.meta.status, *log.channels["y/state"].values.last().unwrap())
+}
+
+#[test]
+fn a_person_may_take_their_time_and_ctrl_c_at_the_prompt_ends_it_without_enter() {
+    let (folder, board) = (tempfile::tempdir().unwrap(), board());
+    let campaign = campaign(folder.path(), Some(&board.port), false);
+    let mut driven = Driven::new(&["run", text(&campaign)]);
+    // Nothing moves before somebody has said that it may; and this answer is late already.
+    driven.until_asked(1);
+    assert!(driven.said().contains("Homing moves both axes now"), "{}", driven.said());
+    std::thread::sleep(LATE);
+    assert!(board.watched().moved_m < STILL_M && board.watched().fault.is_none(), "{:?}", board.watched());
+    driven.type_in("y\n");
+    // After both jogs the body is put on; the carriage holds meanwhile.
+    driven.until_asked(2);
+    assert_eq!(board.watched().phases[0], Phase::Holding);
+    std::thread::sleep(LATE);
+    assert_eq!((board.watched().phases[0], board.watched().fault), (Phase::Holding, None), "{}", driven.said());
+    driven.type_in("y\n");
+    driven.until("the third run", |said| said.contains("3/") && board.watched().phases[0] == Phase::Moving);
+    driven.signal(Signal::INT);
+    let (status, said) = driven.end();
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert!(said.contains("stopped by the operator in 003-"), "{said}");
+
+    // Resumed: what is mounted, then the ways; a late answer, and no answer but Ctrl-C.
+    let mut driven = Driven::new(&["run", text(&campaign)]);
+    driven.until_asked(1);
+    std::thread::sleep(LATE);
+    driven.type_in("y\n");
+    driven.until_asked(2);
+    let asked = Instant::now();
+    driven.signal(Signal::INT);
+    let (status, said) = driven.end();
+    assert!(asked.elapsed() < Duration::from_secs(5), "{:?}", asked.elapsed());
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert!(said.contains("stopped by the operator, who was asked: Homing moves both axes now"), "{said}");
+}
+
+#[test]
+fn to_terminate_and_to_hang_up_however_often_stop_under_control() {
+    for signal in [Signal::TERM, Signal::HUP] {
+        let (folder, board) = (tempfile::tempdir().unwrap(), board());
+        let campaign = campaign(folder.path(), Some(&board.port), true);
+        let runs = folder.path().join("campaign-runs");
+        let mut driven = Driven::new(&["run", text(&campaign)]);
+        driven.until_asked(1);
+        driven.type_in("y\n");
+        until_at_speed(&board, &runs);
+        driven.signal(signal);
+        std::thread::sleep(Duration::from_millis(50));
+        driven.signal(signal);
+        let (status, said) = driven.end();
+        assert_eq!(status.code(), Some(1), "{said}");
+        assert_eq!(end_of_record(&runs), (RunStatus::Interrupted, 1.0), "{said}");
+        assert!(board.watched().speed_m_s[0].abs() < 0.05, "{:?}", board.watched());
+    }
+}
+
+/// `froude run … 2>&1 | tee`, and Ctrl-C, which ends tee as well: once, and twice.
+#[test]
+fn ctrl_c_stops_the_carriage_when_nobody_reads_what_is_said_and_again_cuts_the_torque() {
+    for presses in [1, 2] {
+        let (folder, board) = (tempfile::tempdir().unwrap(), board());
+        let campaign = campaign(folder.path(), Some(&board.port), true);
+        let runs = folder.path().join("campaign-runs");
+        let (mut read, write) = std::io::pipe().unwrap();
+        let (mut keyboard, stdin) = keyboard().unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+            .args(["run", text(&campaign)])
+            .stdin(stdin)
+            .stdout(write.try_clone().unwrap())
+            .stderr(write)
+            .spawn()
+            .unwrap();
+        let (mut said, mut chunk) = (String::new(), [0_u8; 1_024]);
+        while !said.contains("confirm with y") {
+            let n = read.read(&mut chunk).unwrap();
+            assert!(n > 0, "{said}");
+            said.push_str(&String::from_utf8_lossy(&chunk[..n]));
+        }
+        keyboard.write_all(b"y\n").unwrap();
+        until_at_speed(&board, &runs);
+        drop(read);
+        for _ in 0..presses {
+            send(&child, Signal::INT);
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        // Braking from 0.55 m/s takes half a second: the second press comes into it.
+        let status = ended(&mut child);
+        assert_eq!(status.code(), Some(1), "{presses} presses: {status:?}");
+        let last = if presses == 1 { 1.0 } else { 0.0 };
+        assert_eq!(end_of_record(&runs), (RunStatus::Interrupted, last), "{presses} presses");
+    }
+}
+
+#[test]
+fn without_a_terminal_and_without_yes_nothing_moves() {
+    let folder = tempfile::tempdir().unwrap();
+    let on_twin = campaign(folder.path(), None, false);
+    let verbs: [&[&str]; 3] = [&["run"], &["carriage", "tune"], &["carriage", "resonance"]];
+    for verb in verbs {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_froude"));
+        let out = command.args(verb).arg(&on_twin).stdin(Stdio::null()).output().unwrap();
+        let error = String::from_utf8_lossy(&out.stderr);
+        assert_eq!(out.status.code(), Some(2), "{error}");
+        assert!(
+            error.contains("nothing was moved: nobody can confirm, because standard input is no terminal"),
+            "{error}"
+        );
+        assert!(error.contains("or say --yes, which the twin takes"), "{error}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "only the campaign");
+    }
+    let board = board();
+    let on_board = campaign(folder.path(), Some(&board.port), false);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+        .args(["run", text(&on_board)])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Neither does who pipes answers in, as `yes | froude run` does.
+    let _ = child.stdin.take().unwrap().write_all(b"y\ny\ny\n");
+    let out = child.wait_with_output().unwrap();
+    let error = String::from_utf8_lossy(&out.stderr);
+    assert_eq!(out.status.code(), Some(2), "{error}");
+    assert!(error.contains("Run it in a terminal") && !error.contains("--yes"), "{error}");
+    assert_eq!((board.watched().moved_m, board.watched().phases), (0.0, [Phase::Disabled; 2]));
+}
+
+#[test]
+fn a_port_that_is_not_there_is_reported_before_anybody_is_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), Some(Path::new("/dev/no-such-port")), false);
+    let (status, said) = Driven::new(&["run", text(&campaign)]).end();
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert!(said.contains("/dev/no-such-port") && !said.contains("confirm with y"), "{said}");
+}
+
+#[test]
+fn on_the_twin_too_a_person_is_asked_first_and_what_was_typed_before_is_no_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), None, false);
+    let (mut keyboard, stdin) = keyboard().unwrap();
+    keyboard.write_all(b"y\n").unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+        .args(["run", text(&campaign)])
+        .stdin(stdin)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let (mut stderr, mut said, mut chunk) = (child.stderr.take().unwrap(), String::new(), [0_u8; 1_024]);
+    while !said.contains("confirm with y") {
+        let n = stderr.read(&mut chunk).unwrap();
+        assert!(n > 0, "{said}");
+        said.push_str(&String::from_utf8_lossy(&chunk[..n]));
+    }
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(child.try_wait().unwrap().is_none(), "it took what was typed before it had asked");
+    keyboard.write_all(b"no\n").unwrap();
+    let status = ended(&mut child);
+    stderr.read_to_string(&mut said).unwrap();
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert!(said.contains("the operator did not confirm: Homing moves both axes now"), "{said}");
+    let names: Vec<_> = std::fs::read_dir(folder.path().join("campaign-runs")).unwrap().collect();
+    let is_log = |path: PathBuf| path.extension().is_some_and(|e| e == "mcap");
+    assert!(!names.iter().any(|n| is_log(n.as_ref().unwrap().path())), "{names:?}");
+}
+
+/// `froude run … --yes | head -1`: what is driven is driven whole, whoever reads about it.
+#[test]
+fn a_reader_who_goes_away_neither_stops_a_campaign_nor_leaves_it_undriven() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), None, false);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+        .args(["run", text(&campaign), "--yes"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let status = ended(&mut child);
+    assert_eq!(status.code(), Some(0));
+    let again =
+        Command::new(env!("CARGO_BIN_EXE_froude")).args(["run", text(&campaign), "--yes", "--json"]).output().unwrap();
+    let outcome: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
+    assert_eq!(outcome["driven"], 0, "{outcome}");
+    assert!(outcome["resumed"].as_u64().unwrap() >= 10, "{outcome}");
+    // A pre-flight only prints: `| head` ends it, as it ends every other listing.
+    let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+        .args(["run", text(&campaign), "--check"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    assert_eq!(ended(&mut child).code(), Some(0));
+}
