@@ -44,25 +44,28 @@ pub(super) fn look(folder: &Path, id: &str) -> Result<Found, RunnerError> {
     let status = status(&sidecar)?;
     let why = match (log.exists(), status) {
         (false, None) => return Ok(Found::Nothing { aside: None }),
-        (true, Some(Some(RunStatus::Complete))) => return Ok(Found::Complete),
-        (false, Some(Some(RunStatus::Complete))) => "has lost its log",
-        (_, Some(Some(RunStatus::Faulted))) => "ended with a fault",
-        (_, Some(Some(RunStatus::Cut))) => "was cut",
+        (true, Some(RunStatus::Complete)) => return Ok(Found::Complete),
+        (false, Some(RunStatus::Complete)) => "has lost its log",
+        (_, Some(RunStatus::Faulted)) => "ended with a fault",
+        (_, Some(RunStatus::Cut)) => "was cut",
         _ => "was interrupted",
     };
-    let name = put_aside(folder, id, matches!(status, Some(Some(RunStatus::Complete))))?;
+    let name = put_aside(folder, id, status == Some(RunStatus::Complete))?;
     Ok(Found::Nothing { aside: Some(format!("{id} {why}: kept as {name}, driven again")) })
 }
 
-/// `None` without a sidecar, `Some(None)` where nothing is written in it.
-fn status(sidecar: &Path) -> Result<Option<Option<RunStatus>>, RunnerError> {
+/// What the sidecar says; `None` without one. One in which nothing is written says no more than that the run began.
+fn status(sidecar: &Path) -> Result<Option<RunStatus>, RunnerError> {
     match std::fs::read(sidecar) {
         Err(e) if e.kind() == ErrorKind::NotFound => Ok(None),
         Err(e) => Err(failed(sidecar, &e)),
-        Ok(bytes) if bytes.iter().all(|b| b.is_ascii_whitespace() || *b == 0) => Ok(Some(None)),
-        Ok(_) => Ok(Some(Some(read_run_meta(sidecar)?.status))),
+        Ok(bytes) if bytes.iter().all(|b| b.is_ascii_whitespace() || *b == 0) => Ok(Some(RunStatus::Running)),
+        Ok(_) => Ok(Some(read_run_meta(sidecar)?.status)),
     }
 }
+
+/// More interruptions of one run than anybody has the patience for.
+const MOST_ASIDE: usize = 100_000;
 
 /// Log and sidecar of a name.
 fn files(folder: &Path, name: &str) -> [PathBuf; 2] {
@@ -76,7 +79,7 @@ fn put_aside(folder: &Path, id: &str, is_log_lost: bool) -> Result<String, Runne
     let is_here = here.each_ref().map(|path| path.exists());
     let name = |n: usize| format!("{id}.interrupted-{n}");
     let there = |n: usize| files(folder, &name(n)).map(|path| path.exists());
-    let last = (1..).take_while(|&n| there(n).contains(&true)).last().unwrap_or(0);
+    let last = (1..MOST_ASIDE).take_while(|&n| there(n).contains(&true)).last().unwrap_or(0);
     let follows = is_here == [false, true] && !is_log_lost && last > 0 && there(last) == [true, false];
     let name = name(if follows { last } else { last + 1 });
     for (from, to) in here.iter().zip(files(folder, &name)) {
