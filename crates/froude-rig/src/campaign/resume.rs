@@ -70,6 +70,9 @@ fn is_blank(sidecar: &Path) -> Result<bool, RunnerError> {
     }
 }
 
+/// More interruptions of one run than anybody has the patience for.
+const MOST_ASIDE: usize = 100_000;
+
 /// Log and sidecar of a name.
 fn files(folder: &Path, name: &str) -> [PathBuf; 2] {
     ["mcap", "toml"].map(|extension| folder.join(format!("{name}.{extension}")))
@@ -82,7 +85,7 @@ fn put_aside(folder: &Path, id: &str, is_log_lost: bool) -> Result<String, Runne
     let is_here = here.each_ref().map(|path| path.exists());
     let name = |n: usize| format!("{id}.interrupted-{n}");
     let there = |n: usize| files(folder, &name(n)).map(|path| path.exists());
-    let last = (1..).take_while(|&n| there(n).contains(&true)).last().unwrap_or(0);
+    let last = (1..MOST_ASIDE).take_while(|&n| there(n).contains(&true)).last().unwrap_or(0);
     let follows = is_here == [false, true] && !is_log_lost && last > 0 && there(last) == [true, false];
     let name = name(if follows { last } else { last + 1 });
     for (from, to) in here.iter().zip(files(folder, &name)) {
