@@ -289,11 +289,11 @@ impl SerialRig {
             // Said late, of a hello before the one that was taken.
             FromBoard::TurnedAway(refused) if refused.session == refused.holder => {}
             FromBoard::TurnedAway(refused) if refused.session == self.session => self.turned_away(refused)?,
-            FromBoard::TurnedAway(TurnedAway { session, holder, .. }) if holder == self.session => {
-                // One that goes on asking is one line in the log.
-                if self.stranger.is_none_or(|(last, _)| last != session) {
-                    self.stranger = Some((session, true));
-                }
+            // One that goes on asking is one line in the log.
+            FromBoard::TurnedAway(TurnedAway { session, holder, .. })
+                if holder == self.session && self.stranger.is_none_or(|(last, _)| last != session) =>
+            {
+                self.stranger = Some((session, true));
             }
             FromBoard::ForeignHello { version } => {
                 return Err(RigError::Version {

@@ -295,9 +295,9 @@ impl Bench {
     }
 
     /// Greets, configures, homes, and goes to where scenes begin.
-    fn homed(mut self, config: Config) -> Self {
+    fn homed(mut self, config: &Config) -> Self {
         self.send(FIRST, &ToBoard::Hello);
-        self.send(FIRST, &ToBoard::Configure { id: 1, config });
+        self.send(FIRST, &ToBoard::Configure { id: 1, config: *config });
         let mut id = 1;
         for axis in 0..AXES {
             let profile = Move {
@@ -402,7 +402,7 @@ impl Hosts {
     pub fn new() -> Self {
         let homed = MOUNTINGS.map(|mounting| {
             let load = Load::mounted(mounting);
-            Bench::new(load).homed(control_config(&[load; 2]))
+            Bench::new(load).homed(&control_config(&[load; 2]))
         });
         Self { homed: homed.into() }
     }
