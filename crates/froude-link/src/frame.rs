@@ -103,6 +103,7 @@ pub struct FrameReader<M> {
 
 impl<M> Clone for FrameReader<M> {
     fn clone(&self) -> Self {
+        #[allow(clippy::needless_match)] // the decoder's state is no Clone
         let cobs = match self.cobs {
             DecoderState::Idle => DecoderState::Idle,
             DecoderState::Grab(left) => DecoderState::Grab(left),

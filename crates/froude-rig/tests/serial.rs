@@ -17,7 +17,7 @@ use froude_control::status::{Phase, Refusal};
 use froude_control::tick::{AXES, Command};
 use froude_link::frame::{FrameWriter, MAX_WIRE};
 use froude_link::session::NOBODY;
-use froude_link::status::{Ack, BoardHello, BoardId, TurnedAway, Verdict};
+use froude_link::status::{Ack, BoardHello, BoardId, Health, TurnedAway, Verdict};
 use froude_link::{FrameReader, FromBoard, HostFrame, Telemetry, ToBoard};
 use froude_rig::defaults::control_config;
 use froude_rig::drive::serial::SerialRig;
@@ -223,8 +223,9 @@ fn a_board_is_greeted_configured_homed_and_moved_over_the_line() {
     }
     let profile = Move { target_m: 0.5, speed_m_s: 0.3, acceleration_m_s2: 0.5, jerk_m_s3: 0.0, is_shaped: false };
     rig.tick(Some(Request::Move { axis: 0, profile })).unwrap();
-    until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Moving);
-    let end = until(&mut rig, 30.0, |s| s.axes[0].phase == Phase::Holding);
+    // Of a host that is slow the board drops telemetry: that it moved may be among it, where it ended is not.
+    let is_there = |s: &Sample| s.axes[0].phase == Phase::Holding && (s.axes[0].reference_m - 0.5).abs() < 1e-6;
+    let end = until(&mut rig, 30.0, is_there);
     // Three counts of 2.5 µm: friction holds the axis within them, and the beginning of the counts is as good.
     assert!((end.axes[0].position_m - 0.5).abs() < 1e-5, "{end:?}");
     // The last tick lies just before now on the host's clock, as well as the line's delay tells.
@@ -335,7 +336,7 @@ fn a_host_that_died_is_followed_by_the_next_one_after_its_silence() {
     running.end();
 }
 
-/// A board that gives itself to whoever greets, takes every configuration, and then says that another session has it.
+/// A board that gives itself to whoever greets, takes every configuration, and then lets another session have it.
 fn taken_over(mut line: UnixStream, holder: u32) -> JoinHandle<()> {
     std::thread::spawn(move || {
         let (mut reader, mut writer) = (FrameReader::<HostFrame>::new(), FrameWriter::default());
@@ -361,7 +362,11 @@ fn taken_over(mut line: UnixStream, holder: u32) -> JoinHandle<()> {
                     ToBoard::Configure { id, .. } => {
                         FromBoard::Ack(Ack { session, id, tick, verdict: Verdict::Accepted })
                     }
-                    _ => FromBoard::TurnedAway(TurnedAway { session, holder, holder_frames: 9, free_in_us: 210_000 }),
+                    ToBoard::Request { .. } => {
+                        FromBoard::TurnedAway(TurnedAway { session, holder, holder_frames: 9, free_in_us: 210_000 })
+                    }
+                    // Nothing to answer.
+                    _ => FromBoard::Health(Health::default()),
                 };
                 // What another host is answered is no business of ours.
                 let others = FromBoard::Ack(Ack { session: holder, id: 2, tick, verdict: Verdict::NotNow });
@@ -381,7 +386,8 @@ fn a_host_that_slept_too_long_is_told_who_has_the_board() {
     ours.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
     let board = taken_over(theirs, 0xbeef);
     let mut rig = SerialRig::on("a socket", Box::new(ours), config()).unwrap();
-    let error = (0..10_000).find_map(|_| rig.tick(None).err()).unwrap();
+    let mut request = Some(Request::Enable { axis: 0 });
+    let error = (0..10_000).find_map(|_| rig.tick(request.take()).err()).unwrap();
     assert!(matches!(error, RigError::TakenOver { holder: 0xbeef, .. }), "{error}");
     assert!(
         error.to_string().starts_with(

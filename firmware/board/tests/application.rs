@@ -101,10 +101,10 @@ impl Bench {
     }
 
     /// Puts a frame on the line.
-    fn send(&mut self, session: u32, says: ToBoard) {
+    fn send(&mut self, session: u32, says: &ToBoard) {
         let mut wire = [0; MAX_WIRE];
         let writer = self.writers.entry(session).or_default();
-        self.board.to_board.extend(writer.write(&says.from_session(session), &mut wire));
+        self.board.to_board.extend(writer.write(&(*says).from_session(session), &mut wire));
     }
 
     /// The first host says something, and two ticks pass.
@@ -113,7 +113,7 @@ impl Bench {
     }
 
     fn say_as(&mut self, session: u32, message: &ToBoard) -> Vec<FromBoard> {
-        self.send(session, *message);
+        self.send(session, message);
         let mut said = self.tick();
         said.extend(self.tick());
         said
@@ -124,7 +124,7 @@ impl Bench {
         (0..ticks)
             .flat_map(|tick| {
                 if let Some(session) = heartbeat_of.filter(|_| tick % 80 == 0) {
-                    self.send(session, ToBoard::Heartbeat);
+                    self.send(session, &ToBoard::Heartbeat);
                 }
                 self.tick()
             })
@@ -231,7 +231,7 @@ fn a_repeated_request_is_answered_again_and_carried_out_once() {
 fn requests_that_come_within_a_tick_are_all_answered() {
     let mut bench = Bench::configured();
     for id in 2..6 {
-        bench.send(FIRST, ToBoard::Request { id, request: Request::Enable { axis: usize::from(id % 2) } });
+        bench.send(FIRST, &ToBoard::Request { id, request: Request::Enable { axis: usize::from(id % 2) } });
     }
     let said: Vec<_> = (0..6).flat_map(|_| bench.tick()).collect();
     let ids: Vec<_> = said.iter().filter_map(|m| if let FromBoard::Ack(a) = m { Some(a.id) } else { None }).collect();
@@ -292,7 +292,7 @@ fn in_lock_step_a_number_is_stepped_once_and_no_torque_leaves_the_board() {
 #[test]
 fn a_second_host_is_turned_away_and_nothing_that_it_asks_for_is_done() {
     let mut bench = Bench::enabled();
-    bench.send(FIRST, ToBoard::Heartbeat);
+    bench.send(FIRST, &ToBoard::Heartbeat);
     let said = bench.say_as(SECOND, &ToBoard::Hello);
     let [refused] = turned_away(&said)[..] else { panic!("{said:?}") };
     assert_eq!((refused.session, refused.holder), (SECOND, FIRST));
@@ -313,8 +313,8 @@ fn a_second_host_is_turned_away_and_nothing_that_it_asks_for_is_done() {
     .enumerate()
     {
         let before = *bench.application.output();
-        bench.send(FIRST, ToBoard::Heartbeat);
-        bench.send(SECOND, says);
+        bench.send(FIRST, &ToBoard::Heartbeat);
+        bench.send(SECOND, &says);
         let said = bench.pass(100, None);
         assert!(matches!(said[..], [FromBoard::TurnedAway(t)] if t.session == SECOND), "{k}: {says:?}: {said:?}");
         assert_eq!(bench.phase(), Phase::Holding, "{says:?}");
@@ -335,7 +335,7 @@ fn a_second_host_is_turned_away_and_nothing_that_it_asks_for_is_done() {
 #[test]
 fn signs_of_life_of_another_host_do_not_keep_the_first_one_alive() {
     let mut bench = Bench::enabled();
-    bench.send(FIRST, ToBoard::Heartbeat);
+    bench.send(FIRST, &ToBoard::Heartbeat);
     let said = bench.pass(4_000, Some(SECOND));
     let faults = said.iter().filter_map(|m| if let FromBoard::Fault(report) = m { Some(report) } else { None });
     assert_eq!(faults.map(|report| report.fault).collect::<Vec<_>>(), [Fault::HostSilent]);
@@ -372,9 +372,9 @@ fn a_stop_is_obeyed_from_everybody_whatever_its_number() {
 fn there_is_room_for_a_stop_however_much_is_asked_for() {
     let mut bench = Bench::enabled();
     for id in 10..30 {
-        bench.send(FIRST, ToBoard::Request { id, request: Request::Enable { axis: 1 } });
+        bench.send(FIRST, &ToBoard::Request { id, request: Request::Enable { axis: 1 } });
     }
-    bench.send(SECOND, ToBoard::Request { id: 1, request: Request::Stop(StopCategory::Zero) });
+    bench.send(SECOND, &ToBoard::Request { id: 1, request: Request::Stop(StopCategory::Zero) });
     let said: Vec<_> = (0..2).flat_map(|_| bench.tick()).collect();
     let first = said.iter().find_map(|m| if let FromBoard::Ack(ack) = m { Some((ack.session, ack.id)) } else { None });
     assert_eq!(first, Some((SECOND, 1)), "{said:?}");
@@ -384,7 +384,7 @@ fn there_is_room_for_a_stop_however_much_is_asked_for() {
 #[test]
 fn after_its_silence_the_next_one_that_greets_has_the_board_and_the_first_one_is_told() {
     let mut bench = Bench::enabled();
-    bench.send(FIRST, ToBoard::Heartbeat);
+    bench.send(FIRST, &ToBoard::Heartbeat);
     bench.pass(800, None);
     let said = bench.say_as(SECOND, &ToBoard::Hello);
     let [refused] = turned_away(&said)[..] else { panic!("{said:?}") };
@@ -434,9 +434,9 @@ fn hosts_that_are_turned_away_cannot_fill_the_line() {
     let mut bench = Bench::configured();
     let mut told = 0;
     for _ in 0..4_000 {
-        bench.send(FIRST, ToBoard::Heartbeat);
-        bench.send(SECOND, ToBoard::Hello);
-        bench.send(SECOND, ToBoard::Heartbeat);
+        bench.send(FIRST, &ToBoard::Heartbeat);
+        bench.send(SECOND, &ToBoard::Hello);
+        bench.send(SECOND, &ToBoard::Heartbeat);
         told += turned_away(&bench.tick()).len();
     }
     assert!((95..=100).contains(&told), "{told} in a second");

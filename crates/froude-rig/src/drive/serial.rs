@@ -180,7 +180,7 @@ impl SerialRig {
                 return Err(self.silent(begun.elapsed()));
             }
             if sent.is_none_or(|at| at.elapsed() > REPEAT) {
-                self.send(ToBoard::Hello)?;
+                self.send(&ToBoard::Hello)?;
                 sent = Some(Instant::now());
             }
             self.listen()?;
@@ -214,7 +214,7 @@ impl SerialRig {
         loop {
             self.id = self.id.wrapping_add(1).max(1);
             self.answer = None;
-            self.send(ToBoard::Configure { id: self.id, config: self.config })?;
+            self.send(&ToBoard::Configure { id: self.id, config: self.config })?;
             let sent = Instant::now();
             while self.answer.is_none() && sent.elapsed() < 4 * REPEAT {
                 self.listen()?;
@@ -254,9 +254,9 @@ impl SerialRig {
         RigError::Silent { port: self.port.clone(), silent_s: silent.as_secs_f64() }
     }
 
-    fn send(&mut self, says: ToBoard) -> Result<(), RigError> {
+    fn send(&mut self, says: &ToBoard) -> Result<(), RigError> {
         let mut wire = [0_u8; LONGEST_FRAME];
-        let frame = self.writer.write(&says.from_session(self.session), &mut wire);
+        let frame = self.writer.write(&(*says).from_session(self.session), &mut wire);
         self.last_sent = Instant::now();
         self.line.write_all(frame).map_err(|e| RigError::Port { port: self.port.clone(), reason: e.to_string() })
     }
@@ -289,11 +289,11 @@ impl SerialRig {
             // Said late, of a hello before the one that was taken.
             FromBoard::TurnedAway(refused) if refused.session == refused.holder => {}
             FromBoard::TurnedAway(refused) if refused.session == self.session => self.turned_away(refused)?,
-            FromBoard::TurnedAway(TurnedAway { session, holder, .. }) if holder == self.session => {
-                // One that goes on asking is one line in the log.
-                if self.stranger.is_none_or(|(last, _)| last != session) {
-                    self.stranger = Some((session, true));
-                }
+            // One that goes on asking is one line in the log.
+            FromBoard::TurnedAway(TurnedAway { session, holder, .. })
+                if holder == self.session && self.stranger.is_none_or(|(last, _)| last != session) =>
+            {
+                self.stranger = Some((session, true));
             }
             FromBoard::ForeignHello { version } => {
                 return Err(RigError::Version {
@@ -343,7 +343,7 @@ impl SerialRig {
     fn next(&mut self, request: Option<Request>) -> Result<Sample, RigError> {
         if let Some(request) = request {
             self.id = self.id.wrapping_add(1).max(1);
-            self.send(ToBoard::Request { id: self.id, request })?;
+            self.send(&ToBoard::Request { id: self.id, request })?;
             self.asked = Some((self.id, request, Instant::now()));
         }
         loop {
@@ -353,15 +353,15 @@ impl SerialRig {
             if let Some((id, request, at)) = self.asked
                 && at.elapsed() > REPEAT
             {
-                self.send(ToBoard::Request { id, request })?;
+                self.send(&ToBoard::Request { id, request })?;
                 self.asked = Some((id, request, Instant::now()));
             }
             if self.last_sent.elapsed() > HEARTBEAT {
-                self.send(ToBoard::Heartbeat)?;
+                self.send(&ToBoard::Heartbeat)?;
             }
             if self.clock.asked.elapsed() > ASK_TIME {
                 self.clock.asked = Instant::now();
-                self.send(ToBoard::TimeRequest { host_sent_us: self.clock.host_us() })?;
+                self.send(&ToBoard::TimeRequest { host_sent_us: self.clock.host_us() })?;
             }
             self.listen()?;
             // Only now: what came while nobody listened lies in the port.

@@ -134,7 +134,7 @@ impl Spec {
         }
     }
 
-    fn hear(&mut self, HostFrame { session, says }: HostFrame) {
+    fn hear(&mut self, &HostFrame { session, says }: &HostFrame) {
         if let ToBoard::Request { id, request: request @ Request::Stop(_) } = says {
             let is_repeated = session == self.holder && self.answered == Some(id);
             if !is_repeated && !self.waiting.iter().any(|w| (w.0, w.1) == (session, id)) {
@@ -227,11 +227,11 @@ impl Bench {
         }
     }
 
-    fn send(&mut self, session: u32, says: ToBoard) {
+    fn send(&mut self, session: u32, says: &ToBoard) {
         if session == FIRST && self.is_first_mute {
             return;
         }
-        let frame = says.from_session(session);
+        let frame = (*says).from_session(session);
         let mut wire = [0; MAX_WIRE];
         self.board.bytes.extend(self.writers.entry(session).or_default().write(&frame, &mut wire));
         // What comes of another version is its version.
@@ -275,7 +275,7 @@ impl Bench {
         self.has_left_travel |= !self.board.twin.is_inside_travel();
         while self.application.turn(&mut self.board) {}
         for frame in std::mem::take(&mut self.said) {
-            self.spec.hear(frame);
+            self.spec.hear(&frame);
         }
         self.ticks += 1;
     }
@@ -284,7 +284,7 @@ impl Bench {
     fn pass(&mut self, ticks: u64) {
         for _ in 0..ticks {
             if self.ticks.is_multiple_of(HEARTBEAT) {
-                self.send(FIRST, ToBoard::Heartbeat);
+                self.send(FIRST, &ToBoard::Heartbeat);
             }
             self.step();
         }
@@ -295,9 +295,9 @@ impl Bench {
     }
 
     /// Greets, configures, homes, and goes to where scenes begin.
-    fn homed(mut self, config: Config) -> Self {
-        self.send(FIRST, ToBoard::Hello);
-        self.send(FIRST, ToBoard::Configure { id: 1, config });
+    fn homed(mut self, config: &Config) -> Self {
+        self.send(FIRST, &ToBoard::Hello);
+        self.send(FIRST, &ToBoard::Configure { id: 1, config: *config });
         let mut id = 1;
         for axis in 0..AXES {
             let profile = Move {
@@ -310,7 +310,7 @@ impl Bench {
             for request in [Request::Enable { axis }, Request::Home { axis }, Request::Move { axis, profile }] {
                 id += 1;
                 self.pass(4);
-                self.send(FIRST, ToBoard::Request { id, request });
+                self.send(FIRST, &ToBoard::Request { id, request });
                 self.pass(4);
                 let mut left = 4_000_000;
                 while !self.is_holding(axis) && left > 0 {
@@ -402,7 +402,7 @@ impl Hosts {
     pub fn new() -> Self {
         let homed = MOUNTINGS.map(|mounting| {
             let load = Load::mounted(mounting);
-            Bench::new(load).homed(control_config(&[load; 2]))
+            Bench::new(load).homed(&control_config(&[load; 2]))
         });
         Self { homed: homed.into() }
     }
@@ -606,17 +606,19 @@ impl First {
         }
         if tick < 2 {
             let (axis, id) = (tick as usize, 50 + tick as u16);
-            bench
-                .send(FIRST, ToBoard::Request { id, request: Request::Move { axis, profile: self.scene.moves[axis] } });
+            bench.send(
+                FIRST,
+                &ToBoard::Request { id, request: Request::Move { axis, profile: self.scene.moves[axis] } },
+            );
         }
         if tick.is_multiple_of(HEARTBEAT) {
-            bench.send(FIRST, ToBoard::Heartbeat);
+            bench.send(FIRST, &ToBoard::Heartbeat);
         }
         if let Late::Living(from, long) | Late::Dead(from, long) = self.late
             && tick == from + long
         {
             ending.stops += u32::from(matches!(self.answer, Request::Stop(_) | Request::RecorderFailed));
-            bench.send(FIRST, ToBoard::Request { id: self.id, request: self.answer });
+            bench.send(FIRST, &ToBoard::Request { id: self.id, request: self.answer });
         }
     }
 }
@@ -681,7 +683,7 @@ impl Second {
             self.id = self.id.wrapping_add(1);
         }
         ending.frames += 1;
-        bench.send(session, says);
+        bench.send(session, &says);
     }
 }
 
