@@ -37,7 +37,11 @@ fn line(mut pieces: &[u8]) -> Vec<u8> {
     while let Some((head, rest)) = pieces.split_first_chunk::<2>() {
         let head = u16::from_le_bytes(*head);
         let (piece, rest) = rest.split_at(usize::from(head & 0x3ff).min(rest.len()));
-        if head & 0x8000 == 0 { out.extend(framed(piece)) } else { out.extend_from_slice(piece) }
+        if head & 0x8000 == 0 {
+            out.extend(framed(piece))
+        } else {
+            out.extend_from_slice(piece)
+        }
         pieces = rest;
     }
     out

@@ -30,12 +30,24 @@ fn table(header: &[&str]) -> Table {
         .load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY)
         .set_content_arrangement(ContentArrangement::Dynamic)
         .set_width(WIDEST)
-        .set_header(header.iter().map(Cell::new));
+        .set_header(header.iter().map(cell));
     table
 }
 
+/// Longest text of a cell, in characters: the table is laid out letter by letter.
+const LONGEST_CELL: usize = 1000;
+
+/// A cell; of a text that no table can show, its beginning.
+fn cell(text: impl ToString) -> Cell {
+    let text = text.to_string();
+    match text.char_indices().nth(LONGEST_CELL) {
+        Some((end, _)) => Cell::new(format!("{}…", &text[..end])),
+        None => Cell::new(text),
+    }
+}
+
 fn right(text: String) -> Cell {
-    Cell::new(text).set_alignment(CellAlignment::Right)
+    cell(text).set_alignment(CellAlignment::Right)
 }
 
 /// The coefficient tables, the findings, and where the report lies.
@@ -74,13 +86,13 @@ fn coefficients(estimate: &Estimate) -> Table {
     let mut out = table(&["coefficient", "value", "unit", "95 % interval", "type A", "type B", "status"]);
     for (name, c) in &estimate.coefficients {
         out.add_row(vec![
-            Cell::new(name),
+            cell(name),
             right(number::coefficient(c)),
-            Cell::new(&c.unit),
+            cell(&c.unit),
             right(c.interval_95.map_or("—".to_owned(), number::interval)),
             right(c.type_a.map_or("—".to_owned(), |x| number::significant(x, 2))),
             right(c.type_b.map_or("—".to_owned(), |x| number::significant(x, 2))),
-            Cell::new(status(c.status)),
+            cell(status(c.status)),
         ]);
     }
     out
@@ -158,13 +170,7 @@ fn columns(columns: &[ColumnFacts]) -> Table {
     for c in columns {
         let show = |x: Option<f64>| right(x.map_or(String::new(), |x| number::plain(x, 7)));
         let unit = if c.unit.is_empty() { "text" } else { &c.unit };
-        out.add_row(vec![
-            Cell::new(&c.name),
-            Cell::new(unit),
-            show(c.low),
-            show(c.high),
-            right(c.distinct.to_string()),
-        ]);
+        out.add_row(vec![cell(&c.name), cell(unit), show(c.low), show(c.high), right(c.distinct.to_string())]);
     }
     out
 }
@@ -195,11 +201,11 @@ fn source_facts(s: &SourceFacts) {
         let mut out = table(&["budget", "standard", "shared by", "dof", "name"]);
         for b in &s.budget {
             out.add_row(vec![
-                Cell::new(&b.quantity),
+                cell(&b.quantity),
                 right(b.standard.clone()),
-                Cell::new(&b.shared),
+                cell(&b.shared),
                 right(number::dof(b.dof.unwrap_or(f64::INFINITY))),
-                Cell::new(b.name.as_deref().unwrap_or("")),
+                cell(b.name.as_deref().unwrap_or("")),
             ]);
         }
         say!("{out}");
@@ -218,12 +224,12 @@ fn estimate_facts(e: &Estimate) {
     for (name, c) in &e.coefficients {
         let or_none = |x: Option<f64>, digits: usize| right(x.map_or("—".to_owned(), |x| number::plain(x, digits)));
         out.add_row(vec![
-            Cell::new(name),
+            cell(name),
             or_none(c.value, 5),
-            Cell::new(&c.unit),
+            cell(&c.unit),
             or_none(c.standard_uncertainty, 2),
             right(c.interval_95.map_or("—".to_owned(), number::interval)),
-            Cell::new(if c.status == Status::Free { "free" } else { status(c.status) }),
+            cell(if c.status == Status::Free { "free" } else { status(c.status) }),
         ]);
     }
     say!("{out}");
@@ -234,7 +240,7 @@ fn estimate_facts(e: &Estimate) {
         let mut out = table(&["valid for", "from", "to", "unit"]);
         for (name, r) in &e.validity {
             let (low, high) = (right(number::plain(r.low, 5)), right(number::plain(r.high, 5)));
-            out.add_row(vec![Cell::new(name), low, high, Cell::new(&r.unit)]);
+            out.add_row(vec![cell(name), low, high, cell(&r.unit)]);
         }
         say!("{out}");
     }
@@ -361,8 +367,8 @@ fn coefficient_pair(rows: &[&CoefficientRow]) {
     let mut out = narrow(&header);
     for r in rows {
         let mut row = vec![
-            Cell::new(&r.coefficient),
-            Cell::new(&r.unit),
+            cell(&r.coefficient),
+            cell(&r.unit),
             right(value_and_uncertainty(&r.by_first)),
             right(value_and_uncertainty(&r.by_second)),
         ];
@@ -394,7 +400,7 @@ fn forces(c: &Comparison) {
     }
     place.extend(["speed [m/s]".to_owned(), "angle [deg]".to_owned()]);
     let at = |r: &ForceRow| {
-        let mut row = vec![Cell::new(&r.component)];
+        let mut row = vec![cell(&r.component)];
         if has_links {
             row.push(right(r.n_links.map_or_else(String::new, |k| format!("{k}"))));
         }
@@ -508,7 +514,7 @@ fn laid_out(text: &froude::report::document::TextTable, widest: usize) -> Table 
         .set_header(wrapped(&text.head));
     for row in &text.rows {
         out.add_row(wrapped(row).into_iter().enumerate().map(|(i, cell)| {
-            Cell::new(cell).set_alignment(if i == 0 { CellAlignment::Left } else { CellAlignment::Right })
+            self::cell(cell).set_alignment(if i == 0 { CellAlignment::Left } else { CellAlignment::Right })
         }));
     }
     out

@@ -8,7 +8,7 @@ use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 /// Longest that any of these may take; they take a tenth of a second on an idle machine.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// What a run said and how it ended.
 struct Ended {
@@ -206,6 +206,23 @@ fn two_masses_that_cannot_be_found_cost_their_method_and_not_the_report() {
     assert!(ended.said.contains("motor current difference of wet and dry"), "{}", ended.said);
     assert!(ended.said.contains("[two-mass]") || ended.said.contains("two-mass model"), "{}", ended.said);
     assert!(folder.path().join("c-runs-drag/report.html").exists());
+
+    // A sidecar that says there are more samples in a second than a computer counts.
+    let runs = folder.path().join("c-runs");
+    for entry in std::fs::read_dir(&runs).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if name.contains("pulses") {
+            std::fs::remove_file(&path).unwrap();
+        } else if path.extension().is_some_and(|e| e == "toml") && name.contains("-wet-p1-") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            assert!(text.contains("log_rate = \"2000 Hz\""), "{text}");
+            std::fs::write(&path, text.replace("log_rate = \"2000 Hz\"", "log_rate = \"1e49 Hz\"")).unwrap();
+        }
+    }
+    for verb in ["drag", "identify", "calibrate"] {
+        froude(folder.path(), &["carriage", verb, "c-runs"]);
+    }
 }
 
 /// Where nothing at all can be written any more, not even the message, the exit code still says it.

@@ -103,9 +103,9 @@ pub(crate) fn plan<'s>(
 }
 
 /// The first name that was there before.
-fn first_twice<'a>(names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+fn first_twice<'a>(mut names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let mut seen = BTreeSet::new();
-    names.into_iter().find(|name| !seen.insert(*name))
+    names.find(|name| !seen.insert(*name))
 }
 
 /// Bytes of memory that the cells of one table may take.

@@ -26,6 +26,9 @@ use crate::write::write_atomically;
 /// The largest record that is read; a thousand estimates with covariances have a few megabytes.
 const LARGEST_BYTES: u64 = 64 << 20;
 
+/// Longest name and unit, in bytes: they are printed in tables.
+const LONGEST_NAME: usize = 1000;
+
 /// Newest major version that is read.
 const NEWEST: u64 = 1;
 
@@ -247,6 +250,14 @@ fn check(path: &Path, text: &str, file: &EstimateFile) -> Result<(), RecordError
         let refuse = |problem: String| {
             Err(RecordError::Syntax { place: place(0), problem: format!("estimate {}: {problem}", estimate.id) })
         };
+        let names = [("id", &estimate.id), ("source", &estimate.source), ("model", &estimate.model)].into_iter();
+        let texts = estimate.coefficients.iter().flat_map(|(name, c)| [("name", name), ("unit", &c.unit)]);
+        if let Some((what, long)) = names.chain(texts).find(|(_, text)| text.len() > LONGEST_NAME) {
+            return Err(RecordError::Syntax {
+                place: Place::whole(path),
+                problem: format!("a {what} has {} bytes; at most {LONGEST_NAME} are read", long.len()),
+            });
+        }
         if estimate.recommended && !recommended.insert(estimate.source.as_str()) {
             return refuse(format!("it is the second of source {:?} to be recommended; one is", estimate.source));
         }

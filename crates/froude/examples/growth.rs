@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use froude::pipeline::{Job, identify};
 
-/// Twelve observations of a quadratic drag under a scatter of a per cent, with whatever columns are asked for.
+/// Observations of a quadratic drag under a scatter of a per cent, none of them twice, with whatever columns are asked for.
 fn table(rows: usize, label: &str, every: usize, unused: usize, header: usize) -> String {
     let mut out = format!("{label},speed [m/s],f_x [N]");
     for j in 0..unused {
@@ -21,8 +21,9 @@ fn table(rows: usize, label: &str, every: usize, unused: usize, header: usize) -
     out.push('\n');
     for i in 0..rows {
         let speed = 0.1 + 0.01 * (i % 90) as f64;
-        let scatter = 1.0 + 0.01 * ((i * 7919 % 101) as f64 / 50.0 - 1.0);
-        write!(out, "g{},{speed:.2},{:.6}", i / every, -3.0 * speed * speed * scatter).unwrap();
+        // The fractions of multiples of the golden section lie evenly and never repeat.
+        let scatter = 0.99 + 0.02 * (0.618_033_988_749_895 * i as f64).fract();
+        write!(out, "g{},{speed:.2},{:.12}", i / every, -3.0 * speed * speed * scatter).unwrap();
         for j in 0..unused {
             write!(out, ",{}", (i * 31 + j * 17) % 97).unwrap();
         }

@@ -15,6 +15,9 @@ use super::steady::{SteadySettings, taper, window};
 /// Spacing of the knots of a map, m: 0.1 m resolves a bump that is half a metre wide to 2 % of its height.
 pub const KNOT_SPACING_M: f64 = 0.1;
 
+/// Longest way that is mapped, m; no carriage goes further. A map costs the third power of its knots.
+const LONGEST_MAP_M: f64 = 250.0;
+
 /// Friction in volts of the drive command.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Friction {
@@ -74,6 +77,9 @@ impl Friction {
         let cells: Vec<&Cell> = cells.into_iter().collect();
         let range_m = reach(&cells.iter().map(|c| c.position_m).collect::<Vec<_>>());
         if cells.is_empty() {
+            return None;
+        }
+        if is_mapped && range_m[1] - range_m[0] > LONGEST_MAP_M {
             return None;
         }
         let knots = if is_mapped { ((range_m[1] - range_m[0]) / KNOT_SPACING_M).ceil() as usize + 1 } else { 1 };

@@ -91,6 +91,12 @@ impl DragRun<'_> {
         if n < 2 { f64::NAN } else { (self.time_s[n - 1] - self.time_s[0]) / (n - 1) as f64 }
     }
 
+    /// Samples of so many seconds, rounded up; a run whose step is no time has more than any run is long.
+    #[must_use]
+    pub fn samples(&self, duration_s: f64) -> usize {
+        (duration_s / self.step_s()).ceil().min(1e9) as usize
+    }
+
     /// Whether two runs are the same tow: pair, speed, direction.
     #[must_use]
     pub fn is_partner_of(&self, other: &DragRun<'_>) -> bool {

@@ -239,10 +239,10 @@ pub fn window(run: &DragRun<'_>, settings: SteadySettings) -> Result<Window, Rej
         .max_by_key(|w| w.len())
         .ok_or_else(|| Rejected::NeverConstant { run: run.id.to_owned(), target_m_s: target })?;
     let step = run.step_s();
-    let dropped = (settings.settle_s / step).ceil() as usize;
-    let corner = (settings.corner_s / step).ceil() as usize;
+    let (dropped, corner) = (run.samples(settings.settle_s), run.samples(settings.corner_s));
     let found_s = (held.len() as f64 - (dropped + corner) as f64) * step;
-    if found_s < settings.shortest_s {
+    // A run of one sample has no step.
+    if found_s.is_nan() || found_s < settings.shortest_s {
         return Err(Rejected::TooShort {
             run: run.id.to_owned(),
             found_s: found_s.max(0.0),
@@ -363,9 +363,9 @@ pub fn still_windows(run: &DragRun<'_>, settings: SteadySettings) -> [Option<Win
     let still = stretches(run.reference_speed_m_s, |v| v == 0.0);
     let step = run.step_s();
     let n = run.time_s.len();
-    let needed = (settings.shortest_s / step).floor() as usize;
+    let needed = (settings.shortest_s / step).floor().min(1e9) as usize;
     let before = still.first().copied().filter(|w| w.first == 0 && w.len() >= needed && w.end < n);
-    let dropped = (settings.still_settle_s / step).ceil() as usize;
+    let dropped = run.samples(settings.still_settle_s);
     let after = still
         .last()
         .copied()

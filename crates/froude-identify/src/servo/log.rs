@@ -5,6 +5,9 @@ use crate::servo::error::ServoError;
 /// A step may differ from the mean by this part: time stamps are written with few digits, filters want equal steps.
 const UNEVEN: f64 = 0.01;
 
+/// Rates that a record can have, Hz: what is beyond them counts no samples.
+const RATES_HZ: [f64; 2] = [1e-3, 1e7];
+
 /// One record, columns of equal length.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ServoLog {
@@ -25,7 +28,7 @@ impl ServoLog {
     ///
     /// # Errors
     ///
-    /// [`ServoError::Length`], [`ServoError::Uneven`], [`ServoError::TooFewRows`].
+    /// [`ServoError::Length`], [`ServoError::Uneven`], [`ServoError::TooFewRows`], [`ServoError::Setting`] for a rate that no record has.
     pub fn rate_hz(&self) -> Result<f64, ServoError> {
         let n = self.time_s.len();
         if n < 3 {
@@ -46,7 +49,13 @@ impl ServoLog {
                 return Err(ServoError::Uneven { time_s: pair[0], step_s, mean_s });
             }
         }
-        Ok(mean_s.recip())
+        let rate_hz = mean_s.recip();
+        let [least, most] = RATES_HZ;
+        if !(least..=most).contains(&rate_hz) {
+            let must = "samples are between a thousandth and ten million a second: look at the unit of time";
+            return Err(ServoError::Setting { what: "rate of the record (Hz)", found: rate_hz, must });
+        }
+        Ok(rate_hz)
     }
 
     /// The samples of a range.

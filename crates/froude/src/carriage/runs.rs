@@ -191,6 +191,27 @@ fn log_of(file: PathBuf) -> Option<PathBuf> {
     }
 }
 
+/// Largest number in a channel of a carriage, SI: no carriage goes a thousand kilometres or pulls a meganewton.
+const LARGEST: f64 = 1e6;
+
+/// A channel of a run, held against what a carriage can be.
+///
+/// # Errors
+///
+/// No such channel, another dimension, or a sample that no carriage has.
+pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&'l [f64], Error> {
+    let values = log.channel(name, dimension)?;
+    match values.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
+        None => Ok(values),
+        Some(i) => Err(Error::Nothing(format!(
+            "{}: {name} is {:e} {dimension} at {:.3} s, which no carriage has: the log is damaged, or its unit is wrong",
+            log.path.display(),
+            values[i],
+            log.time_s.get(i).copied().unwrap_or(f64::NAN)
+        ))),
+    }
+}
+
 /// A run as the reductions of drag and calibration take it; `None` for runs that are neither.
 ///
 /// # Errors
@@ -206,9 +227,9 @@ pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, Error> {
     };
     let (Some(target_speed_m_s), Some(direction)) = (meta.target_speed_m_s, meta.direction) else { return Ok(None) };
     let axis = meta.axis.name();
-    let column = |name: &str, dimension| log.channel(&format!("{axis}/{name}"), dimension);
+    let column = |name: &str, dimension| column(log, &format!("{axis}/{name}"), dimension);
     let force_n = if log.channels.contains_key("force") && axis == "y" {
-        Some(log.channel("force", Dimension::FORCE)?)
+        Some(self::column(log, "force", Dimension::FORCE)?)
     } else {
         None
     };

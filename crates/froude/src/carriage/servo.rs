@@ -20,7 +20,7 @@ use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 
-use super::runs::{for_drag, mounted, mounts, read};
+use super::runs::{column, for_drag, mounted, mounts, read};
 use crate::Error;
 
 /// What to identify.
@@ -104,7 +104,7 @@ pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
 /// Columns of a run for the servo's identification.
 fn servo_log(log: &RunLog) -> Result<ServoLog, Error> {
     let axis = log.meta.axis.name();
-    let column = |name: &str, dimension| log.channel(&format!("{axis}/{name}"), dimension).map(<[f64]>::to_vec);
+    let column = |name: &str, dimension| column(log, &format!("{axis}/{name}"), dimension).map(<[f64]>::to_vec);
     let reference = format!("{axis}/reference_position");
     Ok(ServoLog {
         time_s: log.time_s.clone(),
@@ -200,6 +200,8 @@ const ASYMMETRIC: &str = "asymmetric";
 const OVER_POSITION: &str = "over position";
 /// Distance of the friction map's knots, m.
 const KNOT_M: f64 = 0.25;
+/// Longest way that is mapped, m: no carriage goes further.
+const LONGEST_MAP_M: f64 = 250.0;
 
 fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
     let runs = read(paths, &KINDS, None)?;
@@ -299,19 +301,24 @@ fn flexible_options(motor: MotorSide, constants: &AxisConstants) -> FlexibleOpti
 fn knots(logs: &[&RunLog]) -> Result<Vec<f64>, Error> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for log in logs {
-        for &y in log.channel(&format!("{}/position", log.meta.axis.name()), Dimension::LENGTH)? {
+        for &y in column(log, &format!("{}/position", log.meta.axis.name()), Dimension::LENGTH)? {
             (low, high) = (low.min(y), high.max(y));
         }
     }
     // Whole millimetres, so that their names are short; the outer ones just inside, where rows are.
     let (low, high) = ((1e3 * low).ceil() / 1e3, (1e3 * high).floor() / 1e3);
+    if !(high - low).is_finite() || high - low > LONGEST_MAP_M {
+        return Err(Error::Nothing(format!(
+            "the runs go from {low} m to {high} m; friction is mapped over {LONGEST_MAP_M} m at most"
+        )));
+    }
     let n = ((high - low) / KNOT_M).round().max(1.0) as usize;
     Ok((0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect())
 }
 
 /// The part of a run in which the reference moves; at rest friction is anything below breakaway and tells nothing.
 fn moving(log: &RunLog) -> Result<Option<RunLog>, Error> {
-    let speed = log.channel(&format!("{}/reference_velocity", log.meta.axis.name()), Dimension::SPEED)?;
+    let speed = column(log, &format!("{}/reference_velocity", log.meta.axis.name()), Dimension::SPEED)?;
     let first = speed.iter().position(|v| *v != 0.0);
     let last = speed.iter().rposition(|v| *v != 0.0);
     Ok(first.zip(last).map(|(first, last)| log.between(log.time_s[first], log.time_s[last])))
