@@ -8,6 +8,7 @@ use froude::added_mass::links::{LinksJob, LinksOutcome, links};
 use froude::added_mass::refine::{Forecast, Wanted, duration};
 use froude::added_mass::several::{Apart, SeveralOutcome, several};
 use froude::added_mass::{page, repair};
+use froude::records::plausible;
 use froude::records::units::{Dimension, parse_quantity, parse_unit};
 use froude::report::document::TextTable;
 
@@ -28,7 +29,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         ..Wanted::default()
     };
     let counted = args.links.as_deref().map(link_numbers).transpose()?;
-    let density_kg_m3 = args.density.as_deref().map(|d| positive("--density", d, Dimension::DENSITY)).transpose()?;
+    let density_kg_m3 = args.density.as_deref().map(density).transpose()?;
     if let Some(numbers) = counted.as_ref().filter(|n| n.len() > 1 && !args.check) {
         only_one(&args)?;
         let job = LinksJob {
@@ -115,6 +116,15 @@ fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error
     };
     let q = parse_quantity(text).map_err(|e| wrong(option, text, e.expecting(text, dimension, usual)))?;
     q.expect(dimension).map_err(|e| wrong(option, text, e))
+}
+
+/// A density of water, or 1 kg/m³ for added mass over ρ.
+fn density(text: &str) -> Result<f64, Error> {
+    let rho = positive("--density", text, Dimension::DENSITY)?;
+    match plausible::density(rho).filter(|_| rho != 1.0) {
+        Some(problem) => Err(wrong("--density", text, format!("it {problem}"))),
+        None => Ok(rho),
+    }
 }
 
 fn positive(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error> {

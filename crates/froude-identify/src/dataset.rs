@@ -35,6 +35,8 @@ pub struct Dataset {
     pub line: Vec<usize>,
     /// Headers of the table's columns, with the units that its numbers were written in; empty where no table was read.
     pub headers: Vec<String>,
+    /// Headers of columns in the file that its sidecar does not name.
+    pub left_out: Vec<String>,
 }
 
 /// Unit text of a channel; `1` where the table has none of that name.
@@ -143,6 +145,7 @@ impl Dataset {
             group: self.group.as_ref().map(|g| text(g)),
             line: keep.iter().filter_map(|&i| self.line.get(i).copied()).collect(),
             headers: self.headers.clone(),
+            left_out: self.left_out.clone(),
         }
     }
 

@@ -248,7 +248,8 @@ fn negative_drag(model: &ModelFit) -> Vec<Finding> {
         .iter()
         .zip(&model.fit.coefficients)
         .filter_map(|(spec, c)| Some((spec, c.value?, c.interval?)))
-        .filter(|(_, _, [_, high])| *high < 0.0)
+        // A moment of drift may have either sign.
+        .filter(|(spec, _, [_, high])| spec.name.starts_with("D_") && *high < 0.0)
         .map(|(spec, value, _)| {
             Finding::new(
                 Severity::Warning,

@@ -13,6 +13,7 @@
 
 pub mod bootstrap;
 pub mod carriage;
+pub mod columns;
 pub mod compare;
 pub mod dataset;
 pub mod diagnosis;
@@ -32,6 +33,7 @@ pub mod simulate;
 pub mod source;
 mod tare;
 pub mod tuning;
+pub mod two_units;
 pub mod uncertainty;
 pub mod validity;
 

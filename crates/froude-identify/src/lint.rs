@@ -4,6 +4,7 @@
 //! Every limit is a constant with its reason.
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 use froude_records::campaign::{BodySpec, Campaign};
 use froude_records::finding::{Finding, Severity};
@@ -11,8 +12,10 @@ use froude_records::table::{ColumnData, Table};
 
 use crate::dataset::{Dataset, LOADS, distinct};
 
+/// An angle that differs from that of the velocity by more says something else, 1°.
+const ANGLE_CONTRADICTS_RAD: f64 = std::f64::consts::PI / 180.0;
 /// A load below this share of the largest is too small for its sign to say anything.
-const SIGN_MATTERS_ABOVE: f64 = 0.05;
+pub(crate) const SIGN_MATTERS_ABOVE: f64 = 0.05;
 /// Share of rows at one extreme value that looks like a saturated sensor.
 const SATURATED_SHARE: f64 = 0.02;
 /// A linear and a quadratic term need at least this many distinct speeds.
@@ -102,7 +105,7 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
     (keep, Some(finding))
 }
 
-/// Speed and angle beside v_x and v_y that say something else.
+/// Speed and angle beside v_x and v_y that say something else: the velocity is used.
 #[must_use]
 pub fn motion_contradictions(table: &Table, data: &Dataset) -> Vec<Finding> {
     let read = |name: &str| {
@@ -112,9 +115,36 @@ pub fn motion_contradictions(table: &Table, data: &Dataset) -> Vec<Finding> {
         })
     };
     let mut findings = Vec::new();
-    if read("v_x").is_some()
-        && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed"))
-    {
+    let has_velocity = read("v_x").is_some() || read("v_y").is_some();
+    if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
+        // At rest there is no angle; a turn more is the same one.
+        let moving = data.values("speed").unwrap_or_default().iter().map(|u| *u > 0.0);
+        let apart = |a: f64, b: f64| (a - b - TAU * ((a - b) / TAU).round()).abs();
+        let worst = stated
+            .iter()
+            .zip(derived)
+            .zip(moving)
+            .filter(|(_, moving)| *moving)
+            .map(|((a, b), _)| apart(*a, *b))
+            .fold(0.0, f64::max);
+        if worst > ANGLE_CONTRADICTS_RAD {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "angle-contradicts-velocity",
+                format!(
+                    "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg; v_x and v_y are used{}",
+                    worst.to_degrees(),
+                    match (read("v_x"), read("v_y")) {
+                        (Some(_), None) =>
+                            " (v_y is missing and read as 0): if v_x is the speed of the carriage, name it speed",
+                        (None, Some(_)) => " (v_x is missing and read as 0): give speed and angle, or both velocities",
+                        _ => ": check the sign of v_y, or leave one of the two out",
+                    }
+                ),
+            ));
+        }
+    }
+    if has_velocity && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed")) {
         let worst = stated.iter().zip(derived).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         if worst > 0.01 * scale {
@@ -337,14 +367,7 @@ fn repeats(data: &Dataset) -> Option<Finding> {
 pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
     let mut keys = vec![crate::dataset::labels(&data.configuration), crate::dataset::labels(&data.setup)];
     for (name, channel) in &data.channels {
-        let is_measured = LOADS.contains(&name.as_str())
-            || name.starts_with("std_")
-            || name.starts_with("zero_")
-            || matches!(
-                name.as_str(),
-                "repeat" | "run" | "time" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y"
-            );
-        if !is_measured {
+        if !is_outcome(name) {
             keys.push(within(&channel.values, REPEATS_WITHIN));
         }
     }
@@ -357,8 +380,16 @@ pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
         .collect()
 }
 
+/// Channels that differ between repeats of a setting: what is measured, what counts the rows, and what follows from speed and angle.
+pub(crate) fn is_outcome(name: &str) -> bool {
+    LOADS.contains(&name)
+        || name.starts_with("std_")
+        || name.starts_with("zero_")
+        || matches!(name, "repeat" | "run" | "time" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y")
+}
+
 /// Labels of values that lie within a part of the largest from the smallest of their group.
-fn within(values: &[f64], part: f64) -> Vec<usize> {
+pub(crate) fn within(values: &[f64], part: f64) -> Vec<usize> {
     let width = part * values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));

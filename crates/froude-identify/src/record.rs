@@ -45,7 +45,7 @@ pub fn estimate(
         geometry,
         density,
         frame: "body axes: x forward, y to starboard, z down; loads of the fluid on the body".to_owned(),
-        reference_point: "body centre".to_owned(),
+        reference_point: String::new(),
         method: method(model),
         covariance_kind: model.covariance_kind.clone(),
         dof: model.fit.components.iter().map(|c| (c.name.clone(), Some(c.dof))).collect(),

@@ -11,8 +11,8 @@ use std::path::PathBuf;
 
 use crate::dataset::{Channel, Dataset, LOADS};
 use crate::error::IdentifyError;
-use crate::tare;
 use crate::uncertainty::SharedError;
+use crate::{tare, two_units};
 
 /// A source ready to be fitted.
 #[derive(Debug, Clone)]
@@ -68,15 +68,52 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
         findings.push(finding);
         data = data.subset(&unique);
     }
+    one_unit(&table, &data)?;
     let mut shared_errors = Vec::new();
     if let Some(tare) = &source.tare {
-        let (error, finding) = tare::subtract(&mut data, tare)?;
+        let (error, found) = tare::subtract(&mut data, tare)?;
         files.push(tare.record.clone());
-        findings.push(finding);
+        findings.extend(found);
         shared_errors.extend(error);
     }
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
     Ok(Reduced { data, n_read, findings, shared_errors, files })
+}
+
+/// Refuses a load whose rows stand in two units: their mean is the load of nothing.
+fn one_unit(table: &Table, data: &Dataset) -> Result<(), IdentifyError> {
+    let Some(found) = two_units::found(data) else { return Ok(()) };
+    let [large, small] = found.rows;
+    let place = |row: usize| {
+        let line = data.line.get(row);
+        table.place_of_row(table.line_of_row.iter().position(|l| Some(l) == line).unwrap_or(row))
+    };
+    let header = data.header(found.load).to_owned();
+    let unit = table.columns.iter().find(|c| c.name == found.load).and_then(|c| match &c.data {
+        ColumnData::Number { unit, .. } => Some(unit),
+        ColumnData::Text(_) => None,
+    });
+    let written = |row: usize| {
+        let si = data.values(found.load).map_or(f64::NAN, |f| f[row]);
+        let number = unit.map_or(si, |unit| unit.from_si(si));
+        let speed = data.values("speed").map_or_else(String::new, |u| format!(" at {:.4} m/s", u[row]));
+        format!("{number:.4}{speed}")
+    };
+    let problem = format!(
+        "is {} here and {} in {}, at one setting; there are two groups of rows a factor of {} apart, as loads of one body are not: {}, \
+         probably; convert them, or leave them out with `keep`",
+        written(large),
+        written(small),
+        place(small),
+        digits(found.factor),
+        found.cause()
+    );
+    Err(IdentifyError::Record(froude_records::RecordError::Value { place: place(large), key: header, problem }))
+}
+
+/// Three digits.
+fn digits(x: f64) -> f64 {
+    format!("{x:.2e}").parse().unwrap_or(x)
 }
 
 fn not_a_table(source: &Source, input: &Input) -> IdentifyError {
@@ -105,6 +142,7 @@ fn dataset(table: &Table, source: &Source) -> Result<Dataset, IdentifyError> {
     data.setup = text("setup");
     data.run = text("run");
     data.line.clone_from(&table.line_of_row);
+    data.left_out.clone_from(&table.left_out);
     data.headers = table.columns.iter().map(Column::header).collect();
     for column in &table.columns {
         if let ColumnData::Number { si, dimension, .. } = &column.data {

@@ -4,8 +4,11 @@
 //! the fewest coefficients is taken among those whose AICc lies within 2 of the
 //! smallest: smaller differences are no evidence (Burnham and Anderson 2002,
 //! § 2.6), unless an F test rejects it inside the best one at 1 % in some load.
-//! Only models of the same loads are compared. The reason is written with its
-//! numbers.
+//!
+//! Models are compared load by load, over every load that some candidate explains.
+//! A model that says nothing of a load says that it is zero, and has the AICc of
+//! that: so a law of three loads and one of f_x alone stand side by side. The
+//! reason is written with its numbers.
 
 use froude_fit as fit;
 use froude_hydro::{DragModel, Setting};
@@ -76,13 +79,37 @@ pub struct Recommendation {
 /// differently, and would not be comparable without it.
 #[must_use]
 pub fn aicc(model: &ModelFit, data: &Dataset) -> Option<f64> {
-    let of_weights: f64 = model.problem.weight.iter().flatten().map(|w| w.ln()).sum();
-    let base = model.fit.aicc? - of_weights;
+    model.law.responses.iter().map(|load| aicc_of(model, data, load)).sum()
+}
+
+/// The part of one load in [`aicc`]; `None` also where the model does not explain it.
+#[must_use]
+pub fn aicc_of(model: &ModelFit, data: &Dataset, load: &str) -> Option<f64> {
+    let r = model.law.responses.iter().position(|response| response == load)?;
+    let n = data.rows;
+    let of_weights: f64 = model.problem.weight.iter().flat_map(|w| &w[r * n..(r + 1) * n]).map(|w| w.ln()).sum();
+    let base = model.fit.components[r].aicc? - of_weights;
     if !model.law.in_logarithms() {
         return Some(base);
     }
-    let jacobian: f64 = model.law.responses.iter().filter_map(|r| data.values(r)).flatten().map(|f| f.abs().ln()).sum();
+    let jacobian: f64 = data.values(load)?.iter().map(|f| f.abs().ln()).sum();
     Some(base + 2.0 * jacobian)
+}
+
+/// AICc of the statement that a load is zero, with the weights of its `std_*` column.
+fn aicc_of_nothing(data: &Dataset, load: &str) -> Option<f64> {
+    let f = data.values(load)?;
+    let mut weight = vec![1.0; f.len()];
+    if let Some(std) = data.values(&format!("std_{load}")) {
+        weight = std.iter().map(|s| 1.0 / (s * s)).collect();
+        let mean = weight.iter().sum::<f64>() / weight.len() as f64;
+        for w in &mut weight {
+            *w /= mean;
+        }
+    }
+    let rss: f64 = f.iter().zip(&weight).map(|(f, w)| w * f * f).sum();
+    let of_weights: f64 = weight.iter().map(|w| w.ln()).sum();
+    Some(fit::select::aicc(f.len(), rss, 0.0).ok()? - of_weights).filter(|x| x.is_finite())
 }
 
 /// F tests of every nested pair among the fitted models.
@@ -269,23 +296,26 @@ fn p_value(p: f64) -> String {
 #[must_use]
 pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> Option<Recommendation> {
     let determined = |m: &ModelFit| m.fit.coefficients.iter().all(|c| c.status != fit::Status::Undetermined);
-    // A criterion compares fits of the same loads only: the set of loads that most models explain is compared.
-    let loads = |m: &ModelFit| {
-        let mut names = m.law.responses.clone();
-        names.sort();
-        names
+    let loads = loads_of(models.iter().filter(|m| determined(m)));
+    let explains = |m: &ModelFit, load: &str| m.law.responses.iter().any(|r| r == load);
+    let part = |m: &ModelFit, load: &str| {
+        if explains(m, load) { aicc_of(m, data, load) } else { aicc_of_nothing(data, load) }
     };
-    let count = |i: usize| models.iter().filter(|m| loads(m) == loads(&models[i])).count();
-    let reference = (0..models.len()).max_by_key(|&i| (count(i), models.len() - i))?;
-    let same = |m: &ModelFit| loads(m) == loads(&models[reference]);
-    let score: Vec<Option<f64>> =
-        models.iter().map(|m| if determined(m) && same(m) { aicc(m, data) } else { None }).collect();
+    let score: Vec<Option<f64>> = models
+        .iter()
+        .map(|m| if determined(m) { loads.iter().map(|load| part(m, load)).sum() } else { None })
+        .collect();
+    let most = |filter: &dyn Fn(&ModelFit) -> bool| {
+        (0..models.len())
+            .filter(|&i| filter(&models[i]))
+            .min_by_key(|&i| std::cmp::Reverse(models[i].law.responses.len()))
+    };
     let (best, best_aicc) = score
         .iter()
         .enumerate()
         .filter_map(|(i, s)| s.map(|s| (i, s)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
-        .or_else(|| models.iter().position(|m| determined(m) && same(m)).map(|i| (i, f64::NAN)))
+        .or_else(|| most(&determined).map(|i| (i, f64::NAN)))
         .or_else(|| (!models.is_empty()).then_some((0, f64::NAN)))?;
     let size = |m: &ModelFit| m.law.coefficients.len();
     let behind = |i: usize| score[i].map(|s| s - best_aicc);
@@ -339,13 +369,44 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
     if !out.is_empty() {
         reason += &format!("; {} not in the running, the data do not determine all coefficients", out.join(", "));
     }
-    let other: Vec<String> = models.iter().filter(|m| !same(m)).map(|m| m.law.name.clone()).collect();
-    if !other.is_empty() {
-        reason += &format!(
-            "; {} not compared, {} other loads",
-            other.join(", "),
-            if other.len() == 1 { "it explains" } else { "they explain" }
-        );
-    }
+    reason += &load_by_load(models, data, &loads);
     Some(Recommendation { index: chosen, reason })
+}
+
+/// Every load that one of the models explains, in the order of the axes; user-written ones after them.
+fn loads_of<'a>(models: impl Iterator<Item = &'a ModelFit>) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for load in models.flat_map(|m| &m.law.responses) {
+        if !out.contains(load) {
+            out.push(load.clone());
+        }
+    }
+    out.sort_by_key(|load| crate::dataset::LOADS.iter().position(|l| l == load).unwrap_or(usize::MAX));
+    out
+}
+
+/// What is best in each load, where not all models explain the same ones.
+fn load_by_load(models: &[ModelFit], data: &Dataset, loads: &[String]) -> String {
+    if models.iter().all(|m| m.law.responses.len() == loads.len()) {
+        return String::new();
+    }
+    let best: Vec<String> = loads
+        .iter()
+        .map(|load| {
+            let mut ranked: Vec<(f64, &str)> =
+                models.iter().filter_map(|m| Some((aicc_of(m, data, load)?, m.law.name.as_str()))).collect();
+            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+            match ranked.as_slice() {
+                [(first, name), (second, next), ..] => {
+                    format!("{load} {name} ({next} is {:.1} behind)", second - first)
+                }
+                [(_, name)] => format!("{load} {name} alone"),
+                [] => format!("{load} none has an AICc"),
+            }
+        })
+        .collect();
+    format!(
+        "; not all explain the same loads, and what a law leaves out counts as zero; load by load the smallest AICc has: {}",
+        best.join(", ")
+    )
 }

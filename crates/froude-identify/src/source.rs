@@ -19,7 +19,7 @@ use crate::regression::{ModelFit, Settings, regress};
 use crate::selection::{
     BlockScore, NestedTest, Recommendation, Score, leave_one_out, nested_tests, range_block, recommend,
 };
-use crate::{bootstrap, diagnosis, lint, uncertainty, validity};
+use crate::{bootstrap, columns, diagnosis, lint, uncertainty, validity};
 
 /// Everything that identification found out about one source.
 #[derive(Debug, Clone)]
@@ -84,6 +84,7 @@ pub fn identify_source(
     };
     let laws = laws(campaign, source, &data)?;
     check_budget(source, &data)?;
+    findings.extend(columns::unused(&data, campaign, source, &laws));
     let mut models = Vec::new();
     for law in &laws {
         progress(&law.name);
@@ -121,7 +122,10 @@ pub fn identify_source(
             findings.extend(found);
         }
         let reason = recommendation.as_ref().filter(|_| chosen).map(|r| r.reason.clone());
-        estimates.push(record::estimate(model, &data, source, &validity, diagnostics, chosen, reason));
+        let record = record::estimate(model, &data, source, &validity, diagnostics, chosen, reason);
+        // Nobody else knows the point that moments are about.
+        let reference_point = campaign.body.as_ref().and_then(|b| b.reference_point.clone()).unwrap_or_default();
+        estimates.push(Estimate { reference_point, ..record });
     }
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
     Ok(SourceResult {
@@ -176,7 +180,7 @@ fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, dr
 }
 
 /// Built-in models that need no body.
-const PLAIN_MODELS: [&str; 4] = ["quadratic", "linear_quadratic", "power_law", "power_law_log"];
+const PLAIN_MODELS: [&str; 5] = ["quadratic", "linear_quadratic", "power_law", "power_law_log", "strut"];
 /// Those that are fitted where nobody asks for any.
 const DEFAULT_MODELS: [&str; 3] = ["quadratic", "linear_quadratic", "power_law"];
 
@@ -252,6 +256,7 @@ pub fn check_budget(source: &Source, data: &Dataset) -> Result<(), IdentifyError
 /// An unknown name, a drag model without a body, a formula that cannot be used.
 pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<ForceLaw>, IdentifyError> {
     let identify = &campaign.identify;
+    let nobody_asked = source.models.is_empty() && identify.models.is_empty();
     let mut out = Vec::new();
     for name in &asked_models(campaign, source)? {
         if let Some(model) = DragModel::from_name(name) {
@@ -263,6 +268,9 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
             match name.as_str() {
                 "quadratic" => out.push(polynomial(name, data, source, false)?),
                 "linear_quadratic" => out.push(polynomial(name, data, source, true)?),
+                "strut" => out.push(strut(data, source)?),
+                // A moment over drift has no power law; where nobody asked for one, it gets the others.
+                "power_law" if nobody_asked && axes(data).is_empty() && !moments(data).is_empty() => {}
                 "power_law" | "power_law_log" => {
                     let axes = moving_axes(data, source)?;
                     for (load, channel) in &axes {
@@ -280,23 +288,40 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
     Ok(out)
 }
 
-/// Loads of the table with the velocity along or about the same axis, where there is motion.
-fn moving_axes(data: &Dataset, source: &Source) -> Result<Vec<(&'static str, &'static str)>, IdentifyError> {
-    const PAIRS: [(&str, &str); 6] =
-        [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z"), ("m_x", "w_x"), ("m_y", "w_y"), ("m_z", "w_z")];
-    // cos 90° is 6e-17, not motion.
+/// Loads with the velocity along or about the same axis.
+const PAIRS: [(&str, &str); 6] =
+    [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z"), ("m_x", "w_x"), ("m_y", "w_y"), ("m_z", "w_z")];
+/// Moments of a body that moves askew: the moment, the velocity along the body and the one across it, and the moment's letter.
+const MOMENTS: [(&str, &str, &str, &str); 2] = [("m_z", "v_x", "v_y", "N"), ("m_y", "v_x", "v_z", "M")];
+
+/// Whether there is motion along or about an axis in some row; cos 90° is 6e-17, which is none.
+fn moves(data: &Dataset, channel: &str) -> bool {
     let largest = data.values("speed").map_or(0.0, |u| u.iter().copied().fold(0.0, f64::max));
-    let moves = |channel: &str| {
-        let least = if channel.starts_with("v_") { 1e-9 * largest } else { 0.0 };
-        data.values(channel).is_some_and(|v| v.iter().any(|x| x.abs() > least))
-    };
-    let out: Vec<_> =
-        PAIRS.into_iter().filter(|(load, motion)| data.channels.contains_key(*load) && moves(motion)).collect();
+    let least = if channel.starts_with("v_") { 1e-9 * largest } else { 0.0 };
+    data.values(channel).is_some_and(|v| v.iter().any(|x| x.abs() > least))
+}
+
+/// Loads of the table with the velocity along or about the same axis, where there is motion.
+fn axes(data: &Dataset) -> Vec<(&'static str, &'static str)> {
+    PAIRS.into_iter().filter(|(load, motion)| data.channels.contains_key(*load) && moves(data, motion)).collect()
+}
+
+/// The same; at least one.
+fn moving_axes(data: &Dataset, source: &Source) -> Result<Vec<(&'static str, &'static str)>, IdentifyError> {
+    let out = axes(data);
     if out.is_empty() {
-        let moving: Vec<&str> = PAIRS.into_iter().map(|(_, motion)| motion).filter(|motion| moves(motion)).collect();
+        let moving: Vec<&str> = PAIRS.into_iter().map(|(_, motion)| motion).filter(|m| moves(data, m)).collect();
         return Err(no_load(data, source, &moving));
     }
     Ok(out)
+}
+
+/// Moments of the table that motion across the body makes.
+fn moments(data: &Dataset) -> Vec<(&'static str, &'static str, &'static str, &'static str)> {
+    MOMENTS
+        .into_iter()
+        .filter(|(moment, _, across, _)| data.channels.contains_key(*moment) && moves(data, across))
+        .collect()
 }
 
 /// What keeps a table from being fitted: no load, no motion, or loads across every motion.
@@ -327,9 +352,14 @@ fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> IdentifyError {
     IdentifyError::NoLoad { path: source.input.path().to_owned(), lacks, columns }
 }
 
-/// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone.
+/// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone; with it the moments of motion across the body,
+/// m_z = N_v·v_y + N_uv·v_x·v_y + N_vv·v_y|v_y|, the first again only in the linear law.
+///
+/// N_uv holds the moment of an ideal fluid (Munk) and what lift takes off it, N_vv that of cross-flow.
 fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Result<ForceLaw, IdentifyError> {
-    let texts: IndexMap<String, String> = moving_axes(data, source)?
+    let askew = moments(data);
+    let axes = if askew.is_empty() { moving_axes(data, source)? } else { axes(data) };
+    let mut texts: IndexMap<String, String> = axes
         .into_iter()
         .map(|(load, v)| {
             let axis = load.replace("f_", "").replace("m_", "r");
@@ -338,7 +368,39 @@ fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Resu
             (load.to_owned(), text)
         })
         .collect();
+    for (moment, along, across, letter) in askew {
+        let [u, v] = [along, across].map(|channel| channel.trim_start_matches("v_")).map(|axis| match axis {
+            "x" => "u",
+            "y" => "v",
+            _ => "w",
+        });
+        let mut terms = vec![format!("{letter}_{v}{v}*{across}*abs({across})")];
+        if moves(data, along) {
+            terms.insert(0, format!("{letter}_{u}{v}*{along}*{across}"));
+        }
+        if linear {
+            terms.insert(0, format!("{letter}_{v}*{across}"));
+        }
+        let text = terms.join(" + ");
+        texts.entry(moment.to_owned()).and_modify(|about| *about = format!("{about} + {text}")).or_insert(text);
+    }
     ForceLaw::formulas(name, &texts, data)
+}
+
+/// What a strut that turns with the body carries, f_x = −D_xU·v_x·U, f_y = −D_yU·v_y·U, m_z = N_vU·v_y·U: exact for a round one
+/// (D_xU = D_yU), lift and drag of a section up to its stall.
+fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, IdentifyError> {
+    const TERMS: [(&str, &str, &str); 3] =
+        [("f_x", "v_x", "-D_xU*v_x*speed"), ("f_y", "v_y", "-D_yU*v_y*speed"), ("m_z", "v_y", "N_vU*v_y*speed")];
+    let texts: IndexMap<String, String> = TERMS
+        .into_iter()
+        .filter(|(load, motion, _)| data.channels.contains_key(*load) && moves(data, motion))
+        .map(|(load, _, text)| (load.to_owned(), text.to_owned()))
+        .collect();
+    if texts.is_empty() {
+        moving_axes(data, source)?;
+    }
+    ForceLaw::formulas("strut", &texts, data)
 }
 
 /// The body of f1 … f6, or the keys that the campaign lacks.

@@ -249,6 +249,12 @@ pub(crate) fn assemble(
         n_rows,
         line_of_row,
         sidecar: sidecar.map(|s| s.path.clone()),
+        left_out: header
+            .iter()
+            .zip(wants)
+            .filter(|(_, want)| matches!(want, Want::LeftOut))
+            .map(|(header, _)| header.clone())
+            .collect(),
     };
     match sidecar {
         Some(sidecar) => {

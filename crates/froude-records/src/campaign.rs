@@ -57,6 +57,8 @@ pub struct Fluid {
 /// The body: modules, areas, volumes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BodySpec {
+    /// The point that velocities are of and moments are about, in words.
+    pub reference_point: Option<String>,
     /// One module.
     pub link: Option<LinkSpec>,
     /// Side area of the head, A_yH.

@@ -108,6 +108,7 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
         }
     }
     let out = BodySpec {
+        reference_point: s.text("reference_point")?.map(str::to_owned),
         link,
         head_side_area_m2: s.positive("head_side_area", Dimension::AREA)?,
         tail_side_area_m2: s.positive("tail_side_area", Dimension::AREA)?,

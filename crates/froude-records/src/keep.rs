@@ -1,5 +1,8 @@
 //! `keep = "angle <= 39 deg and configuration != H1LT"`: which observations are used.
 
+use std::f64::consts::TAU;
+
+use crate::plausible;
 use crate::table::{expected, is_text_column, usual_unit_for};
 use crate::units::{Quantity, parse_quantity};
 
@@ -110,13 +113,17 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
         refuse(e.to_string())
     })?;
     // Degrees and radians are both pure numbers: 39 would be 39 rad, which keeps every row.
-    if matches!(column, "angle" | "std_angle") && value.parse::<f64>().is_ok_and(|v| v != 0.0) {
-        return Err(refuse(format!("{value} has no unit; write {value} deg or {value} rad")));
+    if matches!(column, "angle" | "std_angle") && quantity.value != 0.0 && value.parse::<f64>().is_ok() {
+        let radians = if quantity.value.abs() <= TAU { format!(" or {value} rad") } else { String::new() };
+        return Err(refuse(format!("{value} has no unit; write {value} deg{radians}")));
     }
     if let Some((dimension, words)) = expected(column)
         && dimension != quantity.unit.dimension
     {
         return Err(refuse(format!("{column} is {words}, {value} is {}", quantity.unit.dimension.describe())));
+    }
+    if let Some(problem) = plausible::problem(column, quantity.value_si, &quantity.unit) {
+        return Err(refuse(format!("{value} {problem}")));
     }
     Ok(KeepClause { column: column.to_owned(), comparison, value: KeepValue::Quantity(quantity) })
 }

@@ -32,6 +32,7 @@ pub mod json;
 pub mod keep;
 pub mod nearest;
 pub mod parquet_table;
+pub mod plausible;
 pub mod read;
 pub mod run;
 pub mod scale;

@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::error::{Place, RecordError};
 use crate::nearest::{nearest, suggestion};
+use crate::plausible::{self, unit_for};
 use crate::table::usual_unit_for;
 use crate::units::{Dimension, Quantity, parse_quantity};
 
@@ -212,7 +213,13 @@ impl<'a> Section<'a> {
         let usual = like.map(|(name, dimension)| (dimension, usual_unit_for(name, dimension)));
         let Some(text) = value.get_ref().as_str() else {
             let number = self.as_number(key, value).map_or_else(|_| "0.4".to_owned(), |_| found(value));
-            let example = usual.map_or_else(|| "0.4 m/s".to_owned(), |(_, unit)| format!("{number} {unit}"));
+            let example = usual.map_or_else(
+                || "0.4 m/s".to_owned(),
+                |(dimension, unit)| {
+                    let si = number.parse().unwrap_or(f64::NAN);
+                    format!("{number} {}", unit_for(si, dimension, &unit))
+                },
+            );
             let problem =
                 format!("is {}; expected a quantity with its unit in quotes, such as {example:?}", found(value));
             return Err(self.wrong(key, value, problem));
@@ -235,9 +242,13 @@ impl<'a> Section<'a> {
         dimension: Dimension,
     ) -> Result<Quantity, RecordError> {
         let quantity = self.quantity_like(key, value, Some((name, dimension)))?;
-        match quantity.expect(dimension) {
-            Ok(_) => Ok(quantity),
-            Err(e) => Err(self.wrong(key, value, format!("is {}: {e}", found(value)))),
+        let si = match quantity.expect(dimension) {
+            Ok(si) => si,
+            Err(e) => return Err(self.wrong(key, value, format!("is {}: {e}", found(value)))),
+        };
+        match plausible::problem(name, si, &quantity.unit) {
+            Some(problem) => Err(self.wrong(key, value, format!("is {}, which {problem}", found(value)))),
+            None => Ok(quantity),
         }
     }
 

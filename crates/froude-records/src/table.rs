@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::units::{Dimension, Unit};
-use crate::{csv_table, parquet_table, sidecar};
+use crate::{csv_table, parquet_table, plausible, sidecar};
 
 /// A table in memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,6 +20,8 @@ pub struct Table {
     pub line_of_row: Vec<usize>,
     /// The sidecar that it was read through.
     pub sidecar: Option<PathBuf>,
+    /// Headers of the file's columns that the sidecar does not name.
+    pub left_out: Vec<String>,
 }
 
 /// One column.
@@ -110,8 +112,19 @@ impl Table {
         if has_lines { Place::line(&self.path, number) } else { Place::row(&self.path, number) }
     }
 
-    /// What concerns more than one cell: links that contradict the configuration.
+    /// What no cell alone is wrong in: values that no tank has, links that contradict the configuration.
     pub(crate) fn check(&self) -> Result<(), RecordError> {
+        for column in &self.columns {
+            let ColumnData::Number { unit, si, .. } = &column.data else { continue };
+            let doubtful = |(row, si): (usize, &f64)| Some((row, *si, plausible::problem(&column.name, *si, unit)?));
+            if let Some((row, si, problem)) = si.iter().enumerate().find_map(doubtful) {
+                return Err(RecordError::Value {
+                    place: self.place_of_row(row),
+                    key: column.header(),
+                    problem: format!("is {}, which {problem}", unit.from_si(si)),
+                });
+            }
+        }
         let Some(ColumnData::Number { si: n_links, .. }) =
             self.columns.iter().find(|c| c.name == "n_links").map(|c| &c.data)
         else {

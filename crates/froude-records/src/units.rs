@@ -17,8 +17,11 @@
 //!
 //! | symbols | prefixes |
 //! | --- | --- |
-//! | `m s g N Pa Hz A V W J l L rad` | `n u µ m c d h k M G` |
-//! | `ft in kn kt nmi lb lbf gf kgf t bar min h deg ° rpm rev K degC °C % 1 Nm Nmm` | none (`Nm`: as above) |
+//! | `m s g N Pa Hz A V W J l L K Nm` | `n u µ m c d h k M G` |
+//! | `rad deg ° gon rev rpm min h degC °C ft in kn kt nmi lb lbf gf kgf t bar Nmm % 1` | none |
+//!
+//! Angles, minutes, hours and degC take no prefix: `Grad` is German for degree and French for a 400th of a turn, never a
+//! milliard of radians.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -699,7 +702,6 @@ const PREFIXED: &[(&str, f64, Dimension)] = &[
     ("J", 1.0, Dimension::MOMENT),
     ("l", 1e-3, Dimension::VOLUME),
     ("L", 1e-3, Dimension::VOLUME),
-    ("rad", 1.0, Dimension::ONE),
     ("K", 1.0, Dimension::TEMPERATURE),
 ];
 
@@ -723,12 +725,17 @@ const PLAIN: &[(&str, f64, f64, Dimension)] = &[
     ("Nmm", 1.0, 1000.0, Dimension::MOMENT),
     ("min", 60.0, 1.0, Dimension::TIME),
     ("h", 3600.0, 1.0, Dimension::TIME),
+    ("rad", 1.0, 1.0, Dimension::ONE),
     ("deg", PI / 180.0, 1.0, Dimension::ONE),
     ("°", PI / 180.0, 1.0, Dimension::ONE),
+    ("gon", PI / 200.0, 1.0, Dimension::ONE),
     ("rev", 2.0 * PI, 1.0, Dimension::ONE),
     ("rpm", 2.0 * PI / 60.0, 1.0, Dimension::ANGULAR_SPEED),
     ("%", 1.0, 100.0, Dimension::ONE),
 ];
+
+/// Those of [`PLAIN`], and degC, before which people write a prefix where a person elsewhere reads another word.
+const NEVER_PREFIXED: &[&str] = &["rad", "deg", "°", "gon", "rev", "rpm", "min", "h", "degC", "°C"];
 
 /// Prefixes as factor above and below: a thousandth is a division by 1000.
 const PREFIXES: &[(&str, f64, f64)] = &[
@@ -772,7 +779,10 @@ impl UnitError {
         match self {
             Self::Empty { .. } => Self::Empty { example: format!("`{usual}`") },
             Self::NoNumber { text, .. } => Self::NoNumber { text, unit: usual.to_owned() },
-            Self::NoUnit { text, .. } => Self::NoUnit { example: format!("`{text} {usual}`"), text },
+            Self::NoUnit { text, .. } => {
+                let unit = text.parse().map_or(usual, |number| crate::plausible::unit_for(number, dimension, usual));
+                Self::NoUnit { example: format!("`{text} {unit}`"), text }
+            }
             Self::Unknown { symbol, advice: found } => {
                 let text = text.trim();
                 let stands_alone = text[number_length(text)..].trim() == symbol;
@@ -786,9 +796,29 @@ impl UnitError {
     }
 }
 
+/// What to write for a prefix before a unit that takes none, with the unit's kind.
+fn no_prefix(symbol: &str) -> Option<(Dimension, String)> {
+    PREFIXES.iter().find_map(|(prefix, above, below)| {
+        let unit = NEVER_PREFIXED.iter().find(|unit| symbol.strip_prefix(prefix) == Some(**unit))?;
+        let dimension = parse_unit(unit).ok()?.dimension;
+        Some((
+            dimension,
+            format!("; `{unit}` takes no prefix: write `{unit}`, and the numbers times {}", above / below),
+        ))
+    })
+}
+
 /// What was probably meant, among the units of one kind where that is known.
 fn advice(symbol: &str, dimension: Option<Dimension>) -> String {
     let is_wanted = |found: Dimension| dimension.is_none_or(|wanted| wanted == found);
+    if is_wanted(Dimension::ANGLE)
+        && matches!(symbol.to_lowercase().as_str(), "grad" | "grads" | "grade" | "gradian" | "gradians")
+    {
+        return "; did you mean `deg` (360 to the turn) or `gon` (400 to the turn)?".to_owned();
+    }
+    if let Some(told) = no_prefix(symbol).filter(|(dimension, _)| is_wanted(*dimension)) {
+        return told.1;
+    }
     let meant = match symbol {
         "mps" => "m/s",
         "mps2" => "m/s^2",

@@ -192,7 +192,7 @@ fn unknown_keys_are_told_the_nearest_known_one() {
     refused(
         "angle <= 39 deg",
         "angle <= 39",
-        "lab/campaign.toml:16:9: `keep` cannot be read: \"angle <= 39\" is not a condition: 39 has no unit; write 39 deg or 39 rad; \
+        "lab/campaign.toml:16:9: `keep` cannot be read: \"angle <= 39\" is not a condition: 39 has no unit; write 39 deg; \
          write for example \"angle <= 39 deg and configuration != H1LT\"",
     );
     refused("keep  =", "kep  =", "lab/campaign.toml:16:1: unknown key `kep` in [[source]]; did you mean `keep`?");
@@ -250,7 +250,32 @@ fn quantities_of_another_kind_name_both() {
     refused(
         "\"1025 kg/m^3\"",
         "\"-1 kg/m^3\"",
-        "lab/campaign.toml:5:11: `density` is \"-1 kg/m^3\"; it must be larger than zero",
+        "lab/campaign.toml:5:11: `density` is \"-1 kg/m^3\", which is the density of no water (500 to 2000 kg/m^3 are taken); \
+         fresh water has 1000 kg/m^3, sea water 1025",
+    );
+    refused(
+        "\"1025 kg/m^3\"",
+        "\"1.025 kg/m^3\"",
+        "lab/campaign.toml:5:11: `density` is \"1.025 kg/m^3\", which is the density of no water (500 to 2000 kg/m^3 are taken); \
+         write 1.025 g/cm^3 or 1025 kg/m^3",
+    );
+    // What the message proposes is no water of 1.025 kg/m^3.
+    refused(
+        "\"1025 kg/m^3\"",
+        "1.025",
+        "lab/campaign.toml:5:11: `density` is 1.025; expected a quantity with its unit in quotes, such as \"1.025 g/cm^3\"",
+    );
+    refused(
+        "\"1025 kg/m^3\"",
+        "\"1.025\"",
+        "lab/campaign.toml:5:11: `density` cannot be read: `1.025` has no unit; write for example `1.025 g/cm^3`",
+    );
+    refused(
+        "angle <= 39 deg",
+        "angle <= 39 rad",
+        "lab/campaign.toml:16:9: `keep` cannot be read: \"angle <= 39 rad\" is not a condition: 39 rad is more than a whole turn: \
+         degrees under the head of radians, probably: write the unit deg; of an angle counted on over several turns take the whole ones \
+         off (1.30089 rad); write for example \"angle <= 39 deg and configuration != H1LT\"",
     );
     refused(
         "\"0.01 N\"",

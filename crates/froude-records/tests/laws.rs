@@ -135,7 +135,7 @@ proptest! {
     ) {
         let columns = vec![
             number_column("speed", "mm/s", rows.iter().map(|r| parse_unit("mm/s").unwrap().to_si(r.0)).collect()),
-            number_column("angle", "deg", rows.iter().map(|r| parse_unit("deg").unwrap().to_si(r.1)).collect()),
+            number_column("flap", "deg", rows.iter().map(|r| parse_unit("deg").unwrap().to_si(r.1)).collect()),
             number_column("f_x", "N", rows.iter().map(|r| r.2).collect()),
             Column { name: "note".to_owned(), data: ColumnData::Text(rows.iter().map(|r| format!("n{}", r.3)).collect()) },
         ];
@@ -148,6 +148,7 @@ proptest! {
                 n_rows: rows.len(),
                 line_of_row: (2..2 + rows.len()).collect(),
                 sidecar: None,
+                left_out: Vec::new(),
             };
             if name == "t.csv" { write_csv(&table, &path).unwrap() } else { write_parquet(&table, &path).unwrap() }
             let read = read_table(&path, None).unwrap();
@@ -196,6 +197,33 @@ fn units_have_the_factors_that_their_definitions_give() {
     assert_eq!(parse_quantity("0.1 degC").unwrap().expect_difference(Dimension::TEMPERATURE), Ok(0.1));
 }
 
+/// A prefix is read before the symbols that take one and before no other: `Grad` is no milliard of radians.
+#[test]
+fn angles_hours_minutes_and_degrees_celsius_take_no_prefix() {
+    let prefixes = ["n", "u", "µ", "m", "c", "d", "h", "k", "M", "G"];
+    let plain = ["rad", "deg", "°", "gon", "rev", "rpm", "min", "h", "degC", "°C"];
+    for unit in plain {
+        assert!(parse_unit(unit).is_ok(), "{unit}");
+        for prefix in prefixes {
+            let text = format!("{prefix}{unit}");
+            let said = parse_unit(&text).map(|u| u.factor).unwrap_err().to_string();
+            assert!(said.starts_with(&format!("unknown unit `{text}`; ")), "{said}");
+        }
+    }
+    for unit in ["m", "s", "g", "N", "Nm", "Pa", "Hz", "A", "V", "W", "J", "l", "L", "K"] {
+        let one = parse_unit(unit).unwrap().factor;
+        for prefix in ["n", "u", "µ", "m", "k", "M", "G"] {
+            let ratio = parse_unit(&format!("{prefix}{unit}")).unwrap().factor / one;
+            assert!(
+                ratio.log10().rem_euclid(3.0) < 1e-9 || ratio.log10().rem_euclid(3.0) > 3.0 - 1e-9,
+                "{prefix}{unit}"
+            );
+        }
+    }
+    let gon = parse_unit("gon").unwrap();
+    assert!((gon.to_si(400.0) - std::f64::consts::TAU).abs() < 1e-15 * 400.0);
+}
+
 /// Found by fuzzing: −128 fits the exponent's type, but its opposite does not.
 #[test]
 fn the_smallest_exponent_is_the_opposite_of_the_largest() {
@@ -214,6 +242,12 @@ fn units_say_what_is_wrong_with_them() {
         ("m^x", "`m^x` is not a unit: `x` is not a whole exponent"),
         ("m^1.5", "`m^1.5` is not a unit: `1.5` is not a whole exponent"),
         ("m/", "`m/` is not a unit: it ends where a unit should follow"),
+        ("Grad", "unknown unit `Grad`; did you mean `deg` (360 to the turn) or `gon` (400 to the turn)?"),
+        ("grad", "unknown unit `grad`; did you mean `deg` (360 to the turn) or `gon` (400 to the turn)?"),
+        ("mrad", "unknown unit `mrad`; `rad` takes no prefix: write `rad`, and the numbers times 0.001"),
+        ("mrad/s", "unknown unit `mrad`; `rad` takes no prefix: write `rad`, and the numbers times 0.001"),
+        ("kdeg", "unknown unit `kdeg`; `deg` takes no prefix: write `deg`, and the numbers times 1000"),
+        ("m°C", "unknown unit `m°C`; `°C` takes no prefix: write `°C`, and the numbers times 0.001"),
         ("(m", "`(m` is not a unit: a parenthesis is not closed"),
         ("m)", "`m)` is not a unit: unexpected `)`"),
         ("2 m", "`2 m` is not a unit: unexpected `2`"),

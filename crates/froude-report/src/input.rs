@@ -203,7 +203,7 @@ pub struct SelectionRow {
     pub unit: String,
     /// ‖residual‖ / ‖measured‖, 1 = 100 %.
     pub relative_residual: f64,
-    /// AICc above that of the best model of the same loads; or why it has none.
+    /// AICc in this load above that of the best model of it; or why it has none.
     pub delta_aicc: Result<f64, String>,
     /// Root mean square error of leave-one-configuration-out prediction, in
     /// `unit`; or why it cannot be scored.

@@ -453,7 +453,7 @@ impl Tables {
         };
         let caption = self.caption(&format!(
             "Models against each other, by load component. p: estimated coefficients; σ: residual standard deviation; r: norm of the \
-             residual over norm of the measurement; ΔAICc: above the best model of the same loads, summed over them{}.",
+             residual over norm of the measurement; ΔAICc: above the best model of this load{}.",
             if has_scores { "; cross-validation: root mean square error when one configuration is left out" } else { "" }
         ));
         let row = |r: &SelectionRow| {

@@ -364,7 +364,7 @@ fn what_no_model_can_be_scored_on_is_said_once() {
 }
 
 #[test]
-fn a_model_of_other_loads_has_no_aicc_difference_and_a_footnote() {
+fn a_model_without_an_aicc_has_a_footnote() {
     let row = |model: &str, delta_aicc: Result<f64, String>| SelectionRow {
         model: model.to_owned(),
         component: "f_x".to_owned(),
@@ -374,10 +374,10 @@ fn a_model_of_other_loads_has_no_aicc_difference_and_a_footnote() {
     };
     let mut report = report_of(Vec::new());
     report.sources[0].selection =
-        vec![row("quadratic", Ok(0.0)), row("power_law_x", Err("explains other loads than f_x, f_y".to_owned()))];
+        vec![row("quadratic", Ok(0.0)), row("power_law_x", Err("no AICc: an exact fit".to_owned()))];
     let text = words(&html(&report).unwrap());
     assert!(text.contains("power_law_x 0 — — — 1 0.100"), "{text}");
-    assert!(text.contains("1 explains other loads than f_x, f_y."), "{text}");
+    assert!(text.contains("1 no AICc: an exact fit."), "{text}");
 }
 
 #[test]

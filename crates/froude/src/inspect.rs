@@ -4,7 +4,7 @@ use std::path::Path;
 
 use froude_identify::reduce::{Reduced, reduce};
 use froude_identify::source::{asked_models, check_budget, laws};
-use froude_identify::{lint, validity};
+use froude_identify::{columns, lint, validity};
 use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
 use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
@@ -186,6 +186,10 @@ fn doubts(campaign: &Campaign, source: &Source, reduced: &Reduced) -> Vec<Findin
     let mut findings = reduced.findings.clone();
     findings.extend(validity::ranges(&reduced.data, campaign).1);
     findings.extend(lint::observations(&reduced.data, campaign));
+    // A table that cannot be fitted as it is says so when it is fitted.
+    if let Ok(laws) = laws(campaign, source, &reduced.data) {
+        findings.extend(columns::unused(&reduced.data, campaign, source, &laws));
+    }
     findings.into_iter().map(|f| f.of_source(&source.name)).collect()
 }
 

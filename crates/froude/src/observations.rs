@@ -88,6 +88,7 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
         n_rows: data.rows,
         line_of_row: data.line.clone(),
         sidecar: None,
+        left_out: Vec::new(),
     })
 }
 

@@ -6,6 +6,7 @@ use froude_identify::compare::{Comparison, SAME_DATA, Stated};
 use froude_identify::dataset::{Dataset, unit_text};
 use froude_identify::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use froude_identify::regression::ModelFit;
+use froude_identify::selection::aicc_of;
 use froude_identify::source::SourceResult;
 use froude_identify::uncertainty::{coverage_factor, shares};
 use froude_records::campaign::Campaign;
@@ -20,8 +21,14 @@ use froude_report::{
 const SCATTER: &str = "scatter of the observations";
 /// Places along a curve.
 const CURVE_POINTS: usize = 60;
-/// Curves against angle and against speed drawn per configuration at most; more would hide the points.
-const MOST_CURVES: usize = 5;
+/// Curves against speed drawn per configuration at most, one an angle; more would hide the points.
+const MOST_ANGLES: usize = 5;
+/// Curves against angle, one a speed: they lie apart, and a drift test has few; more shades are not told apart.
+const MOST_SPEEDS: usize = 12;
+/// Speeds of one setting differ by less than this part, angles by less than this: a measured speed is never twice the same number.
+const SAME_SPEED: f64 = 0.03;
+/// 0.5°.
+const SAME_ANGLE_RAD: f64 = 0.0088;
 
 /// The whole report of a campaign.
 pub fn report(
@@ -334,22 +341,11 @@ fn budget(model: &ModelFit) -> Vec<BudgetRow> {
 }
 
 fn selection(source: &SourceResult) -> Vec<SelectionRow> {
-    let compared = compared_loads(source);
-    let best = source
-        .models
-        .iter()
-        .zip(&source.estimates)
-        .filter(|(m, _)| loads(m) == compared)
-        .filter_map(|(_, e)| e.diagnostics.aicc)
-        .fold(f64::INFINITY, f64::min);
-    let behind = |model: &ModelFit, aicc: Option<f64>| {
-        if loads(model) != compared {
-            return Err(format!(
-                "explains other loads than {}: its AICc compares with none of theirs",
-                compared.join(", ")
-            ));
-        }
-        aicc.map(|a| a - best).ok_or_else(|| "no AICc: an exact fit, a robust loss, or too few observations".to_owned())
+    let behind = |model: &ModelFit, load: &str| {
+        let best = source.models.iter().filter_map(|m| aicc_of(m, &source.data, load)).fold(f64::INFINITY, f64::min);
+        aicc_of(model, &source.data, load)
+            .map(|a| a - best)
+            .ok_or_else(|| "no AICc: an exact fit, a robust loss, or too few observations".to_owned())
     };
     let mut out = Vec::new();
     for (i, model) in source.models.iter().enumerate() {
@@ -363,7 +359,7 @@ fn selection(source: &SourceResult) -> Vec<SelectionRow> {
                 sigma: component.sigma.unwrap_or(f64::NAN),
                 unit: if model.law.in_logarithms() { "1".to_owned() } else { unit_text(&source.data, &component.name) },
                 relative_residual: component.relative_residual,
-                delta_aicc: behind(model, diagnostics.aicc),
+                delta_aicc: behind(model, &component.name),
                 cross_validation: rmse
                     .ok_or_else(|| source.scores[i].note.clone().unwrap_or_else(|| "not scorable".to_owned())),
                 range_blocks: source
@@ -384,19 +380,6 @@ fn selection(source: &SourceResult) -> Vec<SelectionRow> {
     out
 }
 
-/// The loads that a model explains, in a fixed order.
-fn loads(model: &ModelFit) -> Vec<String> {
-    let mut out = model.law.responses.clone();
-    out.sort();
-    out
-}
-
-/// The loads whose models are compared by AICc: those of the recommended model, else of the first.
-fn compared_loads(source: &SourceResult) -> Vec<String> {
-    let index = source.recommendation.as_ref().map_or(0, |r| r.index);
-    source.models.get(index).map(loads).unwrap_or_default()
-}
-
 /// Lines of the recommended model: against speed at the most frequent angles, against angle at the most frequent speeds.
 fn curves(model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, IdentifyError> {
     if let Some(channel) = abscissa(model, data) {
@@ -405,8 +388,12 @@ fn curves(model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, IdentifyError>
     let mut out = Vec::new();
     for configuration in data.configurations() {
         let rows: Vec<usize> = (0..data.rows).filter(|&i| data.configuration[i] == configuration).collect();
-        let angles = frequent(data, "angle", "speed", &rows);
-        let speeds = frequent(data, "speed", "angle", &rows);
+        let of = |name: &str| -> Vec<f64> {
+            data.values(name).map_or_else(|| vec![0.0; rows.len()], |v| rows.iter().map(|&i| v[i]).collect())
+        };
+        let (by_angle, by_speed) = (settings(&of("angle"), same_angle), settings(&of("speed"), same_speed));
+        let angles = frequent(&by_angle, &by_speed, MOST_ANGLES);
+        let speeds = frequent(&by_speed, &by_angle, MOST_SPEEDS);
         let range = |name: &str| {
             let v = data.values(name).unwrap_or_default();
             rows.iter()
@@ -521,23 +508,56 @@ fn spread(covariance: &Mat<f64>, x: &[f64]) -> f64 {
     variance.max(0.0).sqrt()
 }
 
-/// Values of `held` at which at least three distinct values of `moving` were run, the most frequent first.
-fn frequent(data: &Dataset, held: &str, moving: &str, rows: &[usize]) -> Vec<f64> {
-    let (Some(held), Some(moving)) = (data.values(held), data.values(moving)) else { return Vec::new() };
-    let key = |x: f64| (x * 1e4).round() as i64;
-    let mut groups: std::collections::BTreeMap<i64, (f64, std::collections::BTreeSet<i64>)> =
-        std::collections::BTreeMap::new();
-    for &i in rows {
-        groups
-            .entry(key(held[i]))
-            .or_insert_with(|| (held[i], std::collections::BTreeSet::new()))
-            .1
-            .insert(key(moving[i]));
+/// Values of one channel as settings: the setting of each row, and the mean value of each.
+struct Settings {
+    of_row: Vec<usize>,
+    means: Vec<f64>,
+}
+
+fn same_angle(first: f64, other: f64) -> bool {
+    other - first <= SAME_ANGLE_RAD
+}
+
+fn same_speed(first: f64, other: f64) -> bool {
+    other - first <= SAME_SPEED * first.abs()
+}
+
+/// Values that belong together, counted from the smallest of them so that a fine sweep does not run together.
+fn settings(values: &[f64], is_same: fn(f64, f64) -> bool) -> Settings {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
+    let mut out = Settings { of_row: vec![0; values.len()], means: Vec::new() };
+    let mut group: Vec<usize> = Vec::new();
+    let mut close = |group: &mut Vec<usize>| {
+        if group.is_empty() {
+            return;
+        }
+        for &i in group.iter() {
+            out.of_row[i] = out.means.len();
+        }
+        out.means.push(group.iter().map(|&i| values[i]).sum::<f64>() / group.len() as f64);
+        group.clear();
+    };
+    for i in order {
+        if group.first().is_some_and(|&first| !is_same(values[first], values[i])) {
+            close(&mut group);
+        }
+        group.push(i);
+    }
+    close(&mut group);
+    out
+}
+
+/// Settings of `held` at which at least three settings of `moving` were run, `most` at most and the most frequent first.
+fn frequent(held: &Settings, moving: &Settings, most: usize) -> Vec<f64> {
+    let mut seen = vec![std::collections::BTreeSet::new(); held.means.len()];
+    for (h, m) in held.of_row.iter().zip(&moving.of_row) {
+        seen[*h].insert(*m);
     }
     let mut out: Vec<(usize, f64)> =
-        groups.values().filter(|(_, m)| m.len() >= 3).map(|(value, m)| (m.len(), *value)).collect();
+        seen.iter().zip(&held.means).filter(|(m, _)| m.len() >= 3).map(|(m, mean)| (m.len(), *mean)).collect();
     out.sort_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
-    let mut values: Vec<f64> = out.into_iter().take(MOST_CURVES).map(|(_, v)| v).collect();
+    let mut values: Vec<f64> = out.into_iter().take(most).map(|(_, mean)| mean).collect();
     values.sort_by(f64::total_cmp);
     values
 }
@@ -704,7 +724,7 @@ mod tests {
 
     /// A power law of f_x alone has an AICc far below that of a law of two loads: it sums over fewer observations.
     #[test]
-    fn aicc_is_compared_among_models_of_the_same_loads_only() {
+    fn aicc_is_compared_load_by_load() {
         let mut noise = noise(SEED);
         let mut table = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
         for i in 1..=30 {
@@ -717,15 +737,60 @@ mod tests {
         assert_eq!(names, ["quadratic", "linear_quadratic", "power_law_x", "power_law_y"]);
         let aicc = |i: usize| source.estimates[i].diagnostics.aicc.unwrap();
         assert!(aicc(2) < aicc(0).min(aicc(1)), "the trap is not there: {} {} {}", aicc(0), aicc(1), aicc(2));
+        assert_eq!(source.recommendation.as_ref().unwrap().index, 0, "the law of both loads, which made them");
+        let reason = &source.recommendation.as_ref().unwrap().reason;
+        assert!(reason.contains("; load by load the smallest AICc has: f_x "), "{reason}");
         let rows = selection(&source);
-        let best = rows.iter().filter_map(|r| r.delta_aicc.as_ref().ok()).copied().fold(f64::INFINITY, f64::min);
-        assert_eq!(best, 0.0, "the best of the two-load models is the best");
-        for row in &rows {
-            assert_eq!(row.delta_aicc.is_err(), row.model.starts_with("power_law"), "{row:?}");
-            if let Err(why) = &row.delta_aicc {
-                assert_eq!(why, "explains other loads than f_x, f_y: its AICc compares with none of theirs");
+        for load in ["f_x", "f_y"] {
+            let behind: Vec<f64> =
+                rows.iter().filter(|r| r.component == load).map(|r| *r.delta_aicc.as_ref().unwrap()).collect();
+            assert_eq!(behind.len(), 3, "the power law of the other axis is not asked about {load}");
+            assert_eq!(behind.iter().copied().fold(f64::INFINITY, f64::min), 0.0, "{behind:?}");
+            // All three can follow the data: none lies far behind in its own load.
+            assert!(behind.iter().all(|d| *d < 6.0), "{behind:?}");
+        }
+    }
+
+    /// Six speeds at nine angles, each run twice; no speed is measured twice as the same number.
+    #[test]
+    fn a_drift_test_has_a_line_for_every_speed() {
+        let mut noise = noise(SEED);
+        let mut table = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+        for speed in [0.3, 0.5, 0.7, 0.9, 1.1, 1.3] {
+            for i in -4..=4 {
+                for _ in 0..2 {
+                    let (u, angle) = (speed * (1.0 + 0.003 * noise()), 5.0 * f64::from(i) + 0.05 * noise());
+                    let (x, y) = (u * angle.to_radians().cos(), -u * angle.to_radians().sin());
+                    table += &format!(
+                        "{u},{angle},{},{}\n",
+                        -5.0 * x * x + 0.01 * noise(),
+                        -90.0 * y * y.abs() + 0.01 * noise()
+                    );
+                }
             }
         }
+        // A speed that was run straight ahead only: no line against angle, but its points.
+        table += "1.7,0,-14.45,0.0\n1.7,0,-14.46,0.01\n";
+        let (_, source) = identified("drift", &table, &["quadratic"]);
+        let section = section(&source).unwrap();
+        let speeds: Vec<f64> = section
+            .curves
+            .iter()
+            .filter(|c| c.component == "f_y")
+            .filter_map(|c| match c.against {
+                Against::Angle { speed_m_s } => Some(speed_m_s),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(speeds.len(), 6, "{speeds:?}");
+        for (found, run) in speeds.iter().zip([0.3, 0.5, 0.7, 0.9, 1.1, 1.3]) {
+            assert!((found / run - 1.0).abs() < 0.005, "{found} for {run}");
+        }
+        let report = Report { sources: vec![section], ..Report::default() };
+        let figures = froude_report::figures(&report).unwrap();
+        let drift = figures.iter().find(|f| f.title.ends_with("f_y against angle")).unwrap();
+        assert!(!drift.caption.contains("not drawn"), "{}", drift.caption);
+        assert!(drift.svg.contains("other speeds"), "the points at 1.7 m/s");
     }
 
     /// Two sources of a campaign read one table: the records do not tell, the campaign does.

@@ -1,5 +1,7 @@
 //! One record, one report.
 
+use std::ops::Range;
+
 use froude_fit::diagnostics::condition_number;
 use froude_fit::faer::Mat;
 use froude_fit::stream::Solution;
@@ -55,8 +57,10 @@ pub struct ServoReport {
     pub spread: Spread,
     /// Residuals, N, row by row.
     pub residuals_n: Vec<f64>,
-    /// The rows themselves.
+    /// The rows themselves, run after run.
     pub rows: Rows,
+    /// Which of them are of one run, each in its own time.
+    pub runs: Vec<Range<usize>>,
     /// What a reader must know before using the numbers.
     pub findings: Vec<String>,
 }
@@ -118,7 +122,8 @@ pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, 
 pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
     let solution = least_squares(&rows)?;
     let spread = spread(&rows, &solution, &chain.intervals)?;
-    Ok(reported(rows, &solution, spread))
+    let whole = 0..rows.force_n.len();
+    Ok(reported(rows, vec![whole], &solution, spread))
 }
 
 /// As [`identify_servo`], from several runs of the same axis: the run is the piece of evidence.
@@ -146,7 +151,7 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
         return of_rows(rows, chain);
     }
     let by_blocks = |rows: Rows, why: &str| -> Result<ServoReport, ServoError> {
-        let mut report = of_rows(rows, chain)?;
+        let mut report = ServoReport { runs: ranges.clone(), ..of_rows(rows, chain)? };
         report.findings.push(format!(
             "the intervals do not hold what changes from run to run: {why}; they are those of blocks within the runs"
         ));
@@ -157,13 +162,13 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
     }
     let solution = least_squares(&rows)?;
     match over_runs(&rows, &solution, &ranges, &chain.intervals) {
-        Ok(spread) => Ok(reported(rows, &solution, spread)),
+        Ok(spread) => Ok(reported(rows, ranges.clone(), &solution, spread)),
         Err(error @ ServoError::Alone { .. }) => by_blocks(rows, &error.to_string()),
         Err(error) => Err(error),
     }
 }
 
-fn reported(rows: Rows, solution: &Solution, spread: Spread) -> ServoReport {
+fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Spread) -> ServoReport {
     let residuals_n = rows.residuals_n(&solution.coefficients);
     let whiteness = whiteness(&residuals_n, rows.rate_hz);
     let design = Mat::from_fn(rows.force_n.len(), rows.columns.len(), |i, j| rows.columns[j][i]);
@@ -195,6 +200,7 @@ fn reported(rows: Rows, solution: &Solution, spread: Spread) -> ServoReport {
         spread,
         residuals_n,
         rows,
+        runs,
     }
 }
 

@@ -199,8 +199,15 @@ fn component_drawings(
 ) -> Vec<Drawing> {
     let curves: Vec<&Curve> = curves.iter().copied().filter(|c| Abscissa::of_curve(c).0 == *abscissa).collect();
     let levels = levels(abscissa, &curves, points);
-    let level_of = |held: Option<f64>| held.and_then(|h| levels.iter().position(|l| abscissa.is_same_level(*l, h)));
-    let needs_level = !curves.is_empty() && !levels.is_empty();
+    let level_of = |held: Option<f64>| {
+        let near = |h: f64| {
+            let of = |i: &usize| (levels[*i] - h).abs();
+            (0..levels.len()).filter(|&i| abscissa.is_same_level(levels[i], h)).min_by(|a, b| of(a).total_cmp(&of(b)))
+        };
+        held.and_then(near)
+    };
+    // Of a sweep over angles the other speeds are part of the picture; of one over speeds the other angles would hide it.
+    let needs_level = !curves.is_empty() && !levels.is_empty() && *abscissa != Abscissa::Angle;
     let configurations = distinct(
         points.iter().map(|p| p.configuration.as_str()).chain(curves.iter().map(|c| c.configuration.as_str())),
     );
@@ -323,6 +330,9 @@ impl Look<'_> {
             if let (true, Some(best)) = (has_curves, self.best) {
                 entries.push(Entry { swatch: Swatch::Line, ink, text: Rich::plain(&format!("model {best}")) });
             }
+        }
+        if !self.levels.is_empty() && contents.iter().any(|c| c.points.iter().any(|(_, _, level)| level.is_none())) {
+            entries.push(Entry { swatch: Swatch::Dot, ink: self.ink(None), text: Rich::plain("other speeds") });
         }
         let others = distinct(
             contents

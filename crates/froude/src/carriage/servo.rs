@@ -3,6 +3,7 @@
 //! A carriage's friction sweep and dry runs tell inertia and friction (rigid, over position); its pulses tell the two masses. A log
 //! of another program (CSV with a sidecar) tells the rigid model, symmetric and asymmetric.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_identify::carriage::Uncertain;
@@ -558,33 +559,77 @@ pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
 fn force_chart(model: &Model) -> Chart {
     let r = &model.report;
     let predicted: Vec<f64> = r.rows.force_n.iter().zip(&r.residuals_n).map(|(f, e)| f - e).collect();
-    let series = |name: &str, y: Vec<f64>, mark| Series {
-        name: name.to_owned(),
-        mark,
-        x: r.rows.time_s.clone(),
-        y,
-        ..Series::default()
+    // A line through all runs would run back from the end of each to the start of the next.
+    let series = |name: &str, y: &[f64], mark| -> Vec<Series> {
+        let of_run = |run: &Range<usize>| Series {
+            name: name.to_owned(),
+            mark,
+            x: r.rows.time_s[run.clone()].to_vec(),
+            y: y[run.clone()].to_vec(),
+            ..Series::default()
+        };
+        r.runs.iter().map(of_run).collect()
     };
     Chart {
         name: format!("force-{}", model.name),
         title: format!("Drive force and model, friction {}", model.name),
-        caption: "Drive force of the command and of the model (rows of several runs follow each other in their own times), and what is left.".to_owned(),
+        caption: "Drive force of the command and of the model, and what is left: one line a run, each in its own time."
+            .to_owned(),
         x_label: "time [s]".to_owned(),
         panels: vec![
             ChartPanel {
                 y_label: "force [N]".to_owned(),
-                series: vec![
-                    series("command", r.rows.force_n.clone(), Mark::Line),
-                    series("model", predicted, Mark::Dashed),
-                ],
+                series: [series("command", &r.rows.force_n, Mark::Line), series("model", &predicted, Mark::Dashed)]
+                    .concat(),
                 ..ChartPanel::default()
             },
             ChartPanel {
                 y_label: "residual [N]".to_owned(),
-                series: vec![series("residual", r.residuals_n.clone(), Mark::Line)],
+                series: series("residual", &r.residuals_n, Mark::Line),
                 ..ChartPanel::default()
             },
         ],
         ..Chart::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use froude_identify::servo::chain::Rows;
+
+    /// Six runs, each in its own time from zero: a line that went through all would run back five times.
+    #[test]
+    fn the_figure_has_one_line_a_run() {
+        let run = |k: u32| {
+            let time_s: Vec<f64> = (0..60).map(|i| 0.1 * f64::from(i)).collect();
+            let speed: Vec<f64> = time_s.iter().map(|t| (t + 0.3 * f64::from(k)).sin()).collect();
+            Rows {
+                rate_hz: 10.0,
+                force_n: speed
+                    .iter()
+                    .zip(&time_s)
+                    .map(|(v, t)| 3.0 * v + v.signum() + 0.01 * (7.0 * t).cos())
+                    .collect(),
+                names: vec![("F_v".to_owned(), "N s/m"), ("F_c".to_owned(), "N")],
+                columns: vec![speed.clone(), speed.iter().map(|v| v.signum()).collect()],
+                time_s,
+            }
+        };
+        let runs: Vec<Rows> = (0..6).map(run).collect();
+        let report = of_several(runs, &Chain::new(35.0, Friction::default())).unwrap();
+        let chart = force_chart(&Model { name: CONSTANT.to_owned(), report });
+        let [force, residual] = chart.panels.as_slice() else { panic!("two panels") };
+        assert_eq!(
+            (force.series.len(), residual.series.len()),
+            (12, 6),
+            "command and model of six runs, and what is left"
+        );
+        for series in force.series.iter().chain(&residual.series) {
+            assert_eq!(series.x.len(), 60, "a run whole");
+            assert!(series.x.windows(2).all(|t| t[0] < t[1]), "time runs forward along each line");
+        }
+        let names: std::collections::BTreeSet<&str> = force.series.iter().map(|s| s.name.as_str()).collect();
+        assert_eq!(names.len(), 2, "one entry of the legend for all commands, one for all models");
     }
 }

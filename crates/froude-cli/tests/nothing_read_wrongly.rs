@@ -1,0 +1,561 @@
+//! What a table may be taken for that it is not, at the verbs that a user runs.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn froude(folder: &Path, args: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_froude")).args(args).current_dir(folder).output().unwrap()
+}
+
+fn folder_of(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    folder
+}
+
+/// The one message of a refusal: exit code 2, and nothing made.
+fn refusal(files: &[(&str, &str)], args: &[&str]) -> String {
+    let folder = folder_of(files);
+    let output = froude(folder.path(), args);
+    let said = String::from_utf8_lossy(&output.stderr).trim_end().to_owned();
+    assert_eq!(output.status.code(), Some(2), "{args:?}: {said}");
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), files.len(), "nothing is written");
+    said
+}
+
+/// What `--json` prints.
+fn json(files: &[(&str, &str)], args: &[&str]) -> Value {
+    json_in(folder_of(files).path(), args)
+}
+
+fn json_in(folder: &Path, args: &[&str]) -> Value {
+    let args: Vec<&str> = ["--json"].into_iter().chain(args.iter().copied()).collect();
+    let output = froude(folder, &args);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// Severity and message of every finding of one code.
+fn findings<'a>(out: &'a Value, code: &str) -> Vec<(&'a str, &'a str)> {
+    out["findings"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|f| f["code"] == code)
+        .map(|f| (f["severity"].as_str().unwrap(), f["message"].as_str().unwrap()))
+        .collect()
+}
+
+fn estimate<'a>(out: &'a Value, model: &str) -> &'a Value {
+    out["estimates"].as_array().unwrap().iter().find(|e| e["model"] == model).unwrap()
+}
+
+fn value(estimate: &Value, coefficient: &str) -> f64 {
+    estimate["coefficients"][coefficient]["value"].as_f64().unwrap()
+}
+
+fn recommended(out: &Value) -> &Value {
+    out["estimates"].as_array().unwrap().iter().find(|e| e["recommended"] == true).unwrap()
+}
+
+/// Standard normal numbers (Box and Muller) of a linear congruential generator (Knuth's MMIX).
+fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut uniform = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    };
+    move || (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos()
+}
+
+/// A drift test: speed in m/s, angle in degrees, and the loads of a body with a side force and a moment, N and N m.
+struct Row {
+    speed: f64,
+    angle_deg: f64,
+    f_x: f64,
+    f_y: f64,
+    m_z: f64,
+}
+
+const Y_UV: f64 = 120.0;
+const Y_VV: f64 = 60.0;
+const N_UV: f64 = -25.0;
+const N_VV: f64 = 8.0;
+
+fn drift_test(seed: u64) -> Vec<Row> {
+    let mut noise = noise(seed);
+    let mut out = Vec::new();
+    for speed in [0.4, 0.6, 0.8, 1.0] {
+        for angle_deg in [-20.0, -15.0, -10.0, -5.0, 0.0, 5.0, 10.0, 15.0, 20.0] {
+            for _ in 0..2 {
+                let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
+                let (u, v): (f64, f64) = (speed * cos, -speed * sin);
+                out.push(Row {
+                    speed,
+                    angle_deg,
+                    f_x: -10.0 * u * u + 0.02 * noise(),
+                    f_y: -Y_UV * u * v - Y_VV * v * v.abs() + 0.02 * noise(),
+                    m_z: N_UV * u * v + N_VV * v * v.abs() + 0.005 * noise(),
+                });
+            }
+        }
+    }
+    out
+}
+
+fn table(head: &str, rows: &[Row], line: impl Fn(&Row) -> String) -> String {
+    let mut out = format!("{head}\n");
+    for row in rows {
+        writeln!(out, "{}", line(row)).unwrap();
+    }
+    out
+}
+
+#[test]
+fn grad_is_no_milliard_of_radians() {
+    let said = |unit: &str| {
+        let text = format!("speed [m/s],angle [{unit}],f_x [N]\n0.5,10,-1.0\n0.6,10,-1.5\n0.7,10,-2.0\n");
+        refusal(&[("t.csv", &text)], &["identify", "t.csv"])
+    };
+    for unit in ["Grad", "grad"] {
+        assert_eq!(
+            said(unit),
+            format!(
+                "froude: t.csv:1: column `angle [{unit}]`: unknown unit `{unit}`; did you mean `deg` (360 to the turn) or `gon` \
+                 (400 to the turn)?"
+            )
+        );
+    }
+    assert_eq!(
+        said("mrad"),
+        "froude: t.csv:1: column `angle [mrad]`: unknown unit `mrad`; `rad` takes no prefix: write `rad`, and the numbers times 0.001"
+    );
+    let said = refusal(
+        &[("c.toml", "schema = 1\nname = \"x\"\n[fluid]\ntemperature = \"20 m°C\"\n")],
+        &["identify", "c.toml"],
+    );
+    assert!(
+        said.ends_with("unknown unit `m°C`; `°C` takes no prefix: write `°C`, and the numbers times 0.001"),
+        "{said}"
+    );
+}
+
+#[test]
+fn an_angle_of_several_turns_is_refused_with_its_cause() {
+    let of = |unit: &str, angle: f64| {
+        let text = format!("speed [m/s],angle [{unit}],f_x [N]\n0.5,0,-1.0\n0.6,{angle},-1.5\n0.7,0,-2.0\n");
+        refusal(&[("t.csv", &text)], &["identify", "t.csv"])
+    };
+    assert_eq!(
+        of("rad", 20.0),
+        "froude: t.csv:3: `angle [rad]` is 20, which is more than a whole turn: degrees under the head of radians, probably: write the \
+         unit deg; of an angle counted on over several turns take the whole ones off (1.15044 rad)"
+    );
+    assert_eq!(
+        of("deg", 725.0),
+        "froude: t.csv:3: `angle [deg]` is 725, which is more than a whole turn: an angle counted on over several turns, probably: take \
+         the whole ones off (5 deg); or one that was made degrees twice (12.6536 deg)"
+    );
+    // Through a sidecar, and in a plan.
+    let said = refusal(
+        &[
+            ("t.csv", "u,a,f\n0.5,30,-1\n"),
+            (
+                "t.toml",
+                "schema = 1\n[columns]\nu = { name = \"speed\", unit = \"m/s\" }\na = { name = \"angle\", unit = \"rad\", sign = -1 }\n\
+                 f = { name = \"f_x\", unit = \"N\" }\n",
+            ),
+        ],
+        &["inspect", "t.csv"],
+    );
+    assert!(
+        said.starts_with("froude: t.csv:2: `angle [rad]` is -30, which is more than a whole turn: degrees"),
+        "{said}"
+    );
+    let plan = "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"tank\"\ntable = \"s.csv\"\n[[source.plan]]\n\
+                speed = \"1 m/s\"\nangle = [\"0 rad\", \"15 rad\"]\n";
+    let said = refusal(&[("c.toml", plan)], &["simulate", "c.toml"]);
+    assert!(
+        said.starts_with("froude: c.toml:9:19: `angle` is \"15 rad\", which is more than a whole turn: degrees"),
+        "{said}"
+    );
+}
+
+#[test]
+fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
+    const NO_WATER: &str = "the density of no water (500 to 2000 kg/m^3 are taken); write 1.025 g/cm^3 or 1025 kg/m^3";
+    let campaign = |density: &str| format!("schema = 1\nname = \"x\"\n[fluid]\ndensity = {density}\n");
+    let said = |density: &str| refusal(&[("c.toml", &campaign(density))], &["identify", "c.toml"]);
+    assert_eq!(
+        said("\"1.025 kg/m^3\""),
+        format!("froude: c.toml:4:11: `density` is \"1.025 kg/m^3\", which is {NO_WATER}")
+    );
+    // The message that met a bare number once proposed just that.
+    assert!(said("1.025").ends_with("such as \"1.025 g/cm^3\""), "{}", said("1.025"));
+    assert!(said("\"1.025\"").ends_with("write for example `1.025 g/cm^3`"), "{}", said("\"1.025\""));
+    assert!(said("1025").ends_with("such as \"1025 kg/m^3\""), "{}", said("1025"));
+    let rows = "speed [m/s],f_x [N],density [kg/m^3]\n0.1,-0.5,1025\n0.2,-2.0,1.025\n";
+    let said = refusal(&[("t.csv", rows)], &["identify", "t.csv"]);
+    assert_eq!(said, format!("froude: t.csv:3: `density [kg/m^3]` is 1.025, which is {NO_WATER}"));
+    let said = refusal(&[], &["added-mass", "x.stl", "--density", "1.025 kg/m^3"]);
+    assert_eq!(said, format!("froude: --density \"1.025 kg/m^3\": it is {NO_WATER}"));
+}
+
+/// Every second run of a table comes from an export in gram-force, or all runs from some speed on.
+#[test]
+fn rows_in_gram_force_are_refused_with_their_lines() {
+    const GF: f64 = 1.0 / 9.806_65e-3;
+    let mut noise = noise(3);
+    let mut of = |factor: &dyn Fn(usize) -> f64| {
+        let mut out = "speed [m/s],repeat [1],f_x [N]\n".to_owned();
+        for i in 0..16 {
+            let (speed, repeat) = (0.1 * (i / 2 + 2) as f64, i % 2 + 1);
+            let f = factor(i) * (-20.0 * speed * speed + 0.02 * noise());
+            writeln!(out, "{speed:.1},{repeat},{f:.3}").unwrap();
+        }
+        out
+    };
+    let mixed = of(&|i| if i % 2 == 1 { GF } else { 1.0 });
+    let said = refusal(&[("t.csv", &mixed)], &["identify", "t.csv"]);
+    assert!(said.starts_with("froude: t.csv:") && said.contains(": `f_x [N]` is -"), "{said}");
+    assert!(
+        said.contains(", at one setting; there are two groups of rows a factor of 10")
+            && said.ends_with(
+                "as loads of one body are not: some rows are in gram-force under a head of newtons (1 N is 102 gf), probably; convert \
+                 them, or leave them out with `keep`"
+            ),
+        "{said}"
+    );
+    let fast = of(&|i| if i >= 8 { GF } else { 1.0 });
+    assert!(refusal(&[("t.csv", &fast)], &["inspect", "t.csv"]).contains("gram-force"));
+    let clean = of(&|_| 1.0);
+    assert!(
+        (value(estimate(&json(&[("t.csv", &clean)], &["identify", "t.csv"]), "quadratic"), "D_x_II") - 20.0).abs()
+            < 0.2
+    );
+}
+
+#[test]
+fn an_angle_under_another_name_is_proposed_with_its_sign() {
+    let rows = drift_test(1);
+    for (name, sign) in
+        [("beta", 1.0), ("drift", -1.0), ("alpha", 1.0), ("heading", -1.0), ("yaw", 1.0), ("drift angle", 1.0)]
+    {
+        let head = format!("speed [m/s],{name} [deg],f_x [N],f_y [N]");
+        let text = table(&head, &rows, |r| format!("{},{},{},{}", r.speed, sign * r.angle_deg, r.f_x, r.f_y));
+        for verb in ["identify", "inspect"] {
+            let out = json(&[("t.csv", &text)], &[verb, "t.csv"]);
+            let told = findings(&out, "column-not-used");
+            let how = if sign > 0.0 {
+                "head it `angle [deg]`".to_owned()
+            } else {
+                format!("map it in a sidecar, \"{name} [deg]\" = {{ name = \"angle\", unit = \"deg\", sign = -1 }}")
+            };
+            let wanted = format!(
+                "`{name} [deg]` goes from -20.00 to 20.00 deg and is not used: every row is read as straight ahead; if it is the angle of \
+                 the test, {how}: with that sign the side force f_y opposes the motion sideways in "
+            );
+            assert!(
+                told.iter().any(|(severity, message)| *severity == "warning" && message.starts_with(&wanted)),
+                "{verb} {name}: {told:?}"
+            );
+        }
+    }
+    // What is proposed is taken, and then nothing is left to say.
+    let text = table("speed [m/s],drift [deg],f_x [N],f_y [N]", &rows, |r| {
+        format!("{},{},{},{}", r.speed, -r.angle_deg, r.f_x, r.f_y)
+    });
+    let sidecar = "schema = 1\n[columns]\n\"speed [m/s]\" = { name = \"speed\", unit = \"m/s\" }\n\
+                   \"drift [deg]\" = { name = \"angle\", unit = \"deg\", sign = -1 }\n\
+                   \"f_x [N]\" = { name = \"f_x\", unit = \"N\" }\n\"f_y [N]\" = { name = \"f_y\", unit = \"N\" }\n";
+    let out = json(&[("t.csv", &text), ("t.toml", sidecar)], &["identify", "t.csv"]);
+    assert!(findings(&out, "column-not-used").is_empty() && findings(&out, "force-along-motion").is_empty());
+    assert!(value(estimate(&out, "quadratic"), "D_y_II") > 0.0);
+    // A sidecar that passes the angle over.
+    let without: String = sidecar.lines().filter(|l| !l.contains("drift")).flat_map(|l| [l, "\n"]).collect();
+    let out = json(&[("t.csv", &text), ("t.toml", &without)], &["identify", "t.csv"]);
+    let told = findings(&out, "column-not-used");
+    assert!(
+        told[0].0 == "warning"
+            && told[0].1.starts_with(
+                "the sidecar does not name the column `drift [deg]`, and every row is read as straight ahead; if it is"
+            ),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn no_column_is_dropped_in_silence() {
+    let rows = drift_test(2);
+    let head = "speed [m/s],angle [deg],f_x [N],Mz [N m],r [rad/s],std_speed [m/s],current [A],remark,w_z [rad/s]";
+    let text = table(head, &rows, |r| {
+        format!("{},{},{},{},0.1,0.001,{},ok,0.2", r.speed, r.angle_deg, r.f_x, r.m_z, 0.5 + r.speed)
+    });
+    let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
+    let told = findings(&out, "column-not-used");
+    let warned: Vec<&str> = told.iter().filter(|f| f.0 == "warning").map(|f| f.1).collect();
+    assert_eq!(warned.len(), 2, "{told:?}");
+    assert!(warned[0].starts_with("`Mz [N m]` (") && warned[0].ends_with("if it is m_z, name it so"), "{warned:?}");
+    assert_eq!(
+        warned[1],
+        "w_z goes from 0.2000 to 0.2000 1/s and no law has it: the fit of f_x takes it for zero; write a law with it \
+         ([[identify.model]]), or keep the rows where it is zero"
+    );
+    let noted: Vec<&str> = told.iter().filter(|f| f.0 == "note").map(|f| f.1).collect();
+    assert_eq!(
+        noted,
+        [
+            "in no law and in nothing else that was asked for: `r [rad/s]` (if the motion: w_x, w_y or w_z), `std_speed [m/s]` (weights are \
+          standard deviations of fitted loads; of another channel, declare it in [[source.uncertainty]]), `current [A]`, `remark` (text)"
+        ]
+    );
+    // v_x beside an angle: v_y is missing, and the angle is not what the rows say.
+    let askew = table("v_x [m/s],angle [deg],f_x [N]", &rows, |r| format!("{},{},{}", r.speed, r.angle_deg, r.f_x));
+    let out = json(&[("t.csv", &askew)], &["identify", "t.csv"]);
+    assert_eq!(
+        findings(&out, "angle-contradicts-velocity"),
+        [(
+            "warning",
+            "the angle column differs from atan2(-v_y, v_x) by up to 20.00 deg; v_x and v_y are used (v_y is missing and read as 0): if \
+             v_x is the speed of the carriage, name it speed"
+        )]
+    );
+}
+
+#[test]
+fn the_moment_of_a_bare_table_is_fitted_beside_its_forces() {
+    let rows = drift_test(4);
+    let text = table("speed [m/s],angle [deg],f_x [N],f_y [N],m_z [N m]", &rows, |r| {
+        format!("{},{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y, r.m_z)
+    });
+    let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
+    let quadratic = estimate(&out, "quadratic");
+    assert_eq!(quadratic["law"]["formulas"]["m_z"], "N_uv*v_x*v_y + N_vv*v_y*abs(v_y)");
+    for (name, truth) in [("N_uv", N_UV), ("N_vv", N_VV)] {
+        let c = &quadratic["coefficients"][name];
+        assert_eq!(c["unit"], "kg");
+        let standard = c["standard_uncertainty"].as_f64().unwrap();
+        assert!((value(quadratic, name) - truth).abs() < 4.0 * standard, "{name}: {c}");
+        assert!(standard < 0.02 * truth.abs(), "{name}: {c}");
+    }
+    assert_eq!(
+        estimate(&out, "linear_quadratic")["law"]["formulas"]["m_z"],
+        "N_v*v_y + N_uv*v_x*v_y + N_vv*v_y*abs(v_y)"
+    );
+    assert!(
+        findings(&out, "column-not-used").is_empty()
+            && findings(&out, "negative-drag").iter().all(|f| !f.1.contains("N_"))
+    );
+    // A table with the moment alone; and one that goes straight ahead, where nothing tells of it.
+    let alone = table("speed [m/s],angle [deg],m_z [N m]", &rows, |r| format!("{},{},{}", r.speed, r.angle_deg, r.m_z));
+    let out = json(&[("t.csv", &alone)], &["identify", "t.csv"]);
+    assert!((value(estimate(&out, "quadratic"), "N_uv") / N_UV - 1.0).abs() < 0.02);
+    let ahead = table("speed [m/s],f_x [N],m_z [N m]", &rows, |r| {
+        format!("{},{},{}", r.speed, -10.0 * r.speed * r.speed + 0.1 * r.m_z, 0.001 * r.m_z)
+    });
+    let out = json(&[("t.csv", &ahead)], &["identify", "t.csv"]);
+    let told = findings(&out, "column-not-used");
+    assert!(
+        told.len() == 1 && told[0].0 == "note" && told[0].1.contains("`m_z [N m]` (measured, and no law gives it"),
+        "{told:?}"
+    );
+}
+
+/// Three laws of f_x and one of three loads: what the one says of the other two counts.
+#[test]
+fn laws_of_different_loads_are_compared_load_by_load() {
+    let text = table("speed [m/s],angle [deg],f_x [N],f_y [N],m_z [N m]", &drift_test(5), |r| {
+        format!("{},{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y, r.m_z)
+    });
+    let campaign = "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n[identify]\n\
+        [[identify.model]]\nname = \"along\"\nf_x = \"X_uu*u*abs(u)\"\n\
+        [[identify.model]]\nname = \"along_linear\"\nf_x = \"X_u*u + X_uu*u*abs(u)\"\n\
+        [[identify.model]]\nname = \"whole\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_uv*u*v + Y_vv*v*abs(v)\"\nm_z = \"N_uv*u*v + N_vv*v*abs(v)\"\n";
+    let out = json(&[("t.csv", &text), ("c.toml", campaign)], &["identify", "c.toml"]);
+    let best = recommended(&out);
+    assert_eq!(best["model"], "whole", "{}", best["reason"]);
+    let reason = best["reason"].as_str().unwrap();
+    assert!(
+        reason.contains("what a law leaves out counts as zero; load by load the smallest AICc has: f_x "),
+        "{reason}"
+    );
+    assert!(reason.ends_with("f_y whole alone, m_z whole alone"), "{reason}");
+    // Loads that are noise about zero are no reason for the larger law.
+    let mut noise = noise(6);
+    let mut ahead = "speed [m/s],f_x [N],f_y [N]\n".to_owned();
+    for i in 1..=20 {
+        let speed = 0.05 * f64::from(i);
+        writeln!(ahead, "{speed},{},{}", -10.0 * speed * speed + 0.01 * noise(), 0.01 * noise()).unwrap();
+    }
+    let campaign = "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n[identify]\n\
+        [[identify.model]]\nname = \"along\"\nf_x = \"X_uu*u*abs(u)\"\n\
+        [[identify.model]]\nname = \"both\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_0 + Y_u*u + Y_uu*u*u\"\n";
+    let out = json(&[("t.csv", &ahead), ("c.toml", campaign)], &["identify", "c.toml"]);
+    assert_eq!(recommended(&out)["model"], "along", "{}", recommended(&out)["reason"]);
+}
+
+/// Drag of a round strut, N s²/m²: along the flow at every angle, so that 6 % of the body's Y_uv is the strut's.
+const STRUT: f64 = 0.06 * Y_UV;
+
+#[test]
+fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() {
+    let rows = drift_test(7);
+    let gross = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &rows, |r| {
+        let (sin, cos) = r.angle_deg.to_radians().sin_cos();
+        let drag = STRUT * r.speed * r.speed;
+        format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x - drag * cos, r.f_y + drag * sin)
+    });
+    let mut noise = noise(8);
+    let mut tare = "speed [m/s],f_x [N]\n".to_owned();
+    let mut strut = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+    for i in 1..=10 {
+        let speed = 0.1 * f64::from(i);
+        let drag = STRUT * speed * speed;
+        writeln!(tare, "{speed},{}", -drag + 0.01 * noise()).unwrap();
+        for angle in [-20.0, -10.0, 0.0, 10.0, 20.0] {
+            let (sin, cos) = f64::to_radians(angle).sin_cos();
+            writeln!(strut, "{speed},{angle},{},{}", -drag * cos + 0.01 * noise(), drag * sin + 0.01 * noise())
+                .unwrap();
+        }
+    }
+    let campaign = |record: &str| {
+        format!(
+            "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"gross.csv\"\ntare = {{ record = \"{record}\" }}\n\
+             [identify]\n[[identify.model]]\nname = \"whole\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_uv*u*v + Y_vv*v*abs(v)\"\n"
+        )
+    };
+    let folder = folder_of(&[
+        ("gross.csv", &gross),
+        ("tare.csv", &tare),
+        ("strut.csv", &strut),
+        ("with-tare.toml", &campaign("tare-results/estimate.json")),
+        ("with-strut.toml", &campaign("strut-results/estimate.json")),
+    ]);
+    let folder = folder.path();
+    json_in(folder, &["identify", "tare.csv", "--models", "quadratic"]);
+    let fitted = json_in(folder, &["identify", "strut.csv", "--models", "strut"]);
+    for name in ["D_xU", "D_yU"] {
+        assert!((value(estimate(&fitted, "strut"), name) / STRUT - 1.0).abs() < 0.01, "{name}");
+    }
+
+    let wrong = json_in(folder, &["identify", "with-tare.toml"]);
+    let told = findings(&wrong, "tare-straight-ahead");
+    assert_eq!(told.len(), 1, "{:?}", wrong["findings"]);
+    assert!(
+        told[0].0 == "warning"
+            && told[0].1.starts_with(
+                "the tare tare.csv/quadratic was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side \
+                 force stays in f_y: of a strut that drags alike from all sides up to 2.4"
+            )
+            && told[0].1.ends_with(
+                "tow the strut alone at the angles of the test, fit these runs with models = [\"strut\"] (f_x and f_y) and subtract that record"
+            ),
+        "{told:?}"
+    );
+    // The stated size is what the coefficients are off by.
+    let stated: f64 = told[0].1.split(" N, ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
+    let off = 100.0 * (value(estimate(&wrong, "whole"), "Y_uv") / -Y_UV - 1.0);
+    assert!((off - 6.0).abs() < 0.5 && (stated - off).abs() < 1.5, "stated {stated} %, found {off} %");
+
+    let right = json_in(folder, &["identify", "with-strut.toml"]);
+    assert!(findings(&right, "tare-straight-ahead").is_empty());
+    let y_uv = &estimate(&right, "whole")["coefficients"]["Y_uv"];
+    let standard = y_uv["standard_uncertainty"].as_f64().unwrap();
+    assert!((y_uv["value"].as_f64().unwrap() + Y_UV).abs() < 4.0 * standard.min(0.002 * Y_UV), "{y_uv}");
+}
+
+#[test]
+fn a_reference_point_is_printed_where_somebody_named_one() {
+    let text = "speed [m/s],f_x [N]\n0.1,-0.5\n0.2,-2.0\n0.3,-4.4\n0.4,-8.1\n0.5,-12.4\n";
+    let campaign = |body: &str| {
+        format!("schema = 1\nname = \"x\"\n{body}[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n")
+    };
+    let of = |body: &str| {
+        let folder = folder_of(&[("t.csv", text), ("c.toml", &campaign(body))]);
+        let out = json_in(folder.path(), &["identify", "c.toml"]);
+        let html = std::fs::read_to_string(folder.path().join("c-results/report.html")).unwrap();
+        (recommended(&out)["reference_point"].as_str().unwrap().to_owned(), html)
+    };
+    let (point, html) = of("");
+    assert!(point.is_empty() && !html.contains("Reference point") && !html.contains("body centre"), "{point}");
+    let (point, html) = of("[body]\nreference_point = \"midships, on the keel\"\n");
+    assert_eq!(point, "midships, on the keel");
+    assert!(html.contains("<dt>Reference point</dt><dd>midships, on the keel</dd>"));
+}
+
+/// Six speeds at nine angles, each run twice, and no speed measured twice as the same number; a seventh was run straight ahead only.
+#[test]
+fn a_drift_figure_draws_every_speed() {
+    let mut noise = noise(9);
+    let mut text = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+    for speed in [0.3, 0.5, 0.7, 0.9, 1.1, 1.3] {
+        for i in -4..=4 {
+            for _ in 0..2 {
+                let (speed, angle) = (speed * (1.0 + 0.003 * noise()), 5.0 * f64::from(i) + 0.05 * noise());
+                let (sin, cos) = f64::to_radians(angle).sin_cos();
+                let (u, v) = (speed * cos, -speed * sin);
+                writeln!(
+                    text,
+                    "{speed},{angle},{},{}",
+                    -5.0 * u * u + 0.01 * noise(),
+                    -90.0 * v * v.abs() + 0.01 * noise()
+                )
+                .unwrap();
+            }
+        }
+    }
+    text += "1.7,0,-14.45,0.0\n1.7,0,-14.46,0.01\n";
+    let folder = folder_of(&[("t.csv", &text)]);
+    json_in(folder.path(), &["identify", "t.csv", "--models", "quadratic"]);
+    let html = std::fs::read_to_string(folder.path().join("t-results/report.html")).unwrap();
+    let figure = html.split("<figure").find(|part| part.contains("f_y against angle")).unwrap();
+    for speed in ["0.3 m/s", "0.5 m/s", "0.7 m/s", "0.9 m/s", "1.1 m/s", "1.3 m/s", "other speeds"] {
+        assert!(figure.contains(speed), "{speed} is not in the legend");
+    }
+    assert!(!figure.contains("not drawn"), "every point is drawn");
+}
+
+/// Codes of what this file is about: none of them may be heard from a clean table.
+const ALARMS: [&str; 4] = ["column-not-used", "angle-contradicts-velocity", "tare-straight-ahead", "angle-in-radians"];
+
+#[test]
+fn clean_tables_and_the_examples_raise_no_alarm() {
+    let heard = |out: &Value| -> Vec<String> {
+        ALARMS
+            .iter()
+            .flat_map(|code| findings(out, code))
+            .map(|(severity, message)| format!("{severity}: {message}"))
+            .collect()
+    };
+    for seed in 0..20 {
+        let rows = drift_test(100 + seed);
+        let drift = table("speed [m/s],angle [deg],f_x [N],f_y [N],m_z [N m],repeat [1],run", &rows, |r| {
+            format!("{},{},{},{},{},1,{}", r.speed, r.angle_deg, r.f_x, r.f_y, r.m_z, r.speed)
+        });
+        let velocity = table("v_x [m/s],v_y [m/s],f_x [N],f_y [N]", &rows, |r| {
+            let (sin, cos) = r.angle_deg.to_radians().sin_cos();
+            format!("{},{},{},{}", r.speed * cos, -r.speed * sin, r.f_x, r.f_y)
+        });
+        let ahead = table("speed [m/s],f_x [N],std_f_x [N],temperature [degC]", &rows, |r| {
+            format!("{},{},0.02,15", r.speed, -10.0 * r.speed * r.speed + 0.01 * r.angle_deg / 20.0)
+        });
+        for text in [&drift, &velocity, &ahead] {
+            let out = json(&[("t.csv", text)], &["inspect", "t.csv"]);
+            assert!(heard(&out).is_empty(), "{seed}: {:?}", heard(&out));
+        }
+    }
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    for (name, notes) in [("unh-rm2/tare.toml", 0), ("unh-rm2/rotor.toml", 2), ("mamba-added-mass/campaign.toml", 0)] {
+        let path = examples.join(name);
+        let out = json(&[], &["inspect", path.to_str().unwrap()]);
+        // The rotor's sidecar takes four columns of a wide table, one of which no law has: both are noted, and that is all.
+        assert!(heard(&out).iter().all(|text| text.starts_with("note: ")), "{name}: {:?}", heard(&out));
+        assert_eq!(heard(&out).len(), notes, "{name}: {:?}", heard(&out));
+    }
+}

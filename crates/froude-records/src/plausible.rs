@@ -1,0 +1,129 @@
+//! Values that no tank has: an angle of several turns, water as thin as air.
+//!
+//! A right unit beside a wrong number passes every check of dimensions. Where a
+//! number is impossible, the cause is nearly always its unit, and the message
+//! says which.
+
+use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
+
+use crate::units::{Dimension, Unit};
+
+/// Densities of liquids that bodies are tested in, kg/m³.
+///
+/// Water lies between 958 (boiling) and 1240 (Dead Sea); light oils at 700 and heavy brines at 1600 stand in for it now and
+/// then. Nothing near 1 is among them, which is what water is in g/cm³.
+pub const LIQUID_KG_M3: RangeInclusive<f64> = 500.0..=2000.0;
+
+/// Rounding of a whole turn through a unit.
+const WHOLE_TURN: f64 = TAU * (1.0 + 1e-9);
+
+/// What is wrong with a value of `name`, as the rest of a sentence that has named it; `None` for a plausible one.
+///
+/// `si` is the value in SI, `unit` the one that it was written in.
+#[must_use]
+pub fn problem(name: &str, si: f64, unit: &Unit) -> Option<String> {
+    match (name, unit.dimension) {
+        ("angle" | "misalignment", Dimension::ANGLE) => angle(si, unit),
+        ("density", Dimension::DENSITY) => density(si),
+        _ => None,
+    }
+}
+
+/// An angle of more than a turn, and what was probably meant.
+#[must_use]
+pub fn angle(rad: f64, unit: &Unit) -> Option<String> {
+    if rad.abs() <= WHOLE_TURN {
+        return None;
+    }
+    let number = unit.from_si(rad);
+    let wrapped = format!("{} {unit}", digits(unit.from_si(rad - TAU * (rad / TAU).round())));
+    let is_in_radians = unit.factor == 1.0;
+    let cause = if is_in_radians && number.abs() <= 360.0 {
+        format!(
+            "degrees under the head of radians, probably: write the unit deg; of an angle counted on over several turns take the \
+             whole ones off ({wrapped})"
+        )
+    } else if is_in_radians {
+        format!("an angle counted on over several turns, probably: take the whole ones off ({wrapped})")
+    } else {
+        let once = digits(unit.from_si(rad.to_radians()));
+        format!(
+            "an angle counted on over several turns, probably: take the whole ones off ({wrapped}); or one that was made degrees \
+             twice ({once} {unit})"
+        )
+    };
+    Some(format!("is more than a whole turn: {cause}"))
+}
+
+/// A density that no liquid has, and what was probably meant.
+#[must_use]
+pub fn density(kg_m3: f64) -> Option<String> {
+    if LIQUID_KG_M3.contains(&kg_m3) {
+        return None;
+    }
+    let meant = [1e3, 1e-3].into_iter().map(|by| by * kg_m3).find(|rho| LIQUID_KG_M3.contains(rho));
+    let advice = match meant {
+        Some(rho) => format!("write {} g/cm^3 or {} kg/m^3", digits(1e-3 * rho), digits(rho)),
+        None => "fresh water has 1000 kg/m^3, sea water 1025".to_owned(),
+    };
+    let [low, high] = [LIQUID_KG_M3.start(), LIQUID_KG_M3.end()];
+    Some(format!("is the density of no water ({low} to {high} kg/m^3 are taken); {advice}"))
+}
+
+/// The unit that a bare number of this kind was probably meant in: 1.025 is a density in g/cm³, and in kg/m³ that of air.
+pub(crate) fn unit_for(number: f64, dimension: Dimension, usual: &str) -> &str {
+    let is_relative = dimension == Dimension::DENSITY && LIQUID_KG_M3.contains(&(1e3 * number));
+    if is_relative { "g/cm^3" } else { usual }
+}
+
+/// Enough digits to recognise a number by.
+fn digits(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::parse_unit;
+
+    #[test]
+    fn an_angle_says_which_slip_made_it() {
+        let said = |number: f64, unit: &str| {
+            let unit = parse_unit(unit).unwrap();
+            problem("angle", unit.to_si(number), &unit)
+        };
+        for (number, unit) in
+            [(0.0, "deg"), (360.0, "deg"), (-360.0, "deg"), (TAU, "rad"), (1.0, "rev"), (400.0, "gon")]
+        {
+            assert_eq!(said(number, unit), None, "{number} {unit}");
+        }
+        assert_eq!(
+            said(30.0, "rad").unwrap(),
+            "is more than a whole turn: degrees under the head of radians, probably: write the unit deg; of an angle counted on \
+             over several turns take the whole ones off (-1.41593 rad)"
+        );
+        assert_eq!(
+            said(-1718.873, "deg").unwrap(),
+            "is more than a whole turn: an angle counted on over several turns, probably: take the whole ones off (81.127 deg); \
+             or one that was made degrees twice (-30 deg)"
+        );
+        assert!(said(1e4, "rad").unwrap().contains("several turns, probably"));
+    }
+
+    #[test]
+    fn water_is_neither_air_nor_lead() {
+        for rho in [500.0, 700.0, 997.0, 1025.0, 1240.0, 2000.0] {
+            assert_eq!(density(rho), None, "{rho}");
+        }
+        let meant = "write 1.025 g/cm^3 or 1025 kg/m^3";
+        for rho in [1.025, 1.025e6] {
+            let said = density(rho).unwrap();
+            assert_eq!(said, format!("is the density of no water (500 to 2000 kg/m^3 are taken); {meant}"));
+        }
+        assert!(density(11_340.0).unwrap().ends_with("fresh water has 1000 kg/m^3, sea water 1025"));
+        assert_eq!(unit_for(1.025, Dimension::DENSITY, "kg/m^3"), "g/cm^3");
+        assert_eq!(unit_for(1025.0, Dimension::DENSITY, "kg/m^3"), "kg/m^3");
+        assert_eq!(unit_for(1.025, Dimension::SPEED, "m/s"), "m/s");
+    }
+}
