@@ -489,6 +489,38 @@ fn a_reference_point_is_printed_where_somebody_named_one() {
     assert!(html.contains("<dt>Reference point</dt><dd>midships, on the keel</dd>"));
 }
 
+/// Six speeds at nine angles, each run twice, and no speed measured twice as the same number; a seventh was run straight ahead only.
+#[test]
+fn a_drift_figure_draws_every_speed() {
+    let mut noise = noise(9);
+    let mut text = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+    for speed in [0.3, 0.5, 0.7, 0.9, 1.1, 1.3] {
+        for i in -4..=4 {
+            for _ in 0..2 {
+                let (speed, angle) = (speed * (1.0 + 0.003 * noise()), 5.0 * f64::from(i) + 0.05 * noise());
+                let (sin, cos) = f64::to_radians(angle).sin_cos();
+                let (u, v) = (speed * cos, -speed * sin);
+                writeln!(
+                    text,
+                    "{speed},{angle},{},{}",
+                    -5.0 * u * u + 0.01 * noise(),
+                    -90.0 * v * v.abs() + 0.01 * noise()
+                )
+                .unwrap();
+            }
+        }
+    }
+    text += "1.7,0,-14.45,0.0\n1.7,0,-14.46,0.01\n";
+    let folder = folder_of(&[("t.csv", &text)]);
+    json_in(folder.path(), &["identify", "t.csv", "--models", "quadratic"]);
+    let html = std::fs::read_to_string(folder.path().join("t-results/report.html")).unwrap();
+    let figure = html.split("<figure").find(|part| part.contains("f_y against angle")).unwrap();
+    for speed in ["0.3 m/s", "0.5 m/s", "0.7 m/s", "0.9 m/s", "1.1 m/s", "1.3 m/s", "other speeds"] {
+        assert!(figure.contains(speed), "{speed} is not in the legend");
+    }
+    assert!(!figure.contains("not drawn"), "every point is drawn");
+}
+
 /// Codes of what this file is about: none of them may be heard from a clean table.
 const ALARMS: [&str; 4] = ["column-not-used", "angle-contradicts-velocity", "tare-straight-ahead", "angle-in-radians"];
 

@@ -103,7 +103,9 @@ fn aicc_of_nothing(data: &Dataset, load: &str) -> Option<f64> {
     if let Some(std) = data.values(&format!("std_{load}")) {
         weight = std.iter().map(|s| 1.0 / (s * s)).collect();
         let mean = weight.iter().sum::<f64>() / weight.len() as f64;
-        weight.iter_mut().for_each(|w| *w /= mean);
+        for w in &mut weight {
+            *w /= mean;
+        }
     }
     let rss: f64 = f.iter().zip(&weight).map(|(f, w)| w * f * f).sum();
     let of_weights: f64 = weight.iter().map(|w| w.ln()).sum();

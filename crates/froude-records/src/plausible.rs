@@ -72,7 +72,7 @@ pub fn density(kg_m3: f64) -> Option<String> {
 }
 
 /// The unit that a bare number of this kind was probably meant in: 1.025 is a density in g/cm³, and in kg/m³ that of air.
-pub(crate) fn unit_for<'a>(number: f64, dimension: Dimension, usual: &'a str) -> &'a str {
+pub(crate) fn unit_for(number: f64, dimension: Dimension, usual: &str) -> &str {
     let is_relative = dimension == Dimension::DENSITY && LIQUID_KG_M3.contains(&(1e3 * number));
     if is_relative { "g/cm^3" } else { usual }
 }

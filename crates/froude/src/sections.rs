@@ -533,7 +533,9 @@ fn settings(values: &[f64], is_same: fn(f64, f64) -> bool) -> Settings {
         if group.is_empty() {
             return;
         }
-        group.iter().for_each(|&i| out.of_row[i] = out.means.len());
+        for &i in group.iter() {
+            out.of_row[i] = out.means.len();
+        }
         out.means.push(group.iter().map(|&i| values[i]).sum::<f64>() / group.len() as f64);
         group.clear();
     };
