@@ -11,7 +11,8 @@
 //!   the session that has the board, and stops.
 //! - No load touches a hard stop, no command is not finite, and after the silence both axes come to rest without torque.
 //! - As long as nobody stops the carriage and the first host lives, what breaks is named in time, as without a second host. Otherwise
-//!   the first fault is one that the catalogue accepts, or the host's own silence, or none.
+//!   the first fault is one that the catalogue accepts, or the host's own silence, or none. Where the second host had got the board
+//!   before, it drives as wildly as it talks (open-loop jogs, moves on a broken axis), and what it trips is its own.
 //! - The second host gets the board only when the controller had stopped for the silence of the first, or no axis had torque.
 //!
 //! A current that is not a number cannot come out of a converter; where the catalogue draws one the amplifier fails instead.
@@ -349,6 +350,8 @@ pub struct Ending {
     pub taken_over: Option<u64>,
     /// The first fault after something broke, and how long after, s.
     pub detected: Option<(Fault, f64)>,
+    /// The second host had the board when the fault was latched.
+    pub is_its_own: bool,
     /// A fault was there before anything broke.
     pub was_faulted: bool,
     /// Until something was detected, or until it had to be: nobody stopped, and the first host was not silent.
@@ -376,7 +379,7 @@ impl Ending {
             }
         } else {
             let own = [Fault::HostSilent, Fault::RecorderFailed];
-            self.detected.is_none_or(|(fault, _)| accepted.contains(&fault) || own.contains(&fault))
+            self.is_its_own || self.detected.is_none_or(|(fault, _)| accepted.contains(&fault) || own.contains(&fault))
         };
         self.unequal.is_none()
             && !self.has_slipped
@@ -426,6 +429,7 @@ impl Hosts {
             stops: 0,
             taken_over: None,
             detected: None,
+            is_its_own: false,
             was_faulted: false,
             is_undisturbed: true,
             unequal: None,
@@ -459,6 +463,7 @@ impl Hosts {
             if let (Some(at), None) = (broken_at, ending.detected) {
                 let after_s = (tick + 1 - at) as f64 * TICK_S;
                 ending.detected = bench.fault().map(|fault| (fault, after_s));
+                ending.is_its_own = ending.detected.is_some() && bench.spec.holder == SECOND;
                 if ending.detected.is_none() && after_s <= scene.injection.latest_s() {
                     ending.is_undisturbed &= ending.stops == 0 && !first.was_silent(tick);
                 }
