@@ -47,6 +47,10 @@ pub fn coverage_factor(confidence: f64, dof: f64) -> f64 {
         return f64::NAN;
     };
     let tail = 0.5 * (1.0 - confidence);
+    // Far out the tail is (dof/x²)^(dof/2), within a factor of four to the dof: where that is told, x is no number any more.
+    if 0.5 * dof.ln() - (2.0 * tail).ln() / dof > INFINITE_ABOVE.ln() {
+        return f64::INFINITY;
+    }
     // Newton on the logarithm of the tail, which is smooth and nearly straight,
     // from the normal quantile, which is always below. A step at most doubles: some 500 reach the largest.
     let mut x = normal_quantile(1.0 - tail);
@@ -110,8 +114,12 @@ pub fn chi_squared_upper(x: f64, dof: f64) -> f64 {
         f64::NAN
     } else if half.is_infinite() {
         0.0
+    } else if dof > NORMAL_ABOVE {
+        // Wilson & Hilferty (1931); the incomplete gamma function takes as many terms as there are degrees of freedom.
+        let spread = 2.0 / (9.0 * dof);
+        normal_upper(((x / dof).cbrt() - (1.0 - spread)) / spread.sqrt())
     } else {
-        gamma_ur(a, half)
+        gamma_ur(a, half).clamp(0.0, 1.0)
     }
 }
 
@@ -141,7 +149,11 @@ pub(crate) fn beta_lower(x: f64, a: f64, b: f64) -> f64 {
 /// The regularised incomplete beta function, NaN outside its range.
 fn beta(a: f64, b: f64, x: f64) -> f64 {
     let is_possible = |p: f64| p > 0.0 && p.is_finite();
-    if is_possible(a) && is_possible(b) && (0.0..=1.0).contains(&x) { beta_reg(a, b, x) } else { f64::NAN }
+    if is_possible(a) && is_possible(b) && (0.0..=1.0).contains(&x) {
+        beta_reg(a, b, x).clamp(0.0, 1.0)
+    } else {
+        f64::NAN
+    }
 }
 
 #[cfg(test)]
