@@ -259,6 +259,7 @@ fn hostile_names_are_escaped_everywhere() {
         date: Some(h()),
         method: vec![h()],
         sources: vec![SourceSection {
+            not_fitted: Vec::new(),
             name: h(),
             kind: h(),
             facts: vec![(h(), h())],

@@ -123,6 +123,7 @@ fn setting(folder: &Path) -> Setting {
     };
     Setting {
         campaign: "held up".to_owned(),
+        campaign_sha256: String::new(),
         folder: folder.to_owned(),
         asked,
         return_speed_m_s: 0.4,

@@ -349,6 +349,7 @@ fn section(
     let (points, curves) = loads(configurations, &f4, if kind == "cfd" { 0.004 } else { 0.02 }, 3, most, seed);
     let best = estimates.iter().find(|e| e.recommended).cloned();
     SourceSection {
+        not_fitted: Vec::new(),
         name: name.to_owned(),
         kind: kind.to_owned(),
         facts: vec![

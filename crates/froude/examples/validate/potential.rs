@@ -3,6 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
+use froude::added_mass::frame::Axes;
 use froude::added_mass::links::{Configuration, LinksJob, LinksOutcome, links};
 use froude::added_mass::refine::Wanted;
 use froude::records::csv_table::read_csv;
@@ -56,6 +57,7 @@ fn run(body: &Path, links_of: Vec<usize>, out: &Path) -> Result<LinksOutcome, Bo
         links: links_of,
         density_kg_m3: None,
         wanted: Wanted { tolerance: 0.005, ..Wanted::default() },
+        axes: Axes::Mesh,
         out: Some(out.to_owned()),
         date: None,
     };
