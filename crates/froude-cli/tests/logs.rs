@@ -112,7 +112,8 @@ impl Bench {
     /// Logs of the kind, in order.
     fn logs(&self, kind: &str) -> Vec<PathBuf> {
         let all = std::fs::read_dir(&self.runs).unwrap().map(|e| e.unwrap().path());
-        let mut logs: Vec<PathBuf> = all.filter(|p| text(p).ends_with(".mcap") && text(p).contains(kind)).collect();
+        let mut logs: Vec<PathBuf> =
+            all.filter(|p| p.extension().is_some_and(|e| e == "mcap") && text(p).contains(kind)).collect();
         logs.sort();
         logs
     }
@@ -176,7 +177,7 @@ fn a_log_that_is_gone_is_told_and_driven_again() {
     let (n, said) = bench.run();
     assert_eq!(n, 1);
     let reason =
-        format!("the log {0}.mcap is gone; {0}.toml says complete: {0} is put aside and driven again", id(log));
+        format!("the log {0}.mcap is gone; {0}.toml says complete: kept as {0}.interrupted-1, driven again", id(log));
     assert!(said.contains(&reason), "{said}");
     assert!(log.exists());
     // What is left of the first drive lies aside and is counted nowhere.
@@ -201,7 +202,7 @@ fn a_log_that_was_cut_off_is_left_out_and_driven_again() {
     let (n, said) = bench.run();
     assert_eq!(n, 1);
     assert!(said.contains(": it was cut off; copy it again from where it was recorded: "), "{said}");
-    assert!(said.contains(&format!("{} is put aside and driven again", id(log))), "{said}");
+    assert!(said.contains(&format!("kept as {}.interrupted-1, driven again", id(log))), "{said}");
 }
 
 #[test]

@@ -36,7 +36,7 @@ fn a_second_run_into_a_folder_is_refused_with_who_is_first_and_a_dead_one_blocks
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml");
     let runs = folder.path().join("runs");
     let mut first = run(&campaign, &runs).stderr(Stdio::null()).spawn().unwrap();
-    let has_log = || names(&runs).iter().any(|name| name.ends_with(".mcap")).then_some(());
+    let has_log = || names(&runs).iter().any(|name| name.strip_suffix(".mcap").is_some()).then_some(());
     until(&mut first, has_log);
 
     let second = run(&campaign, &runs).output().unwrap();

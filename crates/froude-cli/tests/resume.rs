@@ -108,10 +108,9 @@ fn files(folder: &Path, aside: bool) -> BTreeMap<String, Vec<u8>> {
 
 /// Names of the complete runs of a folder, in the order of the plan.
 fn complete(folder: &Path) -> Vec<String> {
-    let sidecars = files(folder, false).into_iter().filter(|(name, _)| name.ends_with(".toml"));
-    sidecars
-        .filter(|(_, text)| String::from_utf8_lossy(text).contains("status = \"complete\""))
-        .map(|(name, _)| name.trim_end_matches(".toml").to_owned())
+    let all = files(folder, false).into_iter();
+    all.filter(|(_, text)| String::from_utf8_lossy(text).contains("status = \"complete\""))
+        .filter_map(|(name, _)| Some(name.strip_suffix(".toml")?.to_owned()))
         .collect()
 }
 

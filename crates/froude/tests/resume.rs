@@ -233,6 +233,8 @@ fn a_campaign_that_was_cut_anywhere_goes_on_from_there() {
         None => spread(&runs).into_iter().zip(CUTS.into_iter().cycle()).collect(),
     };
     let n = jobs.len();
-    jobs.into_iter().for_each(|(k, cut)| cut_and_resumed(&campaign, k, cut));
+    for (k, cut) in jobs {
+        cut_and_resumed(&campaign, k, cut);
+    }
     println!("{n} cuts, all resumed");
 }

@@ -269,7 +269,7 @@ mod tests {
         let problem = Problem {
             design,
             response: response.collect(),
-            weight: Some((0..30).map(|i| 1.0 + 0.1 * (i % 4) as f64).collect()),
+            weight: Some((0..30).map(|i| 1.0 + 0.1 * f64::from(i % 4)).collect()),
             component: (0..30).map(|i| i / 15).collect(),
             components: vec!["f_x".into(), "f_y".into()],
             cluster: None,

@@ -41,7 +41,7 @@ pub enum LockError {
 /// A folder that nobody else drives into as long as this lives.
 #[derive(Debug)]
 pub struct FolderLock {
-    _file: File,
+    file: File,
 }
 
 impl FolderLock {
@@ -76,7 +76,15 @@ impl FolderLock {
             time_of_day(start_unix_ns / 1_000_000_000)
         );
         file.set_len(0).and_then(|()| file.rewind()).and_then(|()| file.write_all(who.as_bytes())).map_err(failed)?;
-        Ok(Self { _file: file })
+        Ok(Self { file })
+    }
+}
+
+impl Drop for FolderLock {
+    /// Nobody drives any more, and the file says so; the lock goes with it.
+    fn drop(&mut self) {
+        // What cannot be emptied names a process that is gone: it stops nobody.
+        let _ = self.file.set_len(0);
     }
 }
 
@@ -109,10 +117,14 @@ mod tests {
         assert!(refused.contains(&who), "{refused}");
         assert!(refused.starts_with(&runs.display().to_string()), "{refused}");
         drop(first);
-        // A longer word before leaves nothing behind.
-        FolderLock::take(&runs, "2026-03-02", 0).unwrap();
-        let left = std::fs::read_to_string(runs.join(LOCK_FILE)).unwrap();
-        assert!(left.ends_with("since 2026-03-02 00:00:00 UTC\n") && left.lines().count() == 1, "{left:?}");
+        let said = || std::fs::read_to_string(runs.join(LOCK_FILE)).unwrap();
+        assert_eq!(said(), "");
+        // The longer word of one that was killed leaves nothing behind.
+        std::fs::write(runs.join(LOCK_FILE), "process 1 on a computer with a long name, since long ago\nand so on\n")
+            .unwrap();
+        let second = FolderLock::take(&runs, "2026-03-02", 0).unwrap();
+        assert!(said().ends_with("since 2026-03-02 00:00:00 UTC\n") && said().lines().count() == 1, "{}", said());
+        drop(second);
     }
 
     #[test]
