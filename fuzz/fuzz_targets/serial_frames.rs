@@ -6,7 +6,7 @@
 #![no_main]
 
 use froude_link::frame::{FrameReader, FrameWriter, MAX_WIRE, Message};
-use froude_link::message::{FromBoard, ToBoard};
+use froude_link::message::{FromBoard, HostFrame};
 use libfuzzer_sys::fuzz_target;
 
 /// COBS of these bytes and their CRC-32, and the zero that closes a frame.
@@ -70,6 +70,6 @@ fn read<M: Message>(bytes: &[u8]) {
 
 fuzz_target!(|bytes: &[u8]| {
     let line = line(bytes);
-    read::<ToBoard>(&line);
+    read::<HostFrame>(&line);
     read::<FromBoard>(&line);
 });
