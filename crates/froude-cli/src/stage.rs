@@ -124,7 +124,8 @@ impl Terminal {
             }
             if !is_stop_told && self.switch.is_asked() {
                 is_stop_told = true;
-                self.put("\nstopping the carriage under control; Ctrl-C again cuts the torque\n");
+                let more = if self.switch.was_pressed() { "again" } else { "twice" };
+                self.put(&format!("\nstopping the carriage under control; Ctrl-C {more} cuts the torque\n"));
             }
         }
         self.bar.finish_and_clear();

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use froude::records::run::{RunStatus, read_run};
@@ -19,9 +19,11 @@ use board::{BoardAtTerminal, BoardConfig, keyboard};
 /// Longest wait for something that has to happen, on a computer that is busy with other tests.
 const PATIENCE: Duration = Duration::from_mins(2);
 /// An answer that comes late: the host's patience with a silent board is 1 s, the board's with a silent host 0.2 s.
-const LATE: Duration = Duration::from_millis(2_500);
-/// What the board forgives a computer that is busy with other tests.
-const BUSY: Duration = Duration::from_secs(1);
+const LATE: Duration = Duration::from_secs(5);
+/// What the board forgives a computer that is busy with other tests; an answer that comes [`LATE`] is later than that.
+const BUSY: Duration = Duration::from_secs(3);
+/// One board at a time: each runs in real time, and so does its host.
+static ONE_BOARD: Mutex<()> = Mutex::new(());
 /// A motor that has moved no farther than this has not been driven, m.
 const STILL_M: f64 = 1e-4;
 
@@ -73,6 +75,10 @@ fn campaign(folder: &Path, port: Option<&Path>, has_warm_up: bool) -> PathBuf {
 
 fn board() -> BoardAtTerminal {
     BoardAtTerminal::new(&BoardConfig { start_m: [0.01, 0.01], patience: BUSY }).unwrap()
+}
+
+fn alone() -> MutexGuard<'static, ()> {
+    ONE_BOARD.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// `froude`, with a person at its standard input.
@@ -186,6 +192,7 @@ fn end_of_record(runs: &Path) -> (RunStatus, f64) {
 
 #[test]
 fn a_person_may_take_their_time_and_ctrl_c_at_the_prompt_ends_it_without_enter() {
+    let _alone = alone();
     let (folder, board) = (tempfile::tempdir().unwrap(), board());
     let campaign = campaign(folder.path(), Some(&board.port), false);
     let mut driven = Driven::new(&["run", text(&campaign)]);
@@ -223,6 +230,7 @@ fn a_person_may_take_their_time_and_ctrl_c_at_the_prompt_ends_it_without_enter()
 
 #[test]
 fn to_terminate_and_to_hang_up_however_often_stop_under_control() {
+    let _alone = alone();
     for signal in [Signal::TERM, Signal::HUP] {
         let (folder, board) = (tempfile::tempdir().unwrap(), board());
         let campaign = campaign(folder.path(), Some(&board.port), true);
@@ -244,6 +252,7 @@ fn to_terminate_and_to_hang_up_however_often_stop_under_control() {
 /// `froude run … 2>&1 | tee`, and Ctrl-C, which ends tee as well: once, and twice.
 #[test]
 fn ctrl_c_stops_the_carriage_when_nobody_reads_what_is_said_and_again_cuts_the_torque() {
+    let _alone = alone();
     for presses in [1, 2] {
         let (folder, board) = (tempfile::tempdir().unwrap(), board());
         let campaign = campaign(folder.path(), Some(&board.port), true);
@@ -280,6 +289,7 @@ fn ctrl_c_stops_the_carriage_when_nobody_reads_what_is_said_and_again_cuts_the_t
 
 #[test]
 fn without_a_terminal_and_without_yes_nothing_moves() {
+    let _alone = alone();
     let folder = tempfile::tempdir().unwrap();
     let on_twin = campaign(folder.path(), None, false);
     let verbs: [&[&str]; 3] = [&["run"], &["carriage", "tune"], &["carriage", "resonance"]];

@@ -12,7 +12,7 @@
 use froude_control::Controller;
 use froude_control::config::Config;
 use froude_control::request::Request;
-use froude_control::status::{Output, Phase, Status};
+use froude_control::status::{Output, Phase, Refusal, Status};
 use froude_control::tick::{AXES, AxisInput, Command, Tick};
 use froude_link::budget::Decimation;
 use froude_link::frame::{FrameReader, FrameWriter};
@@ -333,7 +333,7 @@ impl Application {
     fn hear_stranger(&mut self, session: u32, says: &ToBoard) {
         match *says {
             ToBoard::Request { id, request: request @ Request::Stop(_) } => {
-                self.requests.put(Waiting { session, id, request });
+                self.put(Waiting { session, id, request });
             }
             _ => self.operator.stranger = Some(session),
         }
@@ -364,7 +364,11 @@ impl Application {
                 return;
             }
             Greeting::Taken => {
-                self.lock_step = None;
+                // A controller that drove what was simulated knows nothing of where the carriage is.
+                if self.lock_step.take().is_some() {
+                    self.controller = None;
+                    self.output = NOTHING;
+                }
                 self.requests.answered = None;
                 self.link.order.restart();
             }
@@ -400,8 +404,23 @@ impl Application {
         }
         // A late or repeated frame is older than one that was carried out: its sender has moved on, except for a stop.
         if !is_stale || waiting.is_stop() {
-            self.requests.put(waiting);
+            self.put(waiting);
         }
+    }
+
+    /// Keeps a request until its tick. What was asked for before a stop and not begun is not begun after it: it is refused.
+    fn put(&mut self, new: Waiting) {
+        if new.is_stop() {
+            for _ in 0..self.requests.waiting.len() {
+                let Some(older) = self.requests.waiting.pop_front() else { break };
+                if older.is_stop() {
+                    let _ = self.requests.waiting.push_back(older);
+                } else {
+                    self.answer(older.session, older.id, Verdict::Refused(Refusal::Busy));
+                }
+            }
+        }
+        self.requests.put(new);
     }
 
     /// The next request; what a host asked for before it lost the board is dropped, but for a stop.

@@ -376,9 +376,28 @@ fn there_is_room_for_a_stop_however_much_is_asked_for() {
     }
     bench.send(SECOND, &ToBoard::Request { id: 1, request: Request::Stop(StopCategory::Zero) });
     let said: Vec<_> = (0..2).flat_map(|_| bench.tick()).collect();
-    let first = said.iter().find_map(|m| if let FromBoard::Ack(ack) = m { Some((ack.session, ack.id)) } else { None });
-    assert_eq!(first, Some((SECOND, 1)), "{said:?}");
+    let mut answers = said.iter().filter_map(|m| if let FromBoard::Ack(ack) = m { Some(*ack) } else { None });
+    assert!(answers.any(|ack| (ack.session, ack.id, ack.verdict) == (SECOND, 1, Verdict::Accepted)), "{said:?}");
     assert!(!bench.board.is_enabled);
+}
+
+#[test]
+fn what_was_asked_for_before_a_stop_is_not_begun_after_it() {
+    let mut bench = Bench::enabled();
+    for (session, id) in [(FIRST, 11), (SECOND, 1)] {
+        bench.send(FIRST, &ToBoard::Request { id: id + 20, request: Request::Home { axis: 0 } });
+        bench.send(session, &ToBoard::Request { id, request: Request::Stop(StopCategory::Two) });
+        let said: Vec<_> = (0..20).flat_map(|_| bench.tick()).collect();
+        let verdict = |asked: (u32, u16)| {
+            said.iter().find_map(|m| match m {
+                FromBoard::Ack(ack) if (ack.session, ack.id) == asked => Some(ack.verdict),
+                _ => None,
+            })
+        };
+        assert_eq!(verdict((FIRST, id + 20)), Some(Verdict::Refused(Refusal::Busy)), "{said:?}");
+        assert_eq!(verdict((session, id)), Some(Verdict::Accepted), "{said:?}");
+        assert_eq!(bench.application.output().status.axes[0].phase, Phase::Holding);
+    }
 }
 
 #[test]

@@ -131,6 +131,15 @@ pub enum RunnerError {
         /// What became of each.
         runs: Vec<String>,
     },
+    /// A stop was asked for twice, and the carriage still moves.
+    #[error(
+        "{run}: the carriage does not come to rest, although a stop was asked for twice: use the emergency stop. The board stops by itself \
+         when this program has ended"
+    )]
+    NotAtRest {
+        /// The run.
+        run: String,
+    },
     /// Something took longer than it can.
     #[error("{run}: {what} did not end within {limit_s:.0} s; the carriage was stopped")]
     TooLong {
@@ -179,7 +188,7 @@ pub enum RunnerError {
 impl RunnerError {
     fn status(&self) -> RunStatus {
         match self {
-            Self::Fault { .. } => RunStatus::Faulted,
+            Self::Fault { .. } | Self::FaultAtRest { .. } => RunStatus::Faulted,
             _ => RunStatus::Interrupted,
         }
     }
@@ -299,8 +308,11 @@ pub fn drive(
     std::thread::scope(|scope| {
         let attend = move || rig_thread::attend(rig, engine, setting, switch);
         let thread = std::thread::Builder::new().name("rig".to_owned()).spawn_scoped(scope, attend);
-        thread.map_err(|e| RunnerError::Thread { reason: e.to_string() })?;
-        Campaign { steps, setting, helm, facts, switch, operator, progress }.drive(enough)
+        let thread = thread.map_err(|e| RunnerError::Thread { reason: e.to_string() })?;
+        let driven = Campaign { steps, setting, helm, facts, switch, operator, progress }.drive(enough);
+        // A thread that ended by itself has been reported already.
+        let _ = thread.join();
+        driven
     })
 }
 
@@ -724,14 +736,18 @@ impl<'a, 'o> Session<'a, 'o> {
             let sentence = format!("{fault:?}: category {} stop", fault.category() as u8);
             self.event(EventKind::Fault, &sentence);
             self.until_rest()?;
-            let (run, category) = (self.run.id.clone(), fault.category() as u8);
-            return Err(if self.is_recorded {
-                RunnerError::Fault { run, fault, category }
-            } else {
-                RunnerError::FaultBefore { run, fault, category }
-            });
+            return Err(self.faulted(fault));
         }
         Ok(sample)
+    }
+
+    fn faulted(&self, fault: Fault) -> RunnerError {
+        let (run, category) = (self.run.id.clone(), fault.category() as u8);
+        if self.is_recorded {
+            RunnerError::Fault { run, fault, category }
+        } else {
+            RunnerError::FaultBefore { run, fault, category }
+        }
     }
 
     /// Stops because the operator asked for it.
@@ -748,11 +764,28 @@ impl<'a, 'o> Session<'a, 'o> {
         if let Some(sentence) = sentence {
             self.event(EventKind::Operator, sentence);
         }
-        self.until_rest()
+        self.until_rest()?;
+        // That nobody records any more is a fault by intent; any other one came while the carriage was being stopped.
+        match self.last.fault {
+            Some((fault, _)) if fault != Fault::RecorderFailed => {
+                self.event(EventKind::Fault, &format!("{fault:?}: category {} stop", fault.category() as u8));
+                Err(self.faulted(fault))
+            }
+            _ => Ok(()),
+        }
     }
 
-    /// Goes on until both axes are at rest, and a tenth of a second more, so that the record shows it.
+    /// Goes on until both axes are at rest. A stop that takes too long is made as hard as the drive can.
     fn until_rest(&mut self) -> Result<(), RunnerError> {
+        if self.is_soon_at_rest()? {
+            return Ok(());
+        }
+        self.rig_tick(Some(Request::Stop(StopCategory::One)))?;
+        if self.is_soon_at_rest()? { Ok(()) } else { Err(RunnerError::NotAtRest { run: self.run.id.clone() }) }
+    }
+
+    /// Waits until both axes are at rest, and a tenth of a second more, so that the record shows it; `false` when that takes too long.
+    fn is_soon_at_rest(&mut self) -> Result<bool, RunnerError> {
         let mut is_cut = false;
         let mut rest_ticks = 0.0;
         for _ in 0..(STOP_S * self.rig.rate_hz()) as u64 {
@@ -764,10 +797,10 @@ impl<'a, 'o> Session<'a, 'o> {
             let is_at_rest = sample.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Holding));
             rest_ticks = if is_at_rest { rest_ticks + 1.0 } else { 0.0 };
             if rest_ticks >= 0.1 * self.rig.rate_hz() {
-                break;
+                return Ok(true);
             }
         }
-        Ok(())
+        Ok(false)
     }
 
     /// One tick of the rig; its sample is handed over where it is due to be recorded or shown.

@@ -1,8 +1,7 @@
 //! The operator's stop: the first Ctrl-C stops under control and holds (category 2), the second cuts the torque (category 0).
 //!
 //! A signal's handler sets flags and nothing else. That a stop was asked for is one flag which nobody clears, so that everybody may look at it.
-//! Presses are counted by one thread alone, the rig's, at every tick: two presses are two as soon as a quarter of a millisecond lies
-//! between them.
+//! Presses are counted by one thread alone, the rig's, at every sample that it gets: two presses are two when a sample lies between them.
 //!
 //! SIGTERM and SIGHUP stop under control however often they come: a terminal that is closed hangs up twice, once by itself and once by its
 //! shell, and that must not cut the torque.
@@ -51,6 +50,12 @@ impl StopSwitch {
     #[must_use]
     pub fn is_asked(&self) -> bool {
         self.is_asked.load(Ordering::SeqCst)
+    }
+
+    /// Whether Ctrl-C was among what asked for it: then one more cuts, otherwise two.
+    #[must_use]
+    pub fn was_pressed(&self) -> bool {
+        self.is_pressed.load(Ordering::SeqCst) || self.presses.load(Ordering::SeqCst) > 0
     }
 
     /// What was asked for so far. It counts, so that it is for the rig's thread alone; all others have [`Self::is_asked`].

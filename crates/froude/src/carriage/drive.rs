@@ -321,7 +321,8 @@ fn own_folder(folder: &Path, campaign: &Path) -> Result<String, Error> {
                 folder.display()
             )));
         }
-        Err(_) => froude_records::write::write_atomically(&copy, &text)?,
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => froude_records::write::write_atomically(&copy, &text)?,
+        Err(e) => return Err(failed(&copy)(e)),
     }
     Ok(sha256_of_bytes(&text))
 }
