@@ -222,6 +222,20 @@ fn a_log_with_other_bytes_is_left_out_and_driven_again() {
     assert_eq!(bench.run().0, 1);
 }
 
+#[test]
+fn a_log_whose_very_beginning_is_another_costs_itself_and_no_other_run() {
+    let bench = Bench::new();
+    let log = &bench.logs("dry")[1];
+    let mut bytes = std::fs::read(log).unwrap();
+    bytes[2] ^= 4;
+    std::fs::write(log, &bytes).unwrap();
+    let found = findings(&bench.drag());
+    assert_eq!(found.len(), 1, "{found:?}");
+    let (code, message) = &found[0];
+    assert_eq!(code, "run-damaged");
+    assert!(message.starts_with(text(log)) && message.ends_with(". It was left out"), "{message}");
+}
+
 fn swap(a: &Path, b: &Path) {
     let aside = a.with_extension("aside");
     std::fs::rename(a, &aside).unwrap();

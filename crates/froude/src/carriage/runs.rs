@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use froude_hydro::fluid::Water;
 use froude_identify::carriage::run as drag;
+use froude_records::RecordError;
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
@@ -52,12 +53,12 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
             if !kinds.contains(&meta.kind) {
                 continue;
             }
-            if meta.status != RunStatus::Complete {
-                out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&meta)));
-                continue;
-            }
             if is_put_aside(&file, &meta) {
                 out.findings.push(put_aside(&file));
+                continue;
+            }
+            if meta.status != RunStatus::Complete {
+                out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&meta)));
                 continue;
             }
             if !file.exists() {
@@ -65,7 +66,14 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
                 continue;
             }
         }
-        let reader = RunReader::open(&file)?;
+        let reader = match RunReader::open(&file) {
+            // A sidecar says that a run was recorded there: its log is damaged where not even its beginning is one.
+            Err(error @ RecordError::Syntax { .. }) if sidecar.exists() => {
+                out.findings.push(left_out_for(Finding::new(Severity::Error, "run-damaged", error.to_string())));
+                continue;
+            }
+            reader => reader?,
+        };
         let wanted: Vec<String> =
             reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
         let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
