@@ -470,6 +470,97 @@ fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() 
     assert!((y_uv["value"].as_f64().unwrap() + Y_UV).abs() < 4.0 * standard.min(0.002 * Y_UV), "{y_uv}");
 }
 
+const SUBTRACTED: &str = "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"gross.csv\"\n\
+    tare = { record = \"tare-results/estimate.json\" }\n\
+    [identify]\n[[identify.model]]\nname = \"whole\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_uv*u*v + Y_vv*v*abs(v)\"\n";
+
+/// A tare that was towed ahead and astern, or at drift without f_y, knows no side force.
+#[test]
+fn a_tare_without_side_force_is_a_warning_at_drift_whichever_way_it_was_towed() {
+    let gross = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &drift_test(10), |r| {
+        let (sin, cos) = r.angle_deg.to_radians().sin_cos();
+        let drag = STRUT * r.speed * r.speed;
+        format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x - drag * cos, r.f_y + drag * sin)
+    });
+    let mut noise = noise(11);
+    let mut tare_at = |angles: &[f64]| {
+        let mut out = "speed [m/s],angle [deg],f_x [N]\n".to_owned();
+        for i in 1..=10 {
+            for angle in angles {
+                let (speed, cos) = (0.1 * f64::from(i), angle.to_radians().cos());
+                writeln!(out, "{speed},{angle},{}", -STRUT * speed * speed * cos + 0.01 * noise()).unwrap();
+            }
+        }
+        out
+    };
+    for (tare, model, taken, is_f_x_named) in [
+        (tare_at(&[0.0, 180.0]), "quadratic", "straight ahead", true),
+        (tare_at(&[0.0, -180.0]), "quadratic", "straight ahead", true),
+        (tare_at(&[-20.0, -10.0, 0.0, 10.0, 20.0]), "strut", "up to 20.0 deg without f_y", false),
+    ] {
+        let folder = folder_of(&[("gross.csv", &gross), ("tare.csv", &tare), ("c.toml", SUBTRACTED)]);
+        json_in(folder.path(), &["identify", "tare.csv", "--models", model]);
+        let out = json_in(folder.path(), &["identify", "c.toml"]);
+        let told = findings(&out, "tare-straight-ahead");
+        let wanted = format!(
+            "the tare tare.csv/{model} was taken {taken} and is used at angles up to 20.0 deg, in 64 of 72 rows; its side force \
+             stays in f_y: "
+        );
+        assert!(told.len() == 1 && told[0].1.starts_with(&wanted), "{told:?}");
+        assert_eq!(told[0].1.contains("of the measured f_x"), is_f_x_named, "{told:?}");
+    }
+}
+
+/// The lift of a faired strut stands across the flow: a part of it points forward.
+#[test]
+fn a_faired_strut_as_tare_leaves_nothing_in_the_force_along_the_body() {
+    const LIFT: f64 = 10.0 * STRUT;
+    let of = |speed: f64, angle_deg: f64| {
+        let (sin, cos) = angle_deg.to_radians().sin_cos();
+        let (drag, lift) = (STRUT * speed * speed, LIFT * speed * speed * sin);
+        (-drag * cos + lift * sin, drag * sin + lift * cos)
+    };
+    let gross = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &drift_test(12), |r| {
+        let (f_x, f_y) = of(r.speed, r.angle_deg);
+        format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x + f_x, r.f_y + f_y)
+    });
+    let mut noise = noise(13);
+    let mut tare = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+    for i in 1..=10 {
+        for angle in [-20.0, -10.0, 0.0, 10.0, 20.0] {
+            let speed = 0.1 * f64::from(i);
+            let (f_x, f_y) = of(speed, angle);
+            writeln!(tare, "{speed},{angle},{},{}", f_x + 0.01 * noise(), f_y + 0.01 * noise()).unwrap();
+        }
+    }
+    let folder = folder_of(&[("gross.csv", &gross), ("tare.csv", &tare), ("c.toml", SUBTRACTED)]);
+    let fitted = json_in(folder.path(), &["identify", "tare.csv", "--models", "strut"]);
+    let strut = estimate(&fitted, "strut");
+    assert!((value(strut, "X_vv") / LIFT - 1.0).abs() < 0.01, "{}", strut["coefficients"]);
+    assert!((value(strut, "D_xU") / STRUT - 1.0).abs() < 0.01, "{}", strut["coefficients"]);
+    let out = json_in(folder.path(), &["identify", "c.toml"]);
+    assert!(findings(&out, "tare-straight-ahead").is_empty());
+    let x_uu = value(estimate(&out, "whole"), "X_uu");
+    assert!((x_uu / -10.0 - 1.0).abs() < 0.01, "X_uu {x_uu}");
+}
+
+/// At one magnitude of drift v_x v_y and v_y |v_y| have one shape.
+#[test]
+fn one_magnitude_of_drift_leaves_the_quadratic_law_a_candidate() {
+    let rows: Vec<Row> =
+        drift_test(14).into_iter().filter(|r| r.angle_deg == 0.0 || r.angle_deg.abs() == 10.0).collect();
+    let text = table("speed [m/s],angle [deg],f_x [N],f_y [N],m_z [N m]", &rows, |r| {
+        format!("{},{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y, r.m_z)
+    });
+    let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
+    let quadratic = estimate(&out, "quadratic");
+    assert_eq!(quadratic["law"]["formulas"]["m_z"], "N_uv*v_x*v_y");
+    // N_uv stands for the moment at that angle: m_z = N_uv u v + N_vv v|v| with |v| = u tan 10°.
+    let whole = N_UV + N_VV * f64::to_radians(10.0).tan();
+    assert!((value(quadratic, "N_uv") / whole - 1.0).abs() < 0.02, "{}", quadratic["coefficients"]);
+    assert_eq!(recommended(&out)["model"], "quadratic", "{}", recommended(&out)["reason"]);
+}
+
 #[test]
 fn a_reference_point_is_printed_where_somebody_named_one() {
     let text = "speed [m/s],f_x [N]\n0.1,-0.5\n0.2,-2.0\n0.3,-4.4\n0.4,-8.1\n0.5,-12.4\n";

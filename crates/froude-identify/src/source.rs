@@ -407,7 +407,8 @@ fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> IdentifyError {
 /// f = −D_I·v − D_II·v|v| per axis, or the quadratic term alone; with it the moments of motion across the body,
 /// m_z = N_v·v_y + N_uv·v_x·v_y + N_vv·v_y|v_y|, the first again only in the linear law.
 ///
-/// N_uv holds the moment of an ideal fluid (Munk) and what lift takes off it, N_vv that of cross-flow.
+/// N_uv holds the moment of an ideal fluid (Munk) and what lift takes off it, N_vv that of cross-flow. At one magnitude of
+/// drift both have the same shape: N_uv stands for their sum, N_vv is left out.
 fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Result<ForceLaw, IdentifyError> {
     let askew = moments(data);
     let axes = if askew.is_empty() { moving_axes(data, source)? } else { axes(data) };
@@ -426,12 +427,16 @@ fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Resu
             "y" => "v",
             _ => "w",
         });
-        let mut terms = vec![format!("{letter}_{v}{v}*{across}*abs({across})")];
-        if moves(data, along) {
-            terms.insert(0, format!("{letter}_{u}{v}*{along}*{across}"));
-        }
+        let mut terms = Vec::new();
         if linear {
-            terms.insert(0, format!("{letter}_{v}*{across}"));
+            terms.push(format!("{letter}_{v}*{across}"));
+        }
+        let moves_along = moves(data, along);
+        if moves_along {
+            terms.push(format!("{letter}_{u}{v}*{along}*{across}"));
+        }
+        if !moves_along || has_two_angles(data, along, across, false) {
+            terms.push(format!("{letter}_{v}{v}*{across}*abs({across})"));
         }
         let text = terms.join(" + ");
         texts.entry(moment.to_owned()).and_modify(|about| *about = format!("{about} + {text}")).or_insert(text);
@@ -439,12 +444,32 @@ fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Resu
     ForceLaw::formulas(name, &texts, data)
 }
 
-/// What a strut that turns with the body carries, f_x = −D_xU·v_x·U, f_y = −D_yU·v_y·U, m_z = N_vU·v_y·U: exact for a round one
-/// (D_xU = D_yU), lift and drag of a section up to its stall.
+/// Whether the rows that move askew, or all that move, do so at two angles to the axis at least, 1° apart; ahead and astern are two.
+fn has_two_angles(data: &Dataset, along: &str, across: &str, with_straight_rows: bool) -> bool {
+    let (Some(u), Some(v)) = (data.values(along), data.values(across)) else { return false };
+    let largest = u.iter().zip(v).map(|(u, v)| u.hypot(*v)).fold(0.0, f64::max);
+    let is_none = |x: f64| x.abs() <= 1e-9 * largest;
+    let (low, high) = u
+        .iter()
+        .zip(v)
+        .filter(|(u, v)| !is_none(**v) || (with_straight_rows && !is_none(**u)))
+        .map(|(u, v)| v.abs().atan2(*u))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), angle| (low.min(angle), high.max(angle)));
+    high - low > std::f64::consts::PI / 180.0
+}
+
+/// What a strut that turns with the body carries, f_x = −D_xU·v_x·U + X_vv·v_y², f_y = −D_yU·v_y·U, m_z = N_vU·v_y·U.
+///
+/// Exact for a round one (D_xU = D_yU, X_vv = 0). A section up to its stall has a lift of slope a across the flow: its forward
+/// part is X_vv = a, its sideways part makes D_yU = D_xU + a, but for the cosine of the drift angle.
 fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, IdentifyError> {
-    const TERMS: [(&str, &str, &str); 3] =
-        [("f_x", "v_x", "-D_xU*v_x*speed"), ("f_y", "v_y", "-D_yU*v_y*speed"), ("m_z", "v_y", "N_vU*v_y*speed")];
-    let texts: IndexMap<String, String> = TERMS
+    let along = if moves(data, "v_y") && has_two_angles(data, "v_x", "v_y", true) {
+        "-D_xU*v_x*speed + X_vv*v_y*v_y"
+    } else {
+        "-D_xU*v_x*speed"
+    };
+    let terms = [("f_x", "v_x", along), ("f_y", "v_y", "-D_yU*v_y*speed"), ("m_z", "v_y", "N_vU*v_y*speed")];
+    let texts: IndexMap<String, String> = terms
         .into_iter()
         .filter(|(load, motion, _)| data.channels.contains_key(*load) && moves(data, motion))
         .map(|(load, _, text)| (load.to_owned(), text.to_owned()))

@@ -48,7 +48,7 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
     let predicted = law.predict(data, &values)?;
     let slopes = law.regressors(data, &values)?;
     let n = data.rows;
-    let askew = beyond_its_angles(data, estimate, &law, &values)?;
+    let askew = beyond_its_angles(data, estimate, &law, &values, &predicted)?;
     for (r, response) in law.responses.iter().enumerate() {
         if let Some(channel) = data.channels.get_mut(response) {
             for i in 0..n {
@@ -88,13 +88,19 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
     Ok((error, findings))
 }
 
+/// Angle between the motion and the x axis, ahead or astern, rad.
+fn askew(angle: f64) -> f64 {
+    angle.sin().abs().asin()
+}
+
 /// Largest angle to the x axis at which a tare was taken, rad; `None` where nothing says.
-fn reach(estimate: &Estimate, law: &ForceLaw) -> Option<f64> {
-    let says_nothing_of_sides = !law.responses.iter().any(|r| r == "f_y");
-    match estimate.validity.get("angle") {
-        Some(range) => Some(range.low.abs().max(range.high.abs()).min(FRAC_PI_2)),
-        None => says_nothing_of_sides.then_some(0.0),
-    }
+///
+/// A record holds the ends of its range: 0 and ±180° are a tare towed both ways, unless its law gives a side force.
+fn reach(estimate: &Estimate, gives_f_y: bool) -> Option<f64> {
+    let Some(range) = estimate.validity.get("angle") else { return (!gives_f_y).then_some(0.0) };
+    let ends = askew(range.low).max(askew(range.high));
+    let largest = range.low.abs().max(range.high.abs());
+    Some(if gives_f_y && ends <= SAME_ANGLE_RAD { largest.min(FRAC_PI_2) } else { ends })
 }
 
 /// Rows at larger angles than those of the tare runs, and what that leaves in the loads.
@@ -103,39 +109,71 @@ fn beyond_its_angles(
     estimate: &Estimate,
     law: &ForceLaw,
     values: &[f64],
+    predicted: &[f64],
 ) -> Result<Option<Finding>, IdentifyError> {
-    let (Some(angle), Some(speed), Some(reach)) = (data.values("angle"), data.values("speed"), reach(estimate, law))
+    let gives = |load: &str| law.responses.iter().position(|r| r == load);
+    let (Some(angle), Some(speed), Some(reach)) =
+        (data.values("angle"), data.values("speed"), reach(estimate, gives("f_y").is_some()))
     else {
         return Ok(None);
     };
-    let askew = |a: f64| a.sin().abs().asin();
-    let rows: Vec<usize> =
-        (0..data.rows).filter(|&i| speed[i] > 0.0 && askew(angle[i]) > reach + SAME_ANGLE_RAD).collect();
+    let beyond = |reach: f64| -> Vec<usize> {
+        (0..data.rows).filter(|&i| speed[i] > 0.0 && askew(angle[i]) > reach + SAME_ANGLE_RAD).collect()
+    };
+    // Of a load that the law does not give, the tare knows nothing at any angle.
+    let stays_in = |load: &str| data.values(load).filter(|_| gives(load).is_none());
+    let (side, moment) = (stays_in("f_y"), stays_in("m_z"));
+    let rows = beyond(if side.is_some() || moment.is_some() { 0.0 } else { reach });
     if rows.is_empty() {
         return Ok(None);
     }
-    let most = rows.iter().map(|&i| askew(angle[i])).fold(0.0, f64::max);
-    let taken = if reach > SAME_ANGLE_RAD {
-        format!("up to {:.1} deg", reach.to_degrees())
-    } else {
-        "straight ahead".to_owned()
-    };
-    let size = match law.responses.iter().position(|r| r == "f_x") {
-        Some(r) => {
-            let mut ahead = data.clone();
-            ahead.put("angle", vec![0.0; data.rows], froude_records::units::Dimension::ANGLE);
-            ahead.velocity_from_speed_and_angle();
-            let drag_n: Vec<f64> = law.predict(&ahead, values)?[r * data.rows..(r + 1) * data.rows].to_vec();
-            left_in_the_loads(data, law, &rows, &drag_n)
+    let mut left = Vec::new();
+    if let Some(r) = gives("f_x") {
+        let mut ahead = data.clone();
+        ahead.put("angle", vec![0.0; data.rows], froude_records::units::Dimension::ANGLE);
+        ahead.velocity_from_speed_and_angle();
+        let drag_n = &law.predict(&ahead, values)?[r * data.rows..(r + 1) * data.rows];
+        if let Some(side) = side {
+            // The drag straight ahead is negative; the same force turned against a v_y below zero points to starboard.
+            let stays_n = |i: usize| -drag_n[i] * angle[i].sin();
+            left.extend(size(&rows, &stays_n, side).map(|(most_n, percent)| {
+                format!(
+                    "its side force stays in f_y: of a strut that drags alike from all sides up to {most_n:.3} N, {percent:.1} % of the \
+                     measured f_y (and of its coefficients), of a streamlined one several times that"
+                )
+            }));
         }
-        None => Some(String::new()),
+        if let Some(along) = data.values("f_x") {
+            let stays_n = |i: usize| drag_n[i] * angle[i].cos() - predicted[r * data.rows + i];
+            left.extend(size(&beyond(reach), &stays_n, along).map(|(most_n, percent)| {
+                format!(
+                    "its drag there is another one: of a strut that drags alike from all sides by up to {most_n:.3} N, {percent:.1} % of the \
+                     measured f_x"
+                )
+            }));
+        }
+        if moment.is_some() && (side.is_none() || !left.is_empty()) {
+            left.push("its moment, side force times lever, stays in m_z".to_owned());
+        }
+        if left.is_empty() {
+            return Ok(None);
+        }
+    }
+    let taken = if reach <= SAME_ANGLE_RAD {
+        "was taken straight ahead".to_owned()
+    } else {
+        let without: Vec<&str> =
+            [("f_y", side), ("m_z", moment)].into_iter().filter_map(|(load, stays)| stays.map(|_| load)).collect();
+        let without = if without.is_empty() { String::new() } else { format!(" without {}", without.join(", ")) };
+        format!("was taken up to {:.1} deg{without}", reach.to_degrees())
     };
-    let Some(size) = size else { return Ok(None) };
+    let most = rows.iter().map(|&i| askew(angle[i])).fold(0.0, f64::max);
+    let left: String = left.iter().map(|text| format!("; {text}")).collect();
     Ok(Some(Finding::new(
         Severity::Warning,
         "tare-straight-ahead",
         format!(
-            "the tare {} was taken {taken} and is used at angles up to {:.1} deg, in {} of {} rows{size}; tow the strut alone at the \
+            "the tare {} {taken} and is used at angles up to {:.1} deg, in {} of {} rows{left}; tow the strut alone at the \
              angles of the test, fit these runs with models = [\"strut\"] (f_x and f_y) and subtract that record",
             estimate.id,
             most.to_degrees(),
@@ -145,40 +183,15 @@ fn beyond_its_angles(
     )))
 }
 
-/// Size of what a strut that drags alike from all sides would leave, in words; `None` where it does not matter.
-fn left_in_the_loads(data: &Dataset, law: &ForceLaw, rows: &[usize], drag_n: &[f64]) -> Option<String> {
-    let angle = data.values("angle")?;
-    // Least-squares share of the measured load: by so much the coefficients of that load are off.
-    let share = |of: &dyn Fn(usize) -> f64, load: &[f64]| {
-        let (mut along, mut all) = (0.0, 0.0);
-        for &i in rows {
-            along += of(i) * load[i];
-            all += load[i] * load[i];
-        }
-        if all > 0.0 { (along / all).abs() } else { 0.0 }
-    };
-    let largest = |of: &dyn Fn(usize) -> f64| rows.iter().map(|&i| of(i).abs()).fold(0.0, f64::max);
-    if let Some(side) = data.values("f_y").filter(|_| !law.responses.iter().any(|r| r == "f_y")) {
-        // The drag straight ahead is negative; the same force turned against a v_y below zero points to starboard.
-        let sideways = |i: usize| -drag_n[i] * angle[i].sin();
-        let share = share(&sideways, side);
-        return (share > MATTERS_ABOVE).then(|| {
-            format!(
-                "; its side force stays in f_y: of a strut that drags alike from all sides up to {:.3} N, {:.1} % of the measured f_y \
-                 (and of its coefficients), of a streamlined one several times that",
-                largest(&sideways),
-                100.0 * share
-            )
-        });
+/// Largest force that stays in a measured load, N, and its least-squares share, %: by so much the coefficients of that load are
+/// off. `None` where it does not matter.
+fn size(rows: &[usize], stays_n: &dyn Fn(usize) -> f64, load_n: &[f64]) -> Option<(f64, f64)> {
+    let (mut along, mut all, mut most_n) = (0.0, 0.0, 0.0_f64);
+    for &i in rows {
+        along += stays_n(i) * load_n[i];
+        all += load_n[i] * load_n[i];
+        most_n = most_n.max(stays_n(i).abs());
     }
-    let along = data.values("f_x")?;
-    let missing = |i: usize| drag_n[i] * angle[i].cos() * (1.0 - angle[i].cos().abs());
-    let share = share(&missing, along);
-    (share > MATTERS_ABOVE).then(|| {
-        format!(
-            "; its drag there is another one: of a strut that drags alike from all sides by up to {:.3} N, {:.1} % of the measured f_x",
-            largest(&missing),
-            100.0 * share
-        )
-    })
+    let share = if all > 0.0 { (along / all).abs() } else { 0.0 };
+    (share > MATTERS_ABOVE).then_some((most_n, 100.0 * share))
 }
