@@ -58,10 +58,18 @@ const OTHER_NAMES: [(&str, &str); 14] = [
     ("rho", "density"),
     ("velocity", "speed"),
 ];
-/// An angle below this says nothing about its sign, 0.5°.
+/// Those of them that are measured in the vertical plane where the loads are.
+const VERTICAL_NAMES: [&str; 6] = ["alpha", "α", "aoa", "attack", "angle_of_attack", "incidence"];
+/// An angle below this says nothing about its sign, 0.5°; a column of such angles is a straight tow's.
 const STRAIGHT_RAD: f64 = 0.0088;
 /// A side force below this share of the largest is too small for its sign to say anything.
 const SIGN_MATTERS_ABOVE: f64 = 0.05;
+/// Angular speed below which a column is noise, 0.1°/s: turning tests go from some 1°/s up, gyros drift by less.
+const TURNS_RAD_S: f64 = 2e-3;
+/// Acceleration below which a column is noise, 2 mg: the zero of usual accelerometers.
+const SPEEDS_UP_M_S2: f64 = 0.02;
+/// The same of angular acceleration.
+const SPINS_UP_RAD_S2: f64 = 0.01;
 /// Share of the rows that must agree about a sign.
 const AGREED: f64 = 0.9;
 /// Columns named in one note.
@@ -80,7 +88,7 @@ pub fn unused(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[Forc
         match (data.values(name), data.dimension(name)) {
             (Some(values), Some(dimension)) => match doubt(header, name, values, dimension, data, laws) {
                 Some(message) => findings.push(Finding::new(Severity::Warning, "column-not-used", message)),
-                None => others.push(format!("`{header}`{}", proposal(name, dimension))),
+                None => others.push(format!("`{header}`{}", proposal(name, dimension, data))),
             },
             _ => others.push(format!("`{header}` (text)")),
         }
@@ -105,6 +113,13 @@ fn left_out(data: &Dataset) -> Vec<Finding> {
     let (angles, others): (Vec<&String>, Vec<&String>) =
         data.left_out.iter().partition(|header| is_straight(data) && is_angle_name(name_of(header)));
     for header in angles {
+        if is_vertical(name_of(header), data) {
+            if !has(data, "v_z") {
+                let message = format!("the sidecar does not name the column `{header}`; {IN_THE_VERTICAL_PLANE}");
+                findings.push(Finding::new(Severity::Warning, "column-not-used", message));
+            }
+            continue;
+        }
         findings.push(Finding::new(
             Severity::Warning,
             "column-not-used",
@@ -126,6 +141,9 @@ fn left_out(data: &Dataset) -> Vec<Finding> {
     findings
 }
 
+/// What to do with the angle of a vertical test.
+const IN_THE_VERTICAL_PLANE: &str = "if it is the angle of attack in the vertical plane, give v_x and v_z instead of the speed \
+                                     (z points down: v_z is positive with the bow up)";
 /// What Froude's angle is, for whoever has to choose a sign.
 const CONVENTION: &str = "angle = atan2(-v_y, v_x): a positive one moves the body to port through the water, and the side force on it is \
                           positive, to starboard";
@@ -189,16 +207,22 @@ fn doubt(
         return None;
     }
     if is_straight(data) && dimension == Dimension::ANGLE && is_angle_name(name) {
-        return Some(angle_under_another_name(header, name, values, data));
+        let is_turned = values.iter().any(|angle| angle.abs() > STRAIGHT_RAD);
+        if !is_vertical(name, data) {
+            return is_turned.then(|| angle_under_another_name(header, name, values, data));
+        }
+        return (is_turned && !has(data, "v_z")).then(|| {
+            let [low, high] = [low, high].map(f64::to_degrees);
+            format!("`{header}` goes from {low:.2} to {high:.2} deg and is not used; {IN_THE_VERTICAL_PLANE}")
+        });
     }
-    if let Some(known) = meant(name, dimension).filter(|known| !data.headers.iter().any(|h| name_of(h) == *known)) {
+    if let Some(known) = meant(name, dimension).filter(|known| !has(data, known) && !contradicts(known, data)) {
         return Some(format!(
             "`{header}` ({low:.4} to {high:.4}, SI) is read and used by nothing; if it is {known}, name it so"
         ));
     }
-    let base = name.strip_suffix("_dot").unwrap_or(name);
-    let is_motion = matches!(base, "v_x" | "v_y" | "v_z" | "w_x" | "w_y" | "w_z");
-    is_motion.then(|| {
+    let is_noise = low.abs().max(high.abs()) < noise_of(dimension);
+    (is_motion(name) && !is_noise).then(|| {
         let loads: IndexSet<&str> = laws.iter().flat_map(|law| &law.responses).map(String::as_str).collect();
         let of = loads.into_iter().collect::<Vec<_>>().join(", ");
         format!(
@@ -206,6 +230,40 @@ fn doubt(
              it ([[identify.model]]), or keep the rows where it is zero"
         )
     })
+}
+
+/// A velocity of the body, or its derivative.
+fn is_motion(name: &str) -> bool {
+    let base = name.strip_suffix("_dot").unwrap_or(name);
+    matches!(base, "v_x" | "v_y" | "v_z" | "w_x" | "w_y" | "w_z")
+}
+
+/// What a motion of this kind must reach to be more than noise, in SI.
+fn noise_of(dimension: Dimension) -> f64 {
+    match dimension {
+        Dimension::ANGULAR_SPEED => TURNS_RAD_S,
+        Dimension::ACCELERATION => SPEEDS_UP_M_S2,
+        Dimension::ANGULAR_ACCELERATION => SPINS_UP_RAD_S2,
+        _ => 0.0,
+    }
+}
+
+fn has(data: &Dataset, name: &str) -> bool {
+    data.headers.iter().any(|header| name_of(header) == name)
+}
+
+/// Whether a column of this name would state the motion twice: v_x and v_y overrule speed and angle.
+fn contradicts(known: &str, data: &Dataset) -> bool {
+    match known {
+        "v_x" | "v_y" => has(data, "speed"),
+        "speed" | "angle" => has(data, "v_x") || has(data, "v_y"),
+        _ => false,
+    }
+}
+
+/// Whether an angle of this name lies in the vertical plane: the loads of the table do, and none is lateral.
+fn is_vertical(name: &str, data: &Dataset) -> bool {
+    VERTICAL_NAMES.contains(&plain_angle(name).as_str()) && (has(data, "f_z") || has(data, "m_y")) && !has(data, "f_y")
 }
 
 /// The angle of the test, as it seems, under a name of its own.
@@ -265,8 +323,11 @@ fn is_straight(data: &Dataset) -> bool {
 }
 
 fn is_angle_name(name: &str) -> bool {
-    let name = name.to_lowercase().replace([' ', '-'], "_");
-    ANGLE_NAMES.contains(&name.as_str())
+    ANGLE_NAMES.contains(&plain_angle(name).as_str())
+}
+
+fn plain_angle(name: &str) -> String {
+    name.to_lowercase().replace([' ', '-'], "_")
 }
 
 /// The known column of this kind that a name was probably meant to be.
@@ -286,7 +347,7 @@ fn meant(name: &str, dimension: Dimension) -> Option<&'static str> {
 }
 
 /// What a column of this kind can be made of, in brackets; nothing where nothing is likely.
-fn proposal(name: &str, dimension: Dimension) -> String {
+fn proposal(name: &str, dimension: Dimension, data: &Dataset) -> String {
     let text = match dimension {
         _ if LOADS.contains(&name) => " (measured, and no law gives it: write one in [[identify.model]])",
         _ if name.starts_with("std_") => {
@@ -296,8 +357,11 @@ fn proposal(name: &str, dimension: Dimension) -> String {
         _ if matches!(name, "kinematic_viscosity" | "amplitude" | "period") => {
             " (for Reynolds and Keulegan–Carpenter numbers, with body.reference_length)"
         }
+        _ if is_motion(name) => " (no law has it, and it is zero or as small as noise)",
         Dimension::FORCE => " (if a load of the fluid on the body: f_x, f_y or f_z)",
         Dimension::MOMENT => " (if a load of the fluid on the body: m_x, m_y or m_z)",
+        Dimension::SPEED if has(data, "speed") => " (if the motion: v_z)",
+        Dimension::SPEED if contradicts("speed", data) => " (if the motion: v_x, v_y or v_z)",
         Dimension::SPEED => " (if the motion: speed, v_x, v_y or v_z)",
         Dimension::ANGULAR_SPEED => " (if the motion: w_x, w_y or w_z)",
         Dimension::TEMPERATURE => " (if the water's: temperature)",
@@ -309,4 +373,73 @@ fn proposal(name: &str, dimension: Dimension) -> String {
 
 fn range(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(columns: &[(&str, Dimension, [f64; 3])]) -> Dataset {
+        let mut data = Dataset { rows: 3, ..Dataset::default() };
+        for (name, dimension, values) in columns {
+            data.headers.push((*name).to_owned());
+            data.put(name, values.to_vec(), *dimension);
+        }
+        data
+    }
+
+    fn said(name: &str, data: &Dataset) -> Option<String> {
+        doubt(name, name, data.values(name).unwrap(), data.dimension(name).unwrap(), data, &[])
+    }
+
+    const TURNED: [f64; 3] = [-0.2, 0.0, 0.2];
+    const SPEEDS: [f64; 3] = [0.5, 1.0, 1.5];
+
+    #[test]
+    fn an_angle_of_attack_is_no_drift() {
+        for load in [("f_z", Dimension::FORCE), ("m_y", Dimension::MOMENT)] {
+            let mut columns = vec![
+                ("speed", Dimension::SPEED, SPEEDS),
+                ("alpha", Dimension::ANGLE, TURNED),
+                (load.0, load.1, TURNED),
+            ];
+            let vertical = said("alpha", &table(&columns)).unwrap();
+            assert!(vertical.contains("give v_x and v_z") && !vertical.contains("`angle"), "{vertical}");
+            columns.push(("f_y", Dimension::FORCE, TURNED));
+            assert!(said("alpha", &table(&columns)).unwrap().contains("head it `angle"));
+            columns.pop();
+            columns.push(("v_z", Dimension::SPEED, TURNED));
+            assert_eq!(said("alpha", &table(&columns)), None);
+        }
+    }
+
+    #[test]
+    fn noise_is_no_motion() {
+        for (name, dimension, noise) in [
+            ("yaw", Dimension::ANGLE, 8.7e-4),
+            ("w_z", Dimension::ANGULAR_SPEED, 1e-4),
+            ("v_x_dot", Dimension::ACCELERATION, 5e-3),
+            ("w_z_dot", Dimension::ANGULAR_ACCELERATION, 1e-3),
+        ] {
+            let of = |size: f64| said(name, &table(&[(name, dimension, [-size, 0.1 * size, size])]));
+            assert_eq!(of(noise), None, "{name}");
+            assert!(of(100.0 * noise).is_some(), "{name}");
+        }
+    }
+
+    #[test]
+    fn no_proposal_states_the_motion_twice() {
+        let both = [("speed", Dimension::SPEED, SPEEDS), ("angle", Dimension::ANGLE, TURNED)];
+        for name in ["u", "v", "vx", "Vy"] {
+            let alone = table(&[(name, Dimension::SPEED, SPEEDS)]);
+            assert!(said(name, &alone).is_some(), "{name}");
+            let beside = table(&[both[0], both[1], (name, Dimension::SPEED, SPEEDS)]);
+            assert_eq!(said(name, &beside), None, "{name}");
+            assert_eq!(proposal(name, Dimension::SPEED, &beside), " (if the motion: v_z)");
+        }
+        for given in ["v_x", "v_y"] {
+            let data = table(&[(given, Dimension::SPEED, SPEEDS), ("velocity", Dimension::SPEED, SPEEDS)]);
+            assert_eq!(said("velocity", &data), None);
+        }
+    }
 }

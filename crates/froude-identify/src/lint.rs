@@ -16,6 +16,8 @@ use crate::dataset::{Dataset, LOADS, distinct};
 const ANGLE_CONTRADICTS_RAD: f64 = std::f64::consts::PI / 180.0;
 /// A load below this share of the largest is too small for its sign to say anything.
 pub(crate) const SIGN_MATTERS_ABOVE: f64 = 0.05;
+/// Rows slower than this part of the fastest are at rest: the angle of their velocity is that of noise.
+const AT_REST: f64 = 0.05;
 /// Share of rows at one extreme value that looks like a saturated sensor.
 const SATURATED_SHARE: f64 = 0.02;
 /// A linear and a quadratic term need at least this many distinct speeds.
@@ -118,7 +120,9 @@ pub fn motion_contradictions(table: &Table, data: &Dataset) -> Vec<Finding> {
     let has_velocity = read("v_x").is_some() || read("v_y").is_some();
     if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
         // At rest there is no angle; a turn more is the same one.
-        let moving = data.values("speed").unwrap_or_default().iter().map(|u| *u > 0.0);
+        let speed = data.values("speed").unwrap_or_default();
+        let fastest = speed.iter().fold(0.0_f64, |m, u| m.max(*u));
+        let moving = speed.iter().map(|u| *u > AT_REST * fastest);
         let apart = |a: f64, b: f64| (a - b - TAU * ((a - b) / TAU).round()).abs();
         let worst = stated
             .iter()

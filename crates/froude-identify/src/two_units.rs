@@ -125,7 +125,7 @@ fn scatter(group: &[(f64, usize)], u: &dyn Fn(usize) -> f64) -> f64 {
 
 /// Rows of each setting.
 fn settings(data: &Dataset) -> Vec<Vec<usize>> {
-    let mut keys = vec![labels(&data.configuration)];
+    let mut keys = vec![labels(&data.configuration), labels(&data.setup)];
     for (name, channel) in &data.channels {
         if is_outcome(name) || name == "speed" {
             continue;
@@ -206,6 +206,15 @@ mod tests {
             let milli = table(seed, 0.02, 2, &[0.0], |i| if i % 2 == 0 { 1e3 } else { 1.0 });
             assert_eq!(found(&milli).unwrap().cause(), "some rows lack a prefix (N and mN, kN and N)");
         }
+    }
+
+    /// Two mounts of one body may load a sensor a hundredfold differently.
+    #[test]
+    fn two_setups_are_no_two_units() {
+        let mut data = table(1, 0.02, 2, &[0.0], |i| if i % 2 == 0 { 101.97 } else { 1.0 });
+        assert!(found(&data).is_some());
+        data.setup = (0..data.rows).map(|i| if i % 2 == 0 { "sting" } else { "strut" }.to_owned()).collect();
+        assert_eq!(found(&data), None);
     }
 
     /// Clean tables from a good balance to one that sees nothing, 4,000 of them. A load no larger than its noise may fall into two

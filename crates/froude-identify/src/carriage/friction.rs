@@ -12,11 +12,11 @@ use super::fsm::reach;
 use super::run::DragRun;
 use super::steady::{SteadySettings, taper, window};
 
-/// Spacing of the knots of a map, m: 0.1 m resolves a bump that is half a metre wide to 2 % of its height.
+/// Spacing of the knots of a map, m, where that takes no more than 2501 of them: 0.1 m resolves a bump that is half a metre wide to 2 % of its height.
 pub const KNOT_SPACING_M: f64 = 0.1;
 
-/// Longest way that is mapped, m; no carriage goes further. A map costs the third power of its knots.
-const LONGEST_MAP_M: f64 = 250.0;
+/// Knots of a map at most: it costs their third power. On ways longer than 250 m they lie further apart.
+const MOST_KNOTS: usize = 2501;
 
 /// Friction in volts of the drive command.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,11 +79,9 @@ impl Friction {
         if cells.is_empty() {
             return None;
         }
-        if is_mapped && range_m[1] - range_m[0] > LONGEST_MAP_M {
-            return None;
-        }
-        let knots = if is_mapped { ((range_m[1] - range_m[0]) / KNOT_SPACING_M).ceil() as usize + 1 } else { 1 };
-        let spacing_m = if knots > 1 { (range_m[1] - range_m[0]) / (knots - 1) as f64 } else { KNOT_SPACING_M };
+        let way_m = range_m[1] - range_m[0];
+        let knots = if is_mapped { 1 + ((way_m / KNOT_SPACING_M).ceil() as usize).min(MOST_KNOTS - 1) } else { 1 };
+        let spacing_m = if knots > 1 { way_m / (knots - 1) as f64 } else { KNOT_SPACING_M };
         let has = |sign: f64| cells.iter().any(|c| c.direction == sign);
         let has_bias = has(1.0) && has(-1.0);
         let speeds = reach(&cells.iter().map(|c| c.speed_m_s.abs()).collect::<Vec<_>>());

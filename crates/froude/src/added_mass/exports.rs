@@ -81,13 +81,16 @@ fn wave_words(mesh: Orientation) -> String {
     }
 }
 
-/// The same of parts, each about its own point.
-pub(super) fn words_of_parts(job: &BodyJob) -> Option<String> {
+/// The same of parts, each about its own point; links have no mesh of their own that could lie otherwise.
+pub(super) fn words_of_parts(job: &BodyJob, is_links: bool) -> Option<String> {
     job.export.iter().any(|e| is_of_waves(e)).then(|| {
-        let z = if job.axes == Axes::Mesh && job.orientation.unwrap_or_default().wave_axes() == Axes::Mesh {
-            "the axes of the record"
+        let mesh = job.orientation.unwrap_or_default();
+        let z = if job.axes == mesh.wave_axes() {
+            "the axes of the record".to_owned()
+        } else if is_links {
+            format!("axes with {}", Axes::Enu.own_words())
         } else {
-            "axes with z up and y to port"
+            wave_words(mesh)
         };
         format!("The files for WAMIT and Capytaine are in {z}, as wave programs ask for, every part about its own point; the CSV is that of the record.")
     })

@@ -155,7 +155,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     }
     let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
     let mut notes = loaded.notes;
-    notes.extend(words_of_parts(job));
+    notes.extend(words_of_parts(job, matches!(apart, Apart::Links { .. })));
     tables.extend(coupling_table(&loaded.parts, &value, density_kg_m3));
     let together = whole(
         &Solution { matrix: value.clone(), ..finest.clone() },

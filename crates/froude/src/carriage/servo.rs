@@ -198,10 +198,10 @@ const RIGID_CORNER_HZ: f64 = 3.0;
 const CONSTANT: &str = "symmetric";
 const ASYMMETRIC: &str = "asymmetric";
 const OVER_POSITION: &str = "over position";
-/// Distance of the friction map's knots, m.
+/// Distance of the friction map's knots, m, where that takes no more than [`MOST_STRETCHES`].
 const KNOT_M: f64 = 0.25;
-/// Longest way that is mapped, m: no carriage goes further.
-const LONGEST_MAP_M: f64 = 250.0;
+/// Most stretches between knots: on ways longer than 250 m they are longer.
+const MOST_STRETCHES: usize = 1000;
 
 fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
     let runs = read(paths, &KINDS, None)?;
@@ -307,12 +307,10 @@ fn knots(logs: &[&RunLog]) -> Result<Vec<f64>, Error> {
     }
     // Whole millimetres, so that their names are short; the outer ones just inside, where rows are.
     let (low, high) = ((1e3 * low).ceil() / 1e3, (1e3 * high).floor() / 1e3);
-    if !(high - low).is_finite() || high - low > LONGEST_MAP_M {
-        return Err(Error::Nothing(format!(
-            "the runs go from {low} m to {high} m; friction is mapped over {LONGEST_MAP_M} m at most"
-        )));
+    if !(high - low).is_finite() {
+        return Err(Error::Nothing(format!("the runs go from {low} m to {high} m; friction cannot be mapped there")));
     }
-    let n = ((high - low) / KNOT_M).round().max(1.0) as usize;
+    let n = (((high - low) / KNOT_M).round().max(1.0) as usize).min(MOST_STRETCHES);
     Ok((0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect())
 }
 
