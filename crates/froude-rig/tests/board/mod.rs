@@ -6,6 +6,7 @@
 //! **Time.** The board's time follows the clock. It never makes up for more than 50 ms: where the computer was busy for longer, the
 //! board's time was slower. A computer that is busy with other things also keeps the host from its heartbeats, which is no fault of the
 //! host: while nothing has been heard for a tenth of a second, the board's time stands still, for `patience` at most.
+// Three programs include this file, and none of them uses all of it.
 #![allow(dead_code)]
 
 use std::collections::VecDeque;
