@@ -42,7 +42,7 @@ const HEARTBEAT: Duration = Duration::from_millis(20);
 const ASK_TIME: Duration = Duration::from_millis(100);
 /// A request that was not answered is repeated after this time.
 const REPEAT: Duration = Duration::from_millis(50);
-/// Without a valid frame for this long the board is given up.
+/// Without telemetry for this long the board is stopped and given up.
 const SILENCE: Duration = Duration::from_secs(1);
 /// How long the greeting and the configuration may take.
 const GREETING: Duration = Duration::from_secs(5);
@@ -275,7 +275,10 @@ impl SerialRig {
         };
         for &byte in &bytes[..n] {
             if let Some(received) = self.reader.feed(byte) {
-                self.last_heard = Instant::now();
+                // Answers about the time do not say what the carriage does: without telemetry the board is given up.
+                if matches!(received.message, FromBoard::Telemetry(_) | FromBoard::Ack(_) | FromBoard::Hello(_)) {
+                    self.last_heard = Instant::now();
+                }
                 self.take(received.message)?;
             }
         }
@@ -366,6 +369,9 @@ impl SerialRig {
             self.listen()?;
             // Only now: what came while nobody listened lies in the port.
             if self.heard.is_empty() && self.last_heard.elapsed() > SILENCE {
+                // It may still hear: nobody watches the carriage any more.
+                self.id = self.id.wrapping_add(1).max(1);
+                let _ = self.send(&ToBoard::Request { id: self.id, request: Request::Stop(StopCategory::One) });
                 return Err(self.silent(self.last_heard.elapsed()));
             }
         }
