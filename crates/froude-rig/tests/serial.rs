@@ -257,6 +257,63 @@ fn a_host_that_vanishes_is_noticed_by_the_board_which_stops_by_itself() {
     assert_eq!(phases[0], Phase::Disabled);
 }
 
+/// A line on which telemetry no longer gets through once it is broken, and everything else does.
+struct Worn {
+    line: UnixStream,
+    is_broken: Arc<AtomicBool>,
+    reader: FrameReader<FromBoard>,
+    writer: FrameWriter,
+    passed: std::collections::VecDeque<u8>,
+}
+
+impl Read for Worn {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        let mut chunk = [0_u8; 1_024];
+        let n = self.line.read(&mut chunk)?;
+        for &byte in &chunk[..n] {
+            let Some(received) = self.reader.feed(byte) else { continue };
+            let is_telemetry = matches!(received.message, FromBoard::Telemetry(_));
+            if !(is_telemetry && self.is_broken.load(Ordering::SeqCst)) {
+                let mut wire = [0; MAX_WIRE];
+                self.passed.extend(self.writer.write(&received.message, &mut wire));
+            }
+        }
+        if self.passed.is_empty() { Err(std::io::ErrorKind::WouldBlock.into()) } else { self.passed.read(bytes) }
+    }
+}
+
+impl Write for Worn {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.line.write(bytes)
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.line.flush()
+    }
+}
+
+#[test]
+fn a_line_whose_telemetry_dies_is_given_up_and_the_carriage_stopped_whatever_else_it_carries() {
+    let (running, line) = board();
+    let is_broken = Arc::new(AtomicBool::new(false));
+    let (reader, writer, passed) = (FrameReader::new(), FrameWriter::default(), std::collections::VecDeque::new());
+    let worn = Worn { line, is_broken: Arc::clone(&is_broken), reader, writer, passed };
+    let mut rig = SerialRig::on("a socket", Box::new(worn), config()).unwrap();
+    rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
+    until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
+    is_broken.store(true, Ordering::SeqCst);
+    let begun = std::time::Instant::now();
+    let error = loop {
+        match rig.tick(None) {
+            Ok(_) => assert!(begun.elapsed() < Duration::from_secs(20), "answers about the time keep it waiting"),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, RigError::Silent { .. }), "{error}");
+    // Sooner than the board's own watchdog: it was told.
+    running.pass_s(1.0);
+    assert_eq!(running.end(), (None, [Phase::Disabled; AXES]));
+}
+
 #[test]
 fn a_port_that_vanishes_is_an_error_that_says_who_stops_the_carriage() {
     let (running, line) = board();
