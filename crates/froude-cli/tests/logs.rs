@@ -201,7 +201,7 @@ fn a_log_that_was_cut_off_is_left_out_and_driven_again() {
     assert_eq!(findings(&bench.drag()), [("run-damaged".to_owned(), format!("{told}. It was left out"))]);
     let (n, said) = bench.run();
     assert_eq!(n, 1);
-    assert!(said.contains(": it was cut off; copy it again from where it was recorded: "), "{said}");
+    assert!(said.contains(": it was cut off: kept as "), "{said}");
     assert!(said.contains(&format!("kept as {}.interrupted-1, driven again", id(log))), "{said}");
 }
 
@@ -214,7 +214,7 @@ fn a_log_with_other_bytes_is_left_out_and_driven_again() {
     bytes[middle] ^= 4;
     std::fs::write(log, &bytes).unwrap();
     let told = format!(
-        "{} is not the file that was recorded, its SHA-256 is another: copy it again from where it was recorded",
+        "{} is not the file that was recorded, its SHA-256 is another; copy it again from where it was recorded",
         text(log)
     );
     assert_eq!(findings(&bench.inspect()), [("run-damaged".to_owned(), told.clone())]);

@@ -9,7 +9,12 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use froude::records::run::{RunStatus, read_run};
+use froude_control::fault::StopCategory;
+use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::Phase;
+use froude_link::{FrameWriter, ToBoard};
+use froude_rig::defaults::control_config;
+use froude_rig::load::Load;
 use rustix::process::{Pid, Signal, kill_process};
 
 #[path = "../../froude-rig/tests/board/mod.rs"]
@@ -26,6 +31,30 @@ const BUSY: Duration = Duration::from_secs(3);
 static ONE_BOARD: Mutex<()> = Mutex::new(());
 /// A motor that has moved no farther than this has not been driven, m.
 const STILL_M: f64 = 1e-4;
+
+/// The example as it is shipped, on a board: 205 runs.
+fn shipped(folder: &Path, port: &Path) -> PathBuf {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml");
+    let mut text = std::fs::read_to_string(example).unwrap();
+    for (from, to) in on_a_board(port) {
+        assert!(text.contains(from), "the example has no {from}");
+        text = text.replace(from, &to);
+    }
+    let path = folder.join("campaign.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+/// What makes the example's rig a board, and no twin.
+fn on_a_board(port: &Path) -> [(&'static str, String); 4] {
+    let serial = format!("kind = \"serial\"\nport = \"{}\"\nbaud = 3_000_000 #", port.display());
+    [
+        ("kind = \"twin\"  ", serial),
+        ("seed = 1\n", String::new()),
+        ("[rig.twin]                        # the truth that identification has to find\n", String::new()),
+        ("drag = \"20 N s^2/m^2\"\npulley_friction = \"1 %\"\n", String::new()),
+    ]
+}
 
 /// The example, on the twin or on a board: two jogs, then runs with the body dry; the warm-up on request.
 fn campaign(folder: &Path, port: Option<&Path>, has_warm_up: bool) -> PathBuf {
@@ -49,13 +78,7 @@ fn campaign(folder: &Path, port: Option<&Path>, has_warm_up: bool) -> PathBuf {
         (r#"stop_when = "1.5 %""#, String::new() + "#"),
     ];
     if let Some(port) = port {
-        let serial = format!("kind = \"serial\"\nport = \"{}\"\nbaud = 3_000_000 #", port.display());
-        changes.extend([
-            ("kind = \"twin\"  ", serial),
-            ("seed = 1\n", String::new()),
-            ("[rig.twin]                        # the truth that identification has to find\n", String::new()),
-            ("drag = \"20 N s^2/m^2\"\npulley_friction = \"1 %\"\n", String::new()),
-        ]);
+        changes.extend(on_a_board(port));
     }
     for (from, to) in &changes {
         assert!(text.contains(from), "the example has no {from}");
@@ -391,4 +414,152 @@ fn a_reader_who_goes_away_neither_stops_a_campaign_nor_leaves_it_undriven() {
         .unwrap();
     drop(child.stdout.take());
     assert_eq!(ended(&mut child).code(), Some(0));
+}
+
+/// How long the long drive takes where somebody asks for hours, s.
+fn hours() -> Option<u64> {
+    std::env::var("FROUDE_TEST_DRIVE_S").ok().map(|text| text.parse().unwrap())
+}
+
+/// Another host on the line, which says all that it can, every two seconds, and now and then asks for a stop.
+struct SecondHost {
+    line: File,
+    writer: FrameWriter,
+    said: Instant,
+    stopped: Instant,
+    stop_every: Duration,
+    stops: usize,
+}
+
+impl SecondHost {
+    const SESSION: u32 = 0xbad;
+
+    fn new(board: &BoardAtTerminal, stop_every: Duration) -> Self {
+        let (line, now) = (board.line.try_clone().unwrap(), Instant::now());
+        Self { line, writer: FrameWriter::default(), said: now, stopped: now, stop_every, stops: 0 }
+    }
+
+    fn say(&mut self, says: ToBoard) {
+        let mut wire = [0_u8; 1_024];
+        let frame = self.writer.write(&says.from_session(Self::SESSION), &mut wire);
+        self.line.write_all(frame).unwrap();
+    }
+
+    fn speak(&mut self) {
+        if self.said.elapsed() < Duration::from_secs(2) {
+            return;
+        }
+        self.said = Instant::now();
+        let profile = Move { target_m: 0.1, speed_m_s: 0.4, acceleration_m_s2: 0.5, jerk_m_s3: 0.0, is_shaped: false };
+        let jog = Excitation::Jog { volts: 2.0, distance_m: 0.5, duration_s: 5.0 };
+        self.say(ToBoard::Hello);
+        self.say(ToBoard::Heartbeat);
+        self.say(ToBoard::Configure { id: 1, config: control_config(&[Load::default(); 2]) });
+        let requests = [
+            Request::Move { axis: 0, profile },
+            Request::Excite { axis: 0, excitation: jog },
+            Request::Disable { axis: 0 },
+            Request::Home { axis: 1 },
+        ];
+        for (id, request) in (2..).zip(requests) {
+            self.say(ToBoard::Request { id, request });
+        }
+        if self.stopped.elapsed() > self.stop_every {
+            (self.stopped, self.stops) = (Instant::now(), self.stops + 1);
+            // Twice, as a program does whose answer was lost.
+            for _ in 0..2 {
+                self.say(ToBoard::Request { id: 9, request: Request::Stop(StopCategory::Two) });
+            }
+        }
+    }
+}
+
+/// Resident memory of a process, KiB; `None` once it has ended.
+fn resident_kib(pid: u32) -> Option<u64> {
+    let status = std::fs::read_to_string(format!("/proc/{pid}/status")).ok()?;
+    status.lines().find_map(|l| l.strip_prefix("VmRSS:"))?.trim().strip_suffix(" kB")?.parse().ok()
+}
+
+/// Driven for as long as one likes: late answers, signals in turn, a second `froude run`, and another host on the line that asks for
+/// everything and for a stop. What is complete is whole, every end is explained, and the memory does not grow.
+#[test]
+fn a_long_drive_with_prompts_signals_and_a_second_host_on_the_line_stays_in_its_memory() {
+    let _alone = alone();
+    let (folder, board) = (tempfile::tempdir().unwrap(), board());
+    // In short: both jogs, a signal in the third run, and a stop from the second host while both axes are homed again.
+    let [length, each, stop_every] = hours().map_or([45, 25, 40], |s| [s, s / 12, s / 5]).map(Duration::from_secs);
+    let campaign = if hours().is_some() {
+        shipped(folder.path(), &board.port)
+    } else {
+        campaign(folder.path(), Some(&board.port), true)
+    };
+    let (runs, elsewhere) = (folder.path().join("campaign-runs"), folder.path().join("elsewhere"));
+    let mut second_host = SecondHost::new(&board, stop_every);
+    let begun = Instant::now();
+    let (mut most_kib, mut sessions, mut stopped_by_another) = ([0; 2], 0, 0);
+    while begun.elapsed() < length {
+        let mut driven = Driven::new(&["run", text(&campaign)]);
+        let signal = [Signal::INT, Signal::TERM, Signal::HUP][sessions % 3];
+        sessions += 1;
+        let (session, mut answered, mut signalled, mut is_refused) = (Instant::now(), 0, 0, false);
+        while driven.child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(20));
+            second_host.speak();
+            let half = usize::from(begun.elapsed() > length / 2);
+            most_kib[half] = resident_kib(driven.child.id()).unwrap_or(0).max(most_kib[half]);
+            if driven.said().matches("confirm with y").count() > answered {
+                let asked = Instant::now();
+                while asked.elapsed() < LATE {
+                    std::thread::sleep(Duration::from_millis(20));
+                    second_host.speak();
+                }
+                answered += 1;
+                driven.type_in("y\n");
+            }
+            if !is_refused && session.elapsed() > each / 2 {
+                is_refused = true;
+                let (status, said) = Driven::new(&["run", text(&campaign), "--out", text(&elsewhere)]).end();
+                assert!(status.code() == Some(1) && said.contains("another program"), "{status}: {said}");
+            }
+            let is_over = session.elapsed() > each + Duration::from_secs(signalled);
+            // Hanging up twice is hanging up; one press of Ctrl-C is enough.
+            if is_over && signalled < if signal == Signal::INT { 1 } else { 2 } {
+                signalled += 1;
+                driven.signal(signal);
+            }
+        }
+        let (status, said) = driven.end();
+        let is_by_another = said.contains("another program on the line (session 00000bad)");
+        stopped_by_another += usize::from(is_by_another);
+        let is_explained = is_by_another || said.contains("stopped by the operator");
+        assert!(status.code() == Some(1) && is_explained, "{status} after {:?}: {said}", session.elapsed());
+        let logs = std::fs::read_dir(&runs)
+            .unwrap()
+            .filter(|e| e.as_ref().unwrap().path().extension().is_some_and(|e| e == "mcap"))
+            .count();
+        let s = begun.elapsed().as_secs();
+        println!(
+            "{s} s: session {sessions}, {logs} logs, froude took at most {most_kib:?} KiB; {}",
+            said.lines().last().unwrap()
+        );
+    }
+    let (mut complete, mut lost) = (0, 0);
+    for entry in std::fs::read_dir(&runs).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "mcap") {
+            let log = read_run(&path).unwrap();
+            assert!(log.doubts.is_empty(), "{}: {:?}", path.display(), log.doubts);
+            complete += usize::from(log.meta.status == RunStatus::Complete);
+            lost += log.lost_ticks();
+        }
+    }
+    println!(
+        "{} s: {sessions} sessions, {complete} runs complete, {lost} ticks lost; the second host asked for {} stops, {stopped_by_another} \
+         ended a session; memory by halves {most_kib:?} KiB; {:?}",
+        begun.elapsed().as_secs(),
+        second_host.stops,
+        board.watched()
+    );
+    assert!(complete > 0 && stopped_by_another > 0);
+    assert!(most_kib[1] < most_kib[0] + 2_048, "{most_kib:?} KiB in the first and in the second half");
 }

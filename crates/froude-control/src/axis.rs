@@ -94,7 +94,7 @@ pub(crate) struct Axis {
     saturated_ticks: u32,
     /// The torque stays off at least this long: an encoder that failed cannot say that the axis is at rest.
     coast_ticks: u32,
-    /// Found while acting, told at the next tick.
+    /// Found while acting, reported at the next tick.
     pending: Option<Fault>,
 }
 

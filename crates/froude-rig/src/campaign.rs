@@ -30,5 +30,5 @@ pub mod stop;
 /// What the hand-over and the stop are made of; their tests put primitives in its place whose schedules are explored.
 mod sync {
     pub use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
-    pub use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+    pub use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 }

@@ -47,10 +47,19 @@ pub struct Sample {
     pub fault: Option<(Fault, u8)>,
     /// Why the last request was refused.
     pub refusal: Option<Refusal>,
-    /// Session of another host that asked the board for something and was turned away; said once of each.
-    pub stranger: Option<u32>,
+    /// What another host on the line came to.
+    pub stranger: Option<Stranger>,
     /// What no sensor shows; only a twin knows.
     pub truth: Option<[Truth; AXES]>,
+}
+
+/// What another host on the line came to; the number is its session.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stranger {
+    /// It asked the board for something and was turned away; reported once of each session.
+    TurnedAway(u32),
+    /// It asked for a stop, which the board obeys whoever asks.
+    Stopped(u32),
 }
 
 /// Why a rig cannot be driven on.

@@ -96,6 +96,7 @@ fn setting(folder: &Path) -> Setting {
         folder: folder.to_owned(),
         asked: asked(),
         return_speed_m_s: 0.4,
+        homing_s: [300.0; 2],
         is_shaped: true,
         constants: IndexMap::new(),
         load: Load::default(),

@@ -9,7 +9,7 @@
 mod sync {
     pub use shuttle::sync::atomic::{AtomicBool, AtomicU8, Ordering};
     pub use shuttle::sync::{Arc, Condvar, Mutex, MutexGuard};
-    pub use std::sync::PoisonError;
+    pub use std::sync::{PoisonError, TryLockError};
 }
 #[path = "../src/campaign/hand_over.rs"]
 mod hand_over;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use froude_control::fault::Fault;
+use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::Request;
 use froude_control::status::Phase;
 use froude_records::Place;
@@ -17,7 +17,7 @@ use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Set
 use froude_rig::campaign::stop::StopSwitch;
 use froude_rig::defaults::control_config;
 use froude_rig::drive::twin::TwinRig;
-use froude_rig::drive::{Rig, RigError, Sample};
+use froude_rig::drive::{Rig, RigError, Sample, Stranger};
 use froude_rig::load::Load;
 use froude_rig::twin::TwinConfig;
 use froude_rig::{Injection, Scheduled};
@@ -36,6 +36,8 @@ struct Running {
 struct Seen {
     ticks: AtomicU64,
     is_moving: AtomicBool,
+    /// Another host asks for a stop at the next tick.
+    is_stop_near: AtomicBool,
 }
 
 impl Rig for Running {
@@ -47,7 +49,10 @@ impl Rig for Running {
         if ticks.is_multiple_of(40) {
             std::thread::sleep(Duration::from_millis(1));
         }
-        let sample = self.twin.tick(request)?;
+        let is_stopped = request.is_none() && self.seen.is_stop_near.swap(false, Ordering::SeqCst);
+        let request = if is_stopped { Some(Request::Stop(StopCategory::One)) } else { request };
+        let mut sample = self.twin.tick(request)?;
+        sample.stranger = is_stopped.then_some(Stranger::Stopped(0xb));
         let is_at_rest = sample.axes.iter().all(|a| matches!(a.phase, Phase::Disabled | Phase::Holding));
         self.seen.is_moving.store(!is_at_rest, Ordering::SeqCst);
         Ok(sample)
@@ -127,6 +132,7 @@ fn setting(folder: &Path) -> Setting {
         folder: folder.to_owned(),
         asked,
         return_speed_m_s: 0.4,
+        homing_s: [300.0; 2],
         is_shaped: true,
         constants: IndexMap::new(),
         load: Load::default(),
@@ -244,6 +250,52 @@ fn a_stop_is_carried_out_while_who_records_is_held_up() {
     let log = read_run(&folder.path().join("001-tow.mcap")).unwrap();
     assert_eq!((log.meta.status, log.lost_ticks()), (RunStatus::Interrupted, 0));
     assert_eq!(*log.channels["y/state"].values.last().unwrap(), 1.0, "holding");
+}
+
+/// An excitation that somebody else stops is not one that a soft limit cut: the campaign does not go on to the next run.
+#[test]
+fn a_stop_from_another_host_ends_the_campaign_in_a_run_and_between_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut steps = steps();
+    if let Some(Step::Run(run)) = steps.last_mut() {
+        run.drive = Drive::Pulses { from_m: 0.5, volts: 0.5, period_s: 1.0, duty: 0.5, duration_s: 20.0 };
+    }
+    let mut rig = Running::new();
+    let seen = Arc::clone(&rig.seen);
+    let mut is_stopped = false;
+    let mut watch = |sample: &Sample, time_s: f64| {
+        if !is_stopped && sample.axes[0].phase == Phase::Exciting && time_s > 2.0 {
+            is_stopped = true;
+            seen.is_stop_near.store(true, Ordering::SeqCst);
+        }
+    };
+    let (setting, switch) = (setting(folder.path()), StopSwitch::default());
+    let mut ready = |_: &dyn Fn() -> bool| true;
+    let mut person = Person(&mut ready);
+    let error = drive(&steps, &setting, &mut rig, &switch, &mut person, &mut Watch(&mut watch), &mut |_, _| None);
+    let said = error.unwrap_err().to_string();
+    assert!(
+        said.starts_with("another program on the line (session 0000000b) stopped the carriage in 001-tow. "),
+        "{said}"
+    );
+    let log = read_run(&folder.path().join("001-tow.mcap")).unwrap();
+    assert_eq!((log.meta.status, &log.meta.note), (RunStatus::Interrupted, &said));
+    let event = log.events.iter().find(|e| e.text.contains("asked for a stop")).unwrap();
+    let last_s = *log.time_s.last().unwrap();
+    assert!(event.time_s > 2.0 && event.time_s < last_s, "{} s of {last_s} s", event.time_s);
+
+    let folder = tempfile::tempdir().unwrap();
+    let mut rig = Running::new();
+    let seen = Arc::clone(&rig.seen);
+    let mut asked = |is_over: &dyn Fn() -> bool| {
+        seen.is_stop_near.store(true, Ordering::SeqCst);
+        assert!(wait(is_over), "nobody said that it is over");
+        false
+    };
+    match run(folder.path(), &mut rig, &switch, &mut asked, &mut |_, _| {}).unwrap_err() {
+        RunnerError::StoppedAtRest { session: 0xb } => {}
+        other => panic!("{other}"),
+    }
 }
 
 #[test]

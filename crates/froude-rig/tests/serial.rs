@@ -21,7 +21,7 @@ use froude_link::status::{Ack, BoardHello, BoardId, Health, TurnedAway, Verdict}
 use froude_link::{FrameReader, FromBoard, HostFrame, Telemetry, ToBoard};
 use froude_rig::defaults::control_config;
 use froude_rig::drive::serial::SerialRig;
-use froude_rig::drive::{Rig, RigError, Sample};
+use froude_rig::drive::{Rig, RigError, Sample, Stranger};
 use froude_rig::load::Load;
 use froude_rig::twin::{Twin, TwinConfig};
 
@@ -337,7 +337,7 @@ fn a_line_without_a_board_is_told_with_what_to_do() {
 }
 
 /// Ticks a rig until told to end; the sessions that it was told of, and why it ended if it did by itself.
-fn driven(mut rig: SerialRig, is_over: Arc<AtomicBool>) -> JoinHandle<(Vec<u32>, Result<(), RigError>)> {
+fn driven(mut rig: SerialRig, is_over: Arc<AtomicBool>) -> JoinHandle<(Vec<Stranger>, Result<(), RigError>)> {
     std::thread::spawn(move || {
         let mut strangers = vec![];
         while !is_over.load(Ordering::SeqCst) {
@@ -370,9 +370,29 @@ fn a_second_host_is_refused_while_the_first_lives_and_the_first_learns_of_it() {
     is_over.store(true, Ordering::SeqCst);
     let (strangers, end) = first.join().unwrap();
     end.unwrap();
-    assert_eq!(strangers.len(), 1, "said once: {strangers:x?}");
+    assert!(matches!(strangers[..], [Stranger::TurnedAway(_)]), "said once: {strangers:x?}");
     let (fault, phases) = running.end();
     assert_eq!((fault, phases[0]), (None, Phase::Holding), "the first one's axis holds as before");
+}
+
+#[test]
+fn a_stop_from_another_host_is_obeyed_and_the_first_learns_whose_it_was() {
+    let (running, [line, mut other]) = board_with_hosts();
+    let mut rig = SerialRig::on("a socket", Box::new(line), config()).unwrap();
+    rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
+    until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
+    let is_over = Arc::new(AtomicBool::new(false));
+    let first = driven(rig, Arc::clone(&is_over));
+    let (mut writer, mut wire) = (FrameWriter::default(), [0_u8; 256]);
+    let stop = ToBoard::Request { id: 1, request: Request::Stop(StopCategory::One) };
+    std::io::Write::write_all(&mut other, writer.write(&stop.from_session(0xb), &mut wire)).unwrap();
+    running.pass_s(1.0);
+    is_over.store(true, Ordering::SeqCst);
+    let (strangers, end) = first.join().unwrap();
+    end.unwrap();
+    assert_eq!(strangers, [Stranger::Stopped(0xb)]);
+    let (fault, phases) = running.end();
+    assert_eq!((fault, phases[0]), (None, Phase::Disabled), "a stop of category 1 takes the torque off");
 }
 
 #[test]

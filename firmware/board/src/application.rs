@@ -56,9 +56,9 @@ struct Operator {
     holder: Holder,
     /// The controller's limit of its host's silence, µs.
     silence_us: u32,
-    /// Turned away and not told yet.
+    /// Turned away and not reported yet.
     stranger: Option<u32>,
-    /// Ticks since one was told.
+    /// Ticks since one was reported.
     untold_ticks: u32,
 }
 
@@ -293,7 +293,7 @@ impl Application {
         let HostFrame { session, says } = received.message;
         match says {
             ToBoard::Hello => return self.greet(board, session, received.sequence),
-            // It can be told the version and nothing else, and takes nothing from the host that has the board.
+            // It hears the version and nothing else, and takes nothing from the host that has the board.
             ToBoard::ForeignHello { version } => {
                 self.link.say(FromBoard::ForeignHello { version: VERSION });
                 let kind = EventKind::VersionMismatch(version);

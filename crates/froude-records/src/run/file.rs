@@ -141,7 +141,7 @@ impl<R: Read + Seek> Walk<R> {
         self.input.seek(SeekFrom::Start(at)).map(|_| ())
     }
 
-    /// The next record that [`is_needed`]; the end is told again and again.
+    /// The next record that [`is_needed`]; the end is given again and again.
     pub fn next(&mut self) -> io::Result<Step> {
         loop {
             let offset = self.at;

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! The names of an axis ([`AXIS_NAMES`]) become channels of axis `y`, as in a run of the carriage; `force` and every other
-//! name stay as they are. Times are kept as they are written; steps that are not even are told, never resampled.
+//! name stay as they are. Times are kept as they are written; steps that are not even are reported, never resampled.
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Reading a run, whole or in bounded memory, however much of its file there is.
 //!
 //! A file that was cut off (power, `kill -9`, a full disk) gives every tick of its whole chunks, a gap that says what is
-//! missing, and the status `interrupted`. A damaged chunk is passed over and told as a gap with its byte, or refused
+//! missing, and the status `interrupted`. A damaged chunk is passed over and reported as a gap with its byte, or refused
 //! ([`RunReader::refuse_damage`]). A tick is taken only when every topic has its message of it.
 //!
 //! **Whether it is the log.** Where the sidecar has the log's SHA-256 the whole file is summed before anything in it is read: one pass
@@ -304,7 +304,9 @@ impl<R: Read + Seek> RunReader<R> {
                 (None, _) => {}
                 // What it is instead is said already.
                 (Some(_), _) if is_exchanged => {}
-                (Some(what), Some(_)) => self.doubt(DoubtKind::Damaged, &what),
+                (Some(what), Some(_)) => {
+                    self.doubt(DoubtKind::Damaged, &format!("{what}; copy it again from where it was recorded"));
+                }
                 (Some(_), None) => self.doubt(
                     DoubtKind::Exchanged,
                     &format!(

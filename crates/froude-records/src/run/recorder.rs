@@ -136,7 +136,7 @@ impl Recorder {
     }
 
     /// Records one tick: a value per channel of the layout. Ticks count from the start of the run at the log rate; a tick
-    /// that is left out is told by the reader as a gap.
+    /// that is left out is reported by the reader as a gap.
     ///
     /// # Errors
     ///

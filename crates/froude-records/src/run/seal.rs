@@ -213,14 +213,9 @@ pub fn check_names(folder: &Path, id: &str, campaign: CampaignMark<'_>) -> Resul
 /// How a file differs from the one that was recorded, as the rest of a sentence about it.
 pub(crate) fn difference(recorded: &Fingerprint, found: &Fingerprint) -> Option<String> {
     if found.bytes < recorded.bytes {
-        return Some(format!(
-            "has {} of the {} bytes that were recorded: it was cut off; copy it again from where it was recorded",
-            found.bytes, recorded.bytes
-        ));
+        return Some(format!("has {} of the {} bytes that were recorded: it was cut off", found.bytes, recorded.bytes));
     }
-    (found != recorded).then(|| {
-        "is not the file that was recorded, its SHA-256 is another: copy it again from where it was recorded".to_owned()
-    })
+    (found != recorded).then(|| "is not the file that was recorded, its SHA-256 is another".to_owned())
 }
 
 /// A file that is being written, and its fingerprint so far.

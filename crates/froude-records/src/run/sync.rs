@@ -36,7 +36,7 @@ impl Syncer {
         Ok(Self { stop: Some(stop), thread: Some(thread), failure })
     }
 
-    /// What went wrong, told once.
+    /// What went wrong, reported once.
     pub fn failure(&self) -> Option<io::Error> {
         self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()
     }

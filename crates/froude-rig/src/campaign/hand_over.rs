@@ -14,7 +14,7 @@
 //!
 //! This file is built twice: here, and in `tests/hand_over.rs` on primitives whose schedules are explored.
 
-use super::sync::{Arc, AtomicBool, Condvar, Mutex, MutexGuard, Ordering, PoisonError};
+use super::sync::{Arc, AtomicBool, Condvar, Mutex, MutexGuard, Ordering, PoisonError, TryLockError};
 
 /// How an engine waits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -140,7 +140,8 @@ impl<O, E> Engine<O, E> {
             Pace::OnDemand => shared.state(),
             Pace::RealTime => match shared.state.try_lock() {
                 Ok(state) => state,
-                Err(_) => return Next::Nothing,
+                Err(TryLockError::Poisoned(left)) => left.into_inner(),
+                Err(TryLockError::WouldBlock) => return Next::Nothing,
             },
         };
         self.hand(&mut state);
@@ -195,8 +196,10 @@ impl<O, E> Engine<O, E> {
         let shared = Arc::clone(&self.shared);
         match self.pace {
             Pace::RealTime => {
-                if let Ok(mut state) = shared.state.try_lock() {
-                    self.hand(&mut state);
+                match shared.state.try_lock() {
+                    Ok(mut state) => self.hand(&mut state),
+                    Err(TryLockError::Poisoned(left)) => self.hand(&mut left.into_inner()),
+                    Err(TryLockError::WouldBlock) => {}
                 }
                 self.is_behind |= self.kept.len() > self.capacity;
             }

@@ -487,7 +487,7 @@ fn fall(
     let (drive, limits) = (&axis.drive, &axis.limits);
     let weight_n = run.hung_weight_n;
     let held_n = expected.efficiency * drive.coulomb_lower_n_m * drive.gear_ratio / drive.sprocket_radius_m;
-    // A floor outside the travel is told once, of the campaign.
+    // A floor outside the travel is reported once, of the campaign.
     if run.floor_m.is_some_and(|floor_m| !(limits.hard_low_m..=limits.hard_high_m).contains(&floor_m)) {
         return None;
     }

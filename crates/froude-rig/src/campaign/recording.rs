@@ -79,9 +79,9 @@ impl<'a> Recording<'a> {
         Ok(Self { setting, has_x, recorder, row: Vec::new() })
     }
 
-    pub fn event(&mut self, kind: &EventKind, sentence: &str) -> Result<(), RecordError> {
-        let tick = self.recorder.ticks();
-        self.recorder.event(tick, kind, sentence)
+    /// Records what happened at a tick, counted as for [`Self::sample`].
+    pub fn event(&mut self, number: u64, kind: &EventKind, sentence: &str) -> Result<(), RecordError> {
+        self.recorder.event(number / self.setting.decimation, kind, sentence)
     }
 
     /// Records the sample of a tick, counted from the first one of the motion, where it is due.

@@ -10,7 +10,7 @@
 //! | both, any other status | interrupted, faulted, cut, or the program died in it | put aside, driven |
 //! | the log alone | the program died before the sidecar was written | put aside, driven |
 //! | the sidecar alone, not `complete` | the program died between the two renames of putting aside | put beside its log, driven |
-//! | the sidecar alone, `complete` | somebody moved the log away | put aside, driven |
+//! | the sidecar alone, `complete` | somebody moved the log away, or the program died while it put a damaged one aside | put aside by itself, driven |
 //! | a sidecar without a word in it | the power failed before it reached the disk | put aside, driven |
 //!
 //! Nothing is deleted and nothing replaced: what is put aside is `ID.interrupted-N`, N counting up from 1.

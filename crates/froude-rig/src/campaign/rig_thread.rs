@@ -1,20 +1,20 @@
 //! The rig's own thread: it ticks, whatever anybody else waits for.
 //!
 //! It carries out the orders of the campaign. Between them a real rig goes on being ticked, so that the board hears from its host and the
-//! telemetry is read while a person is asked, a disk is slow or logs are read; what goes wrong meanwhile is told at once. A twin
+//! telemetry is read while a person is asked, a disk is slow or logs are read; what goes wrong meanwhile is reported at once. A twin
 //! stands still between orders: its time passes only when it is ticked, which keeps a campaign on it fast and bit-equal.
 //!
 //! Nothing here writes to a disk or a terminal, and on a real rig no lock is waited for.
 
-use froude_control::fault::StopCategory;
+use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::Request;
 use froude_records::run::EventKind;
 
 use super::hand_over::{Engine, Next, Pace};
 use super::plan::PlannedRun;
-use super::runner::{RunnerError, Session, Setting, turned_away};
+use super::runner::{RunnerError, Session, Setting, said_of};
 use super::stop::{Asked, StopSwitch};
-use crate::drive::{HostClock, Rig, Sample};
+use crate::drive::{HostClock, Rig, Sample, Stranger};
 
 /// What the campaign orders.
 pub(super) enum Order<'a> {
@@ -37,8 +37,8 @@ pub(super) enum Order<'a> {
 pub(super) enum Entry {
     /// A sample that is due to be recorded or shown, and its tick since the order began.
     Sample(u64, Sample),
-    /// Something for the record.
-    Event(EventKind, String),
+    /// Something for the record, and its tick since the order began.
+    Event(u64, EventKind, String),
     /// The order has ended; the last entry of it.
     Ended(Ended),
 }
@@ -117,10 +117,16 @@ impl Idle {
         });
         let trouble = match rig.tick(request) {
             Ok(sample) => {
-                if let Some(session) = sample.stranger {
-                    engine.put(Entry::Event(EventKind::Link, turned_away(session)));
+                if let Some(stranger) = sample.stranger {
+                    engine.put(Entry::Event(0, EventKind::Link, said_of(stranger)));
                 }
-                sample.fault.map(|(fault, _)| RunnerError::FaultAtRest { fault, category: fault.category() as u8 })
+                let fault =
+                    |(fault, _): (Fault, u8)| RunnerError::FaultAtRest { fault, category: fault.category() as u8 };
+                match (sample.fault, sample.stranger) {
+                    (Some(latched), _) => Some(fault(latched)),
+                    (None, Some(Stranger::Stopped(session))) => Some(RunnerError::StoppedAtRest { session }),
+                    (None, _) => None,
+                }
             }
             Err(error) => {
                 engine.wait_from_now_on();

@@ -1,7 +1,7 @@
 //! Drives and records one run after the other.
 //!
 //! A run is: go to its start, wait for the water, record the still rig, record the motion, record the still rig again. What ends it
-//! early is told apart and kept: the operator (category 2), a fault of the controller (its own category), a recorder that can
+//! early is kept apart: the operator (category 2), a fault of the controller (its own category), a recorder that can
 //! write no more (category 1), a rig that no longer answers (its own watchdog). Whatever was recorded by then stays, marked
 //! `interrupted` or `faulted`; a resumed campaign does that run again. A run is `complete` only when its planned motion was done: an
 //! excitation that came to a soft limit before its end leaves it `cut`; the campaign goes on, and says so at its end.
@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use froude_control::fault::{Fault, StopCategory};
 use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
+use froude_control::tick::AXES;
 use froude_records::RecordError;
 use froude_records::run::{AxisConstants, BodyState, CampaignMark, EventKind, RunStatus};
 use indexmap::IndexMap;
@@ -26,7 +27,7 @@ use super::recording::{Recording, RigFacts};
 use super::resume::{Found, look};
 use super::rig_thread::{self, Ended, Entry, Order};
 use super::stop::{Asked, StopSwitch};
-use crate::drive::{Rig, RigError, Sample};
+use crate::drive::{Rig, RigError, Sample, Stranger};
 use crate::load::Load;
 
 /// Why a campaign stopped before its end.
@@ -50,6 +51,26 @@ pub enum RunnerError {
     NotConfirmed {
         /// What was asked.
         prompt: String,
+    },
+    /// Another program on the line asked for a stop.
+    #[error(
+        "another program on the line (session {session:08x}) stopped the carriage in {run}. Ask who wanted it, then run the campaign \
+         again: it goes on from there"
+    )]
+    StoppedByAnother {
+        /// The run.
+        run: String,
+        /// The other program's session.
+        session: u32,
+    },
+    /// Another program on the line asked for a stop while nothing was to move.
+    #[error(
+        "another program on the line (session {session:08x}) asked for a stop between two runs, while nothing was to move. Ask who wanted \
+         it, then run the campaign again: it goes on from there"
+    )]
+    StoppedAtRest {
+        /// The other program's session.
+        session: u32,
     },
     /// A fault while nothing was to move: the operator was asked, or logs were read.
     #[error(
@@ -208,7 +229,7 @@ const CLEAR: &str = "Homing moves both axes now: both ways are clear, and somebo
 const EARLIER_VERSION: &str = "runs of an earlier version lie there: they carry no SHA-256 of their logs, so that only the logs' own checksums \
                                vouch for them";
 
-/// Who is told how it goes.
+/// Who sees how it goes.
 pub trait Progress {
     /// A run begins, the `number`th of `total`.
     fn run_begins(&mut self, run: &PlannedRun, number: usize, total: usize);
@@ -237,6 +258,8 @@ pub struct Setting {
     pub asked: CarriagePlan,
     /// Speed of the ways between runs, m/s.
     pub return_speed_m_s: f64,
+    /// Longest that homing may take, s, by axis.
+    pub homing_s: [f64; AXES],
     /// Shape the reference for the load's mode.
     pub is_shaped: bool,
     /// Declared constants by axis.
@@ -445,7 +468,7 @@ impl<'a> Campaign<'a, '_> {
                 let recorded = match (&entry, &mut *recording) {
                     _ if failed.is_some() => Ok(()),
                     (Entry::Sample(number, sample), Some(recording)) => recording.sample(*number, sample),
-                    (Entry::Event(kind, sentence), Some(recording)) => recording.event(kind, sentence),
+                    (Entry::Event(number, kind, sentence), Some(recording)) => recording.event(*number, kind, sentence),
                     _ => Ok(()),
                 };
                 if let Err(error) = recorded {
@@ -453,12 +476,12 @@ impl<'a> Campaign<'a, '_> {
                     failed = Some(error);
                 }
                 match entry {
-                    Entry::Sample(number, sample) if number.is_multiple_of(TOLD_EVERY) => {
+                    Entry::Sample(number, sample) if number.is_multiple_of(SHOWN_EVERY) => {
                         if let Some(run) = run {
                             self.progress.sample(run, &sample, number as f64 * tick_s);
                         }
                     }
-                    Entry::Event(EventKind::Link, sentence) => self.progress.say(&sentence),
+                    Entry::Event(_, EventKind::Link, sentence) => self.progress.say(&sentence),
                     Entry::Ended(ended) => {
                         return match failed {
                             Some(error) => Err(error.into()),
@@ -494,8 +517,6 @@ fn load_of(run: &PlannedRun, base: &Load) -> Load {
     }
 }
 
-/// Longest that homing may take, s.
-const HOMING_S: f64 = 300.0;
 /// Longest that a stop may take, s.
 const STOP_S: f64 = 20.0;
 /// Ticks within which a request is carried out or refused; a line that loses frames repeats it in the meantime.
@@ -559,7 +580,9 @@ impl<'a, 'o> Session<'a, 'o> {
         for axis in [0, 1] {
             self.ask("enable the axis", Request::Enable { axis })?;
             self.ask("home the axis", Request::Home { axis })?;
-            self.until("homing", HOMING_S, |s| s.axes[axis].is_homed && s.axes[axis].phase == Phase::Holding)?;
+            self.until("homing", self.setting.homing_s[axis], |s| {
+                s.axes[axis].is_homed && s.axes[axis].phase == Phase::Holding
+            })?;
         }
         Ok(())
     }
@@ -732,6 +755,10 @@ impl<'a, 'o> Session<'a, 'o> {
             return Err(RunnerError::Behind { run: self.run.id.clone() });
         }
         let sample = self.rig_tick(request)?;
+        if let Some(Stranger::Stopped(session)) = sample.stranger {
+            self.until_rest()?;
+            return Err(RunnerError::StoppedByAnother { run: self.run.id.clone(), session });
+        }
         if let Some((fault, _)) = sample.fault {
             let sentence = format!("{fault:?}: category {} stop", fault.category() as u8);
             self.event(EventKind::Fault, &sentence);
@@ -807,19 +834,26 @@ impl<'a, 'o> Session<'a, 'o> {
     fn rig_tick(&mut self, request: Option<Request>) -> Result<Sample, RunnerError> {
         let sample = self.rig.tick(request)?;
         self.last = sample;
-        if let Some(session) = sample.stranger {
-            self.event(EventKind::Link, &turned_away(session));
+        self.tick.get_or_insert(sample.tick);
+        let number = self.number();
+        if let Some(stranger) = sample.stranger {
+            self.event(EventKind::Link, &said_of(stranger));
         }
-        let number = sample.tick.saturating_sub(*self.tick.get_or_insert(sample.tick));
         let is_due = self.is_recorded && number.is_multiple_of(self.setting.decimation);
-        if is_due || number.is_multiple_of(TOLD_EVERY) {
+        if is_due || number.is_multiple_of(SHOWN_EVERY) {
             self.engine.offer(Entry::Sample(number, sample));
         }
         Ok(sample)
     }
 
     fn event(&mut self, kind: EventKind, sentence: &str) {
-        self.engine.put(Entry::Event(kind, sentence.to_owned()));
+        let number = self.number();
+        self.engine.put(Entry::Event(number, kind, sentence.to_owned()));
+    }
+
+    /// Ticks from the first sample of the order to the last one.
+    fn number(&self) -> u64 {
+        self.tick.map_or(0, |first| self.last.tick.saturating_sub(first))
     }
 }
 
@@ -839,10 +873,17 @@ fn has_begun(sample: &Sample, request: &Request) -> bool {
     }
 }
 
-/// Ticks between two words to whoever watches: thirty a second.
-const TOLD_EVERY: u64 = 133;
+/// Whoever watches is shown the samples whose tick is a multiple of this: thirty a second, fewer from a board that sends fewer.
+const SHOWN_EVERY: u64 = 133;
 
 /// What is said of another program on the line.
-pub(super) fn turned_away(session: u32) -> String {
-    format!("another program (session {session:08x}) asked for the board and was turned away")
+pub(super) fn said_of(stranger: Stranger) -> String {
+    match stranger {
+        Stranger::TurnedAway(session) => {
+            format!("another program (session {session:08x}) asked for the board and was turned away")
+        }
+        Stranger::Stopped(session) => {
+            format!("another program (session {session:08x}) asked for a stop, which was obeyed")
+        }
+    }
 }

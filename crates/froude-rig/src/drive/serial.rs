@@ -33,7 +33,7 @@ use froude_link::status::{Ack, BoardHello, TurnedAway, Verdict};
 use froude_link::{FrameReader, FrameWriter, Telemetry, VERSION};
 
 use super::port::Port;
-use super::{AxisSample, HostClock, Rig, RigError, Sample};
+use super::{AxisSample, HostClock, Rig, RigError, Sample, Stranger};
 use crate::load::Load;
 
 /// A sign of life at least this often.
@@ -42,8 +42,10 @@ const HEARTBEAT: Duration = Duration::from_millis(20);
 const ASK_TIME: Duration = Duration::from_millis(100);
 /// A request that was not answered is repeated after this time.
 const REPEAT: Duration = Duration::from_millis(50);
-/// Without telemetry for this long the board is stopped and given up.
+/// Listened to for this long without telemetry, the board is stopped and given up. Until then a stop of the operator waits with it.
 const SILENCE: Duration = Duration::from_secs(1);
+/// No longer than this has it listened between two looks at the line: a computer that stood still itself heard nobody's silence.
+const ATTENTION: Duration = Duration::from_millis(50);
 /// How long the greeting and the configuration may take.
 const GREETING: Duration = Duration::from_secs(5);
 /// Holding samples after homing over which the beginning of the counts is averaged.
@@ -74,6 +76,8 @@ pub struct SerialRig {
     refused: Option<TurnedAway>,
     /// The last session that was turned away because this one has the board, and whether that is still to be said.
     stranger: Option<(u32, bool)>,
+    /// Another session whose stop the board carried out, until it is reported.
+    stopped_by: Option<u32>,
     reader: FrameReader<FromBoard>,
     writer: FrameWriter,
     config: Config,
@@ -89,7 +93,9 @@ pub struct SerialRig {
     stale_until: Option<u32>,
     refusal: Option<Refusal>,
     last_sent: Instant,
-    last_heard: Instant,
+    /// When it last listened, and how long it has listened since something was heard.
+    listened: Instant,
+    unheard: Duration,
     clock: Clock,
 }
 
@@ -148,6 +154,7 @@ impl SerialRig {
             session: drawn_session(),
             refused: None,
             stranger: None,
+            stopped_by: None,
             reader: FrameReader::new(),
             writer: FrameWriter::default(),
             config,
@@ -161,7 +168,8 @@ impl SerialRig {
             stale_until: None,
             refusal: None,
             last_sent: now,
-            last_heard: now,
+            listened: now,
+            unheard: Duration::ZERO,
             clock: Clock::new(),
         };
         rig.greet()?;
@@ -235,6 +243,8 @@ impl SerialRig {
             }
         }
         self.heard.clear();
+        // What was answered until now was asked for before this host had the board.
+        self.stopped_by = None;
         self.stale_until = self.answer.map(|ack| ack.tick);
         if let Some((fault @ (Fault::HostSilent | Fault::RecorderFailed), _)) = self.next(None)?.fault {
             self.tick(Some(Request::Clear(fault)))?;
@@ -264,6 +274,8 @@ impl SerialRig {
     /// Takes what has come; returns after a few milliseconds when nothing has.
     fn listen(&mut self) -> Result<(), RigError> {
         let mut bytes = [0_u8; 4_096];
+        self.unheard += self.listened.elapsed().min(ATTENTION);
+        self.listened = Instant::now();
         let n = match self.line.read(&mut bytes) {
             Ok(0) => {
                 return Err(RigError::Port { port: self.port.clone(), reason: "the port is gone".to_owned() });
@@ -277,7 +289,7 @@ impl SerialRig {
             if let Some(received) = self.reader.feed(byte) {
                 // Answers about the time do not say what the carriage does: without telemetry the board is given up.
                 if matches!(received.message, FromBoard::Telemetry(_) | FromBoard::Ack(_) | FromBoard::Hello(_)) {
-                    self.last_heard = Instant::now();
+                    self.unheard = Duration::ZERO;
                 }
                 self.take(received.message)?;
             }
@@ -325,6 +337,8 @@ impl SerialRig {
                     };
                 }
             }
+            // The board carries out nothing of a session that does not have it, but for a stop.
+            FromBoard::Ack(Ack { session, verdict: Verdict::Accepted, .. }) => self.stopped_by = Some(session),
             FromBoard::TimeReply(reply) if reply.session == self.session => {
                 let clock = &mut self.clock;
                 let board_received_us = clock.board.unwrap(reply.board_received_us);
@@ -368,13 +382,23 @@ impl SerialRig {
             }
             self.listen()?;
             // Only now: what came while nobody listened lies in the port.
-            if self.heard.is_empty() && self.last_heard.elapsed() > SILENCE {
+            if self.heard.is_empty() && self.unheard > SILENCE {
                 // It may still hear: nobody watches the carriage any more.
                 self.id = self.id.wrapping_add(1).max(1);
                 let _ = self.send(&ToBoard::Request { id: self.id, request: Request::Stop(StopCategory::One) });
-                return Err(self.silent(self.last_heard.elapsed()));
+                return Err(self.silent(self.unheard));
             }
         }
+    }
+
+    /// What another host came to, once; of two things at a time the stop.
+    fn stranger(&mut self) -> Option<Stranger> {
+        if let Some(session) = self.stopped_by.take() {
+            return Some(Stranger::Stopped(session));
+        }
+        let (session, is_new) = self.stranger?;
+        self.stranger = Some((session, false));
+        is_new.then_some(Stranger::TurnedAway(session))
     }
 
     fn sample(&mut self, telemetry: &Telemetry) -> Sample {
@@ -412,8 +436,7 @@ impl SerialRig {
                 is_homed: t.is_homed,
             };
         }
-        let stranger = self.stranger.filter(|(_, is_new)| *is_new).map(|(session, _)| session);
-        self.stranger = self.stranger.map(|(session, _)| (session, false));
+        let stranger = self.stranger();
         let tick = self.ticks.unwrap(telemetry.tick);
         self.clock.latched = Some((tick, self.clock.board.unwrap(telemetry.latched_us)));
         Sample {

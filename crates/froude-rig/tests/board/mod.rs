@@ -70,6 +70,8 @@ pub struct Watched {
 pub struct BoardAtTerminal {
     /// What a host opens.
     pub port: PathBuf,
+    /// The same line, for what a second host says on it.
+    pub line: File,
     watched: Arc<Mutex<Watched>>,
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -79,6 +81,7 @@ impl BoardAtTerminal {
     /// Powers up.
     pub fn new(config: &BoardConfig) -> std::io::Result<Self> {
         let (host_end, held, port) = terminal()?;
+        let line = held.try_clone()?;
         // Raw, so that no byte is read as a command to the terminal.
         let mut raw = rustix::termios::tcgetattr(&held)?;
         raw.make_raw();
@@ -109,7 +112,7 @@ impl BoardAtTerminal {
             let (watched, is_over, patience) = (Arc::clone(&watched), Arc::clone(&is_over), config.patience);
             std::thread::spawn(move || board.run(patience, &watched, &is_over))
         };
-        Ok(Self { port, watched, is_over, thread: Some(thread) })
+        Ok(Self { port, line, watched, is_over, thread: Some(thread) })
     }
 
     /// What it is doing.

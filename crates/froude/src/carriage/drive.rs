@@ -235,6 +235,11 @@ fn return_speed_m_s(asked: &CarriagePlan, limits: &froude_control::config::Limit
     fastest.clamp(0.05, 0.5).min(limits.speed_m_s)
 }
 
+/// Longest that homing may take, s: half as long again as the way from the far hard stop does, and a minute for turning and settling.
+fn homing_s(limits: &froude_control::config::Limits) -> f64 {
+    60.0 + 1.5 * (limits.hard_high_m - limits.hard_low_m) / limits.unhomed_speed_m_s
+}
+
 /// Drives what passed its pre-flight; goes on where an earlier drive into the same folder stopped.
 ///
 /// # Errors
@@ -271,6 +276,7 @@ pub fn drive(
         folder: prepared.folder.clone(),
         asked: prepared.asked.clone(),
         return_speed_m_s: return_speed_m_s(&prepared.asked, &axis.limits),
+        homing_s: prepared.control.axes.map(|axis| homing_s(&axis.limits)),
         is_shaped: axis.mode_hz > 0.0,
         constants,
         load,
