@@ -95,7 +95,58 @@ struct Reading {
 ///
 /// [`DragError::Calibration`] with what is missing: weights, directions, repeats.
 pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calibration, DragError> {
-    let readings = readings(runs, setup)?;
+    let mut readings = Readings::default();
+    for run in runs {
+        readings.push(run, setup.steady);
+    }
+    readings.calibrate(setup)
+}
+
+/// What calibration runs showed, one after the other: no log has to stay in memory for it.
+#[derive(Debug, Clone, Default)]
+pub struct Readings {
+    taken: Vec<Reading>,
+    /// Why the last run without a steady window has none.
+    refused: Option<String>,
+}
+
+impl Readings {
+    /// Takes the reading of a run; one of another kind has none.
+    pub fn push(&mut self, run: &DragRun<'_>, steady: SteadySettings) {
+        if run.kind != RunKind::Calibration {
+            return;
+        }
+        match window(run, steady) {
+            Ok(w) => self.taken.push(Reading {
+                direction: run.direction,
+                weight_n: run.hung_weight_n.unwrap_or(0.0),
+                along_v: run.direction * mean(w.of(run.command_v), run.step_s()).value,
+            }),
+            Err(why) => self.refused = Some(why.to_string()),
+        }
+    }
+
+    /// No calibration run was seen, with or without a reading.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.taken.is_empty() && self.refused.is_none()
+    }
+
+    /// As [`calibrate`], from the runs seen so far.
+    ///
+    /// # Errors
+    ///
+    /// As [`calibrate`].
+    pub fn calibrate(&self, setup: &CalibrationSetup) -> Result<Calibration, DragError> {
+        if self.taken.is_empty() {
+            let why = self.refused.clone().unwrap_or_else(|| "no calibration run".to_owned());
+            return Err(DragError::Calibration(why));
+        }
+        calibrated(&self.taken, setup)
+    }
+}
+
+fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibration, DragError> {
     let total = readings.len();
     // First with what goes up or has no weight: its friction says which weights the motor surely drives down.
     let is_lifting = |r: &Reading| r.along_v > 0.0 && (r.weight_n == 0.0 || r.direction > 0.0);
@@ -107,7 +158,7 @@ pub fn calibrate(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Calib
         _ => 0.0,
     };
     let is_driven = |r: &Reading| is_lifting(r) || (r.along_v > 0.0 && r.weight_n <= SURELY_DRIVEN * friction_n);
-    let driving: Vec<Reading> = readings.into_iter().filter(is_driven).collect();
+    let driving: Vec<Reading> = readings.iter().copied().filter(is_driven).collect();
     let overhauled = total - driving.len();
     let weights = reach(&driving.iter().map(|r| r.weight_n).collect::<Vec<_>>());
     if driving.is_empty() || weights[1] <= 0.0 {
@@ -185,26 +236,6 @@ fn take(fitted: &Fit, j: usize) -> Result<Uncertain, DragError> {
             c.name
         ))),
     }
-}
-
-fn readings(runs: &[DragRun<'_>], setup: &CalibrationSetup) -> Result<Vec<Reading>, DragError> {
-    let mut out = Vec::new();
-    let mut refused = String::new();
-    for run in runs.iter().filter(|r| r.kind == RunKind::Calibration) {
-        match window(run, setup.steady) {
-            Ok(w) => out.push(Reading {
-                direction: run.direction,
-                weight_n: run.hung_weight_n.unwrap_or(0.0),
-                along_v: run.direction * mean(w.of(run.command_v), run.step_s()).value,
-            }),
-            Err(why) => refused = why.to_string(),
-        }
-    }
-    if out.is_empty() {
-        let why = if refused.is_empty() { "no calibration run".to_owned() } else { refused };
-        return Err(DragError::Calibration(why));
-    }
-    Ok(out)
 }
 
 fn notes(

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, calibrate};
+use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
 use froude_identify::carriage::coefficient::{Coefficient, Method};
 use froude_identify::carriage::report::{DragReport, drag_report};
 use froude_identify::carriage::run::{
@@ -216,8 +216,20 @@ pub(crate) fn calibration_of(
     campaign: Option<&Campaign>,
     setup: &DragSetup,
 ) -> (Option<Calibration>, Option<Finding>) {
-    use froude_identify::carriage::run::RunKind::Calibration as Hung;
-    if !runs.iter().any(|r| r.kind == Hung) {
+    let mut readings = Readings::default();
+    for run in runs {
+        readings.push(run, setup.steady);
+    }
+    calibration_from(&readings, campaign, setup)
+}
+
+/// The same from what such runs showed.
+pub(crate) fn calibration_from(
+    readings: &Readings,
+    campaign: Option<&Campaign>,
+    setup: &DragSetup,
+) -> (Option<Calibration>, Option<Finding>) {
+    if readings.is_empty() {
         return (None, None);
     }
     let declared =
@@ -231,7 +243,7 @@ pub(crate) fn calibration_of(
             .map_or(PULLEY_LOSS, |p| Uncertain::new(p.value, p.standard_uncertainty)),
         steady: setup.steady,
     };
-    match calibrate(runs, &asked) {
+    match readings.calibrate(&asked) {
         Ok(c) if c.efficiency.value > 1.0 + 3.0 * c.efficiency.standard || c.efficiency.relative() > USELESS => (
             None,
             Some(Finding::new(

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_identify::carriage::calibration::Readings;
 use froude_identify::carriage::detectability::DryMean;
 use froude_identify::carriage::online::OnLine;
 use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 use froude_records::hash::sha256_of_bytes;
-use froude_records::run::{BodyState, CampaignMark, RunKind, RunLog, check_names, read_run};
+use froude_records::run::{BodyState, CampaignMark, RunKind, RunMeta, check_names, read_run};
 use froude_rig::campaign::lock::FolderLock;
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check, check_campaign};
@@ -20,7 +21,7 @@ use froude_rig::drive::twin::TwinRig;
 use froude_rig::load::{Load, TowedBody};
 use indexmap::IndexMap;
 
-use super::drag::{calibration_of, setup_of};
+use super::drag::{calibration_from, setup_of};
 use super::runs::{CAMPAIGN_COPY, density_kg_m3, for_drag};
 use crate::Error;
 
@@ -342,12 +343,19 @@ struct Live {
     setup: drag_run::DragSetup,
     campaign: Campaign,
     folder: PathBuf,
-    waiting: Vec<RunLog>,
-    calibration: Vec<RunLog>,
+    /// Runs whose partner has not been driven yet; a log of megabytes is read again when it has.
+    waiting: Vec<Waiting>,
+    calibration: Readings,
     is_calibrated: bool,
     /// Differences seen, whether they gave a point or not.
     differences: usize,
     per_pair: usize,
+}
+
+/// A run that waits for its partner.
+struct Waiting {
+    path: PathBuf,
+    meta: RunMeta,
 }
 
 impl Live {
@@ -365,7 +373,7 @@ impl Live {
             campaign: prepared.campaign.clone(),
             folder: prepared.folder.clone(),
             waiting: Vec::new(),
-            calibration: Vec::new(),
+            calibration: Readings::default(),
             is_calibrated: false,
             differences: 0,
             per_pair: asked.speed_m_s.len() * directions,
@@ -380,7 +388,9 @@ impl Live {
         }
         let log = read_run(path).ok()?;
         if run.kind == RunKind::Calibration {
-            self.calibration.push(log);
+            if let Ok(Some(run)) = for_drag(&log) {
+                self.calibration.push(&run, self.setup.steady);
+            }
             return None;
         }
         self.calibrate();
@@ -396,13 +406,14 @@ impl Live {
                 && other.meta.direction == log.meta.direction
         });
         let Some(partner) = partner else {
-            self.waiting.push(log);
+            self.waiting.push(Waiting { path: path.to_owned(), meta: log.meta });
             return None;
         };
-        let other = self.waiting.swap_remove(partner);
+        let other = read_run(&self.waiting.swap_remove(partner).path);
         self.differences += 1;
-        let (wet, dry) = if log.meta.body == BodyState::Wet { (&log, &other) } else { (&other, &log) };
-        if let (Ok(Some(wet)), Ok(Some(dry))) = (for_drag(wet), for_drag(dry))
+        if let Ok(other) = &other
+            && let (wet, dry) = if log.meta.body == BodyState::Wet { (&log, other) } else { (other, &log) }
+            && let (Ok(Some(wet)), Ok(Some(dry))) = (for_drag(wet), for_drag(dry))
             && let Ok(point) = mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady)
         {
             online.push(point);
@@ -433,10 +444,7 @@ impl Live {
             return;
         }
         self.is_calibrated = true;
-        // Not needed again, and megabytes each.
-        let logs = std::mem::take(&mut self.calibration);
-        let runs: Vec<_> = logs.iter().filter_map(|log| for_drag(log).ok().flatten()).collect();
-        let (calibration, _) = calibration_of(&runs, Some(&self.campaign), &self.setup);
+        let (calibration, _) = calibration_from(&self.calibration, Some(&self.campaign), &self.setup);
         self.setup.calibration = calibration.map(|c| c.force_per_volt);
     }
 }
