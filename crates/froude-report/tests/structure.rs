@@ -249,8 +249,8 @@ fn hostile_names_are_escaped_everywhere() {
     e.undetermined = vec![h()];
     e.diagnostics.notes = vec![h()];
     e.law.formulas.insert(h(), h());
-    e.geometry.insert(h(), Measured { value: 1.0, unit: h() });
-    e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
+    e.geometry.insert(h(), Measured::new(1.0, h()));
+    e.sigma.insert(h(), Measured::new(1.0, h()));
     e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
     let side = || Side { source: h(), value: Some(1.0), standard: None, expanded: None };
     let report = Report {
@@ -554,8 +554,8 @@ proptest! {
         (c.type_a, c.type_b, c.effective_dof) = (Some(values[4]), Some(values[5]), Some(values[6]));
         let mut e = estimate("tank", "f4", &[("C_d_II", c.clone()), ("C_f_II", c)]);
         e.validity.insert("speed".to_owned(), Range { low: values[0], high: values[1], unit: "rad".to_owned() });
-        e.sigma.insert("f_x".to_owned(), Measured { value: values[2], unit: "N".to_owned() });
-        e.density = Some(Measured { value: values[7], unit: "kg/m^3".to_owned() });
+        e.sigma.insert("f_x".to_owned(), Measured::new(values[2], "N"));
+        e.density = Some(Measured::new(values[7], "kg/m^3"));
         e.diagnostics.relative_residual.insert("f_x".to_owned(), values[3]);
         e.diagnostics.condition_number = Some(values[4]);
         let side = Side { source: "s".to_owned(), value: Some(values[0]), standard: Some(values[1]), expanded: Some(values[2]) };
@@ -614,4 +614,39 @@ proptest! {
             prop_assert!(figure.svg.len() < 500_000, "{} bytes", figure.svg.len());
         }
     }
+}
+
+/// Estimates side by side are pairs, and the page costs so much a pair: twice the estimates take four times as long, and not sixteen times.
+#[test]
+fn a_comparison_costs_as_much_as_it_has_pairs() {
+    let page = |estimates: usize| {
+        let side = |i: usize| Side { source: format!("source {i}/quadratic"), value: Some(1.0), ..Side::default() };
+        let pairs = (0..estimates).flat_map(|i| (i + 1..estimates).map(move |j| (i, j)));
+        let coefficients = pairs
+            .map(|(i, j)| CoefficientComparison {
+                model: "quadratic".to_owned(),
+                coefficient: "D_x_II".to_owned(),
+                unit: "kg/m".to_owned(),
+                first: side(i),
+                second: side(j),
+                note: "no uncertainty stated".to_owned(),
+                ..CoefficientComparison::default()
+            })
+            .collect();
+        Report {
+            comparison: Some(ComparisonSection { coefficients, ..ComparisonSection::default() }),
+            ..Report::default()
+        }
+    };
+    let seconds = |report: &Report| {
+        let once = || {
+            let begun = std::time::Instant::now();
+            let page = html(report).unwrap();
+            assert!(page.contains("pairs of estimates without E"));
+            begun.elapsed().as_secs_f64()
+        };
+        (0..3).map(|_| once()).fold(f64::INFINITY, f64::min)
+    };
+    let [half, whole] = [150, 300].map(|n| seconds(&page(n)));
+    assert!(whole < 8.0 * half, "{half} s for 150 estimates, {whole} s for 300");
 }
