@@ -24,17 +24,15 @@ pub fn estimate(
     let mut geometry = IndexMap::new();
     match &model.law.kind {
         Kind::Drag { body, .. } => {
-            constants.insert("v_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
+            constants.insert("v_ref".to_owned(), Measured::new(REFERENCE_SPEED_M_S, "m/s"));
             geometry = geometry_of(body);
         }
         Kind::PowerLaw { .. } => {
-            constants.insert("U_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
+            constants.insert("U_ref".to_owned(), Measured::new(REFERENCE_SPEED_M_S, "m/s"));
         }
         Kind::Formulas(_) => {}
     }
-    let density = data
-        .values("density")
-        .map(|d| Measured { value: d.iter().sum::<f64>() / d.len() as f64, unit: "kg/m^3".to_owned() });
+    let density = data.values("density").map(|d| Measured::new(d.iter().sum::<f64>() / d.len() as f64, "kg/m^3"));
     let in_logarithms = model.law.in_logarithms();
     Estimate {
         id: format!("{}/{}", source.name, model.law.name),
@@ -55,7 +53,7 @@ pub fn estimate(
             .iter()
             .filter_map(|c| {
                 let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
-                c.sigma.map(|value| (c.name.clone(), Measured { value, unit }))
+                c.sigma.map(|value| (c.name.clone(), Measured::new(value, unit)))
             })
             .collect(),
         n_observations: data.rows,

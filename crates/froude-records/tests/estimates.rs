@@ -26,7 +26,7 @@ fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
 }
 
 fn measured(value: f64, unit: &str) -> Measured {
-    Measured { value, unit: unit.to_owned() }
+    Measured::new(value, unit)
 }
 
 fn sample() -> EstimateFile {

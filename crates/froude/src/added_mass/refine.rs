@@ -94,8 +94,10 @@ pub struct Refined {
     pub shared: Vec<[[f64; 6]; 6]>,
     /// Observed order of convergence; `None` where the values do not fall in a row.
     pub order: [[Option<f64>; 6]; 6],
-    /// Volume, extrapolated, m³.
+    /// Volume, extrapolated, m³; of a mesh from elsewhere that of its facets.
     pub volume_m3: f64,
+    /// Its numerical uncertainty, as an expanded one, m³; infinite where there is one mesh only, zero for facets, which subdivision keeps.
+    pub volume_uncertainty_m3: f64,
     /// From the coarsest on; all of them, not only those that the value is from.
     pub steps: Vec<Step>,
     /// Largest relative uncertainty, as the tolerance counts it.
@@ -106,6 +108,15 @@ pub struct Refined {
     pub stopped: Option<String>,
     /// The finest mesh that was solved on.
     pub finest: Finest,
+}
+
+impl Refined {
+    /// A diagonal entry of translation over the volume \[-\] with its expanded uncertainty, or of rotation \[m²\].
+    #[must_use]
+    pub fn over_volume(&self, i: usize) -> [f64; 2] {
+        let (part, v) = (self.value[i][i] / self.volume_m3, self.volume_m3);
+        [part, (self.uncertainty[i][i] / v).hypot(part * self.volume_uncertainty_m3 / v)]
+    }
 }
 
 /// The finest mesh and its potentials.
@@ -286,7 +297,13 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     let is_within = worst <= wanted.tolerance;
     let volumes: Vec<f64> = steps.iter().map(|s| s.measure.volume_m3).collect();
     let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
-    let volume_m3 = if volumes.len() > 1 { converged(&sizes, &volumes, 0.0).extrapolated.value } else { volumes[0] };
+    let (volume_m3, volume_uncertainty_m3) = match (volumes.len() > 1, is_foreign) {
+        (true, is_foreign) => {
+            let volume = converged(&sizes, &volumes, 0.0).extrapolated;
+            (volume.value, if is_foreign { 0.0 } else { volume.uncertainty })
+        }
+        (false, is_foreign) => (volumes[0], if is_foreign { 0.0 } else { f64::INFINITY }),
+    };
     if !is_within && stopped.is_none() {
         stopped = Some("no finer mesh is made".to_owned());
     }
@@ -297,6 +314,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         shared,
         order: entries.map(|row| row.map(|e| e.order)),
         volume_m3,
+        volume_uncertainty_m3,
         steps,
         worst,
         is_within,
