@@ -14,6 +14,7 @@ use crate::carriage_toml::carriage;
 use crate::error::RecordError;
 use crate::keep::parse_keep;
 use crate::nearest::suggestion;
+use crate::plausible;
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::table::known_dimension;
 use crate::units::Dimension;
@@ -66,13 +67,18 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
 }
 
 fn fluid(s: &Section<'_>) -> Result<Fluid, RecordError> {
+    s.only(&["density", "kinematic_viscosity", "temperature", "salinity"])?;
     let out = Fluid {
         density_kg_m3: s.positive("density", Dimension::DENSITY)?,
         kinematic_viscosity_m2_s: s.positive("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY)?,
         temperature_degc: s.quantity("temperature", Dimension::TEMPERATURE)?.map(|kelvin| kelvin - 273.15),
         salinity_g_kg: s.quantity("salinity", Dimension::ONE)?.map(|fraction| fraction * 1e3),
     };
-    s.finish()?;
+    if let (Some(rho), Some(value)) = (out.density_kg_m3, s.get("density"))
+        && let Some(problem) = plausible::density(rho, out.kinematic_viscosity_m2_s)
+    {
+        return Err(s.wrong("density", value, format!("is {}, which {problem}", found(value))));
+    }
     Ok(out)
 }
 
