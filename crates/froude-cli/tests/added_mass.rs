@@ -618,40 +618,36 @@ fn page_and_terminal_have_the_matrix_once_with_its_frame() {
     once(&["--surface", "0.6 m"], 3);
 }
 
-/// Volumes of closed form lie within what is stated of them; facets have theirs to rounding, and nothing is stated.
+/// The displacement has no uncertainty: it is that of the dimensions, or of the facets, and the page says which.
 #[test]
-fn the_volume_has_an_uncertainty_that_holds_and_facets_none() {
+fn the_volume_is_exact_and_says_of_what() {
     use std::f64::consts::PI;
     let section = "major_semi_axis = \"90 mm\"\nminor_semi_axis = \"60 mm\"\n";
     let area = PI * 0.09 * 0.06;
     let capsule = format!("shape = \"capsule\"\nlength = \"0.8 m\"\n{section}ends = {{ length = \"100 mm\" }}\n");
     let cylinder = format!("shape = \"cylinder\"\nlength = \"0.8 m\"\n{section}");
+    let volume = |out: &Value| out["estimates"][0]["geometry"]["volume"]["value"].as_f64().unwrap();
     for (shape, exact_m3) in [
         (EGG, 4.0 / 3.0 * PI * 0.5 * 0.3 * 0.2),
         (capsule.as_str(), area * 0.6 + 4.0 / 3.0 * area * 0.1),
         (cylinder.as_str(), area * 0.8),
     ] {
-        let out = of_shape(shape, &["--tolerance", "5 %"]);
-        let volume = &out["estimates"][0]["geometry"]["volume"];
-        let [value, standard] = ["value", "standard_uncertainty"].map(|key| volume[key].as_f64().unwrap());
-        assert!((value - exact_m3).abs() <= 2.0 * standard, "{shape}: {value} for {exact_m3}, {volume}");
-        assert!(standard < 1e-3 * value, "{volume}");
+        for most in ["400", "120000"] {
+            let found = volume(&of_shape(shape, &["--tolerance", "5 %", "--most-panels", most]));
+            assert!((found / exact_m3 - 1.0).abs() < 1e-12, "{shape}: {found} for {exact_m3}");
+        }
     }
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     std::fs::write(at.join("body.toml"), body_file(EGG)).unwrap();
+    let row = |text: &str| text.lines().find(|l| l.trim_start().starts_with("volume")).unwrap().to_owned();
     let text = lines(at, &["body.toml", "--tolerance", "5 %"]);
-    let row = |text: &str, name: &str| text.lines().find(|l| l.trim_start().starts_with(name)).unwrap().to_owned();
-    assert!(row(&text, "volume").contains('±') && row(&text, "displaced mass").contains('±'), "{text}");
+    assert!(row(&text).contains("0.125664 m³, exactly that of the dimensions"), "{}", row(&text));
     write(at, "hull.obj", &hull());
-    let text = lines(at, &["hull.obj", "--density", "1000 kg/m^3", "--tolerance", "20 %"]);
-    let volume = row(&text, "volume");
-    assert!(volume.contains(", of the facets as they are") && !volume.contains('±'), "{volume}");
-    let out = record(at, &["hull.obj", "--density", "1000 kg/m^3", "--tolerance", "20 %"]);
-    assert!(out["estimates"][0]["geometry"]["volume"]["standard_uncertainty"].is_null());
-    // Of one mesh nothing is known.
-    let out = of_shape(EGG, &["--most-panels", "192"]);
-    assert!(out["estimates"][0]["geometry"]["volume"]["standard_uncertainty"].is_null(), "{out}");
+    let (text, out) =
+        (lines(at, &[&["hull.obj"], &ONE_MESH[..]].concat()), record(at, &[&["hull.obj"], &ONE_MESH[..]].concat()));
+    assert!(row(&text).contains(" m³, exactly that of the facets"), "{}", row(&text));
+    assert!((volume(&out) / Measure::of(&hull()).volume_m3 - 1.0).abs() < 1e-6);
 }
 
 /// Two matrices of one body in two frames look alike.

@@ -350,7 +350,7 @@ fn body_of(estimate: &Estimate) -> Result<Body, IdentifyError> {
 /// Geometry of a body as a record carries it.
 #[must_use]
 pub fn geometry_of(body: &Body) -> IndexMap<String, Measured> {
-    let m = |value, unit: &str| Measured::new(value, unit);
+    let m = |value, unit: &str| Measured { value, unit: unit.to_owned() };
     IndexMap::from([
         ("major_semi_axis".to_owned(), m(body.link.major_semi_axis_m, "m")),
         ("minor_semi_axis".to_owned(), m(body.link.minor_semi_axis_m, "m")),

@@ -127,7 +127,7 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
     if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
         // At rest there is no angle; a turn more is the same one.
         let speed = data.values("speed").unwrap_or_default();
-        let moving = moving(speed);
+        let moving = moving(speed, AT_REST);
         let apart = |i: usize| {
             let by = stated[i] - derived[i];
             (by - TAU * (by / TAU).round()).abs()
@@ -169,10 +169,10 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
     findings
 }
 
-/// Rows that move, by their speed; one below zero goes astern.
-pub(crate) fn moving(speed: &[f64]) -> Vec<usize> {
+/// Rows that move faster than a part of the fastest; a speed below zero goes astern.
+pub(crate) fn moving(speed: &[f64], part: f64) -> Vec<usize> {
     let fastest = speed.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-    (0..speed.len()).filter(|&i| speed[i].abs() > AT_REST * fastest).collect()
+    (0..speed.len()).filter(|&i| speed[i].abs() > part * fastest).collect()
 }
 
 /// Loads along the motion: a drag that pushes.

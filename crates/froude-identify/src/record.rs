@@ -24,15 +24,17 @@ pub fn estimate(
     let mut geometry = IndexMap::new();
     match &model.law.kind {
         Kind::Drag { body, .. } => {
-            constants.insert("v_ref".to_owned(), Measured::new(REFERENCE_SPEED_M_S, "m/s"));
+            constants.insert("v_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
             geometry = geometry_of(body);
         }
         Kind::PowerLaw { .. } => {
-            constants.insert("U_ref".to_owned(), Measured::new(REFERENCE_SPEED_M_S, "m/s"));
+            constants.insert("U_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
         }
         Kind::Formulas(_) => {}
     }
-    let density = data.values("density").map(|d| Measured::new(d.iter().sum::<f64>() / d.len() as f64, "kg/m^3"));
+    let density = data
+        .values("density")
+        .map(|d| Measured { value: d.iter().sum::<f64>() / d.len() as f64, unit: "kg/m^3".to_owned() });
     let in_logarithms = model.law.in_logarithms();
     Estimate {
         id: format!("{}/{}", source.name, model.law.name),
@@ -53,7 +55,7 @@ pub fn estimate(
             .iter()
             .filter_map(|c| {
                 let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
-                c.sigma.map(|value| (c.name.clone(), Measured::new(value, unit)))
+                c.sigma.map(|value| (c.name.clone(), Measured { value, unit }))
             })
             .collect(),
         n_observations: data.rows,

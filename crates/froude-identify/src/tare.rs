@@ -16,7 +16,7 @@ use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::lint::moving;
 use crate::uncertainty::SharedError;
-use crate::validity::{OFF_AXIS, off_axis};
+use crate::validity::{AT_REST, OFF_AXIS, off_axis};
 
 /// Angles this far beyond those of the tare runs are still theirs, 1°: at it a round strut's side force is 2 % of its drag.
 const SAME_ANGLE_RAD: f64 = PI / 180.0;
@@ -118,7 +118,7 @@ fn beyond_its_angles(
     };
     let askew = |i: usize| off_axis(data.velocity_m_s(i));
     let beyond = |reach: f64| -> Vec<usize> {
-        moving(speed).into_iter().filter(|&i| askew(i) > reach + SAME_ANGLE_RAD).collect()
+        moving(speed, AT_REST).into_iter().filter(|&i| askew(i) > reach + SAME_ANGLE_RAD).collect()
     };
     // Of a load that the law does not give, the tare knows nothing at any angle.
     let stays_in = |load: &str| data.values(load).filter(|_| gives(load).is_none());

@@ -16,6 +16,10 @@ const BLOCKAGE_LIMIT: f64 = 0.05;
 /// Submergence Froude number above which a body near the surface makes waves that matter.
 const WAVE_LIMIT: f64 = 0.4;
 
+/// Rows slower than this part of the fastest are at rest: a slow tow has a hundredth of the speed of a fast one, and what a sensor shows at
+/// rest is less.
+pub(crate) const AT_REST: f64 = 0.01;
+
 /// Name of the range of the angle between the motion and the x axis, ahead or astern: what a strut sees of the angle.
 pub(crate) const OFF_AXIS: &str = "angle_off_axis";
 
@@ -38,7 +42,7 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
             out.insert(name.to_owned(), Range { low, high, unit: unit.to_owned() });
         }
     };
-    let moving = moving(data.values("speed").unwrap_or_default());
+    let moving = moving(data.values("speed").unwrap_or_default(), AT_REST);
     for (name, unit) in [("speed", "m/s"), ("angle", "rad"), ("n_links", "1"), ("temperature", "K")] {
         match data.values(name) {
             Some(values) if name == "angle" => {

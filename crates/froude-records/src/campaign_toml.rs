@@ -1,5 +1,6 @@
 //! The campaign's TOML, section by section. Names and defaults are the contract of the book's conventions page.
 
+use std::collections::HashSet;
 use std::path::Path;
 
 use indexmap::IndexMap;
@@ -54,8 +55,9 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
         simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
         carriage: carriage(&root)?,
     };
-    for (i, a) in campaign.sources.iter().enumerate() {
-        if campaign.sources[..i].iter().any(|b| b.name == a.name) {
+    let mut names = HashSet::new();
+    for a in &campaign.sources {
+        if !names.insert(&a.name) {
             return Err(RecordError::Value {
                 place: a.place.clone(),
                 key: "name".to_owned(),

@@ -47,17 +47,6 @@ pub struct Measured {
     pub value: f64,
     /// SI unit text, `1` for a pure number.
     pub unit: String,
-    /// Standard uncertainty in the same unit; null where none is stated.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub standard_uncertainty: Option<f64>,
-}
-
-impl Measured {
-    /// A number of which no uncertainty is stated.
-    #[must_use]
-    pub fn new(value: f64, unit: impl Into<String>) -> Self {
-        Self { value, unit: unit.into(), standard_uncertainty: None }
-    }
 }
 
 /// A closed range with its unit.

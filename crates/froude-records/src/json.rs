@@ -355,12 +355,10 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
     for (section, measured) in [("law.constants", constants), ("geometry", geometry), ("sigma", sigma)] {
         for (name, m) in measured {
             see(&|| format!("{section}.{name}"), m.value);
-            see(&|| format!("{section}.{name}"), m.standard_uncertainty.unwrap_or(0.0));
         }
     }
     if let Some(m) = density {
         see(&|| "density".to_owned(), m.value);
-        see(&|| "density".to_owned(), m.standard_uncertainty.unwrap_or(0.0));
     }
     for (name, dof) in dof {
         if let Some(dof) = dof {

@@ -26,7 +26,7 @@ fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
 }
 
 fn measured(value: f64, unit: &str) -> Measured {
-    Measured::new(value, unit)
+    Measured { value, unit: unit.to_owned() }
 }
 
 fn sample() -> EstimateFile {

@@ -503,9 +503,7 @@ fn facts(source: &SourceSection, estimate: Option<&Estimate>) -> Markup {
         source.facts.iter().map(|(name, value)| (name.clone(), html! { (value) })).collect();
     let said: Vec<String> = rows.iter().map(|(name, _)| name.to_lowercase()).collect();
     let measured = |m: &Measured| {
-        let value =
-            m.standard_uncertainty.map_or_else(|| number::plain(m.value, 6), |u| number::short_form(m.value, u));
-        html! { (value) @if m.unit != "1" { " " (unit_text(&m.unit)) } }
+        html! { (number::plain(m.value, 6)) @if m.unit != "1" { " " (unit_text(&m.unit)) } }
     };
     let mut add = |name: &str, value: Markup| {
         if !said.contains(&name.to_lowercase()) {

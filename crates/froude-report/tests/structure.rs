@@ -249,8 +249,8 @@ fn hostile_names_are_escaped_everywhere() {
     e.undetermined = vec![h()];
     e.diagnostics.notes = vec![h()];
     e.law.formulas.insert(h(), h());
-    e.geometry.insert(h(), Measured::new(1.0, h()));
-    e.sigma.insert(h(), Measured::new(1.0, h()));
+    e.geometry.insert(h(), Measured { value: 1.0, unit: h() });
+    e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
     e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
     let side = || Side { source: h(), value: Some(1.0), standard: None, expanded: None };
     let report = Report {
@@ -554,8 +554,8 @@ proptest! {
         (c.type_a, c.type_b, c.effective_dof) = (Some(values[4]), Some(values[5]), Some(values[6]));
         let mut e = estimate("tank", "f4", &[("C_d_II", c.clone()), ("C_f_II", c)]);
         e.validity.insert("speed".to_owned(), Range { low: values[0], high: values[1], unit: "rad".to_owned() });
-        e.sigma.insert("f_x".to_owned(), Measured::new(values[2], "N"));
-        e.density = Some(Measured::new(values[7], "kg/m^3"));
+        e.sigma.insert("f_x".to_owned(), Measured { value: values[2], unit: "N".to_owned() });
+        e.density = Some(Measured { value: values[7], unit: "kg/m^3".to_owned() });
         e.diagnostics.relative_residual.insert("f_x".to_owned(), values[3]);
         e.diagnostics.condition_number = Some(values[4]);
         let side = Side { source: "s".to_owned(), value: Some(values[0]), standard: Some(values[1]), expanded: Some(values[2]) };

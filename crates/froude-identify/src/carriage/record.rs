@@ -23,12 +23,12 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
     let mut geometry = IndexMap::new();
     if let Some(area) = setup.reference_area_m2 {
         coefficients.insert("C_D".to_owned(), recorded(2.0 / (setup.density_kg_m3 * area), "1"));
-        geometry.insert("A".to_owned(), Measured::new(area, "m^2"));
+        geometry.insert("A".to_owned(), Measured { value: area, unit: "m^2".to_owned() });
     }
     let mut constants = IndexMap::new();
     if c.method.is_sensorless() {
         let value = setup.force_per_volt_n();
-        constants.insert("force_per_volt".to_owned(), Measured::new(value, "N/V"));
+        constants.insert("force_per_volt".to_owned(), Measured { value, unit: "N/V".to_owned() });
     }
     let speeds = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s.abs()).collect::<Vec<_>>());
     let mut validity = IndexMap::new();
@@ -41,7 +41,7 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
         model: format!("drag_{}", c.method.name()),
         law: Law { version: 1, constants, formulas: IndexMap::new() },
         geometry,
-        density: Some(Measured::new(setup.density_kg_m3, "kg/m^3")),
+        density: Some(Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() }),
         frame: "along the chain; F = D_d v|v| resists the motion".to_owned(),
         reference_point: String::new(),
         method: format!("{}; least squares over v|v| through the origin", c.method.words()),

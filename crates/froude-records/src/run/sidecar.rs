@@ -312,7 +312,7 @@ fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
         for (name, _, value) in constants.entries() {
             let quantity = constants.as_quantity(name, value)?;
             let unit = quantity.unit.dimension.to_string();
-            out.constants.insert(name.to_owned(), Measured::new(quantity.value_si, unit));
+            out.constants.insert(name.to_owned(), Measured { value: quantity.value_si, unit });
         }
     }
     if let Some(versions) = s.section("versions")? {

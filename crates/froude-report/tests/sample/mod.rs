@@ -59,7 +59,7 @@ impl Dice {
 }
 
 fn measured(value: f64, unit: &str) -> Measured {
-    Measured::new(value, unit)
+    Measured { value, unit: unit.to_owned() }
 }
 
 /// Force of f4 on a body of k links, along x and y.

@@ -254,12 +254,10 @@ fn extent_along(mesh: &Mesh, axis: usize) -> f64 {
 /// Volume, centre of buoyancy, displaced mass and its inertia.
 fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64, frame: &Frame) -> TextTable {
     let finest = refined.steps.last().map(|s| s.measure);
+    let of = if is_mesh { "exactly that of the facets" } else { "exactly that of the dimensions" };
     let mut rows = vec![
-        vec![
-            "volume".to_owned(),
-            format!("{} m³{}", page::volume(refined, 1.0), if is_mesh { ", of the facets as they are" } else { "" }),
-        ],
-        vec!["displaced mass".to_owned(), format!("{} kg", page::volume(refined, density_kg_m3))],
+        vec!["volume".to_owned(), format!("{} m³, {of}", number::plain(refined.volume_m3, 6))],
+        vec!["displaced mass".to_owned(), format!("{} kg", number::plain(density_kg_m3 * refined.volume_m3, 6))],
     ];
     if let Some(m) = finest {
         let list = |v: Vec3, digits| v.map(|x| number::plain(if x.abs() < 1e-12 { 0.0 } else { x }, digits)).join(", ");
@@ -275,7 +273,7 @@ fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64, frame: &Fr
         ]);
     }
     TextTable {
-        caption: "Hydrostatics; ± is the numerical uncertainty, 95 %.".to_owned(),
+        caption: "Hydrostatics; area, centre and inertia are those of the finest mesh.".to_owned(),
         head: vec![String::new(), "value".to_owned()],
         rows,
     }

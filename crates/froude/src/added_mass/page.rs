@@ -31,13 +31,6 @@ pub fn with_uncertainty(value: f64, expanded: f64) -> String {
     if expanded.is_finite() { number::plus_minus(value, expanded) } else { number::plain(value, 6) }
 }
 
-/// The volume times a factor, with its expanded uncertainty; of facets, which have none, with six digits.
-#[must_use]
-pub fn volume(refined: &Refined, factor: f64) -> String {
-    let (value, uncertainty) = (factor * refined.volume_m3, factor * refined.volume_uncertainty_m3);
-    if uncertainty > 0.0 { with_uncertainty(value, uncertainty) } else { number::plain(value, 6) }
-}
-
 /// Part of the largest of its kind below which an entry is that of a symmetry, and of rounding.
 const NOTHING: f64 = 1e-6;
 
@@ -82,19 +75,19 @@ pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
 /// Diagonal without dimension: over ρV (ρVL² for rotations), and over ρLⁿ as WAMIT prints it.
 #[must_use]
 pub fn dimensionless_table(refined: &Refined, length_m: f64) -> TextTable {
+    let v = refined.volume_m3;
     let rows = (0..6)
         .map(|i| {
-            let [square, of_length] =
-                if i < 3 { [1.0, length_m.powi(3)] } else { [length_m.powi(2), length_m.powi(5)] };
-            let [of_volume, uncertainty] = refined.over_volume(i).map(|x| x / square);
-            let of_length = with_uncertainty(refined.value[i][i] / of_length, refined.uncertainty[i][i] / of_length);
-            vec![MOTIONS[i].to_owned(), with_uncertainty(of_volume, uncertainty), of_length]
+            let [of_volume, of_length] =
+                if i < 3 { [v, length_m.powi(3)] } else { [v * length_m.powi(2), length_m.powi(5)] };
+            let of = |size: f64| with_uncertainty(refined.value[i][i] / size, refined.uncertainty[i][i] / size);
+            vec![MOTIONS[i].to_owned(), of(of_volume), of(of_length)]
         })
         .collect();
     TextTable {
         caption: format!(
             "Diagonal without dimension; V = {} m³, L = {} m.",
-            volume(refined, 1.0),
+            number::plain(v, 6),
             number::plain(length_m, 6)
         ),
         head: ["", "A/(ρV), A/(ρVL²) [1]", "A/(ρL³), A/(ρL⁵) [1], as WAMIT with ULEN = L"].map(str::to_owned).to_vec(),
@@ -200,12 +193,19 @@ pub fn links_table(configurations: &[Configuration], density_kg_m3: f64) -> Text
         .map(|c| {
             let r = &c.refined;
             let mass = |i: usize| with_uncertainty(density_kg_m3 * r.value[i][i], density_kg_m3 * r.uncertainty[i][i]);
-            let part = |i: usize| {
-                let [part, uncertainty] = r.over_volume(i);
-                with_uncertainty(part, uncertainty)
-            };
+            let part = |i: usize| with_uncertainty(r.value[i][i] / r.volume_m3, r.uncertainty[i][i] / r.volume_m3);
             let slender = number::plain(r.value[1][1] / c.length_m.powi(3), 4);
-            vec![c.name.clone(), volume(r, 1e3), mass(0), mass(1), mass(2), part(0), part(1), part(2), slender]
+            vec![
+                c.name.clone(),
+                number::plain(1e3 * r.volume_m3, 5),
+                mass(0),
+                mass(1),
+                mass(2),
+                part(0),
+                part(1),
+                part(2),
+                slender,
+            ]
         })
         .collect();
     TextTable {

@@ -108,12 +108,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
             },
         );
     }
-    let measured = |value: f64, unit: &str| Measured::new(value, unit);
-    let volume_standard_m3 = refined.volume_uncertainty_m3 / COVERAGE;
-    let volume = Measured {
-        standard_uncertainty: Some(volume_standard_m3).filter(|u| u.is_finite() && *u > 0.0),
-        ..measured(refined.volume_m3, "m^3")
-    };
+    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
     let steps = refined.steps.iter().map(|s| s.panels.to_string()).collect::<Vec<_>>().join(", ");
     let covariance = covariance(refined, rho);
     Estimate {
@@ -122,7 +117,10 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
         kind: "potential".to_owned(),
         model: "added_mass_6x6".to_owned(),
         law: Law { version: 1, ..Law::default() },
-        geometry: IndexMap::from([("volume".to_owned(), volume), ("length".to_owned(), measured(about.length_m, "m"))]),
+        geometry: IndexMap::from([
+            ("volume".to_owned(), measured(refined.volume_m3, "m^3")),
+            ("length".to_owned(), measured(about.length_m, "m")),
+        ]),
         density: Some(measured(rho, "kg/m^3")),
         frame: about.frame.clone(),
         reference_point: about.reference_point.clone(),

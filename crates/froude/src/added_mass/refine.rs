@@ -3,7 +3,6 @@
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
-use froude_panel::convergence::converged;
 use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
 use froude_panel::problem::{Frame, Problem, Report, Solution};
@@ -94,10 +93,8 @@ pub struct Refined {
     pub shared: Vec<[[f64; 6]; 6]>,
     /// Observed order of convergence; `None` where the values do not fall in a row.
     pub order: [[Option<f64>; 6]; 6],
-    /// Volume, extrapolated, m³; of a mesh from elsewhere that of its facets.
+    /// Volume of the body, m³; of a mesh from elsewhere that of its facets. Exact but for rounding.
     pub volume_m3: f64,
-    /// Its numerical uncertainty, as an expanded one, m³; infinite where there is one mesh only, zero for facets, which subdivision keeps.
-    pub volume_uncertainty_m3: f64,
     /// From the coarsest on; all of them, not only those that the value is from.
     pub steps: Vec<Step>,
     /// Largest relative uncertainty, as the tolerance counts it.
@@ -108,15 +105,6 @@ pub struct Refined {
     pub stopped: Option<String>,
     /// The finest mesh that was solved on.
     pub finest: Finest,
-}
-
-impl Refined {
-    /// A diagonal entry of translation over the volume \[-\] with its expanded uncertainty, or of rotation \[m²\].
-    #[must_use]
-    pub fn over_volume(&self, i: usize) -> [f64; 2] {
-        let (part, v) = (self.value[i][i] / self.volume_m3, self.volume_m3);
-        [part, (self.uncertainty[i][i] / v).hypot(part * self.volume_uncertainty_m3 / v)]
-    }
 }
 
 /// The finest mesh and its potentials.
@@ -295,15 +283,6 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     let entries = entries(&steps, length_m, is_foreign);
     let worst = worst(&entries, least_m5);
     let is_within = worst <= wanted.tolerance;
-    let volumes: Vec<f64> = steps.iter().map(|s| s.measure.volume_m3).collect();
-    let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
-    let (volume_m3, volume_uncertainty_m3) = match (volumes.len() > 1, is_foreign) {
-        (true, is_foreign) => {
-            let volume = converged(&sizes, &volumes, 0.0).extrapolated;
-            (volume.value, if is_foreign { 0.0 } else { volume.uncertainty })
-        }
-        (false, is_foreign) => (volumes[0], if is_foreign { 0.0 } else { f64::INFINITY }),
-    };
     if !is_within && stopped.is_none() {
         stopped = Some("no finer mesh is made".to_owned());
     }
@@ -313,8 +292,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         uncertainty: entries.map(|row| row.map(|e| e.uncertainty)),
         shared,
         order: entries.map(|row| row.map(|e| e.order)),
-        volume_m3,
-        volume_uncertainty_m3,
+        volume_m3: family.volume_m3(),
         steps,
         worst,
         is_within,

@@ -474,7 +474,7 @@ fn record(
         model: "added_mass_parts".to_owned(),
         law: Law { version: 1, ..Law::default() },
         geometry: IndexMap::new(),
-        density: Some(Measured::new(density_kg_m3, "kg/m^3")),
+        density: Some(Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() }),
         frame: frame.to_owned(),
         reference_point: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
         method: format!(
