@@ -1,6 +1,6 @@
 //! The campaign's TOML, section by section. Names and defaults are the contract of the book's conventions page.
 
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use indexmap::IndexMap;
@@ -55,7 +55,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
         simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
         carriage: carriage(&root)?,
     };
-    let mut names = HashSet::new();
+    let mut names = BTreeSet::new();
     for a in &campaign.sources {
         if !names.insert(&a.name) {
             return Err(RecordError::Value {

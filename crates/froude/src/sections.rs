@@ -1,6 +1,6 @@
 //! Identification results as the report wants them: points, curves with bands, budget, selection.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
@@ -654,8 +654,8 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
 }
 
 /// Fingerprint of the table that each estimate of this campaign was fitted to, by its id.
-fn tables_behind<'a>(sources: &'a [SourceResult], file: &'a EstimateFile) -> HashMap<&'a str, &'a str> {
-    let mut out = HashMap::new();
+fn tables_behind<'a>(sources: &'a [SourceResult], file: &'a EstimateFile) -> BTreeMap<&'a str, &'a str> {
+    let mut out = BTreeMap::new();
     for source in sources {
         let Some(table) = source.files.first() else { continue };
         let Some(data) = file.data.iter().find(|d| table.ends_with(&d.path)) else { continue };
@@ -667,7 +667,7 @@ fn tables_behind<'a>(sources: &'a [SourceResult], file: &'a EstimateFile) -> Has
 }
 
 /// The same by a label in the comparison: where a published record has an estimate of the same id, the record stands behind it.
-fn table_behind<'a>(label: &str, tables: &HashMap<&str, &'a str>) -> Option<&'a str> {
+fn table_behind<'a>(label: &str, tables: &BTreeMap<&str, &'a str>) -> Option<&'a str> {
     let id = label.strip_suffix(" (this campaign)").unwrap_or(label);
     tables.get(label).or_else(|| tables.get(id)).copied()
 }
