@@ -5,8 +5,8 @@
 //! says which.
 //!
 //! Sea water in g/cm³ under a head of kg/m³ is the number of air: 1.025 and 1.2.
-//! The viscosity beside it tells them apart, μ = ρν of air being some 1.8e-5 Pa s
-//! at any height and in any wind tunnel, and fifty times that of water.
+//! The kinematic viscosity beside it tells them apart: ρν of air is some 1.8e-5
+//! Pa s at any height and in any tunnel, and with the ν of water eighteen times less.
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
