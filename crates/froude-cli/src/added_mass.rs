@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use froude::Error;
 use froude::added_mass::body::{self, BodyJob, BodyOutcome};
 use froude::added_mass::frame::{Axes, Direction, Orientation, Point};
-use froude::added_mass::links::{LinksJob, LinksOutcome, links};
+use froude::added_mass::links::{LinksJob, LinksOutcome, links, no_fits};
 use froude::added_mass::load::Loaded;
 use froude::added_mass::refine::{Forecast, Wanted, duration};
 use froude::added_mass::several::{Apart, SeveralOutcome, several};
@@ -15,7 +15,7 @@ use froude::records::units::{Dimension, parse_quantity, parse_unit};
 use froude::report::document::TextTable;
 
 use crate::args::{AddedMassArgs, BodyAxes, Export, MeshAxis};
-use crate::out::say;
+use crate::out::{note, say};
 use crate::print;
 
 /// Links at most: more are a slip of the keyboard.
@@ -23,6 +23,7 @@ const MOST_LINKS: usize = 100;
 
 pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     renamed(&args)?;
+    go_together(&args)?;
     if let Some(target) = &args.repair {
         return put_right(&args, target, json);
     }
@@ -47,6 +48,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         let bar = crate::spinner();
         let outcome = links(&job, &|step| bar.set_message(step.to_owned()))?;
         bar.finish_and_clear();
+        replaced(outcome.replaced.as_deref(), json);
         if json {
             return print::json(&outcome.file);
         }
@@ -91,6 +93,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
         let bar = crate::spinner();
         let outcome = several(&job, apart, &|step| bar.set_message(step.to_owned()))?;
         bar.finish_and_clear();
+        replaced(outcome.replaced.as_deref(), json);
         if json {
             return print::json(&outcome.file);
         }
@@ -100,6 +103,7 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
     let bar = crate::spinner();
     let outcome = body::body(&job, &|step| bar.set_message(step.to_owned()))?;
     bar.finish_and_clear();
+    replaced(outcome.replaced.as_deref(), json);
     if json {
         return print::json(&outcome.file);
     }
@@ -132,7 +136,7 @@ fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error
 /// A density of water, or 1 kg/m³ for added mass over ρ.
 fn density(text: &str) -> Result<f64, Error> {
     let rho = positive("--density", text, Dimension::DENSITY)?;
-    match plausible::density(rho).filter(|_| rho != 1.0) {
+    match plausible::density_of_displaced_water(rho).filter(|_| rho != 1.0) {
         Some(problem) => Err(wrong("--density", text, format!("it {problem}"))),
         None => Ok(rho),
     }
@@ -197,6 +201,19 @@ fn renamed(args: &AddedMassArgs) -> Result<(), Error> {
         return Err(Error::Nothing(format!("--origin is now --at: write --at {at}")));
     }
     Ok(())
+}
+
+/// Options that say nothing without another.
+fn go_together(args: &AddedMassArgs) -> Result<(), Error> {
+    let why = if args.tank.is_some() && args.surface.is_none() {
+        "--tank says how deep the water is, and not where the body lies in it: add --surface, the height of the water's surface over the origin of \
+         the mesh, such as --surface \"0.5 m\""
+    } else if args.weld.is_some() && args.repair.is_none() {
+        "--weld is for a repair: add --repair FILE, the mesh to be written (.obj or .stl)"
+    } else {
+        return Ok(());
+    };
+    Err(Error::Nothing(why.to_owned()))
 }
 
 const fn axes(axes: BodyAxes) -> Axes {
@@ -353,6 +370,15 @@ fn forecasts(loaded: &Loaded, steps: &[(usize, Forecast)]) {
     });
 }
 
+/// What became of an earlier record; beside JSON on standard error.
+fn replaced(sentence: Option<&str>, json: bool) {
+    match sentence {
+        Some(text) if json => note!("{text}"),
+        Some(text) => say!("{}\n", print::wrapped(text)),
+        None => {}
+    }
+}
+
 /// A table below its caption.
 fn table(text: &TextTable) {
     say!("\n{}", print::wrapped(&text.caption));
@@ -363,8 +389,9 @@ fn table_of_links(outcome: &LinksOutcome) {
     say!("{}, density {} kg/m³", outcome.name, outcome.density_kg_m3);
     say!("{}", print::wrapped(&outcome.place));
     table(&page::links_table(&outcome.configurations, outcome.density_kg_m3));
-    if !outcome.fits.is_empty() {
-        table(&page::fits_table(&outcome.fits));
+    match no_fits(outcome.configurations.len()) {
+        Some(why) => say!("\n{}", print::wrapped(&why)),
+        None => table(&page::fits_table(&outcome.fits)),
     }
     print::findings(&outcome.file.findings);
     say!("\n{}\n{}\n{}", outcome.table.display(), outcome.estimate.display(), outcome.page.display());

@@ -195,8 +195,8 @@ pub struct AddedMassArgs {
     /// Height of the water's surface over the origin of the mesh; both limits of frequency are computed.
     #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
     pub surface: Option<String>,
-    /// A closed tank, length along x, breadth along y, depth of water, with the origin of the mesh in its middle: "1.5 m x 0.9 m x 1 m".
-    #[arg(long, value_name = "L x B x D", requires = "surface")]
+    /// A closed tank, length along x, breadth along y, depth of water, with the origin of the mesh in its middle: "1.5 m x 0.9 m x 1 m"; with --surface.
+    #[arg(long, value_name = "L x B x D")]
     pub tank: Option<String>,
     /// Angle of the joints about z: the chain's link-by-link matrix.
     #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
@@ -217,7 +217,7 @@ pub struct AddedMassArgs {
     #[arg(long, value_name = "FILE")]
     pub repair: Option<PathBuf>,
     /// Vertices closer than this are one, in a repair [default: a millionth of the mesh's extent].
-    #[arg(long, value_name = "QUANTITY", requires = "repair")]
+    #[arg(long, value_name = "QUANTITY")]
     pub weld: Option<String>,
     /// Folder of the results [default: INPUT-added-mass beside the input].
     #[arg(long)]

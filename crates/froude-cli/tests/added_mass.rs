@@ -209,9 +209,35 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
     assert_eq!(run(&["inspect", "estimate.json", "--json"])["kind"], "estimate");
     assert!(run(&["compare", "estimate.json", "--json"]).is_object());
 
-    // Two configurations are no least squares.
+    // Every column of its own table is in a law.
+    let fit = estimates.iter().find(|e| e["model"] == "displaced_volume").unwrap();
+    let masses: [Vec<f64>; 2] = ["mu_z", "volume"].map(|name| {
+        let dimension = if name == "volume" { Dimension::VOLUME } else { Dimension::MASS };
+        table.number(name, dimension).unwrap().to_vec()
+    });
+    let (over, under) =
+        masses[0].iter().zip(&masses[1]).fold((0.0, 0.0), |(o, u), (m, v)| (o + m * v, u + 1025.0 * v * v));
+    assert!((fit["coefficients"]["C_Az"]["value"].as_f64().unwrap() / (over / under) - 1.0).abs() < 1e-9, "{fit}");
+    let again = run(&["identify", "campaign.toml", "--out", "again", "--json"]);
+    for findings in [&out["findings"], &again["findings"]] {
+        assert!(findings.as_array().unwrap().iter().all(|f| f["code"] != "column-not-used"), "{findings}");
+    }
+
+    // Two configurations are no least squares, and that is said.
     let out = record(at, &["body.toml", "--links", "1,2", "--tolerance", "10 %", "--out", "two"]);
     assert_eq!(out["estimates"].as_array().unwrap().len(), 2);
+    let text = lines(at, &["body.toml", "--links", "1..2", "--tolerance", "10 %", "--out", "two"]);
+    let page = std::fs::read_to_string(at.join("two/report.html")).unwrap();
+    for said in [text, page] {
+        let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            words.contains(
+                "No least squares: they take 3 configurations at least, such as --links 1..3, and these are 2. links.csv and campaign.toml are \
+                 written all the same; there is no campaign-results, and the record holds the matrices alone."
+            ),
+            "{words}"
+        );
+    }
     assert_eq!(
         names(&at.join("two")),
         ["campaign.toml", "estimate.json", "froude-files.json", "links.csv", "report.html"]
@@ -592,6 +618,66 @@ fn page_and_terminal_have_the_matrix_once_with_its_frame() {
     once(&["--surface", "0.6 m"], 3);
 }
 
+/// The displacement has no uncertainty: it is that of the dimensions, or of the facets, and the page says which.
+#[test]
+fn the_volume_is_exact_and_says_of_what() {
+    use std::f64::consts::PI;
+    let section = "major_semi_axis = \"90 mm\"\nminor_semi_axis = \"60 mm\"\n";
+    let area = PI * 0.09 * 0.06;
+    let capsule = format!("shape = \"capsule\"\nlength = \"0.8 m\"\n{section}ends = {{ length = \"100 mm\" }}\n");
+    let cylinder = format!("shape = \"cylinder\"\nlength = \"0.8 m\"\n{section}");
+    let volume = |out: &Value| out["estimates"][0]["geometry"]["volume"]["value"].as_f64().unwrap();
+    for (shape, exact_m3) in [
+        (EGG, 4.0 / 3.0 * PI * 0.5 * 0.3 * 0.2),
+        (capsule.as_str(), area * 0.6 + 4.0 / 3.0 * area * 0.1),
+        (cylinder.as_str(), area * 0.8),
+    ] {
+        let found = volume(&of_shape(shape, &["--tolerance", "5 %"]));
+        assert!((found / exact_m3 - 1.0).abs() < 1e-12, "{shape}: {found} for {exact_m3}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("body.toml"), body_file(EGG)).unwrap();
+    let row = |text: &str| text.lines().find(|l| l.trim_start().starts_with("volume")).unwrap().to_owned();
+    let text = lines(at, &["body.toml", "--tolerance", "5 %"]);
+    assert!(row(&text).contains("0.125664 m³, exactly that of the dimensions"), "{}", row(&text));
+    write(at, "hull.obj", &hull());
+    let (text, out) =
+        (lines(at, &[&["hull.obj"], &ONE_MESH[..]].concat()), record(at, &[&["hull.obj"], &ONE_MESH[..]].concat()));
+    assert!(row(&text).contains(" m³, exactly that of the facets"), "{}", row(&text));
+    assert!((volume(&out) / Measure::of(&hull()).volume_m3 - 1.0).abs() < 1e-6);
+}
+
+/// Two matrices of one body in two frames look alike.
+#[test]
+fn a_record_in_another_frame_is_replaced_with_a_word() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    write(at, "hull.obj", &hull());
+    let run = |args: &[&str]| {
+        let output = froude(at, &[&["hull.obj"], args, &ONE_MESH[..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        let words = |bytes: &[u8]| String::from_utf8_lossy(bytes).split_whitespace().collect::<Vec<_>>().join(" ");
+        [words(&output.stdout), words(&output.stderr)]
+    };
+    let word = "The earlier record in hull-added-mass is replaced. It had another frame: axes of the mesh, z up; moments about the origin of \
+                the mesh. To keep both, give each its folder with --out.";
+    assert!(!run(&[])[0].contains("is replaced"));
+    assert!(!run(&[])[0].contains("is replaced"), "the same frame again");
+    assert!(run(&["--axes", "ned"])[0].contains(word));
+    assert!(
+        run(&["--axes", "ned", "--at", "cb"])[0]
+            .contains("is replaced. It had another frame: x forward, y starboard, z down (SNAME")
+    );
+    run(&[]);
+    let [out, err] = run(&["--axes", "enu", "--json"]);
+    assert!(out.starts_with('{') && err.contains(word), "{err}");
+    // The record itself is the same whatever lay there.
+    let here = std::fs::read(at.join("hull-added-mass/estimate.json")).unwrap();
+    run(&["--axes", "enu", "--out", "fresh"]);
+    assert_eq!(here, std::fs::read(at.join("fresh/estimate.json")).unwrap());
+}
+
 #[test]
 fn millimetres_scale_by_their_powers() {
     let folder = tempfile::tempdir().unwrap();
@@ -919,6 +1005,10 @@ fn options_that_say_nothing_sensible_are_told_what_they_take() {
     );
     mesh(&["--density", "1 kg/m^3", "--at", "1 m, 2, 3 m"], "--at \"2\": `2` has no unit; write for example `2 m`");
     mesh(&["--density", "1 kg/m^3", "--surface", "3 s"], "--surface \"3 s\": expected a length (m), found a time (s)");
+    let tank = "--tank says how deep the water is, and not where the body lies in it: add --surface, the height of the water's surface over the \
+                origin of the mesh, such as --surface \"0.5 m\"";
+    mesh(&["--density", "1 kg/m^3", "--tank", "3 m x 2 m x 2 m"], tank);
+    mesh(&["--weld", "1 mm"], "--weld is for a repair: add --repair FILE, the mesh to be written (.obj or .stl)");
     mesh(&["--density", "1 kg/m^3", "--unit", "kg"], "--unit \"kg\": write a unit of length: mm, cm, m, in");
     mesh(&["--repair", "m.obj"], "m.obj: name another file than the input; it stays as it is");
     mesh(&["--repair", "./m.obj"], "./m.obj: name another file than the input; it stays as it is");
@@ -929,6 +1019,7 @@ fn options_that_say_nothing_sensible_are_told_what_they_take() {
         let message = format!("--links {links:?}: write a number of links, \"1..9\" or \"1,3,6\", between 1 and 100");
         robot(&["--links", links], &message);
     }
+    robot(&["--links", "1..3", "--tank", "3 m x 2 m x 2 m"], tank);
     robot(&["--links", "3", "--unit", "mm"], "r.toml: --unit is for a mesh; a body file has a unit at each length");
     robot(&["--links", "1..3", "--at", "cb"], "--at is for one body; give one number of links with it: --links 3");
     robot(&["--repair", "n.obj"], "r.toml: --repair is for a mesh; a body file has none");

@@ -190,11 +190,13 @@ fn an_angle_of_several_turns_is_refused_with_its_cause() {
 #[test]
 fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
     const NO_WATER: &str = "the density of no water (500 to 2000 kg/m^3 are taken); write 1.025 g/cm^3 or 1025 kg/m^3";
+    const OR_AIR: &str = "; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: kinematic_viscosity in [fluid] of \
+                          the campaign, or a column kinematic_viscosity [m^2/s]";
     let campaign = |density: &str| format!("schema = 1\nname = \"x\"\n[fluid]\ndensity = {density}\n");
     let said = |density: &str| refusal(&[("c.toml", &campaign(density))], &["identify", "c.toml"]);
     assert_eq!(
         said("\"1.025 kg/m^3\""),
-        format!("froude: c.toml:4:11: `density` is \"1.025 kg/m^3\", which is {NO_WATER}")
+        format!("froude: c.toml:4:11: `density` is \"1.025 kg/m^3\", which is {NO_WATER}{OR_AIR}")
     );
     // The message that met a bare number once proposed just that.
     assert!(said("1.025").ends_with("such as \"1.025 g/cm^3\""), "{}", said("1.025"));
@@ -202,9 +204,84 @@ fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
     assert!(said("1025").ends_with("such as \"1025 kg/m^3\""), "{}", said("1025"));
     let rows = "speed [m/s],f_x [N],density [kg/m^3]\n0.1,-0.5,1025\n0.2,-2.0,1.025\n";
     let said = refusal(&[("t.csv", rows)], &["identify", "t.csv"]);
-    assert_eq!(said, format!("froude: t.csv:3: `density [kg/m^3]` is 1.025, which is {NO_WATER}"));
+    assert_eq!(said, format!("froude: t.csv:3: `density [kg/m^3]` is 1.025, which is {NO_WATER}{OR_AIR}"));
+    // Of added mass nobody asks a viscosity.
+    let body = "schema = 1\nname = \"b\"\n[fluid]\ndensity = \"1.025 kg/m^3\"\n[body]\nshape = \"ellipsoid\"\n\
+                semi_axes = [\"1 m\", \"0.2 m\", \"0.2 m\"]\n";
+    let over_rho = "; in air, ask for \"1 kg/m^3\" and take the result times the density of the air";
     let said = refusal(&[], &["added-mass", "x.stl", "--density", "1.025 kg/m^3"]);
-    assert_eq!(said, format!("froude: --density \"1.025 kg/m^3\": it is {NO_WATER}"));
+    assert_eq!(said, format!("froude: --density \"1.025 kg/m^3\": it is {NO_WATER}{over_rho}"));
+    let said = refusal(&[("b.toml", body)], &["added-mass", "b.toml"]);
+    assert_eq!(said, format!("froude: b.toml:4:11: `density` is \"1.025 kg/m^3\", which is {NO_WATER}{over_rho}"));
+}
+
+/// A test in a wind tunnel: 45 °C at the end of the day, 60 m/s. The density of air is the number of sea water in g/cm³; the viscosity beside it
+/// tells which it is.
+#[test]
+fn air_is_taken_where_its_viscosity_is_stated_and_water_in_other_units_is_not() {
+    let rows = |density: &str, viscosity: &str| {
+        let mut out = format!(
+            "speed [m/s],f_x [N],temperature [degC]{}{}\n",
+            heading("density [kg/m^3]", density),
+            heading("kinematic_viscosity [m^2/s]", viscosity)
+        );
+        for i in 1..=12 {
+            let speed = 5.0 * f64::from(i);
+            let f = -0.02 * speed * speed * (1.0 + 0.001 * f64::from(i % 3));
+            let column = |value: &str| if value.is_empty() { String::new() } else { format!(",{value}") };
+            writeln!(out, "{speed},{f},45{}{}", column(density), column(viscosity)).unwrap();
+        }
+        out
+    };
+    let campaign = |fluid: &str| {
+        format!(
+            "schema = 1\nname = \"x\"\n{fluid}[body]\nreference_length = \"1 m\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n"
+        )
+    };
+    let air = "[fluid]\ndensity = \"1.11 kg/m^3\"\nkinematic_viscosity = \"1.75e-5 m^2/s\"\n";
+    let viscosity_of_air = "[fluid]\nkinematic_viscosity = \"1.75e-5 m^2/s\"\n";
+    for (table, fluid) in [(rows("", ""), air), (rows("1.11", "1.75e-5"), ""), (rows("1.11", ""), viscosity_of_air)] {
+        let out = json(&[("t.csv", &table), ("c.toml", &campaign(fluid))], &["identify", "c.toml"]);
+        let quadratic = estimate(&out, "quadratic");
+        assert!((value(quadratic, "D_x_II") - 0.02).abs() < 1e-4, "{}", quadratic["coefficients"]);
+        assert!((quadratic["density"]["value"].as_f64().unwrap() - 1.11).abs() < 1e-12);
+        let highest = quadratic["validity"]["Re"]["high"].as_f64().unwrap();
+        assert!((highest / (60.0 / 1.75e-5) - 1.0).abs() < 1e-9, "Re {highest}");
+        assert!(findings(&out, "implausible-speed").is_empty() && findings(&out, "implausible-drag-area").is_empty());
+    }
+    json(&[("t.csv", &rows("1.11", "1.75e-5"))], &["inspect", "t.csv"]);
+
+    let said =
+        |table: &str, fluid: &str| refusal(&[("t.csv", table), ("c.toml", &campaign(fluid))], &["identify", "c.toml"]);
+    let no_air = "write 1.025 g/cm^3 or 1025 kg/m^3, or, if the test was in air, the kinematic viscosity beside it: 1.05e-6 m^2/s is not \
+                  that of air, some 1.5e-5 m^2/s";
+    let water = "[fluid]\ndensity = \"1.025 kg/m^3\"\nkinematic_viscosity = \"1.05e-6 m^2/s\"\n";
+    assert!(said(&rows("", ""), water).ends_with(no_air), "{}", said(&rows("", ""), water));
+    assert!(
+        said(&rows("1.025", "1.05e-6"), "")
+            .starts_with("froude: t.csv:2: `density [kg/m^3]` is 1.025, which is the density of no water")
+    );
+    assert!(said(&rows("1.025", "1.05e-6"), "").ends_with(no_air));
+    let viscosity_of_water = "[fluid]\nkinematic_viscosity = \"1.05e-6 m^2/s\"\n";
+    assert!(said(&rows("1.025", ""), viscosity_of_water).ends_with(no_air));
+    assert!(said(&rows("1.025", ""), "").ends_with("or a column kinematic_viscosity [m^2/s]"));
+
+    // A limit is in the unit of what it is compared with.
+    let keep = |table: &str, limit: &str| {
+        let campaign = format!("{}keep = \"density <= {limit}\"\n", campaign(viscosity_of_air));
+        froude(folder_of(&[("t.csv", table), ("c.toml", &campaign)]).path(), &["identify", "c.toml"])
+    };
+    assert_eq!(keep(&rows("1.11", ""), "1.2 kg/m^3").status.code(), Some(0));
+    let sea = rows("1025", "").replace(",45,", ",15,");
+    assert_eq!(keep(&sea, "1030 kg/m^3").status.code(), Some(0));
+    let refused = keep(&sea, "1.03 kg/m^3");
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(said.contains("keep: density is compared with 1.03 kg/m^3, which is the density of no water"), "{said}");
+}
+
+/// The head of a column, where there is one.
+fn heading(head: &str, value: &str) -> String {
+    if value.is_empty() { String::new() } else { format!(",{head}") }
 }
 
 /// Every second run of a table comes from an export in gram-force, or all runs from some speed on.
@@ -239,6 +316,35 @@ fn rows_in_gram_force_are_refused_with_their_lines() {
         (value(estimate(&json(&[("t.csv", &clean)], &["identify", "t.csv"]), "quadratic"), "D_x_II") - 20.0).abs()
             < 0.2
     );
+}
+
+/// Half of the side forces are in gram-force. Whoever fits the drag alone is not kept from it by them.
+#[test]
+fn a_load_that_nothing_fits_may_stand_in_two_units() {
+    let rows = drift_test(16);
+    let mut i = 0;
+    let mut mixed = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+    for r in &rows {
+        i += 1;
+        let factor = if i % 2 == 0 { 101.97 } else { 1.0 };
+        writeln!(mixed, "{},{},{},{}", r.speed, r.angle_deg, r.f_x, factor * r.f_y).unwrap();
+    }
+    let campaign = |law: &str| {
+        format!(
+            "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n[identify]\n[[identify.model]]\n\
+             name = \"own\"\nf_x = \"X_uu*u*abs(u)\"\n{law}"
+        )
+    };
+    let files = |law: &str| [("t.csv".to_owned(), mixed.clone()), ("c.toml".to_owned(), campaign(law))];
+    let [table, alone] = files("");
+    let out = json(&[("t.csv", &table.1), ("c.toml", &alone.1)], &["identify", "c.toml"]);
+    assert!((value(estimate(&out, "own"), "X_uu") + 10.0).abs() < 0.1);
+    let [table, both] = files("f_y = \"Y_uv*u*v + Y_vv*v*abs(v)\"\n");
+    for verb in ["identify", "inspect"] {
+        let said = refusal(&[("t.csv", &table.1), ("c.toml", &both.1)], &[verb, "c.toml"]);
+        assert!(said.contains("`f_y [N]` is") && said.contains("gram-force"), "{said}");
+    }
+    json(&[("t.csv", &table.1), ("c.toml", &alone.1)], &["inspect", "c.toml"]);
 }
 
 #[test]
@@ -322,9 +428,72 @@ fn no_column_is_dropped_in_silence() {
         findings(&out, "angle-contradicts-velocity"),
         [(
             "warning",
-            "the angle column differs from atan2(-v_y, v_x) by up to 20.00 deg; v_x and v_y are used (v_y is missing and read as 0): if \
-             v_x is the speed of the carriage, name it speed"
+            "the angle column differs from atan2(-v_y, v_x) by up to 20.00 deg (line 2); v_x and v_y are used (v_y is missing and read as \
+             0): if v_x is the speed of the carriage, name it speed"
         )]
+    );
+}
+
+/// What is said of the observations is said of those that are fitted: the wild row is dropped, and a figure of the others has their lines.
+#[test]
+fn a_contradiction_in_rows_that_are_left_out_is_none() {
+    let mut noise = noise(15);
+    let mut text =
+        "speed [m/s],angle [deg],v_x [m/s],v_y [m/s],zero_before_f_x [N],zero_after_f_x [N],f_x [N]\n".to_owned();
+    for i in 0..24 {
+        let speed = 0.1 * f64::from(1 + i % 12);
+        // Lines 2 to 5 say something else; line 20 a little.
+        let (angle, stated, drift) = if i < 4 { (60.0, 2.0 * speed, 3.0) } else { (0.0, speed, 0.0) };
+        let angle = if i == 18 { 2.0 } else { angle };
+        writeln!(text, "{stated},{angle},{speed},0,0,{drift},{}", -10.0 * speed * speed + drift / 2.0 + 0.01 * noise())
+            .unwrap();
+    }
+    let campaign = |keep: &str| {
+        format!("schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n{keep}")
+    };
+    let of = |keep: &str| json(&[("t.csv", &text), ("c.toml", &campaign(keep))], &["identify", "c.toml"]);
+    let (all, kept) = (of(""), of("keep = \"zero_after_f_x == 0 N\"\n"));
+    let angle =
+        |out: &Value| findings(out, "angle-contradicts-velocity").iter().map(|f| f.1.to_owned()).collect::<String>();
+    assert!(angle(&all).contains("by up to 60.00 deg (line 2);"), "{}", angle(&all));
+    assert!(angle(&kept).contains("by up to 2.00 deg (line 20);"), "{}", angle(&kept));
+    let speed =
+        |out: &Value| findings(out, "speed-contradicts-velocity").iter().map(|f| f.1.to_owned()).collect::<String>();
+    assert!(speed(&all).contains("by up to 4.000e-1 m/s (line 5);"), "{}", speed(&all));
+    assert_eq!(speed(&kept), "");
+    let zero = |out: &Value| findings(out, "zero-drift")[0].1.to_owned();
+    assert!(zero(&all).contains("by up to 3.000e0"), "{}", zero(&all));
+    assert!(zero(&kept).contains("by up to 0.000e0"), "{}", zero(&kept));
+}
+
+/// v_x goes before an angle: who is told to head `beta` as the angle is told what to do with a v_x that stands alone.
+#[test]
+fn an_angle_beside_a_lone_velocity_is_proposed_with_what_it_needs() {
+    let rows = drift_test(3);
+    for sign in [1.0, -1.0] {
+        let text = table("v_x [m/s],beta [deg],f_x [N],f_y [N]", &rows, |r| {
+            format!("{},{},{},{}", r.speed, sign * r.angle_deg, r.f_x, r.f_y)
+        });
+        let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
+        let told = findings(&out, "column-not-used");
+        let beside = ", and v_x `speed` if that is the carriage's (a velocity goes before an angle; beside one along the body give v_y): \
+                      with that sign the side force";
+        assert!(told[0].0 == "warning" && told[0].1.contains(beside), "{told:?}");
+    }
+    // Taken, the proposal makes the loads a drift test's.
+    let text = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &rows, |r| {
+        format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y)
+    });
+    let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
+    assert!(findings(&out, "column-not-used").is_empty() && value(estimate(&out, "quadratic"), "D_y_II") > 0.0);
+    let text = table("speed [m/s],v_x [m/s],beta [deg],f_x [N],f_y [N]", &rows, |r| {
+        format!("{},{},{},{},{}", r.speed, r.speed, r.angle_deg, r.f_x, r.f_y)
+    });
+    let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
+    let told = findings(&out, "column-not-used");
+    assert!(
+        told[0].1.contains("head it `angle [deg]`, and leave v_x out, which goes before speed and angle: "),
+        "{told:?}"
     );
 }
 
@@ -508,6 +677,88 @@ fn a_tare_without_side_force_is_a_warning_at_drift_whichever_way_it_was_towed() 
         );
         assert!(told.len() == 1 && told[0].1.starts_with(&wanted), "{told:?}");
         assert_eq!(told[0].1.contains("of the measured f_x"), is_f_x_named, "{told:?}");
+    }
+}
+
+/// A strut that stands askew in its clamp pushes sideways when it is towed ahead, and its law gives that f_y; ahead and astern is straight
+/// all the same, however the table writes it, and so are zeros at rest with the strut turned.
+#[test]
+fn a_tare_that_gives_a_side_force_is_a_warning_at_drift_if_it_was_towed_straight() {
+    let gross = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &drift_test(17), |r| {
+        let (sin, cos) = r.angle_deg.to_radians().sin_cos();
+        let drag = STRUT * r.speed * r.speed;
+        format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x - drag * cos, r.f_y + drag * sin)
+    });
+    let mut noise = noise(18);
+    let mut of = |u: f64| (-STRUT * u * u.abs() + 0.01 * noise(), 0.03 * STRUT * u * u.abs() + 0.01 * noise());
+    let mut tables = [
+        "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned(),
+        "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned(),
+        "speed [m/s],f_x [N],f_y [N]\n".to_owned(),
+        "v_x [m/s],v_y [m/s],f_x [N],f_y [N]\n".to_owned(),
+        "speed [m/s],angle [deg],f_x [N],f_y [N]\n0,20,0.01,0\n0,-20,0,0.01\n0.0001,45,0,0\n".to_owned(),
+    ];
+    for i in 1..=10 {
+        let speed = 0.1 * f64::from(i);
+        let ((x, y), (back_x, back_y)) = (of(speed), of(-speed));
+        let [forth, turned, signed, velocity, with_zeros] = &mut tables;
+        writeln!(forth, "{speed},0,{x},{y}\n{speed},180,{back_x},{back_y}").unwrap();
+        writeln!(turned, "{speed},0,{x},{y}\n{speed},-180,{back_x},{back_y}").unwrap();
+        writeln!(signed, "{speed},{x},{y}\n{},{back_x},{back_y}", -speed).unwrap();
+        writeln!(velocity, "{speed},0,{x},{y}\n{},0,{back_x},{back_y}", -speed).unwrap();
+        writeln!(with_zeros, "{speed},0,{x},{y}").unwrap();
+    }
+    for tare in &tables {
+        let law = "schema = 1\nname = \"x\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"tare.csv\"\n[identify]\n\
+                   [[identify.model]]\nname = \"askew\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_uu*u*abs(u)\"\n";
+        let folder =
+            folder_of(&[("gross.csv", &gross), ("tare.csv", tare), ("tare.toml", law), ("c.toml", SUBTRACTED)]);
+        json_in(folder.path(), &["identify", "tare.toml"]);
+        let out = json_in(folder.path(), &["identify", "c.toml"]);
+        let told = findings(&out, "tare-straight-ahead");
+        let head = tare.lines().next().unwrap();
+        assert!(
+            told.len() == 1
+                && told[0].1.starts_with(
+                    "the tare t/askew was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side force there is \
+                     another one: of a strut that drags alike from all sides by up to 2.6"
+                ),
+            "{head}: {told:?}"
+        );
+    }
+    // The strut's own law takes a signed speed as it is.
+    let folder = folder_of(&[("tare.csv", &tables[2])]);
+    let fitted = json_in(folder.path(), &["identify", "tare.csv", "--models", "strut"]);
+    let d = value(estimate(&fitted, "strut"), "D_xU");
+    assert!((d / STRUT - 1.0).abs() < 0.01, "D_xU {d}");
+}
+
+/// A thin strut under a bluff body: what it leaves in f_y is said from half a per cent on.
+#[test]
+fn a_side_force_that_does_not_matter_is_no_warning() {
+    for (share, is_told) in [(0.003, false), (0.02, true)] {
+        let drag_n_s2_m2 = share * Y_UV;
+        let gross = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &drift_test(19), |r| {
+            let (sin, cos) = r.angle_deg.to_radians().sin_cos();
+            let drag = drag_n_s2_m2 * r.speed * r.speed;
+            format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x - drag * cos, r.f_y + drag * sin)
+        });
+        let mut tare = "speed [m/s],f_x [N]\n".to_owned();
+        let mut noise = noise(20);
+        for i in 1..=20 {
+            let speed = 0.05 * f64::from(i);
+            writeln!(tare, "{speed},{}", -drag_n_s2_m2 * speed * speed + 1e-4 * noise()).unwrap();
+        }
+        let folder = folder_of(&[("gross.csv", &gross), ("tare.csv", &tare), ("c.toml", SUBTRACTED)]);
+        json_in(folder.path(), &["identify", "tare.csv", "--models", "quadratic"]);
+        let out = json_in(folder.path(), &["identify", "c.toml"]);
+        let told = findings(&out, "tare-straight-ahead");
+        assert_eq!(told.iter().any(|f| f.1.contains("its side force stays in f_y")), is_told, "{share}: {told:?}");
+        if is_told {
+            let stated: f64 = told[0].1.split(" N, ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
+            // Y_vv carries a part of the side force, so that its share is a little less than that of Y_uv.
+            assert!((stated - 100.0 * share).abs() < 0.5, "{told:?}");
+        }
     }
 }
 

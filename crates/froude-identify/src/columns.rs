@@ -126,7 +126,8 @@ fn left_out(data: &Dataset) -> Vec<Finding> {
             format!(
                 "the sidecar does not name the column `{header}`, and every row is read as straight ahead; if it is the angle, write \
                  \"{header}\" = {{ name = \"angle\", unit = \"deg\" }} into it, with sign = -1 where the file counts the other way \
-                 ({CONVENTION})"
+                 ({CONVENTION}){}",
+                beside_v_x(data)
             ),
         ));
     }
@@ -182,7 +183,7 @@ fn is_used(name: &str, data: &Dataset, campaign: &Campaign, source: &Source, law
 }
 
 /// Whether a law gives or has a channel.
-fn is_in(name: &str, laws: &[ForceLaw]) -> bool {
+pub(crate) fn is_in(name: &str, laws: &[ForceLaw]) -> bool {
     laws.iter().any(|law| {
         law.responses.iter().any(|r| r == name)
             || match &law.kind {
@@ -270,11 +271,12 @@ fn is_vertical(name: &str, data: &Dataset) -> bool {
 fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dataset) -> String {
     let (low, high) = range(values);
     let unit = header.split_once('[').map_or("deg", |(_, unit)| unit.trim_end_matches(']').trim());
+    let beside = beside_v_x(data);
     let told = |sign: f64, because: &str| {
         let how = if sign > 0.0 {
-            format!("head it `angle [{unit}]`")
+            format!("head it `angle [{unit}]`{beside}")
         } else {
-            format!("map it in a sidecar, \"{header}\" = {{ name = \"angle\", unit = \"{unit}\", sign = -1 }}")
+            format!("map it in a sidecar, \"{header}\" = {{ name = \"angle\", unit = \"{unit}\", sign = -1 }}{beside}")
         };
         format!("if it is the angle of the test, {how}: {because}")
     };
@@ -286,7 +288,8 @@ fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dat
             ),
         ),
         None => format!(
-            "if it is the angle of the test, head it `angle [{unit}]`, or map it with sign = -1 where it counts the other way ({CONVENTION})"
+            "if it is the angle of the test, head it `angle [{unit}]`{beside}, or map it with sign = -1 where it counts the other way \
+             ({CONVENTION})"
         ),
     };
     format!(
@@ -295,6 +298,17 @@ fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dat
         low.to_degrees(),
         high.to_degrees()
     )
+}
+
+/// What an angle needs beside a v_x without v_y, which goes before it: with the two alone the angle would still not be used.
+fn beside_v_x(data: &Dataset) -> &'static str {
+    match (has(data, "v_x"), has(data, "speed")) {
+        (false, _) => "",
+        (true, true) => ", and leave v_x out, which goes before speed and angle",
+        (true, false) => {
+            ", and v_x `speed` if that is the carriage's (a velocity goes before an angle; beside one along the body give v_y)"
+        }
+    }
 }
 
 /// The sign with which a column is the angle, by the side force, and how many rows say so.

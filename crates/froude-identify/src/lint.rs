@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 
 use froude_records::campaign::{BodySpec, Campaign};
 use froude_records::finding::{Finding, Severity};
+use froude_records::plausible::AIR_KG_M3;
 use froude_records::table::{ColumnData, Table};
 use indexmap::IndexMap;
 
@@ -47,6 +48,8 @@ const REPEATS_WITHIN: f64 = 2e-3;
 const AHEAD: f64 = 0.99;
 /// The fastest towing carriages run 20 to 30 m/s; a model that is said to go faster was typed in another unit.
 const FASTEST_M_S: f64 = 40.0;
+/// The same of air: at Mach 0.3 its compressibility is 5 % of the drag, and no law here knows of it.
+const FASTEST_IN_AIR_M_S: f64 = 100.0;
 
 /// Every lint that looks at observations alone.
 #[must_use]
@@ -108,36 +111,36 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
 }
 
 /// Speed and angle beside v_x and v_y that say something else: the velocity is used.
+///
+/// `rows` of the table are those of `data`, in its order.
 #[must_use]
-pub fn motion_contradictions(table: &Table, data: &Dataset) -> Vec<Finding> {
-    let read = |name: &str| {
+pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> Vec<Finding> {
+    let read = |name: &str| -> Option<Vec<f64>> {
         table.columns.iter().find(|c| c.name == name).and_then(|c| match &c.data {
-            ColumnData::Number { si, .. } => Some(si),
+            ColumnData::Number { si, .. } => Some(rows.iter().map(|&i| si[i]).collect()),
             ColumnData::Text(_) => None,
         })
     };
+    let line = |i: usize| data.line.get(i).copied().unwrap_or(i + 1);
     let mut findings = Vec::new();
     let has_velocity = read("v_x").is_some() || read("v_y").is_some();
     if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
         // At rest there is no angle; a turn more is the same one.
         let speed = data.values("speed").unwrap_or_default();
-        let fastest = speed.iter().fold(0.0_f64, |m, u| m.max(*u));
-        let moving = speed.iter().map(|u| *u > AT_REST * fastest);
-        let apart = |a: f64, b: f64| (a - b - TAU * ((a - b) / TAU).round()).abs();
-        let worst = stated
-            .iter()
-            .zip(derived)
-            .zip(moving)
-            .filter(|(_, moving)| *moving)
-            .map(|((a, b), _)| apart(*a, *b))
-            .fold(0.0, f64::max);
-        if worst > ANGLE_CONTRADICTS_RAD {
+        let moving = moving(speed, AT_REST);
+        let apart = |i: usize| {
+            let by = stated[i] - derived[i];
+            (by - TAU * (by / TAU).round()).abs()
+        };
+        let worst = moving.into_iter().rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > ANGLE_CONTRADICTS_RAD) {
             findings.push(Finding::new(
                 Severity::Warning,
                 "angle-contradicts-velocity",
                 format!(
-                    "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg; v_x and v_y are used{}",
+                    "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg (line {}); v_x and v_y are used{}",
                     worst.to_degrees(),
+                    line(row),
                     match (read("v_x"), read("v_y")) {
                         (Some(_), None) =>
                             " (v_y is missing and read as 0): if v_x is the speed of the carriage, name it speed",
@@ -149,17 +152,27 @@ pub fn motion_contradictions(table: &Table, data: &Dataset) -> Vec<Finding> {
         }
     }
     if has_velocity && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed")) {
-        let worst = stated.iter().zip(derived).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let apart = |i: usize| (stated[i] - derived[i]).abs();
+        let worst = (0..data.rows).rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
         let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        if worst > 0.01 * scale {
+        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > 0.01 * scale) {
             findings.push(Finding::new(
                 Severity::Warning,
                 "speed-contradicts-velocity",
-                format!("the speed column differs from |v| by up to {worst:.3e} m/s; v_x and v_y are used"),
+                format!(
+                    "the speed column differs from |v| by up to {worst:.3e} m/s (line {}); v_x and v_y are used",
+                    line(row)
+                ),
             ));
         }
     }
     findings
+}
+
+/// Rows that move faster than a part of the fastest; a speed below zero goes astern.
+pub(crate) fn moving(speed: &[f64], part: f64) -> Vec<usize> {
+    let fastest = speed.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+    (0..speed.len()).filter(|&i| speed[i].abs() > part * fastest).collect()
 }
 
 /// Loads along the motion: a drag that pushes.
@@ -205,12 +218,18 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
 fn implausible_speed(data: &Dataset) -> Option<Finding> {
     let speed = data.values("speed")?;
     let i = (0..data.rows).max_by(|&i, &j| speed[i].total_cmp(&speed[j]))?;
-    (speed[i] > FASTEST_M_S).then(|| {
+    let is_air = data.values("density").is_some_and(|d| AIR_KG_M3.contains(&d[i]));
+    let (most, than) = if is_air {
+        (FASTEST_IN_AIR_M_S, "than tests with these laws go, which know no compressible air (Mach 0.3 is 100 m/s)")
+    } else {
+        (FASTEST_M_S, "than any towing carriage (20 to 30 m/s)")
+    };
+    (speed[i] > most).then(|| {
         Finding::new(
             Severity::Warning,
             "implausible-speed",
             format!(
-                "line {}: {:.1} m/s is faster than any towing carriage (20 to 30 m/s); check the unit of the speed",
+                "line {}: {:.1} m/s is faster {than}; check the unit of the speed",
                 data.line.get(i).copied().unwrap_or(i + 1),
                 speed[i]
             ),

@@ -5,6 +5,7 @@
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::plausible;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table};
 use froude_records::units::Dimension;
 use std::path::PathBuf;
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 use crate::dataset::{Channel, Dataset, LOADS};
 use crate::error::IdentifyError;
 use crate::uncertainty::SharedError;
-use crate::{tare, two_units};
+use crate::{columns, source, tare, two_units};
 
 /// A source ready to be fitted.
 #[derive(Debug, Clone)]
@@ -44,9 +45,9 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
     files.extend(table.sidecar.clone());
     let mut findings = Vec::new();
     let mut data = dataset(&table, source)?;
+    water_or_air(&table, campaign)?;
     water(&mut data, campaign, &mut findings)?;
-    zeros(&mut data, &mut findings);
-    findings.extend(crate::lint::motion_contradictions(&table, &data));
+    subtract_zeros(&mut data);
     let n_read = data.rows;
     let mut keep: Vec<usize> = (0..n_read).collect();
     if let Some(clauses) = &source.keep {
@@ -67,8 +68,12 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
     if let Some(finding) = dropped {
         findings.push(finding);
         data = data.subset(&unique);
+        keep = unique.iter().map(|&i| keep[i]).collect();
     }
-    one_unit(&table, &data)?;
+    // What is said of the observations is said of those that are fitted.
+    findings.extend(zero_drift(&data));
+    findings.extend(crate::lint::motion_contradictions(&table, &keep, &data));
+    one_unit(&table, &data, &fitted_loads(campaign, source, &data))?;
     let mut shared_errors = Vec::new();
     if let Some(tare) = &source.tare {
         let (error, found) = tare::subtract(&mut data, tare)?;
@@ -80,9 +85,18 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
     Ok(Reduced { data, n_read, findings, shared_errors, files })
 }
 
-/// Refuses a load whose rows stand in two units: their mean is the load of nothing.
-fn one_unit(table: &Table, data: &Dataset) -> Result<(), IdentifyError> {
-    let Some(found) = two_units::found(data) else { return Ok(()) };
+/// The loads that a law of the source gives or has; all of them where its laws cannot be made.
+fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset) -> Vec<&'static str> {
+    let mut loads = data.loads();
+    if let Ok(laws) = source::laws(campaign, source, data) {
+        loads.retain(|load| columns::is_in(load, &laws));
+    }
+    loads
+}
+
+/// Refuses a load whose rows stand in two units: their mean is the load of nothing. A load that nothing fits does no harm.
+fn one_unit(table: &Table, data: &Dataset, loads: &[&'static str]) -> Result<(), IdentifyError> {
+    let Some(found) = two_units::found(data, loads) else { return Ok(()) };
     let [large, small] = found.rows;
     let place = |row: usize| {
         let line = data.line.get(row);
@@ -184,6 +198,26 @@ fn links_from_configuration(data: &mut Dataset) {
     }
 }
 
+/// Refuses a density of the table that is neither that of water nor, by the viscosity beside it, that of air.
+fn water_or_air(table: &Table, campaign: &Campaign) -> Result<(), IdentifyError> {
+    let Some(Column { data: ColumnData::Number { unit, si, .. }, .. }) =
+        table.columns.iter().find(|c| c.name == "density")
+    else {
+        return Ok(());
+    };
+    let measured = table.number("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY).ok();
+    let viscosity = |row: usize| campaign.fluid.kinematic_viscosity_m2_s.or_else(|| Some(measured?[row]));
+    let doubtful = |(row, rho): (usize, &f64)| Some((row, *rho, plausible::density(*rho, viscosity(row))?));
+    match si.iter().enumerate().find_map(doubtful) {
+        Some((row, rho, problem)) => Err(IdentifyError::Record(froude_records::RecordError::Value {
+            place: table.place_of_row(row),
+            key: format!("density [{}]", unit.text),
+            problem: format!("is {}, which {problem}", unit.from_si(rho)),
+        })),
+        None => Ok(()),
+    }
+}
+
 /// Density and kinematic viscosity per row, from the campaign or the temperature of the run.
 fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -> Result<(), IdentifyError> {
     let stated = &campaign.fluid;
@@ -192,7 +226,13 @@ fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -
         .values("temperature")
         .map(|t| t.iter().map(|k| k - 273.15).collect())
         .or_else(|| stated.temperature_degc.map(|t| vec![t; data.rows]));
+    // Nothing of air follows from a temperature here: its viscosity is stated, or it would be no air.
+    let is_air = match stated.density_kg_m3 {
+        Some(rho) => plausible::AIR_KG_M3.contains(&rho),
+        None => data.values("density").is_some_and(|d| d.iter().all(|rho| plausible::AIR_KG_M3.contains(rho))),
+    };
     let water: Option<Vec<Water>> = temperature
+        .filter(|_| !is_air)
         .map(|t| t.iter().map(|&t| Water::at(t, salinity)).collect::<Result<_, _>>())
         .transpose()
         .map_err(|e| IdentifyError::Campaign { place: "[fluid]".to_owned(), what: e.to_string() })?;
@@ -254,21 +294,39 @@ fn measured_water(data: &Dataset, name: &str, stated: Option<f64>) -> Option<Fin
     ))
 }
 
-/// Subtracts the mean of the zeros before and after each run, and tells how far they moved.
-fn zeros(data: &mut Dataset, findings: &mut Vec<Finding>) {
+/// Zeros before and after each run.
+fn zeros_of<'a>(data: &'a Dataset, load: &str) -> [Option<&'a [f64]>; 2] {
+    ["before", "after"].map(|when| data.values(&format!("zero_{when}_{load}")))
+}
+
+/// Their mean, or the only one; `None` where there is none.
+fn mean_zero(data: &Dataset, load: &str) -> Option<Vec<f64>> {
+    match zeros_of(data, load) {
+        [Some(b), Some(a)] => Some(b.iter().zip(a).map(|(b, a)| 0.5 * (b + a)).collect()),
+        [Some(only), None] | [None, Some(only)] => Some(only.to_vec()),
+        [None, None] => None,
+    }
+}
+
+/// Subtracts the mean of the zeros before and after each run.
+fn subtract_zeros(data: &mut Dataset) {
     for load in LOADS {
-        let before = data.values(&format!("zero_before_{load}")).map(<[f64]>::to_vec);
-        let after = data.values(&format!("zero_after_{load}")).map(<[f64]>::to_vec);
-        let zero: Vec<f64> = match (&before, &after) {
-            (Some(b), Some(a)) => b.iter().zip(a).map(|(b, a)| 0.5 * (b + a)).collect(),
-            (Some(only), None) | (None, Some(only)) => only.clone(),
-            (None, None) => continue,
-        };
+        let Some(zero) = mean_zero(data, load) else { continue };
         let Some(channel) = data.channels.get_mut(load) else { continue };
-        let largest = channel.values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         for (value, zero) in channel.values.iter_mut().zip(&zero) {
             *value -= zero;
         }
+    }
+}
+
+/// How far the zeros moved that were subtracted.
+fn zero_drift(data: &Dataset) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for load in LOADS {
+        let (Some(zero), Some(values)) = (mean_zero(data, load), data.values(load)) else { continue };
+        let [before, after] = zeros_of(data, load);
+        // As the sensor showed it.
+        let largest = values.iter().zip(&zero).fold(0.0_f64, |m, (f, zero)| m.max((f + zero).abs()));
         if before.is_none() || after.is_none() {
             let (there, not) = if before.is_some() { ("before", "after") } else { ("after", "before") };
             findings.push(Finding::new(
@@ -281,7 +339,7 @@ fn zeros(data: &mut Dataset, findings: &mut Vec<Finding>) {
             ));
             continue;
         }
-        let drift = before.iter().zip(&after).flat_map(|(b, a)| b.iter().zip(a)).map(|(b, a)| (a - b).abs());
+        let drift = before.iter().zip(&after).flat_map(|(b, a)| b.iter().zip(*a)).map(|(b, a)| (a - b).abs());
         let drift = drift.fold(0.0, f64::max);
         let grave = drift > 0.01 * largest;
         findings.push(Finding::new(
@@ -294,6 +352,7 @@ fn zeros(data: &mut Dataset, findings: &mut Vec<Finding>) {
             ),
         ));
     }
+    findings
 }
 
 /// Rows that satisfy every clause of `keep`.
@@ -321,6 +380,16 @@ fn kept(keep: &Keep, data: &Dataset, source: &Source) -> Result<Vec<usize>, Iden
                     });
                 }
                 let at = limit.value_si;
+                let is_thin = |rho: &f64| plausible::AIR_KG_M3.contains(rho);
+                if clause.column == "density"
+                    && !values.iter().any(is_thin)
+                    && let Some(problem) = plausible::density(at, None)
+                {
+                    return Err(IdentifyError::Campaign {
+                        place: source.place.to_string(),
+                        what: format!("keep: density is compared with {at} kg/m^3, which {problem}"),
+                    });
+                }
                 let slack = 1e-12 * at.abs();
                 rows.retain(|&i| match clause.comparison {
                     Comparison::Lt => values[i] < at - slack,

@@ -14,7 +14,9 @@ use froude_records::json::read_estimates;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
+use crate::lint::moving;
 use crate::uncertainty::SharedError;
+use crate::validity::{AT_REST, OFF_AXIS, off_axis};
 
 /// Angles this far beyond those of the tare runs are still theirs, 1°: at it a round strut's side force is 2 % of its drag.
 const SAME_ANGLE_RAD: f64 = PI / 180.0;
@@ -88,17 +90,14 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
     Ok((error, findings))
 }
 
-/// Angle between the motion and the x axis, ahead or astern, rad.
-fn askew(angle: f64) -> f64 {
-    angle.sin().abs().asin()
-}
-
 /// Largest angle to the x axis at which a tare was taken, rad; `None` where nothing says.
-///
-/// A record holds the ends of its range: 0 and ±180° are a tare towed both ways, unless its law gives a side force.
 fn reach(estimate: &Estimate, gives_f_y: bool) -> Option<f64> {
+    if let Some(range) = estimate.validity.get(OFF_AXIS) {
+        return Some(range.high);
+    }
+    // A record from elsewhere states the ends of its angles alone: 0 and ±180° are a tare towed both ways, or turned all round.
     let Some(range) = estimate.validity.get("angle") else { return (!gives_f_y).then_some(0.0) };
-    let ends = askew(range.low).max(askew(range.high));
+    let ends = [range.low, range.high].map(|angle| angle.sin().abs().asin()).into_iter().fold(0.0, f64::max);
     let largest = range.low.abs().max(range.high.abs());
     Some(if gives_f_y && ends <= SAME_ANGLE_RAD { largest.min(FRAC_PI_2) } else { ends })
 }
@@ -117,8 +116,9 @@ fn beyond_its_angles(
     else {
         return Ok(None);
     };
+    let askew = |i: usize| off_axis(data.velocity_m_s(i));
     let beyond = |reach: f64| -> Vec<usize> {
-        (0..data.rows).filter(|&i| speed[i] > 0.0 && askew(angle[i]) > reach + SAME_ANGLE_RAD).collect()
+        moving(speed, AT_REST).into_iter().filter(|&i| askew(i) > reach + SAME_ANGLE_RAD).collect()
     };
     // Of a load that the law does not give, the tare knows nothing at any angle.
     let stays_in = |load: &str| data.values(load).filter(|_| gives(load).is_none());
@@ -140,6 +140,15 @@ fn beyond_its_angles(
                 format!(
                     "its side force stays in f_y: of a strut that drags alike from all sides up to {most_n:.3} N, {percent:.1} % of the \
                      measured f_y (and of its coefficients), of a streamlined one several times that"
+                )
+            }));
+        }
+        if let (Some(q), Some(side)) = (gives("f_y"), data.values("f_y")) {
+            let stays_n = |i: usize| -drag_n[i] * angle[i].sin() - predicted[q * data.rows + i];
+            left.extend(size(&beyond(reach), &stays_n, side).map(|(most_n, percent)| {
+                format!(
+                    "its side force there is another one: of a strut that drags alike from all sides by up to {most_n:.3} N, {percent:.1} % \
+                     of the measured f_y"
                 )
             }));
         }
@@ -167,7 +176,7 @@ fn beyond_its_angles(
         let without = if without.is_empty() { String::new() } else { format!(" without {}", without.join(", ")) };
         format!("was taken up to {:.1} deg{without}", reach.to_degrees())
     };
-    let most = rows.iter().map(|&i| askew(angle[i])).fold(0.0, f64::max);
+    let most = rows.iter().map(|&i| askew(i)).fold(0.0, f64::max);
     let left: String = left.iter().map(|text| format!("; {text}")).collect();
     Ok(Some(Finding::new(
         Severity::Warning,

@@ -9,13 +9,28 @@ use froude_records::finding::{Finding, Severity};
 use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
+use crate::lint::moving;
 
 /// Blockage above which a correction or a remark is due (ITTC 7.5-02-02-01 corrects resistance for blockage well below it).
 const BLOCKAGE_LIMIT: f64 = 0.05;
 /// Submergence Froude number above which a body near the surface makes waves that matter.
 const WAVE_LIMIT: f64 = 0.4;
 
+/// Rows slower than this part of the fastest are at rest: a slow tow has a hundredth of the speed of a fast one, and what a sensor shows at
+/// rest is less.
+pub(crate) const AT_REST: f64 = 0.01;
+
+/// Name of the range of the angle between the motion and the x axis, ahead or astern: what a strut sees of the angle.
+pub(crate) const OFF_AXIS: &str = "angle_off_axis";
+
+/// Angle between a velocity and the x axis, ahead or astern, rad.
+pub(crate) fn off_axis([v_x, v_y]: [f64; 2]) -> f64 {
+    v_y.abs().atan2(v_x.abs())
+}
+
 /// Ranges of the observations, by name, with the findings that they give rise to.
+///
+/// At rest there is no angle: those of rows that do not move are passed over.
 #[must_use]
 pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, Vec<Finding>) {
     let mut out = IndexMap::new();
@@ -27,9 +42,15 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
             out.insert(name.to_owned(), Range { low, high, unit: unit.to_owned() });
         }
     };
+    let moving = moving(data.values("speed").unwrap_or_default(), AT_REST);
     for (name, unit) in [("speed", "m/s"), ("angle", "rad"), ("n_links", "1"), ("temperature", "K")] {
-        if let Some(values) = data.values(name) {
-            put(name, values, unit);
+        match data.values(name) {
+            Some(values) if name == "angle" => {
+                put(name, &moving.iter().map(|&i| values[i]).collect::<Vec<_>>(), unit);
+                put(OFF_AXIS, &moving.iter().map(|&i| off_axis(data.velocity_m_s(i))).collect::<Vec<_>>(), unit);
+            }
+            Some(values) => put(name, values, unit),
+            None => {}
         }
     }
     for (name, channel) in &data.channels {

@@ -111,6 +111,8 @@ mod tests {
             };
             let (coarse, fine) = (volume(2), volume(4));
             let limit = fine + (fine - coarse) / 3.0;
+            let exact = ModularRobot::NECKED_MAMBA.body(links, 0.03).volume_m3();
+            assert!((limit / exact - 1.0).abs() < 1e-3, "{links}: {limit} {exact}");
             let printed = 1.1013e-3 * links as f64 + 0.529e-3;
             assert!((limit - printed).abs() < 0.5e-7 * links as f64 + 0.5e-6, "{links}: {limit} {printed}");
         }

@@ -22,6 +22,7 @@ use std::path::Path;
 
 use crate::campaign_toml::one_of;
 use crate::error::{RecordError, read_bytes, utf8};
+use crate::plausible;
 use crate::section::{Section, Source, found, parse};
 use crate::units::Dimension;
 
@@ -122,7 +123,13 @@ pub fn parse_body(path: &Path, text: &str) -> Result<BodyFile, RecordError> {
     let density_kg_m3 = match root.section("fluid")? {
         Some(fluid) => {
             fluid.only(&["density"])?;
-            fluid.positive("density", Dimension::DENSITY)?
+            let density_kg_m3 = fluid.positive("density", Dimension::DENSITY)?;
+            if let (Some(rho), Some(value)) = (density_kg_m3, fluid.get("density"))
+                && let Some(problem) = plausible::density_of_displaced_water(rho)
+            {
+                return Err(fluid.wrong("density", value, format!("is {}, which {problem}", found(value))));
+            }
+            density_kg_m3
         }
         None => None,
     };

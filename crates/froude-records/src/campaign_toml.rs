@@ -1,5 +1,6 @@
 //! The campaign's TOML, section by section. Names and defaults are the contract of the book's conventions page.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use indexmap::IndexMap;
@@ -14,6 +15,7 @@ use crate::carriage_toml::carriage;
 use crate::error::RecordError;
 use crate::keep::parse_keep;
 use crate::nearest::suggestion;
+use crate::plausible;
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::table::known_dimension;
 use crate::units::Dimension;
@@ -53,8 +55,9 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
         simulate: root.section("simulate")?.map(|s| simulate(&s)).transpose()?,
         carriage: carriage(&root)?,
     };
-    for (i, a) in campaign.sources.iter().enumerate() {
-        if campaign.sources[..i].iter().any(|b| b.name == a.name) {
+    let mut names = BTreeSet::new();
+    for a in &campaign.sources {
+        if !names.insert(&a.name) {
             return Err(RecordError::Value {
                 place: a.place.clone(),
                 key: "name".to_owned(),
@@ -66,13 +69,18 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
 }
 
 fn fluid(s: &Section<'_>) -> Result<Fluid, RecordError> {
+    s.only(&["density", "kinematic_viscosity", "temperature", "salinity"])?;
     let out = Fluid {
         density_kg_m3: s.positive("density", Dimension::DENSITY)?,
         kinematic_viscosity_m2_s: s.positive("kinematic_viscosity", Dimension::KINEMATIC_VISCOSITY)?,
         temperature_degc: s.quantity("temperature", Dimension::TEMPERATURE)?.map(|kelvin| kelvin - 273.15),
         salinity_g_kg: s.quantity("salinity", Dimension::ONE)?.map(|fraction| fraction * 1e3),
     };
-    s.finish()?;
+    if let (Some(rho), Some(value)) = (out.density_kg_m3, s.get("density"))
+        && let Some(problem) = plausible::density(rho, out.kinematic_viscosity_m2_s)
+    {
+        return Err(s.wrong("density", value, format!("is {}, which {problem}", found(value))));
+    }
     Ok(out)
 }
 

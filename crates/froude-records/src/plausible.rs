@@ -3,6 +3,10 @@
 //! A right unit beside a wrong number passes every check of dimensions. Where a
 //! number is impossible, the cause is nearly always its unit, and the message
 //! says which.
+//!
+//! Sea water in g/cm³ under a head of kg/m³ is the number of air: 1.025 and 1.2.
+//! The kinematic viscosity beside it tells them apart: ρν of air is some 1.8e-5
+//! Pa s at any height and in any tunnel, and with the ν of water eighteen times less.
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
@@ -15,17 +19,24 @@ use crate::units::{Dimension, Unit};
 /// then. Nothing near 1 is among them, which is what water is in g/cm³.
 pub const LIQUID_KG_M3: RangeInclusive<f64> = 500.0..=2000.0;
 
+/// Densities of air, kg/m³: 0.9 at 3000 m of height, 1.5 at −40 °C.
+pub const AIR_KG_M3: RangeInclusive<f64> = 0.9..=1.5;
+
+/// Dynamic viscosities of air, Pa s: 1.5e-5 at −40 °C to 2.0e-5 at 60 °C, and what rounded numbers make of them.
+const AIR_PA_S: RangeInclusive<f64> = 1.3e-5..=2.5e-5;
+
 /// Rounding of a whole turn through a unit.
 const WHOLE_TURN: f64 = TAU * (1.0 + 1e-9);
 
 /// What is wrong with a value of `name`, as the rest of a sentence that has named it; `None` for a plausible one.
 ///
-/// `si` is the value in SI, `unit` the one that it was written in.
+/// `si` is the value in SI, `unit` the one that it was written in. A density of air passes: whoever knows the viscosity beside it asks
+/// [`density`].
 #[must_use]
 pub fn problem(name: &str, si: f64, unit: &Unit) -> Option<String> {
     match (name, unit.dimension) {
         ("angle" | "misalignment", Dimension::ANGLE) => angle(si, unit),
-        ("density", Dimension::DENSITY) => density(si),
+        ("density", Dimension::DENSITY) if !AIR_KG_M3.contains(&si) => density(si, None),
         _ => None,
     }
 }
@@ -56,9 +67,38 @@ pub fn angle(rad: f64, unit: &Unit) -> Option<String> {
     Some(format!("is more than a whole turn: {cause}"))
 }
 
-/// A density that no liquid has, and what was probably meant.
+/// A density that neither water nor air has, and what was probably meant; air is believed where the kinematic viscosity beside it is
+/// air's.
 #[must_use]
-pub fn density(kg_m3: f64) -> Option<String> {
+pub fn density(kg_m3: f64, kinematic_viscosity_m2_s: Option<f64>) -> Option<String> {
+    let problem = no_water(kg_m3)?;
+    if !AIR_KG_M3.contains(&kg_m3) {
+        return Some(problem);
+    }
+    match kinematic_viscosity_m2_s {
+        Some(nu) if AIR_PA_S.contains(&(kg_m3 * nu)) => None,
+        Some(nu) => Some(format!(
+            "{problem}, or, if the test was in air, the kinematic viscosity beside it: {nu:e} m^2/s is not that of air, some 1.5e-5 m^2/s"
+        )),
+        None => Some(format!(
+            "{problem}; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: kinematic_viscosity in [fluid] of the \
+             campaign, or a column kinematic_viscosity [m^2/s]"
+        )),
+    }
+}
+
+/// The same for added mass, which asks for no viscosity and is in proportion to the density.
+#[must_use]
+pub fn density_of_displaced_water(kg_m3: f64) -> Option<String> {
+    let problem = no_water(kg_m3)?;
+    let is_air = AIR_KG_M3.contains(&kg_m3);
+    let advice =
+        if is_air { "; in air, ask for \"1 kg/m^3\" and take the result times the density of the air" } else { "" };
+    Some(format!("{problem}{advice}"))
+}
+
+/// A density that no liquid has, and what was probably meant.
+fn no_water(kg_m3: f64) -> Option<String> {
     if LIQUID_KG_M3.contains(&kg_m3) {
         return None;
     }
@@ -114,16 +154,43 @@ mod tests {
     #[test]
     fn water_is_neither_air_nor_lead() {
         for rho in [500.0, 700.0, 997.0, 1025.0, 1240.0, 2000.0] {
-            assert_eq!(density(rho), None, "{rho}");
+            assert_eq!(density(rho, None), None, "{rho}");
         }
-        let meant = "write 1.025 g/cm^3 or 1025 kg/m^3";
-        for rho in [1.025, 1.025e6] {
-            let said = density(rho).unwrap();
-            assert_eq!(said, format!("is the density of no water (500 to 2000 kg/m^3 are taken); {meant}"));
-        }
-        assert!(density(11_340.0).unwrap().ends_with("fresh water has 1000 kg/m^3, sea water 1025"));
+        let meant = "is the density of no water (500 to 2000 kg/m^3 are taken); write 1.025 g/cm^3 or 1025 kg/m^3";
+        assert!(density(1.025, None).unwrap().starts_with(&format!("{meant}; if the test was in air, state its")));
+        assert_eq!(density(1.025e6, None).unwrap(), meant);
+        assert!(
+            density_of_displaced_water(1.2)
+                .unwrap()
+                .ends_with("in air, ask for \"1 kg/m^3\" and take the result times the density of the air")
+        );
+        assert_eq!(density_of_displaced_water(1.025e6).unwrap(), meant);
+        assert!(density(11_340.0, None).unwrap().ends_with("fresh water has 1000 kg/m^3, sea water 1025"));
         assert_eq!(unit_for(1.025, Dimension::DENSITY, "kg/m^3"), "g/cm^3");
         assert_eq!(unit_for(1025.0, Dimension::DENSITY, "kg/m^3"), "kg/m^3");
         assert_eq!(unit_for(1.025, Dimension::SPEED, "m/s"), "m/s");
+    }
+
+    /// ρ and ν of air by the ideal gas and Sutherland's law, −20 to 50 °C and up to 3000 m; of water 0 to 40 °C in g/cm³.
+    #[test]
+    fn the_viscosity_tells_air_from_water_in_other_units() {
+        for kelvin in [253.15, 273.15, 288.15, 293.15, 323.15] {
+            for pascal in [70_000.0, 90_000.0, 101_325.0, 103_000.0] {
+                let rho: f64 = pascal / (287.05 * kelvin);
+                let mu = 1.716e-5 * f64::powf(kelvin / 273.15, 1.5) * (273.15 + 110.4) / (kelvin + 110.4);
+                // Colder and lower than any tunnel, the number alone is none of air.
+                if AIR_KG_M3.contains(&rho) {
+                    assert_eq!(density(rho, Some(mu / rho)), None, "{kelvin} K, {pascal} Pa");
+                }
+            }
+        }
+        for rho in [0.998, 1.025, 1.2] {
+            for nu in [0.66e-6, 1.0e-6, 1.19e-6, 1.79e-6] {
+                let said = density(rho, Some(nu)).unwrap();
+                assert!(said.contains("or, if the test was in air, the kinematic viscosity beside it"), "{said}");
+            }
+        }
+        assert_eq!(density(1.2, Some(1.5e-5)), None);
+        assert_eq!(density(1000.0, Some(1.5e-5)), None, "a thick oil");
     }
 }

@@ -6,6 +6,7 @@
 //! killed. What nobody holds was left by a dead one, however young or old it is, and is cleared by the next that writes
 //! there. A disk without locks (some network disks) keeps what was left on it: nothing is ever cleared by its age.
 
+use std::ffi::OsStr;
 use std::fs::{File, TryLockError};
 use std::io;
 use std::path::Path;
@@ -46,12 +47,15 @@ pub(crate) fn folder_in(folder: &Path) -> io::Result<(TempDir, Option<File>)> {
 }
 
 /// Takes away what dead processes left in a folder; what cannot be taken away stays.
+///
+/// A folder that grows itself is passed over: its maker lives, and a thousand files in it would each be looked for among the others.
 fn clear(folder: &Path) {
+    if folder.ancestors().filter_map(Path::file_name).any(is_ours) {
+        return;
+    }
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
-        let name = entry.file_name();
-        let is_ours = name.to_str().and_then(|n| n.strip_prefix(PREFIX)).is_some_and(|rest| rest.len() == 6);
-        let Some(kind) = entry.file_type().ok().filter(|_| is_ours) else { continue };
+        let Some(kind) = entry.file_type().ok().filter(|_| is_ours(&entry.file_name())) else { continue };
         let Ok(held) = File::open(entry.path()) else { continue };
         match held.try_lock() {
             // Held until it is gone: a maker that comes between finds its name missing and takes another.
@@ -60,6 +64,10 @@ fn clear(folder: &Path) {
             Ok(()) | Err(TryLockError::WouldBlock | TryLockError::Error(_)) => {}
         }
     }
+}
+
+fn is_ours(name: &OsStr) -> bool {
+    name.to_str().and_then(|n| n.strip_prefix(PREFIX)).is_some_and(|rest| rest.len() == 6)
 }
 
 /// A temporary file is private to its owner; a result is as readable as any other: the system takes the umask off.
@@ -78,4 +86,28 @@ fn builder(mode: u32) -> Builder<'static, 'static> {
 
 fn lost() -> io::Error {
     io::Error::other("another program takes its temporary files away")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_dead_process_left_is_cleared_but_not_looked_for_in_a_folder_that_grows() {
+        let folder = tempfile::tempdir().unwrap();
+        let (growing, _held) = folder_in(folder.path()).unwrap();
+        let inside = growing.path().join("figures");
+        std::fs::create_dir(&inside).unwrap();
+        let leave = |folder: &Path| {
+            let left = folder.join(format!("{PREFIX}abcdef"));
+            std::fs::write(&left, "half").unwrap();
+            drop(file_in(folder).unwrap());
+            left.exists()
+        };
+        assert!(!leave(folder.path()));
+        assert!(
+            leave(growing.path()) && leave(&inside),
+            "a thousand files there cost a thousand looks and not a million"
+        );
+    }
 }

@@ -619,18 +619,12 @@ impl Tables {
 
     /// E_n of every coefficient that two sources share; pairs that have none are folded.
     pub(crate) fn differences(&mut self, comparison: &ComparisonSection) -> Markup {
-        let mut pairs: Vec<Vec<&CoefficientComparison>> = Vec::new();
+        let mut pairs: IndexMap<[&str; 3], Vec<&CoefficientComparison>> = IndexMap::new();
         for c in &comparison.coefficients {
-            let is_same = |o: &CoefficientComparison| {
-                (&o.model, &o.first.source, &o.second.source) == (&c.model, &c.first.source, &c.second.source)
-            };
-            match pairs.iter_mut().find(|pair| is_same(pair[0])) {
-                Some(pair) => pair.push(c),
-                None => pairs.push(vec![c]),
-            }
+            pairs.entry([&c.model, &c.first.source, &c.second.source]).or_default().push(c);
         }
         let (with, without): (Vec<_>, Vec<_>) =
-            pairs.into_iter().partition(|pair| pair.iter().any(|c| number::finite(c.e_n).is_some()));
+            pairs.into_values().partition(|pair| pair.iter().any(|c| number::finite(c.e_n).is_some()));
         let shown = (!with.is_empty()).then(|| {
             let caption = self.caption(
                 "Coefficients of the same model from two sources, with standard uncertainties in brackets and the normalised difference \
@@ -679,12 +673,17 @@ impl Tables {
     /// Predicted loads over the common range: a row per place, a column per source.
     pub(crate) fn predictions(&mut self, comparison: &ComparisonSection) -> Markup {
         let mut parts = Vec::new();
-        for first in union(comparison.forces.iter().map(|f| &f.first.source)) {
-            let own: Vec<&ForceComparison> = comparison.forces.iter().filter(|f| f.first.source == first).collect();
-            let others = union(own.iter().map(|f| &f.second.source));
-            for block in others.chunks(MOST_SIDES) {
-                let rows: Vec<&ForceComparison> =
-                    own.iter().copied().filter(|f| block.contains(&f.second.source.as_str())).collect();
+        let mut by_sides: IndexMap<&str, IndexMap<&str, Vec<(usize, &ForceComparison)>>> = IndexMap::new();
+        for (i, f) in comparison.forces.iter().enumerate() {
+            by_sides.entry(&f.first.source).or_default().entry(&f.second.source).or_default().push((i, f));
+        }
+        for (first, others) in by_sides {
+            let names: Vec<&str> = others.keys().copied().collect();
+            let rows_of: Vec<_> = others.into_values().collect();
+            for (block, rows) in names.chunks(MOST_SIDES).zip(rows_of.chunks(MOST_SIDES)) {
+                let mut rows = rows.concat();
+                rows.sort_by_key(|(i, _)| *i);
+                let rows: Vec<&ForceComparison> = rows.into_iter().map(|(_, f)| f).collect();
                 let places = by_place(&rows);
                 let (shown, is_all) = corners(&places);
                 let caption = self.caption(&format!(

@@ -615,3 +615,38 @@ proptest! {
         }
     }
 }
+
+/// Estimates side by side are pairs, and the page costs so much a pair: twice the estimates take four times as long, and not sixteen times.
+#[test]
+fn a_comparison_costs_as_much_as_it_has_pairs() {
+    let page = |estimates: usize| {
+        let side = |i: usize| Side { source: format!("source {i}/quadratic"), value: Some(1.0), ..Side::default() };
+        let pairs = (0..estimates).flat_map(|i| (i + 1..estimates).map(move |j| (i, j)));
+        let coefficients = pairs
+            .map(|(i, j)| CoefficientComparison {
+                model: "quadratic".to_owned(),
+                coefficient: "D_x_II".to_owned(),
+                unit: "kg/m".to_owned(),
+                first: side(i),
+                second: side(j),
+                note: "no uncertainty stated".to_owned(),
+                ..CoefficientComparison::default()
+            })
+            .collect();
+        Report {
+            comparison: Some(ComparisonSection { coefficients, ..ComparisonSection::default() }),
+            ..Report::default()
+        }
+    };
+    let seconds = |report: &Report| {
+        let once = || {
+            let begun = std::time::Instant::now();
+            let page = html(report).unwrap();
+            assert!(page.contains("pairs of estimates without E"));
+            begun.elapsed().as_secs_f64()
+        };
+        (0..3).map(|_| once()).fold(f64::INFINITY, f64::min)
+    };
+    let [half, whole] = [150, 300].map(|n| seconds(&page(n)));
+    assert!(whole < 8.0 * half, "{half} s for 150 estimates, {whole} s for 300");
+}

@@ -1,5 +1,7 @@
 //! Identification results as the report wants them: points, curves with bands, budget, selection.
 
+use std::collections::BTreeMap;
+
 use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
 use froude_identify::compare::{Comparison, SAME_DATA, Stated};
@@ -574,8 +576,9 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
         standard: s.standard,
         expanded: s.expanded(),
     };
+    let tables = tables_behind(sources, file);
     let reads_same = |a: &str, b: &str| {
-        let (a, b) = (table_behind(a, sources, file), table_behind(b, sources, file));
+        let (a, b) = (table_behind(a, &tables), table_behind(b, &tables));
         a.is_some() && a == b
     };
     let difference = |e_n: &Result<f64, String>, a: &str, b: &str| {
@@ -650,13 +653,23 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
     })
 }
 
-/// Fingerprint of the table that an estimate of this campaign was fitted to, by its label in the comparison.
-fn table_behind<'a>(label: &str, sources: &[SourceResult], file: &'a EstimateFile) -> Option<&'a str> {
-    // A published record may have an estimate of the same id: the comparison then names the record behind it.
-    let is_labelled = |id: &str| label == id || label.strip_prefix(id) == Some(" (this campaign)");
-    let source = sources.iter().find(|s| s.estimates.iter().any(|e| is_labelled(&e.id)))?;
-    let table = source.files.first()?;
-    file.data.iter().find(|d| table.ends_with(&d.path)).map(|d| d.sha256.as_str())
+/// Fingerprint of the table that each estimate of this campaign was fitted to, by its id.
+fn tables_behind<'a>(sources: &'a [SourceResult], file: &'a EstimateFile) -> BTreeMap<&'a str, &'a str> {
+    let mut out = BTreeMap::new();
+    for source in sources {
+        let Some(table) = source.files.first() else { continue };
+        let Some(data) = file.data.iter().find(|d| table.ends_with(&d.path)) else { continue };
+        for estimate in &source.estimates {
+            out.entry(estimate.id.as_str()).or_insert(data.sha256.as_str());
+        }
+    }
+    out
+}
+
+/// The same by a label in the comparison: where a published record has an estimate of the same id, the record stands behind it.
+fn table_behind<'a>(label: &str, tables: &BTreeMap<&str, &'a str>) -> Option<&'a str> {
+    let id = label.strip_suffix(" (this campaign)").unwrap_or(label);
+    tables.get(label).or_else(|| tables.get(id)).copied()
 }
 
 #[cfg(test)]

@@ -74,13 +74,16 @@ impl Friction {
     /// `None` without cells, or where a stretch between two knots was never passed.
     #[must_use]
     pub fn identify<'a>(cells: impl IntoIterator<Item = &'a Cell>, is_mapped: bool) -> Option<Self> {
-        let cells: Vec<&Cell> = cells.into_iter().collect();
+        Self::with_knots(&cells.into_iter().collect::<Vec<_>>(), is_mapped, MOST_KNOTS)
+    }
+
+    fn with_knots(cells: &[&Cell], is_mapped: bool, most: usize) -> Option<Self> {
         let range_m = reach(&cells.iter().map(|c| c.position_m).collect::<Vec<_>>());
         if cells.is_empty() {
             return None;
         }
         let way_m = range_m[1] - range_m[0];
-        let knots = if is_mapped { 1 + ((way_m / KNOT_SPACING_M).ceil() as usize).min(MOST_KNOTS - 1) } else { 1 };
+        let knots = if is_mapped { knots_over(way_m, most) } else { 1 };
         let spacing_m = if knots > 1 { way_m / (knots - 1) as f64 } else { KNOT_SPACING_M };
         let has = |sign: f64| cells.iter().any(|c| c.direction == sign);
         let has_bias = has(1.0) && has(-1.0);
@@ -115,6 +118,11 @@ impl Friction {
             range_m,
         })
     }
+}
+
+/// Knots of a map over a way.
+fn knots_over(way_m: f64, most: usize) -> usize {
+    1 + ((way_m / KNOT_SPACING_M).ceil() as usize).min(most - 1)
 }
 
 /// Knot at or below a position and the part of the way to the next one.
@@ -181,6 +189,42 @@ mod tests {
         }
         assert!((k * map.viscous_v_s_m - scenario.viscous_n_s_m).abs() < 0.02);
         assert!(map.bias_v.abs() < 1e-4);
+    }
+
+    /// 600 m of rails are mapped with 2501 knots, 0.24 m apart: as many as 250 m have, and none of them at 0.1 m. A friction that changes
+    /// slowly is found all the same.
+    #[test]
+    fn a_way_longer_than_its_most_knots_has_them_further_apart() {
+        let coulomb_v = |x: f64| 1.0 + 0.2 * (x / 40.0).sin();
+        let over = |way_m: f64| -> Vec<Cell> {
+            (0..6000)
+                .flat_map(|i| {
+                    let position_m = way_m * f64::from(i) / 5999.0;
+                    [1.0, -1.0].map(|direction| Cell {
+                        position_m,
+                        speed_m_s: 0.3 * direction,
+                        direction,
+                        command_v: direction * coulomb_v(position_m),
+                        weight: 1.0,
+                    })
+                })
+                .collect()
+        };
+        for (way_m, knots, spacing_m) in [(249.95, 2501, 249.95 / 2500.0), (250.0, 2501, 0.1), (600.0, 2501, 0.24)] {
+            let found = knots_over(way_m, MOST_KNOTS);
+            assert_eq!(found, knots, "{way_m} m");
+            assert!((way_m / (found - 1) as f64 - spacing_m).abs() < 1e-12, "{way_m} m");
+        }
+        // A fiftieth of each number, since a map costs the third power of its knots: the same rule.
+        let cells = over(12.0);
+        let map = Friction::with_knots(&cells.iter().collect::<Vec<_>>(), true, 51).unwrap();
+        assert_eq!(map.coulomb_v.len(), 51);
+        assert!((map.spacing_m - 0.24).abs() < 1e-12);
+        for i in 0..=120 {
+            let x = 0.1 * f64::from(i);
+            assert!((map.coulomb_at(x) - coulomb_v(x)).abs() < 1e-4, "{x} m");
+        }
+        assert!((map.coulomb_at(-5.0) - coulomb_v(0.0)).abs() < 1e-4, "held at its ends");
     }
 
     #[test]

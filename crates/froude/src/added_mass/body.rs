@@ -20,7 +20,7 @@ use super::limits;
 use super::links::{default_out, file_name, no_density, not_within};
 use super::load::{Loaded, load};
 use super::page;
-use super::record::{About, estimate};
+use super::record::{About, estimate, replaces_another_frame};
 use super::refine::{Forecast, Refined, Wanted, plan, refine};
 use super::spectral;
 use super::surroundings::surroundings;
@@ -97,6 +97,8 @@ pub struct BodyOutcome {
     pub page: PathBuf,
     /// The pressure on the body, and exports.
     pub others: Vec<PathBuf>,
+    /// What is said of a record in another frame that this one has replaced.
+    pub replaced: Option<String>,
 }
 
 /// What each mesh would take, with nothing computed.
@@ -154,7 +156,7 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     if let Some(exact) = loaded.shape.as_ref().and_then(spectral::solve) {
         notes.push(spectral::replace(&mut cases[0].refined, &exact, &frame));
     }
-    let mut tables = vec![hydrostatics(&cases[0].refined, density_kg_m3, &frame)];
+    let mut tables = vec![hydrostatics(&cases[0].refined, loaded.shape.is_none(), density_kg_m3, &frame)];
     let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
     tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
     if let Family::Mesh(mesh) = &loaded.family {
@@ -203,6 +205,7 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         cases,
         notes,
         tables,
+        replaced: replaces_another_frame(&out, &file),
         file,
         estimate: PathBuf::new(),
         page: PathBuf::new(),
@@ -249,10 +252,11 @@ fn extent_along(mesh: &Mesh, axis: usize) -> f64 {
 }
 
 /// Volume, centre of buoyancy, displaced mass and its inertia.
-fn hydrostatics(refined: &Refined, density_kg_m3: f64, frame: &Frame) -> TextTable {
+fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64, frame: &Frame) -> TextTable {
     let finest = refined.steps.last().map(|s| s.measure);
+    let of = if is_mesh { "exactly that of the facets" } else { "exactly that of the dimensions" };
     let mut rows = vec![
-        vec!["volume".to_owned(), format!("{} m³", number::plain(refined.volume_m3, 6))],
+        vec!["volume".to_owned(), format!("{} m³, {of}", number::plain(refined.volume_m3, 6))],
         vec!["displaced mass".to_owned(), format!("{} kg", number::plain(density_kg_m3 * refined.volume_m3, 6))],
     ];
     if let Some(m) = finest {
@@ -268,5 +272,9 @@ fn hydrostatics(refined: &Refined, density_kg_m3: f64, frame: &Frame) -> TextTab
             format!("({}) kg m²", list(inertia, 5)),
         ]);
     }
-    TextTable { caption: "Hydrostatics.".to_owned(), head: vec![String::new(), "value".to_owned()], rows }
+    TextTable {
+        caption: "Hydrostatics; area, centre and inertia are those of the finest mesh.".to_owned(),
+        head: vec![String::new(), "value".to_owned()],
+        rows,
+    }
 }

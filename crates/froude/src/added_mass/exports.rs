@@ -115,3 +115,76 @@ pub(super) fn of_parts_for_program(matrix: &[Vec<f64>], extension: &str, job: &B
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::frame::{Direction, Point};
+    use super::super::refine::Wanted;
+    use super::*;
+
+    fn job(axes: Axes, orientation: Option<Orientation>, export: &[&'static str]) -> BodyJob {
+        BodyJob {
+            input: PathBuf::from("pod.obj"),
+            links: None,
+            density_kg_m3: Some(1000.0),
+            axes,
+            at: Point::At([0.0; 3]),
+            unit_m: None,
+            orientation,
+            surface_m: None,
+            tank_m: None,
+            wanted: Wanted::default(),
+            export: export.to_vec(),
+            out: None,
+            date: None,
+        }
+    }
+
+    const EVERY_PART: &str =
+        ", as wave programs ask for, every part about its own point; the CSV is that of the record.";
+
+    /// Orientations of a mesh, where they were said, and the axes that its files for wave programs are then in.
+    fn lies() -> [(Option<Orientation>, &'static str); 4] {
+        let up = |axis, is_against| Orientation::new(Direction::X, Direction { axis, is_against }).unwrap();
+        let forward = |axis, is_against| Orientation::new(Direction { axis, is_against }, Direction::Z).unwrap();
+        let turned = "axes with x forward, y port, z up (ROS REP 103)";
+        [
+            (None, "the axes of the mesh, z up"),
+            (Some(forward(0, true)), "the axes of the mesh, z up"),
+            (Some(up(2, true)), turned),
+            (Some(up(1, false)), turned),
+        ]
+    }
+
+    #[test]
+    fn the_words_about_files_of_parts_say_the_axes_that_the_files_are_in() {
+        for (orientation, of_the_mesh) in lies() {
+            let mesh = orientation.unwrap_or_default();
+            for axes in [Axes::Mesh, Axes::Ned, Axes::Enu] {
+                let job = job(axes, orientation, &["1", "csv"]);
+                let said = words_of_parts(&job, false).unwrap();
+                let stays = axes == mesh.wave_axes();
+                let where_ = if stays { "the axes of the record" } else { of_the_mesh };
+                assert_eq!(said, format!("The files for WAMIT and Capytaine are in {where_}{EVERY_PART}"), "{axes:?}");
+                // What is said is what is done: the record's own axes are left alone, and no others.
+                let matrix: Vec<Vec<f64>> =
+                    (0..6).map(|i| (0..6).map(|j| f64::from(1 + 6 * i.min(j) + i.max(j))).collect()).collect();
+                let is_same = of_parts_for_program(&matrix, "1", &job) == matrix;
+                let [own, wave] = [axes.vectors(mesh), wave_frame(&job).axes];
+                assert_eq!(is_same, own == wave, "{axes:?} {orientation:?}");
+                assert!(!stays || is_same, "{axes:?} {orientation:?}");
+                assert_eq!(of_parts_for_program(&matrix, "csv", &job), matrix);
+            }
+        }
+    }
+
+    #[test]
+    fn links_have_no_mesh_whose_axes_could_be_named_and_a_csv_alone_needs_no_word() {
+        let said = words_of_parts(&job(Axes::Ned, None, &["nc"]), true).unwrap();
+        assert!(said.contains("are in axes with x forward, y port, z up (ROS REP 103), as wave programs"), "{said}");
+        let said = words_of_parts(&job(Axes::Mesh, None, &["nc"]), true).unwrap();
+        assert!(said.contains("are in the axes of the record, as wave programs"), "{said}");
+        assert_eq!(words_of_parts(&job(Axes::Ned, None, &["csv"]), true), None);
+        assert_eq!(words_of_parts(&job(Axes::Ned, None, &[]), false), None);
+    }
+}

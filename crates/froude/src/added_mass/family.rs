@@ -3,6 +3,7 @@
 //! A body of sections is cut into whole multiples of its cells. A mesh from elsewhere is subdivided: each panel becomes four in its own
 //! plane, so that the meshes converge to the polyhedron that was given.
 
+use froude_mesh::measure::Measure;
 use froude_mesh::refine::subdivided;
 use froude_mesh::robot::ModularRobot;
 use froude_mesh::sections::{Resolution, SectionBody, SectionError};
@@ -87,6 +88,15 @@ impl Family {
         };
         let around = if flatness(shape) > FLAT { 2 * AROUND } else { AROUND };
         Self::Sections { body, planes, first, around }
+    }
+
+    /// Volume of the body that the meshes stand for, m³: from its dimensions, or of the facets, which subdivision keeps.
+    #[must_use]
+    pub fn volume_m3(&self) -> f64 {
+        match self {
+            Self::Sections { body, .. } => body.volume_m3(),
+            Self::Mesh(mesh) => Measure::of(mesh).volume_m3,
+        }
     }
 
     /// Members from the coarsest on.

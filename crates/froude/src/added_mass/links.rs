@@ -18,7 +18,7 @@ use super::family::{Family, robot};
 use super::frame::{Axes, Orientation, sentence};
 use super::load::is_body_file;
 use super::page;
-use super::record::{About, estimate};
+use super::record::{About, estimate, replaces_another_frame};
 use super::refine::{Refined, Wanted, refine};
 use crate::Error;
 use crate::pipeline::{Job, identify};
@@ -76,6 +76,8 @@ pub struct LinksOutcome {
     pub page: PathBuf,
     /// The table of the configurations.
     pub table: PathBuf,
+    /// What is said of a record in another frame that this one has replaced.
+    pub replaced: Option<String>,
 }
 
 /// Where the moments of every configuration are taken about.
@@ -111,7 +113,8 @@ pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error>
     }
     let mut outcome = None;
     crate::results::replace(&out, |folder| {
-        outcome = Some(written(job, &body.name, density_kg_m3, configurations, folder, told)?);
+        let done = written(job, &body.name, density_kg_m3, configurations, folder, told)?;
+        outcome = Some(LinksOutcome { replaced: replaces_another_frame(&out, &done.file), ..done });
         Ok(())
     })?;
     // It is there: the folder was filled.
@@ -172,7 +175,19 @@ fn written(
     let (estimate, page) = (folder.join("estimate.json"), folder.join("report.html"));
     write_estimates(&estimate, &file)?;
     write_atomically(&page, html.as_bytes())?;
-    Ok(LinksOutcome { name: name.to_owned(), density_kg_m3, place, configurations, fits, file, estimate, page, table })
+    let (name, replaced) = (name.to_owned(), None);
+    Ok(LinksOutcome { name, density_kg_m3, place, configurations, fits, file, estimate, page, table, replaced })
+}
+
+/// Why there are no least squares over so few configurations; `None` where there are.
+#[must_use]
+pub fn no_fits(configurations: usize) -> Option<String> {
+    (configurations < FIT).then(|| {
+        format!(
+            "No least squares: they take {FIT} configurations at least, such as --links 1..{FIT}, and these are {configurations}. \
+             links.csv and campaign.toml are written all the same; there is no campaign-results, and the record holds the matrices alone."
+        )
+    })
 }
 
 /// Why nothing in kilograms can be said.
@@ -252,6 +267,7 @@ table = "links.csv"
 name = "displaced_volume"      # Table 7, eq. 23: mu = V rho C_A
 mu_x = "C_Ax*volume*density"
 mu_y = "C_Ay*volume*density"
+mu_z = "C_Az*volume*density"   # not in the paper
 
 [[identify.model]]
 name = "per_link"              # through the origin: eq. 24, its n read as the number of links

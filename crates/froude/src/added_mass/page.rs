@@ -7,7 +7,7 @@ use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 
 use super::body::BodyOutcome;
-use super::links::Configuration;
+use super::links::{Configuration, no_fits};
 use super::record::{MOTIONS, unit};
 use super::refine::Refined;
 
@@ -282,7 +282,13 @@ pub fn links(
         tables: vec![links_table(configurations, density_kg_m3)],
         charts: vec![links_chart(configurations, density_kg_m3)],
     }];
-    if !fits.is_empty() {
+    if let Some(why) = no_fits(configurations.len()) {
+        sections.push(DocumentSection {
+            title: "Least squares".to_owned(),
+            paragraphs: vec![why],
+            ..DocumentSection::default()
+        });
+    } else {
         sections.push(DocumentSection {
             title: "Least squares".to_owned(),
             paragraphs: vec![

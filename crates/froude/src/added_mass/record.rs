@@ -1,6 +1,9 @@
 //! A matrix as an estimate.
 
-use froude_records::estimate::{Coefficient, Covariance, Diagnostics, Estimate, Law, Measured, Status};
+use std::path::Path;
+
+use froude_records::estimate::{Coefficient, Covariance, Diagnostics, Estimate, EstimateFile, Law, Measured, Status};
+use froude_records::json::read_estimates;
 use indexmap::IndexMap;
 
 use super::refine::Refined;
@@ -39,6 +42,24 @@ pub struct About {
     pub length_m: f64,
     /// What surrounds the body, in words.
     pub surroundings: String,
+}
+
+/// The frame of a record that lies in a folder already, in words.
+fn place_of(file: &EstimateFile) -> Option<String> {
+    file.estimates.last().map(|e| format!("{}; moments about {}", e.frame, e.reference_point))
+}
+
+/// A sentence where a folder holds a record in another frame than a new one, which takes its place: the two look alike, and the entries of
+/// one are not those of the other. To be asked before the new one is written.
+#[must_use]
+pub fn replaces_another_frame(out: &Path, new: &EstimateFile) -> Option<String> {
+    let (before, now) = (place_of(&read_estimates(&out.join("estimate.json")).ok()?)?, place_of(new)?);
+    (before != now).then(|| {
+        format!(
+            "The earlier record in {} is replaced. It had another frame: {before}. To keep both, give each its folder with --out.",
+            out.display()
+        )
+    })
 }
 
 /// Entries on and above the diagonal, in the order of the record.

@@ -3,7 +3,6 @@
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
-use froude_panel::convergence::converged;
 use froude_panel::matrix::AddedMass;
 use froude_panel::mirror::{Mirror, positive_part};
 use froude_panel::problem::{Frame, Problem, Report, Solution};
@@ -94,7 +93,7 @@ pub struct Refined {
     pub shared: Vec<[[f64; 6]; 6]>,
     /// Observed order of convergence; `None` where the values do not fall in a row.
     pub order: [[Option<f64>; 6]; 6],
-    /// Volume, extrapolated, m³.
+    /// Volume of the body, m³; of a mesh from elsewhere that of its facets. Exact but for rounding.
     pub volume_m3: f64,
     /// From the coarsest on; all of them, not only those that the value is from.
     pub steps: Vec<Step>,
@@ -284,9 +283,6 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     let entries = entries(&steps, length_m, is_foreign);
     let worst = worst(&entries, least_m5);
     let is_within = worst <= wanted.tolerance;
-    let volumes: Vec<f64> = steps.iter().map(|s| s.measure.volume_m3).collect();
-    let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
-    let volume_m3 = if volumes.len() > 1 { converged(&sizes, &volumes, 0.0).extrapolated.value } else { volumes[0] };
     if !is_within && stopped.is_none() {
         stopped = Some("no finer mesh is made".to_owned());
     }
@@ -296,7 +292,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         uncertainty: entries.map(|row| row.map(|e| e.uncertainty)),
         shared,
         order: entries.map(|row| row.map(|e| e.order)),
-        volume_m3,
+        volume_m3: family.volume_m3(),
         steps,
         worst,
         is_within,

@@ -32,7 +32,7 @@ use super::family::{Family, robot};
 use super::frame::{Axes, sentence};
 use super::links::{default_out, file_name, no_density};
 use super::load::{is_body_file, load, of_a_mesh_only};
-use super::record::{MOTIONS, unit};
+use super::record::{MOTIONS, replaces_another_frame, unit};
 use super::refine::{LOOSE, ZERO};
 use crate::Error;
 
@@ -75,6 +75,8 @@ pub struct SeveralOutcome {
     pub page: PathBuf,
     /// The matrix as a table, and exports.
     pub others: Vec<PathBuf>,
+    /// What is said of a record in another frame that this one has replaced.
+    pub replaced: Option<String>,
 }
 
 /// Multiples of the coarsest cells: three similar meshes.
@@ -211,6 +213,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         uncertainty,
         tables,
         notes,
+        replaced: replaces_another_frame(&out, &file),
         file,
         estimate: PathBuf::new(),
         page: PathBuf::new(),

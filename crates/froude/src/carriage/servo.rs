@@ -305,13 +305,17 @@ fn knots(logs: &[&RunLog]) -> Result<Vec<f64>, Error> {
             (low, high) = (low.min(y), high.max(y));
         }
     }
-    // Whole millimetres, so that their names are short; the outer ones just inside, where rows are.
-    let (low, high) = ((1e3 * low).ceil() / 1e3, (1e3 * high).floor() / 1e3);
     if !(high - low).is_finite() {
         return Err(Error::Nothing(format!("the runs go from {low} m to {high} m; friction cannot be mapped there")));
     }
+    Ok(knots_between(low, high))
+}
+
+/// Knots in whole millimetres, so that their names are short; the outer ones just inside, where rows are.
+fn knots_between(low_m: f64, high_m: f64) -> Vec<f64> {
+    let (low, high) = ((1e3 * low_m).ceil() / 1e3, (1e3 * high_m).floor() / 1e3);
     let n = (((high - low) / KNOT_M).round().max(1.0) as usize).min(MOST_STRETCHES);
-    Ok((0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect())
+    (0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect()
 }
 
 /// The part of a run in which the reference moves; at rest friction is anything below breakaway and tells nothing.
@@ -664,5 +668,20 @@ mod tests {
         }
         let names: std::collections::BTreeSet<&str> = force.series.iter().map(|s| s.name.as_str()).collect();
         assert_eq!(names.len(), 2, "one entry of the legend for all commands, one for all models");
+    }
+
+    /// A map costs the third power of its knots: beyond 250 m there are no more of them.
+    #[test]
+    fn a_friction_map_of_a_long_way_has_no_more_knots() {
+        for (way_m, stretches, longest_m) in
+            [(40.0, 160, 0.25), (250.0, 1000, 0.25), (600.0, 1000, 0.6), (5000.0, 1000, 5.0)]
+        {
+            let knots = knots_between(0.0123, 0.0123 + way_m);
+            assert_eq!(knots.len(), stretches + 1, "{way_m} m");
+            let steps: Vec<f64> = knots.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            assert!(steps.iter().all(|step| (0.9 * longest_m..=1.001 * longest_m + 1e-3).contains(step)), "{way_m} m");
+            assert!(knots[0] >= 0.0123 && knots[stretches] <= 0.0123 + way_m, "inside, where rows are");
+            assert!(knots.iter().all(|knot| (1e3 * knot - (1e3 * knot).round()).abs() < 1e-6), "whole millimetres");
+        }
     }
 }
