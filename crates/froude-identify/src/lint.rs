@@ -98,9 +98,10 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
         Severity::Warning,
         "identical-copies",
         format!(
-            "{} of {} rows are identical copies of earlier ones and are dropped (lines {}{more}); real repeats differ in their loads",
+            "{} of {} rows {} of earlier ones and dropped (lines {}{more}); real repeats differ in their loads",
             copies.len(),
             data.rows,
+            if copies.len() == 1 { "is an identical copy" } else { "are identical copies" },
             shown.join(", ")
         ),
     );
