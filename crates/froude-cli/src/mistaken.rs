@@ -64,8 +64,11 @@ pub const SERVO: Takes = Takes {
     kinds: &[Kind::Run, Kind::RunSidecar, Kind::Runs, Kind::Table],
     words: "folders of runs, runs (.mcap), or a servo log (.csv)",
 };
-pub const ADDED_MASS: Takes =
-    Takes { verb: "added-mass", kinds: &[Kind::Body, Kind::Mesh], words: "a body file (.toml) or a mesh" };
+pub const ADDED_MASS: Takes = Takes {
+    verb: "added-mass",
+    kinds: &[Kind::Body, Kind::Mesh],
+    words: "a body file (.toml) or a closed mesh (.stl, .obj, …)",
+};
 
 impl Takes {
     /// The same error, or what was named instead of what the verb takes.

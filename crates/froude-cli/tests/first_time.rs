@@ -116,7 +116,7 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
         (
             vec!["added-mass", campaign],
             format!(
-                "{campaign} is a campaign; froude added-mass takes a body file (.toml) or a mesh. What drives it: froude run {campaign}"
+                "{campaign} is a campaign; froude added-mass takes a body file (.toml) or a closed mesh (.stl, .obj, …). What drives it: froude run {campaign}"
             ),
         ),
     ] {
