@@ -286,7 +286,7 @@ fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Erro
     if done.repairs.is_empty() {
         say!("  nothing to put right");
     }
-    say!("{}: {} panels, in metres", target.display(), done.panels);
+    say!("{}: {}, in metres", target.display(), froude::records::text::counted(done.panels, "panel", "panels"));
     for line in &done.left {
         say!("  still: {line}");
     }

@@ -4,9 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+/// What stands below the help.
+const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input.";
+
 /// Hydrodynamic coefficients that can be trusted, from tank tests and computations.
 #[derive(Debug, Parser)]
-#[command(name = "froude", version, about, arg_required_else_help = true)]
+#[command(name = "froude", version, about, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
     /// Print the result as JSON on standard output.
     #[arg(long, global = true)]
@@ -48,9 +51,9 @@ pub enum Verb {
         #[arg(long)]
         all: bool,
     },
-    /// Say what is in a table, campaign, record or run (.mcap), with units, ranges and every finding.
+    /// Say what is in a table, campaign, record, run (.mcap) or folder of runs, with units, ranges and every finding.
     Inspect {
-        /// The file.
+        /// The file or folder.
         file: PathBuf,
         /// Sidecar of a table.
         #[arg(long)]
@@ -113,7 +116,7 @@ pub enum CarriageJob {
         /// A campaign other than the copy that lies with the runs.
         #[arg(long)]
         campaign: Option<PathBuf>,
-        /// Folder of the results [default: RUNS-drag beside the runs].
+        /// Folder of the results [default: beside what is named, and called after it: RUNS-drag, ID-drag].
         #[arg(long)]
         out: Option<PathBuf>,
     },

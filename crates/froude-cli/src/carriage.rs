@@ -13,6 +13,7 @@ use froude::carriage::{calibrate, runs};
 use froude::identify::carriage::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
 use froude::records::run::RunKind;
+use froude::records::text::counted;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::report::document::TextTable;
 use froude::rig::campaign::plan::{PlannedRun, Step};
@@ -20,13 +21,15 @@ use froude::rig::campaign::preflight::Objection;
 use serde_json::json;
 
 use crate::args::{CarriageJob, Experiment};
+use crate::mistaken::{self, Takes};
 use crate::out::say;
 use crate::print;
 use crate::stage::Stage;
 
 /// `froude run`.
 pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_json: bool) -> Result<(), Error> {
-    let prepared = prepare(&drive_job(campaign, out))?;
+    let job = drive_job(campaign, out);
+    let prepared = prepare(&job).map_err(|error| mistaken::RUN.explain(error, &[job.campaign]))?;
     let stage = if check { None } else { Some(Stage::set(&prepared, yes, prepared.steps.len())?) };
     if !is_json {
         preflight(&prepared);
@@ -48,9 +51,9 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
         return Ok(outcome.whole()?);
     }
     say!(
-        "\n{} runs driven, {} were there already, {} left out. Runs in {}",
-        outcome.driven,
-        outcome.resumed,
+        "\n{} driven, {} there already, {} left out. Runs in {}",
+        counted(outcome.driven, "run", "runs"),
+        counted(outcome.resumed, "was", "were"),
         outcome.spared,
         prepared.folder.display()
     );
@@ -67,7 +70,8 @@ fn drive_job(campaign: PathBuf, out: Option<PathBuf>) -> DriveJob {
 }
 
 fn preflight(prepared: &Prepared) {
-    say!("{}: {} runs, about {} on the rig\n", prepared.name(), prepared.forecasts.len(), minutes(prepared.duration_s));
+    let runs = counted(prepared.forecasts.len(), "run", "runs");
+    say!("{}: {runs}, about {} on the rig\n", prepared.name(), minutes(prepared.duration_s));
     let detectable_n = prepared.detectable_n();
     let mut rows: Vec<(Vec<String>, usize)> = Vec::new();
     for (run, f) in prepared.runs().zip(&prepared.forecasts) {
@@ -151,7 +155,8 @@ fn few_pairs(prepared: &Prepared, detectable_n: f64) -> Option<String> {
         .iter()
         .filter_map(|&(speed, drag, runs)| {
             let needed = pairs_to_see(detectable_n, drag);
-            (needed > runs as f64).then(|| format!("{needed:.0} at {speed:.3} m/s, where {runs} are planned"))
+            let are = counted(runs, "is", "are");
+            (needed > runs as f64).then(|| format!("{needed:.0} at {speed:.3} m/s, where {are} planned"))
         })
         .collect();
     (!few.is_empty()).then(|| {
@@ -183,9 +188,12 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
             None => told.push((&o.id, &o.text, 0)),
         }
     }
-    let more = |n: usize, what: &str| if n == 0 { String::new() } else { format!(" (and {n} more {what})") };
+    let more = |n: usize, one: &str, many: &str| match n {
+        0 => String::new(),
+        n => format!(" (and {})", counted(n, one, many)),
+    };
     let mut lines: Vec<String> =
-        told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "runs"))).collect();
+        told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "more run", "more runs"))).collect();
     if told.len() > MOST_SENTENCES {
         // One cause makes a sentence for every run: the first of each kind tells it.
         let mut kinds: Vec<(&str, &Objection, usize)> = Vec::new();
@@ -195,10 +203,17 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
                 None => kinds.push((o.kind, o, 0)),
             }
         }
-        lines = kinds.iter().map(|(_, o, n)| format!("  {}{}: {}", o.id, more(*n, "like it"), o.text)).collect();
+        lines = kinds
+            .iter()
+            .map(|(_, o, n)| format!("  {}{}: {}", o.id, more(*n, "more like it", "more like it"), o.text))
+            .collect();
         let is_refused = |run: &PlannedRun| prepared.objections.iter().any(|o| o.id == run.id);
         let (refused, all) = (prepared.runs().filter(|r| is_refused(r)).count(), prepared.runs().count());
-        lines.push(format!("{refused} of {all} runs are refused; froude run --check --json has a sentence for each"));
+        let are = if refused == 1 { "is" } else { "are" };
+        lines.push(format!(
+            "{refused} of {} {are} refused; froude run --check --json has a sentence for each",
+            counted(all, "run", "runs")
+        ));
     }
     Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
 }
@@ -229,13 +244,18 @@ fn minutes(seconds: f64) -> String {
 /// `froude carriage …`.
 pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
     match job {
-        CarriageJob::Identify { input, sidecar, out } => servo(input, sidecar, out, is_json),
-        CarriageJob::Drag { runs, campaign, out } => drag_verb(runs, campaign, out, is_json),
+        CarriageJob::Identify { input, sidecar, out } => {
+            servo(input.clone(), sidecar, out, is_json).map_err(|error| mistaken::SERVO.explain(error, &input))
+        }
+        CarriageJob::Drag { runs, campaign, out } => {
+            drag_verb(runs.clone(), campaign, out, is_json).map_err(|error| mistaken::DRAG.explain(error, &runs))
+        }
         CarriageJob::Calibrate { runs, campaign, measured, measured_standard, counted } => {
+            let explain = |error| mistaken::CALIBRATE.explain(error, &runs);
             if let Some(measured) = measured {
-                scale(&runs, &measured, &measured_standard, &counted)?;
+                scale(&runs, &measured, &measured_standard, &counted).map_err(explain)?;
             }
-            calibration(&runs, campaign, is_json)
+            calibration(&runs, campaign, is_json).map_err(explain)
         }
         CarriageJob::Tune(e) => tuning(e, is_json),
         CarriageJob::Resonance(e) => modes(e, is_json),
@@ -349,10 +369,10 @@ fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> R
         use froude::report::number::{interval, short_form};
         let k = c.force_per_volt.force_per_volt_n;
         say!(
-            "{} N/V, 95 % interval {} N/V, from {} driving runs ({} overhauled left out)",
+            "{} N/V, 95 % interval {} N/V, from {} ({} overhauled left out)",
             short_form(k.value, k.standard),
             interval(c.interval_95),
-            c.used,
+            counted(c.used, "driving run", "driving runs"),
             c.overhauled
         );
         say!(
@@ -394,16 +414,16 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     Ok(())
 }
 
-fn experiment(e: &Experiment) -> Result<(DriveJob, Stage), Error> {
+fn experiment(e: &Experiment, takes: &Takes) -> Result<(DriveJob, Stage), Error> {
     let job = drive_job(e.campaign.clone(), e.out.clone());
-    let prepared = prepare(&job)?;
+    let prepared = prepare(&job).map_err(|error| takes.explain(error, std::slice::from_ref(&e.campaign)))?;
     let runs = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
     let stage = Stage::set(&prepared, e.yes, runs.min(3))?;
     Ok((job, stage))
 }
 
 fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
-    let (job, Stage { switch, mut person, mut bar }) = experiment(&e)?;
+    let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::TUNE)?;
     let outcome = tune(&job, &switch, &mut person, &mut bar);
     bar.end();
     let outcome = outcome?;
@@ -441,7 +461,7 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
 }
 
 fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
-    let (job, Stage { switch, mut person, mut bar }) = experiment(&e)?;
+    let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::RESONANCE)?;
     let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
     bar.end();
     let outcome = outcome?;

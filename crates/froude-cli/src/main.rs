@@ -1,6 +1,6 @@
 //! The program `froude`: parse, call, print.
 //!
-//! Exit code 0: done. 1: failed. 2: bad input. With `--json` the result goes to
+//! Exit code 0: done, whatever the findings say. 1: failed. 2: bad input. With `--json` the result goes to
 //! standard output as one JSON document; progress and messages go to standard error.
 
 #![warn(clippy::print_stdout, clippy::print_stderr)]
@@ -9,6 +9,7 @@ mod added_mass;
 mod args;
 mod carriage;
 mod last_word;
+mod mistaken;
 mod out;
 mod print;
 mod stage;
@@ -17,6 +18,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use froude::pipeline::{self, Job};
+use froude::records::text::counted;
 use froude::{Error, demo, inspect, twin};
 
 use args::{Cli, Verb};
@@ -53,7 +55,8 @@ fn run(cli: Cli) -> Result<(), Error> {
         Verb::Identify { input, out, sidecar, models } => {
             let bar = spinner();
             let job = Job { input, out, sidecar, models, date: Some(today()) };
-            let outcome = pipeline::identify(&job, &|step| bar.set_message(step.to_owned()))?;
+            let outcome = pipeline::identify(&job, &|step| bar.set_message(step.to_owned()))
+                .map_err(|error| mistaken::IDENTIFY.explain(error, &[job.input]))?;
             bar.finish_and_clear();
             if cli.json {
                 return print::json(&outcome.file);
@@ -61,21 +64,24 @@ fn run(cli: Cli) -> Result<(), Error> {
             print::outcome(&outcome);
         }
         Verb::Compare { estimates, all } => {
-            let comparison = froude::compare_files(&estimates)?;
+            let comparison =
+                froude::compare_files(&estimates).map_err(|error| mistaken::COMPARE.explain(error, &estimates))?;
             if cli.json {
                 return print::json(&print::comparison_json(&comparison));
             }
             print::comparison(&comparison, all);
         }
         Verb::Inspect { file, sidecar } => {
-            let inspection = inspect::inspect(&file, sidecar.as_deref())?;
+            let inspection = inspect::inspect(&file, sidecar.as_deref())
+                .map_err(|error| mistaken::INSPECT.explain(error, &[file]))?;
             if cli.json {
                 return print::json(&inspection);
             }
             print::inspection(&inspection);
         }
         Verb::Simulate { campaign, replace } => {
-            let written = twin::simulate(&campaign, replace)?;
+            let written =
+                twin::simulate(&campaign, replace).map_err(|error| mistaken::SIMULATE.explain(error, &[campaign]))?;
             if cli.json {
                 let rows: Vec<_> = written
                     .iter()
@@ -84,12 +90,15 @@ fn run(cli: Cli) -> Result<(), Error> {
                 return print::json(&rows);
             }
             for w in written {
-                out::say!("{}: {} observations in {}", w.source, w.rows, w.path.display());
+                out::say!("{}: {} in {}", w.source, counted(w.rows, "observation", "observations"), w.path.display());
             }
         }
         Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,
         Verb::Carriage { job } => carriage::job(job, cli.json)?,
-        Verb::AddedMass(args) => added_mass::added_mass(*args, cli.json)?,
+        Verb::AddedMass(args) => {
+            let input = args.input.clone();
+            added_mass::added_mass(*args, cli.json).map_err(|error| mistaken::ADDED_MASS.explain(error, &[input]))?;
+        }
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
     Ok(())

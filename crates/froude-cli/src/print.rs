@@ -7,7 +7,7 @@ use froude::inspect::{ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::Outcome;
 use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
-use froude::records::text::visible_json;
+use froude::records::text::{counted, visible_json};
 use froude::report::number;
 
 use crate::out::say;
@@ -53,7 +53,7 @@ fn right(text: String) -> Cell {
 /// The coefficient tables, the findings, and where the report lies.
 pub fn outcome(outcome: &Outcome) {
     for source in &outcome.sources {
-        say!("\n{} ({} observations)", source.name, source.data.rows);
+        say!("\n{} ({})", source.name, observations(source.data.rows));
         if let Some(r) = &source.recommendation {
             say!("  recommended: {}", r.reason);
             if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
@@ -80,6 +80,10 @@ pub fn outcome(outcome: &Outcome) {
     findings(&outcome.file.findings);
     say!("\nestimates {}", outcome.estimate.display());
     say!("report    {}", outcome.report.display());
+}
+
+fn observations(n: usize) -> String {
+    counted(n, "observation", "observations")
 }
 
 fn coefficients(estimate: &Estimate) -> Table {
@@ -178,14 +182,16 @@ fn columns(columns: &[ColumnFacts]) -> Table {
 fn source_facts(s: &SourceFacts) {
     say!("\nsource {} ({})", s.name, s.kind);
     let there = match (s.rows, s.kept, s.exists) {
-        (Some(rows), Some(kept), _) if kept == rows => format!(", {rows} observations"),
-        (Some(rows), Some(kept), _) => format!(", {kept} of {rows} observations are fitted"),
+        (Some(rows), Some(kept), _) if kept == rows => format!(", {}", observations(rows)),
+        (Some(rows), Some(kept), _) => {
+            format!(", {kept} of {} {} fitted", observations(rows), if kept == 1 { "is" } else { "are" })
+        }
         (_, _, true) => String::new(),
         (_, _, false) => ", not there yet: froude simulate makes it".to_owned(),
     };
     sentence(&format!("{}: {}{there}", s.input, s.path));
     if let Some(runs) = s.planned_runs {
-        say!("  plan: {runs} runs");
+        say!("  plan: {}", counted(runs, "run", "runs"));
     }
     let what = if s.input == "record" { "estimates" } else { "models" };
     if !s.models.is_empty() {
@@ -217,7 +223,7 @@ fn estimate_facts(e: &Estimate) {
     if let Some(reason) = &e.reason {
         sentence(reason);
     }
-    let mut about = vec![format!("{} observations", e.n_observations)];
+    let mut about = vec![observations(e.n_observations)];
     about.extend([&e.kind, &e.method, &e.covariance_kind].into_iter().filter(|t| !t.is_empty()).cloned());
     sentence(&about.join("; "));
     let mut out = table(&["coefficient", "value", "unit", "standard uncertainty", "95 % interval", "status"]);
@@ -327,9 +333,9 @@ pub fn comparison(c: &Comparison, all: bool) {
         for j in c.joint.iter().filter(own) {
             match &j.result {
                 Ok((chi2, dof, p)) => say!(
-                    "  jointly: χ² = {} with {dof} degree{} of freedom, p {}{}",
+                    "  jointly: χ² = {} with {}, p {}{}",
                     number::significant(*chi2, 3),
-                    if *dof == 1 { "" } else { "s" },
+                    number::degrees_of_freedom(*dof as f64),
                     if *p < 0.001 { "" } else { "= " },
                     number::p_value(*p)
                 ),
@@ -340,7 +346,8 @@ pub fn comparison(c: &Comparison, all: bool) {
         }
     }
     if !hidden.is_empty() {
-        say!("\n{} further pairs of coefficients; --all prints them", hidden.len());
+        let further = counted(hidden.len(), "further pair of coefficients", "further pairs of coefficients");
+        say!("\n{further}; --all prints {}", if hidden.len() == 1 { "it" } else { "them" });
     }
     if !c.forces.is_empty() {
         forces(c);

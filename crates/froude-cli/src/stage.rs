@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use froude::Error;
 use froude::carriage::drive::Prepared;
@@ -23,6 +23,8 @@ use signal_hook::flag;
 
 /// Words that may wait for a slow terminal; more are dropped.
 const WORDS: usize = 256;
+/// What is said before the first question about a rig that is none.
+const TWIN: &str = "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes takes every step as done.\n";
 /// How often a wait looks up.
 const LOOK_UP: Duration = Duration::from_millis(50);
 
@@ -71,7 +73,8 @@ impl Stage {
         let terminal = Terminal::new(runs, switch.clone());
         let thread = std::thread::spawn(move || terminal.write(&heard));
         let bar = Bar { words: words.clone(), thread: Some(thread), is_over, is_seen: std::io::stderr().is_terminal() };
-        Ok(Self { switch, person: Person { is_yes: yes, words }, bar })
+        let person = Person { is_yes: yes, is_twin: prepared.is_twin(), has_asked: false, words };
+        Ok(Self { switch, person, bar })
     }
 }
 
@@ -91,34 +94,57 @@ enum Word {
 
 /// Who writes to the terminal.
 struct Terminal {
-    bar: ProgressBar,
+    /// Not there while a question waits for its answer: the line is the person's.
+    bar: Option<ProgressBar>,
+    /// Where the bar stands, and of how many.
+    at: [usize; 2],
+    since: Instant,
     switch: StopSwitch,
 }
 
 impl Terminal {
     fn new(runs: usize, switch: StopSwitch) -> Self {
-        let bar = ProgressBar::new(runs as u64);
-        if let Ok(style) = ProgressStyle::with_template("{elapsed_precise} [{bar:24}] {pos}/{len} {msg}") {
-            bar.set_style(style);
-        }
-        Self { bar, switch }
+        Self { bar: None, at: [0, runs], since: Instant::now(), switch }
     }
 
-    fn write(self, words: &Receiver<Word>) {
+    /// The bar, drawn again where a question has taken it away.
+    fn bar(&mut self) -> &ProgressBar {
+        let [at, runs] = self.at.map(|n| n as u64);
+        let since = self.since;
+        self.bar.get_or_insert_with(|| {
+            let bar = ProgressBar::new(runs).with_position(at).with_elapsed(since.elapsed());
+            match ProgressStyle::with_template("{elapsed_precise} [{bar:24}] {pos}/{len} {msg}") {
+                Ok(style) => bar.with_style(style),
+                Err(_) => bar,
+            }
+        })
+    }
+
+    fn clear(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn write(mut self, words: &Receiver<Word>) {
         let is_seen = std::io::stderr().is_terminal();
         let mut is_stop_told = false;
         loop {
             match words.recv_timeout(LOOK_UP) {
                 Ok(Word::Run(number, runs, id)) => {
-                    self.bar.set_length(runs as u64);
-                    self.bar.set_position(number as u64 - 1);
+                    self.at = [number - 1, runs];
+                    self.bar().set_length(runs as u64);
+                    self.bar().set_position(number as u64 - 1);
                     if !is_seen {
                         self.put(&format!("{number}/{runs} {id}\n"));
                     }
                 }
-                Ok(Word::Live(message)) => self.bar.set_message(visible(&message).into_owned()),
+                Ok(Word::Live(message)) => self.bar().set_message(visible(&message).into_owned()),
                 Ok(Word::Line(line)) => self.put(&format!("{line}\n")),
-                Ok(Word::Question(question)) => self.put(&question),
+                Ok(Word::Question(question)) => {
+                    self.clear();
+                    self.put(&question);
+                }
                 Ok(Word::End) | Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {}
             }
@@ -128,21 +154,27 @@ impl Terminal {
                 self.put(&format!("\nstopping the carriage under control; Ctrl-C {more} cuts the torque\n"));
             }
         }
-        self.bar.finish_and_clear();
+        self.clear();
     }
 
     /// Where nobody reads it, it is not written; that is nobody's failure.
     fn put(&self, text: &str) {
-        self.bar.suspend(|| {
+        let write = || {
             let mut stderr = std::io::stderr();
             let _ = stderr.write_all(visible(text).as_bytes()).and_then(|()| stderr.flush());
-        });
+        };
+        match &self.bar {
+            Some(bar) => bar.suspend(write),
+            None => write(),
+        }
     }
 }
 
 /// The operator at the terminal.
 pub struct Person {
     is_yes: bool,
+    is_twin: bool,
+    has_asked: bool,
     words: SyncSender<Word>,
 }
 
@@ -153,7 +185,11 @@ impl Operator for Person {
         }
         // What was typed before the question is no answer to it.
         let _ = rustix::termios::tcflush(std::io::stdin(), rustix::termios::QueueSelector::IFlush);
-        let mut question = Word::Question(format!("\n>>> {prompt}; confirm with y and Enter (anything else stops): "));
+        let is_first = !std::mem::replace(&mut self.has_asked, true);
+        let hint = if self.is_twin && is_first { TWIN } else { "" };
+        let whom = if self.is_twin { "on the twin: " } else { "" };
+        let mut question =
+            Word::Question(format!("\n{hint}>>> {whom}{prompt}; confirm with y and Enter (anything else stops): "));
         while let Err(error) = self.words.try_send(question) {
             use std::sync::mpsc::TrySendError::{Disconnected, Full};
             question = match error {

@@ -915,7 +915,8 @@ fn a_file_that_is_no_mesh_is_told_with_its_place() {
         "m.stl, byte 614: the file ends where triangle 11 of 12 should be; copy or export it again",
     );
     refuses(&[], &["m.stl"], "cannot read m.stl: there is no such file or folder");
-    refuses(&[], &["."], "cannot read .: it is a folder");
+    let told = ". is a folder; froude added-mass takes a body file (.toml) or a closed mesh (.stl, .obj, …). Name a file in it";
+    refuses(&[], &["."], told);
 }
 
 #[test]

@@ -2,51 +2,24 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
+mod bench;
+use bench::{SIX_FRICTION_SPEEDS, SIX_SPEEDS, findings_of, froude, json, text};
+
 /// The example, shortened: two speeds, three pairs, one weight, short waits.
 fn campaign(folder: &Path, changes: &[(&str, &str)]) -> PathBuf {
-    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml");
-    let mut text = std::fs::read_to_string(example).unwrap();
-    let short = [
-        (
-            r#"speeds = ["0.05 m/s", "0.15 m/s", "0.25 m/s", "0.35 m/s", "0.45 m/s", "0.55 m/s"]"#,
-            r#"speeds = ["0.3 m/s", "0.55 m/s"]"#,
-        ),
+    let mut all = vec![
+        (SIX_SPEEDS, r#"speeds = ["0.3 m/s", "0.55 m/s"]"#),
         ("repeats = 5  ", "repeats = 3  "),
-        (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
-        (r#"still = "5 s""#, r#"still = "2 s""#),
-        (
-            r#"speeds = ["0.02 m/s", "0.05 m/s", "0.1 m/s", "0.2 m/s", "0.35 m/s", "0.55 m/s"]"#,
-            r#"speeds = ["0.2 m/s", "0.4 m/s"]"#,
-        ),
+        (SIX_FRICTION_SPEEDS, r#"speeds = ["0.2 m/s", "0.4 m/s"]"#),
         (r#"duration = "1 min""#, r#"duration = "10 s""#),
         (r#"stop_when = "1.5 %""#, r#"stop_when = "0.1 %""#),
         (r#"log_rate = "1 kHz""#, r#"log_rate = "500 Hz""#),
     ];
-    for (from, to) in short.iter().chain(changes) {
-        assert!(text.contains(from), "the example has no {from}");
-        text = text.replace(from, to);
-    }
-    let path = folder.join("campaign.toml");
-    std::fs::write(&path, text).unwrap();
-    path
-}
-
-fn froude(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(args).output().unwrap()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-fn json(args: &[&str]) -> Value {
-    let out = froude(args);
-    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-    serde_json::from_slice(&out.stdout).unwrap()
+    all.extend(changes);
+    bench::campaign(folder, &all)
 }
 
 #[test]
@@ -267,6 +240,9 @@ fn the_gains_that_tuning_recommends_drive_the_campaign() {
     let found = json(&["carriage", "tune", text(&campaign(folder.path(), &[])), "--yes", "--json"]);
     let gains = found["gains"].as_array().unwrap();
     assert_eq!(found["recommended"], 1, "{found}");
+    // Its runs are all that it planned, and none of `froude run`'s.
+    let runs = json(&["inspect", text(&folder.path().join("campaign-tune")), "--json"]);
+    assert_eq!(findings_of(&runs, "campaign-unfinished"), []);
     let (configured, shaped) = (&gains[0], &gains[1]);
     let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
     for row in [configured, shaped] {

@@ -2,64 +2,12 @@
 //! earlier versions. Each sentence that a user meets is asserted word for word.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::OnceLock;
+use std::path::Path;
 
 use serde_json::Value;
 
-/// The example, shortened to two pairs at one speed, jogs and pulses.
-const SHORT: [(&str, &str); 10] = [
-    (r#"speeds = ["0.05 m/s", "0.15 m/s", "0.25 m/s", "0.35 m/s", "0.45 m/s", "0.55 m/s"]"#, r#"speeds = ["0.5 m/s"]"#),
-    ("repeats = 5  ", "repeats = 2  "),
-    (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
-    (r#"still = "5 s""#, r#"still = "2 s""#),
-    ("[carriage.warm_up]\nduration = \"1 min\"\nspeed = \"0.3 m/s\"\n", ""),
-    (
-        "[carriage.friction_sweep]\nspeeds = [\"0.02 m/s\", \"0.05 m/s\", \"0.1 m/s\", \"0.2 m/s\", \"0.35 m/s\", \"0.55 m/s\"]\nrepeats = 2\n",
-        "",
-    ),
-    ("weights = [\"1.5 N\", \"10 N\"]", "weights = [\"1.5 N\"]"),
-    ("repeats = 6\n", "repeats = 1\n"),
-    ("duration = \"20 s\"", "duration = \"2 s\""),
-    (r#"log_rate = "1 kHz""#, r#"log_rate = "250 Hz""#),
-];
-
-/// A campaign in `folder` that differs from others by its seed.
-fn campaign(folder: &Path, seed: u32) -> PathBuf {
-    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml");
-    let mut text = std::fs::read_to_string(example).unwrap();
-    let seed = format!("seed = {seed}\n");
-    for (from, to) in SHORT.into_iter().chain([("seed = 1\n", seed.as_str())]) {
-        assert!(text.contains(from), "the example has no {from}");
-        text = text.replace(from, to);
-    }
-    let path = folder.join("campaign.toml");
-    std::fs::write(&path, text).unwrap();
-    path
-}
-
-fn froude(args: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(args).output().unwrap()
-}
-
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
-}
-
-/// What a command that must not go on says, and that it is the input's fault.
-fn refusal(args: &[&str]) -> String {
-    let out = froude(args);
-    let error = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert_eq!(out.status.code(), Some(2), "{args:?}: {error}");
-    error
-}
-
-fn json(args: &[&str]) -> Value {
-    let out = froude(args);
-    assert!(out.status.success(), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
-    serde_json::from_slice(&out.stdout).unwrap()
-}
+mod bench;
+use bench::{Bench, copy, driven, id, json, refusal, text};
 
 /// Code and sentence of the findings that are of a set of logs.
 fn findings(value: &Value) -> Vec<(String, String)> {
@@ -67,77 +15,6 @@ fn findings(value: &Value) -> Vec<(String, String)> {
     let own = |f: &Value| (f["code"].as_str().unwrap().to_owned(), f["message"].as_str().unwrap().to_owned());
     let is_of_a_set = |code: &str| code == "campaign-changed" || (code.starts_with("run-") && code != "run-left-out");
     all.map(own).filter(|(code, _)| is_of_a_set(code)).collect()
-}
-
-/// Runs that were driven once for all tests: of two campaigns.
-fn driven() -> &'static [tempfile::TempDir; 2] {
-    static DRIVEN: OnceLock<[tempfile::TempDir; 2]> = OnceLock::new();
-    DRIVEN.get_or_init(|| {
-        [1, 2].map(|seed| {
-            let folder = tempfile::tempdir().unwrap();
-            let campaign = campaign(folder.path(), seed);
-            json(&["run", text(&campaign), "--yes", "--json"]);
-            folder
-        })
-    })
-}
-
-fn copy(from: &Path, to: &Path) {
-    std::fs::create_dir_all(to).unwrap();
-    for entry in std::fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        if entry.file_type().unwrap().is_dir() {
-            copy(&entry.path(), &to.join(entry.file_name()));
-        } else {
-            std::fs::copy(entry.path(), to.join(entry.file_name())).unwrap();
-        }
-    }
-}
-
-/// A campaign with its runs, to be spoilt.
-struct Bench {
-    folder: tempfile::TempDir,
-    campaign: PathBuf,
-    runs: PathBuf,
-}
-
-impl Bench {
-    fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        copy(driven()[0].path(), folder.path());
-        let (campaign, runs) = (folder.path().join("campaign.toml"), folder.path().join("campaign-runs"));
-        Self { folder, campaign, runs }
-    }
-
-    /// Logs of the kind, in order.
-    fn logs(&self, kind: &str) -> Vec<PathBuf> {
-        let all = std::fs::read_dir(&self.runs).unwrap().map(|e| e.unwrap().path());
-        let mut logs: Vec<PathBuf> =
-            all.filter(|p| p.extension().is_some_and(|e| e == "mcap") && text(p).contains(kind)).collect();
-        logs.sort();
-        logs
-    }
-
-    fn inspect(&self) -> Value {
-        json(&["inspect", text(&self.runs), "--json"])
-    }
-
-    fn drag(&self) -> Value {
-        json(&["carriage", "drag", text(&self.runs), "--json"])
-    }
-
-    /// Drives on: how many runs were driven, and what was said.
-    fn run(&self) -> (u64, String) {
-        let out = froude(&["run", text(&self.campaign), "--yes", "--json"]);
-        let said = String::from_utf8_lossy(&out.stderr).into_owned();
-        assert!(out.status.success(), "{said}");
-        let outcome: Value = serde_json::from_slice(&out.stdout).unwrap();
-        (outcome["driven"].as_u64().unwrap(), said)
-    }
-}
-
-fn id(log: &Path) -> &str {
-    log.file_stem().unwrap().to_str().unwrap()
 }
 
 #[test]
@@ -340,7 +217,7 @@ fn a_campaign_that_was_driven_twice_is_not_counted_twice() {
 fn a_log_of_another_campaign_is_refused() {
     let bench = Bench::new();
     let wet = &bench.logs("wet")[0];
-    let stranger = driven()[1].path().join("campaign-runs").join(wet.file_name().unwrap());
+    let stranger = driven(2).join("campaign-runs").join(wet.file_name().unwrap());
     // Its log alone: it contradicts the sidecar.
     std::fs::copy(&stranger, wet).unwrap();
     let error = refusal(&["carriage", "drag", text(&bench.runs)]);

@@ -8,6 +8,9 @@ use std::process::Command;
 use froude::mesh::files::write_obj;
 use froude::mesh::sections::{Resolution, SectionBody};
 
+mod bench;
+use bench::{SIX_FRICTION_SPEEDS, SIX_SPEEDS, campaign};
+
 /// Path below the folder, and content.
 type Files = BTreeMap<String, Vec<u8>>;
 
@@ -123,28 +126,15 @@ fn a_simulated_campaign_identified_and_compared() {
 #[test]
 fn a_campaign_of_the_carriage_driven_and_reduced() {
     let prepare = |folder: &Path| {
-        let mut text = std::fs::read_to_string(example("towing-carriage/campaign.toml")).unwrap();
-        let short = [
-            (
-                r#"speeds = ["0.05 m/s", "0.15 m/s", "0.25 m/s", "0.35 m/s", "0.45 m/s", "0.55 m/s"]"#,
-                r#"speeds = ["0.55 m/s"]"#,
-            ),
+        let changes = [
+            (SIX_SPEEDS, r#"speeds = ["0.55 m/s"]"#),
             ("repeats = 5  ", "repeats = 2  "),
-            (r#"settling = { dry = "5 s", wet = "120 s" }"#, r#"settling = { dry = "1 s", wet = "1 s" }"#),
-            (r#"still = "5 s""#, r#"still = "2 s""#),
-            (
-                r#"speeds = ["0.02 m/s", "0.05 m/s", "0.1 m/s", "0.2 m/s", "0.35 m/s", "0.55 m/s"]"#,
-                r#"speeds = ["0.2 m/s", "0.4 m/s"]"#,
-            ),
+            (SIX_FRICTION_SPEEDS, r#"speeds = ["0.2 m/s", "0.4 m/s"]"#),
             (r#"duration = "1 min""#, r#"duration = "5 s""#),
             (r#"stop_when = "1.5 %""#, r#"stop_when = "0.1 %""#),
             (r#"log_rate = "1 kHz""#, r#"log_rate = "200 Hz""#),
         ];
-        for (from, to) in short {
-            assert!(text.contains(from), "the example has no {from}");
-            text = text.replace(from, to);
-        }
-        std::fs::write(folder.join("campaign.toml"), text).unwrap();
+        campaign(folder, &changes);
     };
     let commands: [&[&str]; 2] = [&["run", "campaign.toml", "--yes"], &["carriage", "drag", "campaign-runs"]];
     assert_same_bytes(&prepare, &commands);

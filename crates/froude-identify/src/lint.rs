@@ -101,9 +101,14 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
         Severity::Warning,
         "identical-copies",
         format!(
-            "{} of {} rows are identical copies of earlier ones and are dropped (lines {}{more}); real repeats differ in their loads",
+            "{} of {} rows {} dropped (lines {}{more}); real repeats differ in their loads",
             copies.len(),
             data.rows,
+            if copies.len() == 1 {
+                "is an identical copy of an earlier one and is"
+            } else {
+                "are identical copies of earlier ones and are"
+            },
             shown.join(", ")
         ),
     );

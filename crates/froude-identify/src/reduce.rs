@@ -7,6 +7,7 @@ use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Sou
 use froude_records::finding::{Finding, Severity};
 use froude_records::plausible;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table};
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 use std::path::PathBuf;
 
@@ -56,7 +57,11 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
             findings.push(Finding::new(
                 Severity::Note,
                 "kept",
-                format!("{} of {n_read} observations satisfy `keep`; the others are left out", keep.len()),
+                format!(
+                    "{} of {} `keep`; the others are left out",
+                    keep.len(),
+                    counted(n_read, "observation satisfies", "observations satisfy")
+                ),
             ));
         }
     }

@@ -13,6 +13,7 @@
 use froude_fit as fit;
 use froude_hydro::{DragModel, Setting};
 use froude_records::campaign::RangeBlock;
+use froude_records::text::counted;
 
 use crate::dataset::{Dataset, labels};
 use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S};
@@ -345,12 +346,10 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
         format!("{name} has the smallest AICc{next}")
     } else {
         format!(
-            "{name}: {} has the smallest AICc, but {name} is only {:.1} behind, which is no evidence against it, and has {} \
-             coefficient{} instead of {}",
+            "{name}: {} has the smallest AICc, but {name} is only {:.1} behind, which is no evidence against it, and has {} instead of {}",
             models[best].law.name,
             behind(chosen).unwrap_or(0.0),
-            size(&models[chosen]),
-            if size(&models[chosen]) == 1 { "" } else { "s" },
+            counted(size(&models[chosen]), "coefficient", "coefficients"),
             size(&models[best])
         )
     };

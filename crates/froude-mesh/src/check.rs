@@ -5,6 +5,7 @@
 
 use indexmap::IndexMap;
 
+use crate::files::counted;
 use crate::measure::Measure;
 use crate::mesh::{Mesh, Panel};
 use crate::panel::Facet;
@@ -59,7 +60,7 @@ pub enum Trouble {
         at: Vec3,
     },
     /// An edge with one panel only.
-    #[error("{count} edges have one panel only, the first from {from:?} to {to:?} m: the surface is open there")]
+    #[error("{} one panel only, the first from {from:?} to {to:?} m: the surface is open there", counted(*count, "edge has", "edges have"))]
     Open {
         /// How many.
         count: usize,
@@ -70,7 +71,7 @@ pub enum Trouble {
     },
     /// Neighbours that run the same way along an edge.
     #[error(
-        "{count} edges are passed twice in one direction, the first from {from:?} to {to:?} m: neighbours are oriented against each other"
+        "{} passed twice in one direction, the first from {from:?} to {to:?} m: neighbours are oriented against each other", counted(*count, "edge is", "edges are")
     )]
     Turned {
         /// How many.
@@ -81,7 +82,7 @@ pub enum Trouble {
         to: Vec3,
     },
     /// Three panels or more at an edge.
-    #[error("{count} edges have three panels or more, the first from {from:?} to {to:?} m: surfaces touch there")]
+    #[error("{} three panels or more, the first from {from:?} to {to:?} m: surfaces touch there", counted(*count, "edge has", "edges have"))]
     Branched {
         /// How many.
         count: usize,
@@ -130,8 +131,8 @@ pub enum Trouble {
     },
     /// Panels through or against one another.
     #[error(
-        "{count} pairs of panels cross or touch without a common vertex there, the first {first} and {second} at {at:?} m; unite the \
-         bodies, or move them apart"
+        "{} without a common vertex there, the first {first} and {second} at {at:?} m; unite the \
+         bodies, or move them apart", counted(*count, "pair of panels crosses or touches", "pairs of panels cross or touch")
     )]
     Crossing {
         /// How many pairs; counting ends at [`crate::crossing::MOST`].
@@ -145,7 +146,7 @@ pub enum Trouble {
     },
     /// Neighbours that lie on one another, or a panel that does so with itself.
     #[error(
-        "{count} pairs of neighbours are folded onto one another, the first {first} and {second} at {at:?} m; take one out"
+        "{} folded onto one another, the first {first} and {second} at {at:?} m; take one out", counted(*count, "pair of neighbours is", "pairs of neighbours are")
     )]
     Folded {
         /// How many pairs.
@@ -159,7 +160,7 @@ pub enum Trouble {
     },
     /// Thin panels: the result may lose digits.
     #[error(
-        "{count} panels are slivers, the thinnest is {panel} at {at:?} m with {ratio:.1e} of its longest edge squared"
+        "{}, the thinnest is {panel} at {at:?} m with {ratio:.1e} of its longest edge squared", counted(*count, "panel is a sliver", "panels are slivers")
     )]
     Slivers {
         /// How many.

@@ -336,7 +336,7 @@ mod tests {
         let cross = |at: &str| {
             let rest = "unite the bodies, or move them apart";
             vec![format!(
-                "1 pairs of panels cross or touch without a common vertex there, the first 0 and 1 at {at} m; {rest}"
+                "1 pair of panels crosses or touches without a common vertex there, the first 0 and 1 at {at} m; {rest}"
             )]
         };
         // Through the middle; through the border; a corner on the panel; in its plane, over it, beside it; in a parallel plane.
@@ -357,7 +357,7 @@ mod tests {
         let at_edge = |c: Vec3| one(&[base[0], base[1], base[2], c], &[&[0, 1, 2], &[1, 0, 3]]);
         assert_eq!(at_edge([0.0, 1.0, 0.1]), <[&str; 0]>::default());
         let fold =
-            "1 pairs of neighbours are folded onto one another, the first 0 and 1 at [0.5, 0.0, 0.0] m; take one out";
+            "1 pair of neighbours is folded onto one another, the first 0 and 1 at [0.5, 0.0, 0.0] m; take one out";
         assert_eq!(at_edge([0.7, 2.0, 0.0]), [fold]);
         let bow = one(&[base[0], base[1], base[2], [1.0, 1.0, 0.0]], &[&[0, 1, 2, 3]]);
         assert!(bow[0].contains("the first 0 and 0"), "{bow:?}");

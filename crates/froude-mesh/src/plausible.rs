@@ -1,6 +1,7 @@
 //! Doubts about a mesh that is sound: a body drawn in millimetres, a body through the water's surface.
 
 use crate::check::extent;
+use crate::files::counted;
 use crate::measure::Measure;
 use crate::mesh::Mesh;
 use crate::vector::Vec3;
@@ -32,7 +33,7 @@ pub fn too_large(mesh: &Mesh) -> Option<TooLarge> {
 
 /// Panels on both sides of a plane.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{count} panels cross {letter} = {at_m} m, the first {panel} from {from:?} to {to:?} m", letter = ["x", "y", "z"][axis % 3])]
+#[error("{} {letter} = {at_m} m, the first {panel} from {from:?} to {to:?} m", counted(*count, "panel crosses", "panels cross"), letter = ["x", "y", "z"][axis % 3])]
 pub struct Crosses {
     /// The axis that the plane is across, 0 to 2.
     pub axis: usize,

@@ -8,6 +8,7 @@
 use indexmap::{IndexMap, IndexSet};
 
 use crate::check::{Trouble, extent, first_unreadable, has_no_area};
+use crate::files::counted;
 use crate::mesh::{Mesh, Panel};
 use crate::parts::{holders, volume};
 use crate::topology::{by_edge, sides};
@@ -21,7 +22,7 @@ pub enum Repair {
     #[error("nothing repaired: {0}")]
     Nothing(Trouble),
     /// Vertices at one place made one.
-    #[error("{count} vertices merged (closer than {weld_m} m), first at {at:?} m")]
+    #[error("{} merged (closer than {weld_m} m), first at {at:?} m", counted(*count, "vertex", "vertices"))]
     Merged {
         /// How many are gone.
         count: usize,
@@ -31,7 +32,7 @@ pub enum Repair {
         at: Vec3,
     },
     /// Panels without area taken out.
-    #[error("{count} panels without area taken out, first at {at:?} m")]
+    #[error("{} without area taken out, first at {at:?} m", counted(*count, "panel", "panels"))]
     NoArea {
         /// How many.
         count: usize,
@@ -39,7 +40,7 @@ pub enum Repair {
         at: Vec3,
     },
     /// The later of two panels over the same corners taken out.
-    #[error("{count} copies of panels taken out, first at {at:?} m")]
+    #[error("{} taken out, first at {at:?} m", counted(*count, "copy of a panel", "copies of panels"))]
     Copies {
         /// How many.
         count: usize,
@@ -47,13 +48,13 @@ pub enum Repair {
         at: Vec3,
     },
     /// Vertices without panel taken out.
-    #[error("{count} vertices that no panel uses taken out")]
+    #[error("{} taken out", counted(*count, "vertex that no panel uses", "vertices that no panel uses"))]
     Unused {
         /// How many.
         count: usize,
     },
     /// Panels turned to run as their neighbours do.
-    #[error("{count} panels turned to run as most of their neighbours, first at {at:?} m")]
+    #[error("{} turned to run as most of their neighbours, first at {at:?} m", counted(*count, "panel", "panels"))]
     Turned {
         /// How many.
         count: usize,
@@ -370,11 +371,11 @@ mod tests {
         let at = |v: Vec3| format!("{v:?} m");
         let [copied, turned] = [20, 30].map(|p| at(mesh.corners(mesh.panels[p]).next().unwrap()));
         let expected = [
-            "1 vertices merged (closer than 0.000001 m), first at [-1.0, 5e-7, 0.0] m".to_owned(),
-            "1 panels without area taken out, first at [-1.0, 0.0, 0.0] m".to_owned(),
-            format!("1 copies of panels taken out, first at {copied}"),
-            "1 vertices that no panel uses taken out".to_owned(),
-            format!("1 panels turned to run as most of their neighbours, first at {turned}"),
+            "1 vertex merged (closer than 0.000001 m), first at [-1.0, 5e-7, 0.0] m".to_owned(),
+            "1 panel without area taken out, first at [-1.0, 0.0, 0.0] m".to_owned(),
+            format!("1 copy of a panel taken out, first at {copied}"),
+            "1 vertex that no panel uses taken out".to_owned(),
+            format!("1 panel turned to run as most of their neighbours, first at {turned}"),
         ];
         assert_eq!(told(&repairs), expected);
     }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::error::{Place, RecordError};
+use crate::header;
 use crate::memory;
 use crate::nearest::suggestion;
 use crate::sidecar::{Mapping, Sidecar};
@@ -71,6 +72,14 @@ pub(crate) fn plan<'s>(
                 beginning(long),
                 long.len()
             ),
+        });
+    }
+    if sidecar.is_none() && !header.is_empty() && header.iter().all(|h| fast_float2::parse::<f64, _>(h.trim()).is_ok())
+    {
+        return Err(RecordError::Syntax {
+            place: header_place.clone(),
+            problem: "numbers stand where the columns are named; write a line of headers above them, as `speed [m/s],f_x [N]`"
+                .to_owned(),
         });
     }
     if let Some(twice) = first_twice(header.iter().map(String::as_str)) {
@@ -191,7 +200,7 @@ fn want(path: &Path, header: &str, place: &Place) -> Result<Want<'static>, Recor
     })?;
     let Some(unit) = unit else {
         if known_dimension(name).is_some() && !may_be_text(name) {
-            return Err(missing_unit(path, name, place));
+            return Err(missing_unit(path, name, &[], place));
         }
         return Ok(Want::Text { name: name.to_owned() });
     };
@@ -209,7 +218,11 @@ fn may_be_text(name: &str) -> bool {
     is_text_column(name) || name == "repeat"
 }
 
-fn missing_unit(path: &Path, name: &str, place: &Place) -> RecordError {
+/// A column of numbers without a unit, or with one in round parentheses.
+fn missing_unit(path: &Path, name: &str, headers: &[String], place: &Place) -> RecordError {
+    if let Some(problem) = header::advice(path, name, headers) {
+        return RecordError::BadUnit { place: place.clone(), column: name.to_owned(), problem };
+    }
     let unit = usual_unit(name).unwrap_or_else(|| "unit".to_owned());
     RecordError::MissingUnit {
         place: place.clone(),
@@ -354,7 +367,7 @@ pub(crate) fn assemble(
         }
         None => {
             for (want, raw) in wants.iter().zip(raws) {
-                table.columns.extend(column(&table, want, raw, header_place)?);
+                table.columns.extend(column(&table, header, want, raw, header_place)?);
             }
         }
     }
@@ -362,7 +375,13 @@ pub(crate) fn assemble(
     Ok(table)
 }
 
-fn column(table: &Table, want: &Want<'_>, raw: Raw, header_place: &Place) -> Result<Option<Column>, RecordError> {
+fn column(
+    table: &Table,
+    headers: &[String],
+    want: &Want<'_>,
+    raw: Raw,
+    header_place: &Place,
+) -> Result<Option<Column>, RecordError> {
     Ok(Some(match (want, raw) {
         (Want::Number { name, unit }, Raw::Numbers(values)) => {
             let si: Vec<f64> = values.iter().map(|v| unit.to_si(*v)).collect();
@@ -389,7 +408,9 @@ fn column(table: &Table, want: &Want<'_>, raw: Raw, header_place: &Place) -> Res
         (Want::Text { name }, raw) => {
             let cells = match raw {
                 Raw::Texts(cells) => cells,
-                Raw::Numbers(_) if !may_be_text(name) => return Err(missing_unit(&table.path, name, header_place)),
+                Raw::Numbers(_) if !may_be_text(name) => {
+                    return Err(missing_unit(&table.path, name, headers, header_place));
+                }
                 Raw::Numbers(values) => values.iter().map(f64::to_string).collect(),
             };
             if may_be_text(name) {
@@ -401,7 +422,7 @@ fn column(table: &Table, want: &Want<'_>, raw: Raw, header_place: &Place) -> Res
                     });
                 }
             } else if cells.iter().all(|cell| fast_float2::parse::<f64, _>(cell).is_ok()) {
-                return Err(missing_unit(&table.path, name, header_place));
+                return Err(missing_unit(&table.path, name, headers, header_place));
             }
             Column { name: name.clone(), data: ColumnData::Text(cells) }
         }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 
 use crate::memory::{Exhausted, reserve};
+use crate::text::counted;
 
 /// Where in a file something stands.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -327,7 +328,7 @@ pub enum RecordError {
         found: String,
     },
     /// A row with too few or too many cells.
-    #[error("{place}: the row has {found} cells, the header has {expected}")]
+    #[error("{place}: the row has {}, the header has {expected}", counted(*found, "cell", "cells"))]
     RaggedRow {
         /// Where.
         place: Place,
@@ -344,8 +345,8 @@ pub enum RecordError {
     },
     /// `n_links` contradicts `configuration`.
     #[error(
-        "{place}: `configuration` {configuration} has {expected} links, but `n_links` is {found}; \
-         correct one of them"
+        "{place}: `configuration` {configuration} has {expected} {}, but `n_links` is {found}; correct one of them",
+        if *expected == 1.0 { "link" } else { "links" }
     )]
     LinksContradictConfiguration {
         /// Where.

@@ -119,7 +119,7 @@ pub enum FastCsvError {
     },
 
     /// A row has another number of cells than the header.
-    #[error("{}:{line}: the row has {found} cells, the header has {expected}", path.display())]
+    #[error("{}:{line}: the row has {}, the header has {expected}", path.display(), crate::text::counted(*found, "cell", "cells"))]
     Ragged {
         /// The file.
         path: PathBuf,

@@ -31,6 +31,7 @@ pub mod fast_csv;
 pub mod finding;
 pub mod folder;
 pub mod hash;
+mod header;
 pub mod json;
 pub mod keep;
 pub mod manifest;

@@ -2,6 +2,18 @@
 
 use std::borrow::Cow;
 
+/// A count with its noun.
+///
+/// ```
+/// # use froude_records::text::counted;
+/// assert_eq!(counted(1, "run", "runs"), "1 run");
+/// assert_eq!(counted(0, "pair", "pairs"), "0 pairs");
+/// ```
+#[must_use]
+pub fn counted(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
+}
+
 /// The text with every character that steers a terminal or hides from the eye written out, as `\u{202e}`.
 ///
 /// A name in a file may hold a terminal's commands, or marks that turn the order of what follows: printed as they stand they clear the

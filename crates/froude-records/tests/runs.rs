@@ -239,7 +239,7 @@ fn a_tick_with_a_number_that_is_none_is_kept_in_the_file_and_told_as_a_gap() {
     assert_eq!(log.len(), 9);
     let [gap] = log.lost.as_slice() else { panic!("{:?}", log.lost) };
     assert_eq!((gap.ticks, gap.cause), (Some(1), GapCause::NotFinite));
-    assert_eq!(gap.text, "1 ticks are missing before 0.00125 s: y/command is NaN in tick 4");
+    assert_eq!(gap.text, "1 tick is missing before 0.00125 s: y/command is NaN in tick 4");
 }
 
 #[test]

@@ -311,6 +311,14 @@ pub fn dof(dof: f64) -> String {
     }
 }
 
+/// The same with its noun: `1 degree of freedom`, `4.3 degrees of freedom`.
+#[must_use]
+pub fn degrees_of_freedom(n: f64) -> String {
+    let digits = dof(n);
+    let noun = if digits == "1" { "degree" } else { "degrees" };
+    format!("{digits} {noun} of freedom")
+}
+
 /// A finite value that the record really holds.
 pub(crate) fn finite(x: Option<f64>) -> Option<f64> {
     x.filter(|x| x.is_finite())

@@ -18,3 +18,4 @@ pub mod runs;
 pub mod servo;
 pub(crate) mod set;
 pub mod tune;
+pub(crate) mod whole;

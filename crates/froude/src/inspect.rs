@@ -10,14 +10,16 @@ use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
-use froude_records::run::{Block, Doubt, DoubtKind, RunMeta, RunReader, RunStatus, read_run, read_run_meta};
+use froude_records::run::{Block, Doubt, DoubtKind, RunKind, RunMeta, RunReader, RunStatus, read_run, read_run_meta};
 use froude_records::table::{ColumnData, Table, read_table};
+use froude_records::text::counted;
 
 use indexmap::IndexMap;
 
 use crate::Error;
 use crate::carriage::runs;
 use crate::carriage::set::{Member, doubles, is_put_aside, strangers, summed_up};
+use crate::carriage::whole::Complete;
 
 /// A column of a table in short.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -118,7 +120,12 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
         // A run's sidecar lies beside it and says less than the run itself.
         Some("toml") if path.with_extension("mcap").is_file() => run(&path.with_extension("mcap")),
         Some("toml") => match read_run_meta(path) {
-            Ok(meta) => Err(Error::Nothing(runs::gone(&path.with_extension("mcap"), &meta).message)),
+            Ok(meta) => {
+                let log = path.with_extension("mcap");
+                let is_aside = is_put_aside(&log, &meta);
+                let found = if is_aside { runs::put_aside(&log, &meta) } else { runs::gone(&log, &meta) };
+                Err(Error::Nothing(found.message))
+            }
             Err(_) => campaign(path),
         },
         Some("json") => estimates(path),
@@ -130,21 +137,28 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
 /// A folder of runs: how many of what, and whether the files are what they say.
 fn folder(path: &Path) -> Result<Inspection, Error> {
     let (mut metas, mut members, mut doubts, mut findings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let mut n_aside = 0;
+    let (mut n_aside, mut complete) = (0, Complete::default());
     let files = runs::files(&[path.to_owned()])?;
     let shown = path.display();
     let Some(first) = files.iter().find(|file| file.exists()) else {
+        let sidecars = files.iter().filter(|log| read_run_meta(&log.with_extension("toml")).is_ok()).count();
+        if sidecars > 0 {
+            return Err(Error::Nothing(format!(
+                "{shown} has {} and no log: copy the .mcap files back, or froude run drives them again",
+                counted(sidecars, "sidecar of a run", "sidecars of runs")
+            )));
+        }
         return Err(Error::Nothing(format!(
             "{shown} is a folder without runs; name a table (.csv, .parquet), a campaign (.toml), a record (.json) or a run (.mcap)"
         )));
     };
     for file in &files {
         if !file.exists() {
-            match read_run_meta(&file.with_extension("toml")) {
-                Ok(meta) if meta.status == RunStatus::Complete && !is_put_aside(file, &meta) => {
-                    findings.push(runs::gone(file, &meta));
-                }
-                _ => {}
+            // Another file of TOML may lie in the folder.
+            if let Ok(meta) = read_run_meta(&file.with_extension("toml")) {
+                let is_aside = is_put_aside(file, &meta);
+                n_aside += usize::from(is_aside);
+                findings.push(if is_aside { runs::put_aside(file, &meta) } else { runs::gone(file, &meta) });
             }
             continue;
         }
@@ -158,6 +172,10 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
             Ok(reader) => {
                 if reader.meta().status == RunStatus::Complete {
                     members.push(Member::of(file, reader.meta())?);
+                    let is_damaged = |doubt: &Doubt| matches!(doubt.kind, DoubtKind::Damaged | DoubtKind::Exchanged);
+                    if !reader.doubts().iter().any(is_damaged) {
+                        complete.add(file, reader.meta());
+                    }
                 }
                 metas.push(reader.meta().clone());
                 doubts.extend_from_slice(reader.doubts());
@@ -170,19 +188,21 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
     findings.extend(doubles(&members));
     findings.extend(strangers(&members)?);
     findings.extend(summed_up(&doubts));
+    findings.extend(complete.against_plan(path, &RunKind::ALL));
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
-    let counted = |name: &dyn Fn(&RunMeta) -> String| {
+    let each = |name: &dyn Fn(&RunMeta) -> String| {
         let mut counts: IndexMap<String, usize> = IndexMap::new();
         for meta in &metas {
             *counts.entry(name(meta)).or_default() += 1;
         }
         counts.iter().map(|(name, n)| format!("{n} {name}")).collect::<Vec<_>>().join(", ")
     };
-    let aside = if n_aside == 0 { String::new() } else { format!("; {n_aside} more were put aside") };
+    let aside = counted(n_aside, "more was put aside", "more were put aside");
+    let aside = if n_aside == 0 { String::new() } else { format!("; {aside}") };
     let facts = vec![
-        ("campaign".to_owned(), counted(&|meta| format!("of {:?}", meta.campaign))),
-        ("runs".to_owned(), counted(&|meta| meta.status.name().to_owned()) + &aside),
-        ("kinds".to_owned(), counted(&|meta| meta.kind.name().to_owned())),
+        ("campaign".to_owned(), each(&|meta| format!("of {:?}", meta.campaign))),
+        ("runs".to_owned(), each(&|meta| meta.status.name().to_owned()) + &aside),
+        ("kinds".to_owned(), each(&|meta| meta.kind.name().to_owned())),
         (
             "next".to_owned(),
             format!("froude carriage drag {shown} reduces them together; froude inspect {} shows one", first.display()),
@@ -260,10 +280,16 @@ fn campaign(path: &Path) -> Result<Inspection, Error> {
     Ok(Inspection { sources, ..Inspection::new("campaign", facts, findings) })
 }
 
+fn times(n: usize) -> String {
+    counted(n, "time", "times")
+}
+
 /// What a campaign drives and is to do; `froude run --check` has the runs one by one.
 fn driven(carriage: &CarriageCampaign) -> Vec<(String, String)> {
     let rig = match &carriage.rig.kind {
-        RigKind::Twin { seed, truths } => format!("twin, seed {seed}, {} truths of its own", truths.len()),
+        RigKind::Twin { seed, truths } => {
+            format!("twin, seed {seed}, {}", counted(truths.len(), "truth of its own", "truths of its own"))
+        }
         RigKind::Serial { port, baud } => format!("board at {port}, {baud} baud"),
     };
     let [low, high] = carriage.rig.y.travel_m;
@@ -276,11 +302,14 @@ fn driven(carriage: &CarriageCampaign) -> Vec<(String, String)> {
     let ballast = if plan.is_ballasted { "ballasted" } else { "not ballasted" };
     fact("pairs", format!("{} at each speed, {ways}; wet runs {ballast}", plan.repeats));
     if let Some(sweep) = &plan.friction {
-        fact("friction sweep", format!("{} speeds, {} times", sweep.speed_m_s.len(), sweep.repeats));
+        fact(
+            "friction sweep",
+            format!("{}, {}", counted(sweep.speed_m_s.len(), "speed", "speeds"), times(sweep.repeats)),
+        );
     }
     if let Some(c) = &plan.calibration {
         let weights: Vec<String> = c.weights_n.iter().map(f64::to_string).collect();
-        fact("calibration", format!("{} N over a pulley, {} times", weights.join(", "), c.repeats));
+        fact("calibration", format!("{} N over a pulley, {}", weights.join(", "), times(c.repeats)));
     }
     if let Some(part) = plan.stop_at_relative_half_width {
         fact("stops early", format!("when D_d is known within {} %", 100.0 * part));

@@ -13,6 +13,7 @@ use froude_identify::source::SourceResult;
 use froude_identify::uncertainty::{coverage_factor, shares};
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{Estimate, EstimateFile};
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 use froude_report::{
     Abscissa, Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile,
@@ -77,13 +78,12 @@ pub fn report(
 fn subtitle(sources: &[SourceResult], published: &[Estimate]) -> String {
     let observations: usize = sources.iter().map(|s| s.data.rows).sum();
     let mut out = format!(
-        "{} observations from {} source{}",
-        observations,
-        sources.len(),
-        if sources.len() == 1 { "" } else { "s" }
+        "{} from {}",
+        counted(observations, "observation", "observations"),
+        counted(sources.len(), "source", "sources")
     );
     if !published.is_empty() {
-        out += &format!(", beside {} published estimates", published.len());
+        out += &format!(", beside {}", counted(published.len(), "published estimate", "published estimates"));
     }
     out
 }

@@ -18,6 +18,7 @@
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_fit::{CovarianceKind, Fit, Options, Prior, Problem, fit};
+use froude_records::text::counted;
 
 use super::error::DragError;
 use super::fsm::reach;
@@ -169,8 +170,9 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let is_pulley_measured = driving.iter().any(|r| r.weight_n > 0.0 && r.direction < 0.0);
     if !is_pulley_measured && weights[0] > 0.9 * weights[1] {
         return Err(DragError::Calibration(format!(
-            "{total} runs, all lifting {:.2} N: friction and weight cannot be told apart; add runs without weight, or lower \
+            "{}, lifting {:.2} N: friction and weight cannot be told apart; add runs without weight, or lower \
              a weight that is lighter than the friction",
+            counted(total, "run", "runs, all"),
             weights[1]
         )));
     }
@@ -231,8 +233,8 @@ fn take(fitted: &Fit, j: usize) -> Result<Uncertain, DragError> {
     match (c.value, c.standard, c.dof) {
         (Some(value), Some(standard), Some(dof)) => Ok(Uncertain { value, standard, dof }),
         _ => Err(DragError::Calibration(format!(
-            "{} driving runs do not determine {} with any to spare; repeat every weight at least twice",
-            fitted.residuals.len(),
+            "{} not determine {} with any to spare; repeat every weight at least twice",
+            counted(fitted.residuals.len(), "driving run does", "driving runs do"),
             c.name
         ))),
     }
@@ -262,8 +264,9 @@ fn notes(
     }
     if overhauled > 0 {
         out.push(format!(
-            "{overhauled} runs were left out: the weight drove the gear or may have, and a gear loses differently that way; weights \
+            "{} left out: the weight drove the gear or may have, and a gear loses differently that way; weights \
              up to {:.2} N, half the friction, can be lowered under power",
+            counted(overhauled, "run was", "runs were"),
             // Rounded down: the most that is advised is not refused.
             (1e2 * SURELY_DRIVEN * friction_n).floor() / 1e2
         ));

@@ -12,6 +12,7 @@
 
 use froude_fit::distribution::{coverage_factor, f_upper};
 use froude_fit::propagate::effective_dof;
+use froude_records::text::counted;
 
 use super::coefficient::Point;
 use super::run::{BodyState, DragRun, DragSetup, RunKind};
@@ -70,7 +71,7 @@ impl Detectability {
             let repeats = self.repeats_needed(d_n_s2_m2, slowest_planned_m_s);
             let repeat = repeats.map_or_else(
                 || format!("{MOST_REPEATS} repeats would not do at {slowest_planned_m_s:.3} m/s"),
-                |n| format!("repeat {n} times at {slowest_planned_m_s:.3} m/s"),
+                |n| format!("repeat {} at {slowest_planned_m_s:.3} m/s", counted(n, "time", "times")),
             );
             format!(
                 "below {limit:.3} m/s your drag is under its uncertainty: tow faster or {repeat} (a repeat is one wet-less-dry difference; \

@@ -40,7 +40,10 @@ pub enum DragError {
     },
 
     /// No wet tow among the runs.
-    #[error("no wet run among {n} runs: drag needs tows with the body in the water")]
+    #[error(
+        "no wet run among {}: drag needs tows with the body in the water",
+        froude_records::text::counted(*n, "run", "runs")
+    )]
     NoWetRuns {
         /// Runs given.
         n: usize,

@@ -1,6 +1,7 @@
 //! D_d and C_D as an estimate record.
 
 use froude_records::estimate::{Coefficient as Recorded, Diagnostics, Estimate, Law, Measured, Range, Status};
+use froude_records::text::counted;
 use indexmap::IndexMap;
 
 use super::coefficient::{Coefficient, Method};
@@ -82,6 +83,11 @@ fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) -> Vec<String
     if c.method == Method::Fsm {
         out.push("the sensor also carries what hangs below it beside the body".to_owned());
     }
-    out.push(format!("{} runs given, {} points used, {} pairs", runs.len(), c.points.len(), c.pairs));
+    out.push(format!(
+        "{} given, {} used, {}",
+        counted(runs.len(), "run", "runs"),
+        counted(c.points.len(), "point", "points"),
+        counted(c.pairs, "pair", "pairs")
+    ));
     out
 }

@@ -2,6 +2,7 @@
 
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
+use froude_records::text::counted;
 
 use super::added_mass::{AddedMass, added_mass};
 use super::coefficient::{
@@ -178,8 +179,9 @@ fn with_drift(mut c: Coefficient, wet: &[&DragRun<'_>], setup: &DragSetup, findi
             Severity::Warning,
             "zero-on-one-side",
             format!(
-                "fsm: {open} wet runs have no still window on one side of the tow; the declared drift of ± {:.2} N moves D_d by \
+                "fsm: {} no still window on one side of the tow; the declared drift of ± {:.2} N moves D_d by \
                  up to {half:.2} N s^2/m^2. Stand still for two seconds before and after",
+                counted(open, "wet run has", "wet runs have"),
                 setup.sensor.drift_half_width_n
             ),
         ));
@@ -431,14 +433,15 @@ fn doubts(
         }
         let scatter_dof = c.budget.iter().find(|p| p.kind == 'A').map_or(0.0, |p| p.dof);
         if c.pairs < FEW_PAIRS && scatter_dof < FEW_PAIRS as f64 {
-            out.push(Finding::new(
-                Severity::Warning,
-                "few-pairs",
-                format!(
-                    "{name}: {} pairs; the scatter has {scatter_dof:.0} degrees of freedom and its interval is mostly Student's t",
-                    c.pairs
+            let so = match (c.interval_95, scatter_dof.round() as usize) {
+                (None, _) => "nothing tells their scatter, and no interval is stated".to_owned(),
+                (_, dof) => format!(
+                    "the scatter has {} and its interval is mostly Student's t",
+                    counted(dof, "degree of freedom", "degrees of freedom")
                 ),
-            ));
+            };
+            let pairs = counted(c.pairs, "pair", "pairs");
+            out.push(Finding::new(Severity::Warning, "few-pairs", format!("{name}: {pairs}; {so}")));
         }
         if let Some(f) = c.offset_n
             && f.value.abs() > OFFSET_TOLD * f.standard
@@ -510,7 +513,11 @@ fn swings(rejected: &[(Method, Rejected)]) -> Option<Finding> {
             }
         }
     }
-    let more = if runs.len() > 1 { format!(" ({} more runs likewise)", runs.len() - 1) } else { String::new() };
+    let more = if runs.len() > 1 {
+        format!(" ({} likewise)", counted(runs.len() - 1, "more run", "more runs"))
+    } else {
+        String::new()
+    };
     first.map(|why| {
         Finding::new(Severity::Warning, "load-swings", format!("left out by the motor's current{more}: {why}"))
     })

@@ -32,7 +32,10 @@ pub enum ServoError {
     },
 
     /// Too little is left to fit.
-    #[error("{rows} rows are left after decimation and trimming, {needed} are needed; record longer or decimate less")]
+    #[error(
+        "{} left after decimation and trimming, {needed} are needed; record longer or decimate less",
+        froude_records::text::counted(*rows, "row is", "rows are")
+    )]
     TooFewRows {
         /// Rows left.
         rows: usize,

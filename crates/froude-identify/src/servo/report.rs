@@ -5,6 +5,7 @@ use std::ops::Range;
 use froude_fit::diagnostics::condition_number;
 use froude_fit::faer::Mat;
 use froude_fit::stream::Solution;
+use froude_records::text::counted;
 
 use crate::servo::chain::{Chain, Rows};
 use crate::servo::error::ServoError;
@@ -158,7 +159,10 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
         Ok(report)
     };
     if ranges.len() < FEWEST_RUNS {
-        return by_blocks(rows, &format!("{} runs are too few, {FEWEST_RUNS} are needed", ranges.len()));
+        return by_blocks(
+            rows,
+            &format!("{} too few, {FEWEST_RUNS} are needed", counted(ranges.len(), "run is", "runs are")),
+        );
     }
     let solution = least_squares(&rows)?;
     match over_runs(&rows, &solution, &ranges, &chain.intervals) {

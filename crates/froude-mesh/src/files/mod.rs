@@ -305,7 +305,7 @@ fn mirrored_whole(half: &Mesh, axis: usize, why: &str, notes: &mut Vec<String>) 
 }
 
 /// "1 face", "2 faces".
-fn counted(count: usize, one: &str, more: &str) -> String {
+pub(crate) fn counted(count: usize, one: &str, more: &str) -> String {
     format!("{count} {}", if count == 1 { one } else { more })
 }
 

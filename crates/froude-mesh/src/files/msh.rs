@@ -51,6 +51,15 @@ const TYPES: &[(i64, usize, &str)] = &[
     (93, 125, "hexahedra of fourth order"),
 ];
 
+/// The name of one element: `line of second order`, `tetrahedron`.
+fn one(many: &str) -> String {
+    let (noun, order) = many.split_at(many.find(' ').unwrap_or(many.len()));
+    match noun.strip_suffix("hedra") {
+        Some(base) => format!("{base}hedron{order}"),
+        None => format!("{}{order}", noun.trim_end_matches('s')),
+    }
+}
+
 /// What to do about a version that is not read.
 const SAVE_AS: &str = "save it with gmsh -save -format msh41 or msh22";
 
@@ -356,7 +365,8 @@ impl Msh<'_> {
     fn done(self) -> (Mesh, Vec<String>) {
         let mut notes = Vec::new();
         if !self.left_out.is_empty() {
-            let list: Vec<String> = self.left_out.iter().map(|(name, count)| format!("{count} {name}")).collect();
+            let list: Vec<String> =
+                self.left_out.iter().map(|(name, count)| counted(*count as usize, &one(name), name)).collect();
             notes
                 .push(format!("left out: {}; panels are triangles and quadrilaterals of first order", list.join(", ")));
         }

@@ -309,15 +309,15 @@ fn gmsh_is_read_in_its_four_forms() {
     let panels = "panels are triangles and quadrilaterals of first order";
     assert_eq!(
         file.notes,
-        [format!("left out: 1 lines, 1 points; {panels}"), "1 node that no panel uses left out".into()]
+        [format!("left out: 1 line, 1 point; {panels}"), "1 node that no panel uses left out".into()]
     );
     let file = good("cube", msh_4());
     is_unit_cube(&file.mesh);
-    assert_eq!(file.notes, [format!("left out: 1 tetrahedra; {panels}"), "1 node that no panel uses left out".into()]);
+    assert_eq!(file.notes, [format!("left out: 1 tetrahedron; {panels}"), "1 node that no panel uses left out".into()]);
     for is_big in [false, true] {
         let file = good("cube.msh", msh_2_binary(is_big));
         is_unit_cube(&file.mesh);
-        assert_eq!(file.notes, [format!("left out: 1 points; {panels}")]);
+        assert_eq!(file.notes, [format!("left out: 1 point; {panels}")]);
         let file = good("cube.msh", msh_4_binary(is_big));
         is_unit_cube(&file.mesh);
         assert_eq!(file.notes, <[&str; 0]>::default());

@@ -309,7 +309,7 @@ fn every_refusal_names_line_and_column() {
     assert_eq!(rows("nan,2"), "log.csv:3: column `t`: `nan` is not a finite number; delete the row");
     assert_eq!(rows("0.2,-1e999\n"), "log.csv:3: column `f_x`: `-1e999` is not a finite number; delete the row");
     assert_eq!(rows("0.2\r,1\n"), "log.csv:3: column `t`: `0.2\r` is not a number");
-    assert_eq!(rows("0.2\n"), "log.csv:3: the row has 1 cells, the header has 2");
+    assert_eq!(rows("0.2\n"), "log.csv:3: the row has 1 cell, the header has 2");
     assert_eq!(rows("0.2,1,2\n"), "log.csv:3: the row has 3 cells, the header has 2");
     assert_eq!(rows("0.2,1,\n"), "log.csv:3: the row has 3 cells, the header has 2");
     assert_eq!(rows("\n0.2,1\n"), "log.csv:3: the line is blank; delete it");

@@ -25,6 +25,7 @@ use crate::run::log::{Channel, Gap, GapCause, RunLog};
 use crate::run::meta::{RunKind, RunMeta, RunStatus};
 use crate::sidecar::{Sidecar, read_sidecar};
 use crate::table::{Column, ColumnData, Table, read_table};
+use crate::text::counted;
 use crate::units::{Dimension, Unit};
 
 /// Names that belong to an axis; a sidecar may also write `y/position` or `x/position` itself.
@@ -173,10 +174,14 @@ fn gaps(time_s: &[f64], steps: TimeSteps) -> Vec<Gap> {
             to_s: Some(w[1]),
             ticks: Some(ticks),
             cause: GapCause::Link,
-            text: format!("{ticks} ticks are missing between {} s and {} s of the log", w[0], w[1]),
+            text: format!("{} missing between {} s and {} s of the log", ticks_are(ticks), w[0], w[1]),
         }
     })
     .collect()
+}
+
+fn ticks_are(n: u64) -> String {
+    counted(n as usize, "tick is", "ticks are")
 }
 
 fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
@@ -190,8 +195,11 @@ fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
     );
     let (severity, code, message) = if !lost.is_empty() {
         let ticks: u64 = lost.iter().filter_map(|gap| gap.ticks).sum();
-        let text =
-            format!("{numbers}: {ticks} ticks are missing in {} gaps; filters must not run across them", lost.len());
+        let text = format!(
+            "{numbers}: {} missing in {}; filters must not run across them",
+            ticks_are(ticks),
+            counted(lost.len(), "gap", "gaps")
+        );
         (Severity::Warning, "time-gaps", text)
     } else if off > EVEN * median_s {
         let text = format!(

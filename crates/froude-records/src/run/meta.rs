@@ -99,7 +99,8 @@ pub enum RunKind {
 }
 
 impl RunKind {
-    pub(crate) const ALL: [Self; 10] = [
+    /// Each of them.
+    pub const ALL: [Self; 10] = [
         Self::WarmUp,
         Self::Still,
         Self::Jog,

@@ -24,6 +24,7 @@ use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 use crate::run::meta::{RunMeta, RunStatus};
 use crate::run::seal::{Doubt, DoubtKind, contradiction, difference};
 use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, differing, of_record, read_run_meta};
+use crate::text::counted;
 
 /// Most channels of one run.
 const MOST_CHANNELS: usize = 10_000;
@@ -597,8 +598,10 @@ impl<R: Read + Seek> RunReader<R> {
         if rows.pending.is_some() || missing.is_some_and(|n| n > 0) {
             let never = || (GapCause::Link, "they never reached the recorder".to_owned());
             let (cause, why) = rows.pending.take().unwrap_or_else(never);
-            let count =
-                missing.map_or_else(|| "an unknown number of ticks is".to_owned(), |n| format!("{n} ticks are"));
+            let count = missing.map_or_else(
+                || "an unknown number of ticks is".to_owned(),
+                |n| counted(n as usize, "tick is", "ticks are"),
+            );
             let from_s = rows.last.map(|(_, s)| s);
             let text = format!("{count} missing before {time_s} s: {why}");
             block.lost.push(Gap { from_s, to_s: Some(time_s), ticks: missing, cause, text });

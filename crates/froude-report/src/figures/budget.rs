@@ -11,6 +11,7 @@ use crate::plot::{
     legend_height,
 };
 use crate::symbol::{Rich, symbol};
+use crate::tables::counted;
 
 /// The rows of the budget that the report shows first: those of the recommended
 /// model, else of the first model in the budget.
@@ -104,7 +105,9 @@ pub(super) fn budget_drawing(section: &SourceSection) -> Option<Drawing> {
         section.name
     );
     if shown.len() < coefficients.len() {
-        let _ = write!(caption, " {} further coefficients stand in the table only.", coefficients.len() - shown.len());
+        let further =
+            counted(coefficients.len() - shown.len(), "further coefficient stands", "further coefficients stand");
+        let _ = write!(caption, " {further} in the table only.");
     }
     Some(Drawing {
         slug: format!("{}-budget", section.name),

@@ -16,6 +16,7 @@ use crate::plot::{
     chunk_size, draw_legend, drawable, grid_shape, legend_height,
 };
 use crate::symbol::{Rich, Style, symbol_and_unit};
+use crate::tables::counted;
 
 /// Every estimate with the label of its source, fitted ones first.
 fn all_estimates(report: &Report) -> Vec<(String, bool, &Estimate)> {
@@ -187,7 +188,8 @@ fn draw_forest(model: &str, coefficients: &[&str], rows: &[&(String, bool, &Esti
         caption.push_str(" An arrow means that the interval goes on beyond the panel.");
     }
     if shown.len() < rows.len() {
-        let _ = write!(caption, " {} further sources stand in the tables only.", rows.len() - shown.len());
+        let further = counted(rows.len() - shown.len(), "further source stands", "further sources stand");
+        let _ = write!(caption, " {further} in the tables only.");
     }
     Drawing {
         slug: format!("forest-{model}"),

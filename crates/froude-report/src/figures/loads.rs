@@ -15,6 +15,7 @@ use crate::plot::{
     drawable, grid_shape, legend_height, level_ink,
 };
 use crate::symbol::{Rich, Style, symbol_and_unit};
+use crate::tables::counted;
 
 /// From this many points on a panel shows them as a cloud behind the line, without bars.
 const CLOUD: usize = 120;
@@ -500,8 +501,8 @@ fn load_caption(look: &Look, contents: &[Content], is_shared: bool, part: &str) 
     if n_left_out > 0 {
         let _ = write!(
             out,
-            " {} observations are not drawn (away from the lines' {}, or thinned).",
-            number::count(n_left_out),
+            " {} not drawn (away from the lines' {}, or thinned).",
+            counted(n_left_out, "observation is", "observations are"),
             match look.abscissa {
                 Abscissa::Speed => "angles",
                 Abscissa::Angle => "speeds",

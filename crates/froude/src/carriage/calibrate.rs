@@ -6,6 +6,7 @@ use froude_identify::carriage::DragRun;
 use froude_identify::carriage::calibration::{Calibration, Jog as Verdict, jog as judged};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{RunKind, RunLog};
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::drag::{calibration_of, setup_of};
@@ -72,8 +73,11 @@ pub fn calibrate(paths: &[PathBuf], campaign: Option<PathBuf>) -> Result<Calibra
         findings.push(Finding::new(Severity::Error, "polarity", text));
     }
     if calibration.is_none() && paths.iter().all(|p| p.is_file()) {
-        let text =
-            format!("{} runs were named and read; the folder {} may hold others", paths.len(), runs.folder.display());
+        let text = format!(
+            "{} named and read; the folder {} may hold others",
+            counted(paths.len(), "run was", "runs were"),
+            runs.folder.display()
+        );
         findings.push(Finding::new(Severity::Note, "single-runs", text));
     }
     if calibration.is_none() {

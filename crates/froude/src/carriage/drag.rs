@@ -1,6 +1,7 @@
 //! `froude carriage drag`: D_d and C_D by force sensor, motor current and model, from the runs of a campaign.
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
 use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
 use froude_identify::carriage::coefficient::{Coefficient, Method};
@@ -12,7 +13,9 @@ use froude_records::campaign::Campaign;
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
+use froude_records::json::read_estimates;
 use froude_records::run::{AxisConstants, RunKind};
+use froude_records::text::counted;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
@@ -73,11 +76,11 @@ const BALLAST_RELATIVE: f64 = 0.005;
 /// See [`Error`].
 pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     let runs = read(&job.runs, &KINDS, job.campaign.as_deref())?;
-    let out = job.out.clone().unwrap_or_else(|| {
-        let name = runs.folder.file_name().map_or_else(|| "runs".to_owned(), |n| n.to_string_lossy().into_owned());
-        runs.folder.with_file_name(format!("{name}-drag"))
-    });
+    let out = job.out.clone().unwrap_or_else(|| runs.results("drag"));
     crate::results::can_be_written(&out)?;
+    if runs.beside > 0 {
+        replaces_no_more(&out, &runs, job.out.is_some())?;
+    }
     let reduced: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
@@ -89,18 +92,15 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
     let stopped = stopped_early(&runs, &reduced);
     setup.looks = stopped.map_or(1, |s| s.planned);
+    let part = part_of(&runs);
+    if let Some(part) = &part {
+        setup.name = format!("{}, {}", setup.name, part.of);
+    }
     let mut report = drag_report(&reduced, &setup)?;
+    none_without_interval(&mut report);
     report.findings.extend(undeclared);
-    report.findings.extend(stopped.map(|EarlyStop { found, planned }| {
-        Finding::new(
-            Severity::Note,
-            "stopped-early",
-            format!(
-                "the campaign stopped after {found} of {planned} pairs because its interval was short enough; chance makes some intervals \
-                 short, so that all intervals here hold over {planned} looks (Bonferroni)"
-            ),
-        )
-    }));
+    report.findings.extend(part.map(|part| part.finding));
+    report.findings.extend(stopped.map(|stop| stop.finding(runs.beside > 0)));
     report.findings.extend(runs.findings.iter().cloned());
     report.findings.extend(why_not);
     report.findings.extend(no_two_masses);
@@ -117,11 +117,77 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     Ok(DragOutcome { report, calibration, file, estimate: written.estimate, page: written.report })
 }
 
+/// Refuses to replace the result of more runs by that of a part of them, and, in a place that nobody chose, that of other runs.
+fn replaces_no_more(out: &Path, runs: &Runs, is_chosen: bool) -> Result<(), Error> {
+    let Ok(old) = read_estimates(&out.join("estimate.json")) else { return Ok(()) };
+    let named: BTreeSet<_> = runs.logs.iter().filter_map(|log| log.path.file_name()).collect();
+    let mut others = old.data.iter().filter(|file| !named.contains(std::ffi::OsStr::new(&file.path)));
+    let Some(first) = others.next() else { return Ok(()) };
+    if is_chosen && old.data.len() <= named.len() {
+        return Ok(());
+    }
+    Err(Error::Nothing(format!(
+        "{} holds the result of {}, of which {} not named now (the first is {}); it is not replaced by that of {}. Name another folder \
+         with --out",
+        out.display(),
+        counted(old.data.len(), "run", "runs"),
+        counted(1 + others.count(), "is", "are"),
+        first.path,
+        counted(named.len(), "run", "runs"),
+    )))
+}
+
+/// A result of some of the runs that lie in a folder.
+struct PartOf {
+    /// What it is a result of, beside the campaign's name.
+    of: String,
+    finding: Finding,
+}
+
+fn part_of(runs: &Runs) -> Option<PartOf> {
+    let (named, all) = (runs.logs.len(), runs.logs.len() + runs.beside);
+    let of = match runs.logs.as_slice() {
+        _ if runs.beside == 0 => return None,
+        [one] => one.meta.id.clone(),
+        _ => format!("{named} of {all} runs"),
+    };
+    let folder = if runs.folder.as_os_str().is_empty() { Path::new(".") } else { &runs.folder };
+    let text = format!(
+        "{named} of the {all} runs that lie there and tell drag {} named: this is no result of the campaign, and its record is called \
+         {of:?}. froude carriage drag {} takes them all",
+        if named == 1 { "was" } else { "were" },
+        folder.display(),
+    );
+    Some(PartOf { of, finding: Finding::new(Severity::Warning, "part-of-a-campaign", text) })
+}
+
+/// A number without an interval is recommended to nobody.
+fn none_without_interval(report: &mut DragReport) {
+    let is_stated = |c: &&Coefficient| Some(c.method) == report.recommended && c.interval_95.is_some();
+    if report.recommended.is_some() && !report.coefficients.iter().any(|c| is_stated(&c)) {
+        report.recommended = None;
+        report.estimates.iter_mut().for_each(|estimate| estimate.recommended = false);
+    }
+}
+
 /// A campaign that stopped because its interval was short enough.
 #[derive(Debug, Clone, Copy)]
 struct EarlyStop {
     found: usize,
     planned: usize,
+}
+
+impl EarlyStop {
+    fn finding(self, is_part: bool) -> Finding {
+        let Self { found, planned } = self;
+        let when = if is_part { String::new() } else { format!("after {found} of {planned} pairs ") };
+        let text = format!(
+            "the campaign stopped {when}because its interval was short enough; chance makes some intervals short, so that all \
+             intervals here hold over {} (Bonferroni)",
+            counted(planned, "look", "looks")
+        );
+        Finding::new(Severity::Note, "stopped-early", text)
+    }
 }
 
 /// Whether the folder says that its campaign stopped early.
@@ -297,10 +363,10 @@ fn document(
     });
     if let Some(c) = calibration {
         let mut paragraphs = vec![format!(
-            "{} N/V with its interval {} N/V, from {} driving runs; the gear's efficiency is {}.",
+            "{} N/V with its interval {} N/V, from {}; the gear's efficiency is {}.",
             number::short_form(c.force_per_volt.force_per_volt_n.value, c.force_per_volt.force_per_volt_n.standard),
             number::interval(c.interval_95),
-            c.used,
+            counted(c.used, "driving run", "driving runs"),
             number::short_form(c.efficiency.value, c.efficiency.standard),
         )];
         paragraphs.extend(c.notes.iter().cloned());
@@ -348,6 +414,8 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
         let half = c.interval_95.map(|[l, h]| 0.5 * (h - l));
         let value = half.map_or_else(|| number::plain(c.value, 4), |h| number::plus_minus(c.value, h));
         out.push(format!("Recommended: {}, D_d = {value} N s²/m² (95 %).", c.method.words()));
+    } else {
+        out.push("No D_d is recommended: no method can state an interval from these runs.".to_owned());
     }
     if setup.calibration.is_none() {
         out.push(
@@ -358,11 +426,11 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     }
     if let Some(d) = &report.detectability {
         out.push(format!(
-            "One wet-less-dry difference scatters by {} N (dry repeats, {} degrees of freedom); {} differences at a speed show a drag \
-             above {} N.",
+            "One wet-less-dry difference scatters by {} N (dry repeats, {}); {} at a speed {} a drag above {} N.",
             number::significant(d.difference_n, 2),
-            number::dof(d.dof),
-            d.differences,
+            number::degrees_of_freedom(d.dof),
+            counted(d.differences, "difference", "differences"),
+            if d.differences == 1 { "shows" } else { "show" },
             number::significant(d.expanded_n, 2),
         ));
         out.push(format!(
@@ -398,10 +466,10 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
             }
         };
         out.push(format!(
-            "From the ramps: {what}: {} kg, interval {} kg, {} pairs of runs.",
+            "From the ramps: {what}: {} kg, interval {} kg, {}.",
             number::short_form(m.mass_kg.value, m.mass_kg.standard),
             number::interval(m.interval_95),
-            m.runs
+            counted(m.runs, "pair of runs", "pairs of runs")
         ));
     }
     out

@@ -176,11 +176,7 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     let control = setup::control(&carriage, towed_kg)?;
     let axis = control.axes[asked.axis as usize];
     let start_m = asked.start_m.unwrap_or(0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m));
-    let order_seed = match carriage.rig.kind {
-        RigKind::Twin { seed, .. } => seed,
-        RigKind::Serial { .. } => 1,
-    };
-    let steps = plan(&asked, start_m, order_seed);
+    let steps = plan(&asked, start_m, order_seed(&carriage.rig.kind));
     // What is not declared of the twin's body is the cylinder's, in proportion to the volume; [rig.twin] overrides it.
     let scale = displaced_m3 / TowedBody::CYLINDER.displaced_m3;
     let body = TowedBody {
@@ -229,6 +225,14 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         duration_s,
         job: job.clone(),
     })
+}
+
+/// What the order of the speeds within a half of a pair is drawn from.
+pub(crate) fn order_seed(rig: &RigKind) -> u64 {
+    match rig {
+        RigKind::Twin { seed, .. } => *seed,
+        RigKind::Serial { .. } => 1,
+    }
 }
 
 fn return_speed_m_s(asked: &CarriagePlan, limits: &froude_control::config::Limits) -> f64 {
@@ -334,8 +338,10 @@ fn own_folder(folder: &Path, campaign: &Path) -> Result<String, Error> {
     Ok(sha256_of_bytes(&text))
 }
 
-/// What says in a folder of runs that its campaign stopped because it knew enough; in words.
+/// What says in a folder of runs that its campaign stopped because it knew enough: in words, and after which run.
 pub const STOPPED_EARLY: &str = "stopped-early.txt";
+/// What the run stands behind there.
+pub(crate) const LAST_RUN: &str = "last run: ";
 
 /// D_d while the campaign runs: every wet run with its dry partner gives a point.
 struct Live {
@@ -433,8 +439,8 @@ impl Live {
             status.pairs
         );
         // A folder that cannot be written to has stopped the recorder long before; then the report does without.
-        let _ =
-            froude_records::write::write_atomically(&self.folder.join(STOPPED_EARLY), format!("{why}\n").as_bytes());
+        let said = format!("{why}\n{LAST_RUN}{}\n", run.id);
+        let _ = froude_records::write::write_atomically(&self.folder.join(STOPPED_EARLY), said.as_bytes());
         Some(why)
     }
 

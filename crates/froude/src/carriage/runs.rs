@@ -13,6 +13,7 @@ use froude_records::run::{
 use froude_records::units::Dimension;
 
 use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
+use super::whole::{Complete, beside, folder_of};
 use crate::Error;
 
 /// Name of the campaign's copy in a folder of runs.
@@ -25,24 +26,55 @@ pub struct Runs {
     pub folder: PathBuf,
     /// Runs in the order of their names.
     pub logs: Vec<RunLog>,
-    /// Runs left out, and gaps.
+    /// Runs left out, gaps, and what the campaign planned and is not there.
     pub findings: Vec<Finding>,
     /// The campaign that lies with them.
     pub campaign: Option<Campaign>,
+    /// How many runs of the same kinds lie beside single runs that were named, and were not named; 0 where whole folders were read.
+    pub beside: usize,
+    /// What was named, as results are called after it.
+    named: Named,
 }
 
-/// Reads the complete runs of these kinds below `paths` (folders, or single `.mcap` files). Truths of a twin are not read.
+/// What results are called after.
+#[derive(Debug, Clone, Default)]
+struct Named {
+    /// A folder, or a run's log.
+    first: PathBuf,
+    /// What was named beside it.
+    more: usize,
+}
+
+impl Runs {
+    /// Where results go that nobody named a folder for: beside what was read, and called after it, so that the results of a part never
+    /// take the place of the whole campaign's.
+    #[must_use]
+    pub fn results(&self, what: &str) -> PathBuf {
+        // The folder that the program was started in has a name of its own all the same.
+        let is_nameless = self.named.first.file_name().is_none();
+        let whole = is_nameless.then(|| std::fs::canonicalize(&self.named.first).ok()).flatten();
+        let first = whole.as_ref().unwrap_or(&self.named.first);
+        let stem = if first.is_dir() { first.file_name() } else { first.file_stem() };
+        let stem = stem.map_or_else(|| "runs".to_owned(), |name| name.to_string_lossy().into_owned());
+        let more = if self.named.more == 0 { String::new() } else { format!("-and-{}-more", self.named.more) };
+        first.with_file_name(format!("{stem}{more}-{what}"))
+    }
+}
+
+/// Reads the complete runs of these kinds below `paths` (folders, or single runs by their log or their sidecar). Truths of a twin are not read.
 ///
-/// A log that is damaged, cut off or gone is left out with a finding.
+/// A log that is damaged, cut off or gone is left out with a finding, and so is said what a folder lacks of its campaign.
 ///
 /// # Errors
 ///
 /// A path without runs, a run that cannot be read; a run that is there twice, of another campaign than the runs beside it, or
 /// whose log and sidecar were exchanged.
 pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Result<Runs, Error> {
-    let mut out = Runs { folder: folder_of(paths), ..Runs::default() };
+    let mut out = Runs { folder: first_folder(paths), ..Runs::default() };
     let (mut members, mut doubts) = (Vec::new(), Vec::new());
-    for file in files(paths)? {
+    let mut complete = Complete::default();
+    let files = files(paths)?;
+    for file in &files {
         let sidecar = file.with_extension("toml");
         if sidecar.exists() {
             let meta = match read_run_meta(&sidecar) {
@@ -51,10 +83,13 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
                 meta => meta?,
             };
             if !kinds.contains(&meta.kind) {
+                if meta.status == RunStatus::Complete && file.exists() && !is_put_aside(file, &meta) {
+                    complete.add(file, &meta);
+                }
                 continue;
             }
-            if is_put_aside(&file, &meta) {
-                out.findings.push(put_aside(&file));
+            if is_put_aside(file, &meta) {
+                out.findings.push(put_aside(file, &meta));
                 continue;
             }
             if meta.status != RunStatus::Complete {
@@ -62,11 +97,11 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
                 continue;
             }
             if !file.exists() {
-                out.findings.push(left_out_for(gone(&file, &meta)));
+                out.findings.push(left_out_for(gone(file, &meta)));
                 continue;
             }
         }
-        let reader = match RunReader::open(&file) {
+        let reader = match RunReader::open(file) {
             // A sidecar says that a run was recorded there: its log is damaged where not even its beginning is one.
             Err(error @ RecordError::Syntax { .. }) if sidecar.exists() => {
                 out.findings.push(left_out_for(Finding::new(Severity::Error, "run-damaged", error.to_string())));
@@ -78,10 +113,13 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
             reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
         let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
         if !kinds.contains(&log.meta.kind) {
+            if log.meta.status == RunStatus::Complete {
+                complete.add(file, &log.meta);
+            }
             continue;
         }
-        if is_put_aside(&file, &log.meta) {
-            out.findings.push(put_aside(&file));
+        if is_put_aside(file, &log.meta) {
+            out.findings.push(put_aside(file, &log.meta));
             continue;
         }
         if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Exchanged) {
@@ -96,7 +134,8 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
             out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&log.meta)));
             continue;
         }
-        members.push(Member::of(&file, &log.meta)?);
+        complete.add(file, &log.meta);
+        members.push(Member::of(file, &log.meta)?);
         doubts.extend(log.doubts.iter().cloned());
         for gap in &log.lost {
             out.findings.push(Finding::new(Severity::Warning, "run-gap", format!("{}: {}", log.meta.id, gap.text)));
@@ -112,6 +151,27 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     }
     out.findings.extend(set);
     out.findings.extend(summed_up(&doubts));
+    let singles: Vec<PathBuf> = files.iter().filter(|log| !paths.contains(&folder_of(log))).cloned().collect();
+    out.beside = beside(&singles, kinds)?.len();
+    let mut folders: Vec<PathBuf> = paths.iter().filter(|path| path.is_dir()).cloned().collect();
+    if out.beside == 0 {
+        // All that lies there was named, one by one.
+        folders.extend(singles.iter().map(|log| folder_of(log)));
+        folders.dedup();
+    }
+    for folder in &folders {
+        // That a campaign stopped early is said by whoever pays for it.
+        let lacking = complete.against_plan(folder, kinds).filter(|finding| finding.severity > Severity::Note);
+        out.findings.extend(lacking);
+    }
+    out.named = match folders.as_slice() {
+        [folder] if out.beside == 0 => Named { first: folder.clone(), more: 0 },
+        _ => {
+            let of_folders = paths.iter().filter(|path| path.is_dir()).count();
+            let first = paths.iter().find(|path| path.is_dir()).or(singles.first());
+            Named { first: first.cloned().unwrap_or_default(), more: (of_folders + singles.len()).saturating_sub(1) }
+        }
+    };
     let copy = out.folder.join(CAMPAIGN_COPY);
     let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
     out.campaign = path.as_deref().map(read_campaign).transpose()?;
@@ -130,9 +190,22 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     Ok(out)
 }
 
-/// What was replaced by another drive of the same run.
-fn put_aside(log: &Path) -> Finding {
-    let text = format!("{} was put aside when its run was driven again, and is left out", log.display());
+/// What made room for another drive of the same run.
+pub(crate) fn put_aside(log: &Path, meta: &RunMeta) -> Finding {
+    let (id, sidecar) = (&meta.id, log.with_extension("toml"));
+    let again = if log.with_file_name(format!("{id}.mcap")).exists() {
+        format!("{id} was driven again since")
+    } else {
+        format!("froude run drives {id} again")
+    };
+    let text = if log.exists() {
+        format!("{} was put aside, and is left out; {again}", log.display())
+    } else {
+        format!(
+            "{} was put aside and its log is not there: nothing can be read of that drive, and the file may be deleted; {again}",
+            sidecar.display()
+        )
+    };
     Finding::new(Severity::Note, "run-left-out", text)
 }
 
@@ -144,12 +217,17 @@ fn left_out_for(mut finding: Finding) -> Finding {
 
 /// A run of which only the sidecar is left.
 pub(crate) fn gone(log: &Path, meta: &RunMeta) -> Finding {
+    let (severity, became) = match meta.status {
+        RunStatus::Complete => (Severity::Error, "was driven to its end".to_owned()),
+        RunStatus::Running => (Severity::Warning, "has no end".to_owned()),
+        status => (Severity::Warning, format!("is {}", status.name())),
+    };
     let text = format!(
-        "the log {} is gone: its sidecar says that {} was driven to its end; copy it back, or froude run drives it again",
+        "the log {} is gone: its sidecar says that {} {became}; copy it back, or froude run drives it again",
         log.display(),
         meta.id
     );
-    Finding::new(Severity::Error, "run-gone", text)
+    Finding::new(severity, "run-gone", text)
 }
 
 /// Why a run that is not complete is left out. One that still says `running` was never closed.
@@ -165,12 +243,12 @@ fn left_out(meta: &RunMeta) -> String {
     }
 }
 
-fn folder_of(paths: &[PathBuf]) -> PathBuf {
+fn first_folder(paths: &[PathBuf]) -> PathBuf {
     let first = paths.first().cloned().unwrap_or_default();
     if first.is_dir() { first } else { first.parent().map_or_else(PathBuf::new, Path::to_owned) }
 }
 
-/// The logs, sorted by name; of a folder also those that its sidecars say should be there.
+/// The logs, sorted by name; of a folder also those that its sidecars say should be there. A sidecar that is named stands for its log.
 pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
     let mut out = Vec::new();
     for path in paths {
@@ -181,13 +259,25 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
             own.dedup();
             out.append(&mut own);
         } else if path.exists() {
-            out.push(path.clone());
+            match log_of_sidecar(path) {
+                // `ID.*` names both.
+                Some(log) if paths.contains(&log) => {}
+                Some(log) => out.push(log),
+                None => out.push(path.clone()),
+            }
         } else {
             return Err(Error::Nothing(format!("{}: there is no such folder or run", path.display())));
         }
     }
     out.sort();
     Ok(out)
+}
+
+/// The log that a sidecar belongs to; `None` for any other file.
+fn log_of_sidecar(file: &Path) -> Option<PathBuf> {
+    let log = file.with_extension("mcap");
+    let is_toml = file.extension().is_some_and(|e| e == "toml");
+    (is_toml && (log.exists() || read_run_meta(file).is_ok())).then_some(log)
 }
 
 /// The log that a file of a folder is or belongs to.

@@ -20,7 +20,7 @@ use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 
-use super::runs::{column, for_drag, mounted, mounts, read};
+use super::runs::{Runs, column, for_drag, mounted, mounts, read};
 use crate::Error;
 
 /// What to identify.
@@ -89,12 +89,17 @@ pub struct ServoOutcome {
 pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
     let first = job.input.first().cloned().unwrap_or_default();
     let is_table = first.extension().is_some_and(|e| e == "csv" || e == "parquet");
-    let out = job.out.clone().unwrap_or_else(|| {
-        let stem = first.file_stem().map_or_else(|| "servo".to_owned(), |n| n.to_string_lossy().into_owned());
-        first.with_file_name(format!("{stem}-servo"))
-    });
+    let runs = if is_table { None } else { Some(read(&job.input, &KINDS, None)?) };
+    let beside = || match &runs {
+        Some(runs) => runs.results("servo"),
+        None => first.with_file_name(format!("{}-servo", first.file_stem().unwrap_or_default().to_string_lossy())),
+    };
+    let out = job.out.clone().unwrap_or_else(beside);
     crate::results::can_be_written(&out)?;
-    let mut outcome = if is_table { of_table(&first, job.sidecar.as_deref())? } else { of_runs(&job.input)? };
+    let mut outcome = match &runs {
+        Some(runs) => of_runs(runs)?,
+        None => of_table(&first, job.sidecar.as_deref())?,
+    };
     outcome.page = out.join("report.html");
     let html = document(&outcome, &first, job.date.clone()).html()?;
     crate::results::write_page(&out, &html)?;
@@ -203,8 +208,7 @@ const KNOT_M: f64 = 0.25;
 /// Most stretches between knots: on ways longer than 250 m they are longer.
 const MOST_STRETCHES: usize = 1000;
 
-fn of_runs(paths: &[PathBuf]) -> Result<ServoOutcome, Error> {
-    let runs = read(paths, &KINDS, None)?;
+fn of_runs(runs: &Runs) -> Result<ServoOutcome, Error> {
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis()).ok_or_else(|| {
         Error::Nothing("the runs do not say what rig they come from (their .toml has no [rig])".to_owned())
     })?;

@@ -10,6 +10,7 @@ use froude_records::RecordError;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
 use froude_records::run::{Doubt, DoubtKind, RunMeta};
+use froude_records::text::counted;
 
 use super::runs::CAMPAIGN_COPY;
 
@@ -46,7 +47,7 @@ impl Member {
     }
 }
 
-/// Whether a run was put aside and driven again: its files have a word more than its name (`045-wet.interrupted-1`).
+/// Whether a run was put aside, to be driven again: its files have a word more than its name (`045-wet.interrupted-1`).
 pub(crate) fn is_put_aside(log: &Path, meta: &RunMeta) -> bool {
     let stem = log.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     stem.strip_prefix(&meta.id).is_some_and(|rest| rest.starts_with('.'))
@@ -117,10 +118,11 @@ pub(crate) fn strangers(members: &[Member]) -> Result<Vec<Finding>, RecordError>
                 Severity::Error,
                 "run-of-another-campaign",
                 format!(
-                    "{} is of another campaign ({:?}, SHA-256 {}…) than the {n} other runs in its folder ({}…): move it out, with its sidecar",
+                    "{} is of another campaign ({:?}, SHA-256 {}…) than the {} in its folder ({}…): move it out, with its sidecar",
                     stranger.path.display(),
                     stranger.campaign,
                     start(&stranger.campaign_sha256),
+                    counted(n, "other run", "other runs"),
                     start(home),
                 ),
             ));

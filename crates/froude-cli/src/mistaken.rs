@@ -1,0 +1,218 @@
+//! A file that a verb does not take: what it is instead, and the command that takes it.
+//!
+//! Readers say what is wrong with a file as the kind that they read. Where it is another kind altogether, that says nothing: a campaign is no
+//! broken run. So when a verb was refused its input, what was named is looked at again.
+
+use std::path::{Path, PathBuf};
+
+use froude::Error;
+
+/// What a file or a folder is, by its name and its first words.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A campaign that drives a rig.
+    Drive,
+    /// Any other campaign.
+    Campaign,
+    Body,
+    TableSidecar,
+    RunSidecar,
+    Run,
+    Table,
+    Record,
+    Mesh,
+    /// A folder of runs.
+    Runs,
+    /// A folder that a verb wrote its results into.
+    Results,
+    /// Any other folder.
+    Folder,
+}
+
+/// What a verb takes.
+pub struct Takes {
+    verb: &'static str,
+    kinds: &'static [Kind],
+    words: &'static str,
+}
+
+pub const IDENTIFY: Takes = Takes {
+    verb: "identify",
+    kinds: &[Kind::Campaign, Kind::Drive, Kind::Table],
+    words: "a campaign (.toml) or a table (.csv, .parquet)",
+};
+pub const INSPECT: Takes = Takes {
+    verb: "inspect",
+    kinds: &[Kind::Campaign, Kind::Drive, Kind::Table, Kind::Record, Kind::Run, Kind::RunSidecar, Kind::Runs],
+    words: "a table (.csv, .parquet), a campaign (.toml), a record (.json), a run (.mcap) or a folder of runs",
+};
+pub const COMPARE: Takes = Takes { verb: "compare", kinds: &[Kind::Record], words: "records (estimate.json)" };
+pub const SIMULATE: Takes =
+    Takes { verb: "simulate", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with plan and truth (.toml)" };
+pub const RUN: Takes =
+    Takes { verb: "run", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with [rig] and [carriage] (.toml)" };
+pub const TUNE: Takes = Takes { verb: "carriage tune", ..RUN };
+pub const RESONANCE: Takes = Takes { verb: "carriage resonance", ..RUN };
+pub const DRAG: Takes = Takes {
+    verb: "carriage drag",
+    kinds: &[Kind::Run, Kind::RunSidecar, Kind::Runs],
+    words: "folders of runs, or runs (.mcap)",
+};
+pub const CALIBRATE: Takes = Takes { verb: "carriage calibrate", ..DRAG };
+pub const SERVO: Takes = Takes {
+    verb: "carriage identify",
+    kinds: &[Kind::Run, Kind::RunSidecar, Kind::Runs, Kind::Table],
+    words: "folders of runs, runs (.mcap), or a servo log (.csv)",
+};
+pub const ADDED_MASS: Takes = Takes {
+    verb: "added-mass",
+    kinds: &[Kind::Body, Kind::Mesh],
+    words: "a body file (.toml) or a closed mesh (.stl, .obj, …)",
+};
+
+impl Takes {
+    /// The same error, or what was named instead of what the verb takes.
+    pub fn explain(&self, error: Error, paths: &[PathBuf]) -> Error {
+        if !error.is_bad_input() {
+            return error;
+        }
+        let other = |path: &PathBuf| Some((path.clone(), kind_of(path).filter(|kind| !self.kinds.contains(kind))?));
+        match paths.iter().find_map(other) {
+            Some((path, kind)) => Error::Nothing(format!(
+                "{} is {}; froude {} takes {}. {}",
+                path.display(),
+                kind.words(),
+                self.verb,
+                self.words,
+                self.instead(kind, &path)
+            )),
+            None => error,
+        }
+    }
+
+    /// What to write instead.
+    fn instead(&self, kind: Kind, path: &Path) -> String {
+        let shown = path.display();
+        let is_of_runs = self.kinds.contains(&Kind::Runs);
+        match kind {
+            Kind::Drive if is_of_runs => {
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                let runs = path.with_file_name(format!("{stem}-runs"));
+                if runs.is_dir() {
+                    format!("Its runs are in {0}: froude {1} {0}", runs.display(), self.verb)
+                } else {
+                    format!("Drive it first: froude run {shown}")
+                }
+            }
+            Kind::Drive => format!("What drives it: froude run {shown}"),
+            Kind::Campaign => format!("What fits it: froude identify {shown}"),
+            Kind::Body | Kind::Mesh => format!("What reads it: froude added-mass {shown}"),
+            Kind::TableSidecar => {
+                let tables = ["csv", "parquet"].map(|extension| path.with_extension(extension));
+                let table = tables.iter().find(|table| table.exists()).unwrap_or(&tables[0]).display();
+                format!("It says what the columns of {table} are; name that: froude inspect {table}")
+            }
+            Kind::RunSidecar | Kind::Run => format!("What shows it: froude inspect {shown}"),
+            Kind::Table | Kind::Record => format!("What shows what is in it: froude inspect {shown}"),
+            Kind::Runs => {
+                format!("What reduces it: froude carriage drag {shown}; what is in it: froude inspect {shown}")
+            }
+            Kind::Results => {
+                let record = path.join("estimate.json");
+                if record.exists() {
+                    format!(
+                        "Its record: froude inspect {0}; its report: {1}",
+                        record.display(),
+                        path.join("report.html").display()
+                    )
+                } else {
+                    format!("Open {} in a browser", path.join("report.html").display())
+                }
+            }
+            Kind::Folder => "Name a file in it".to_owned(),
+        }
+    }
+}
+
+impl Kind {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Drive | Self::Campaign => "a campaign",
+            Self::Body => "a body file",
+            Self::TableSidecar => "the sidecar of a table",
+            Self::RunSidecar => "the sidecar of a run",
+            Self::Run => "a run",
+            Self::Table => "a table",
+            Self::Record => "a record",
+            Self::Mesh => "a mesh",
+            Self::Runs => "a folder of runs",
+            Self::Results => "a folder of results",
+            Self::Folder => "a folder",
+        }
+    }
+}
+
+/// What is there under a name; `None` where nothing is, or nothing that is known.
+fn kind_of(path: &Path) -> Option<Kind> {
+    if path.is_dir() {
+        let is_run = |file: PathBuf| match file.extension().map(|e| e.to_string_lossy().into_owned()).as_deref() {
+            Some("mcap") => true,
+            Some("toml") => kind_of_toml(&file) == Some(Kind::RunSidecar),
+            _ => false,
+        };
+        let has_run = std::fs::read_dir(path).ok()?.filter_map(Result::ok).any(|entry| is_run(entry.path()));
+        let has_results = ["estimate.json", "report.html"].iter().any(|name| path.join(name).exists());
+        return Some(if has_run {
+            Kind::Runs
+        } else if has_results {
+            Kind::Results
+        } else {
+            Kind::Folder
+        });
+    }
+    if !path.exists() {
+        return None;
+    }
+    match path.extension()?.to_string_lossy().to_lowercase().as_str() {
+        "csv" | "parquet" => Some(Kind::Table),
+        "json" => Some(Kind::Record),
+        "mcap" => Some(Kind::Run),
+        "stl" | "obj" | "ply" | "gdf" | "dat" | "msh" => Some(Kind::Mesh),
+        "toml" => kind_of_toml(path),
+        _ => None,
+    }
+}
+
+/// As much of a file of TOML as is looked at.
+const MOST_BYTES: u64 = 1 << 20;
+
+/// By its sections and first keys, also where it has a fault that a reader would stop at.
+fn kind_of_toml(path: &Path) -> Option<Kind> {
+    use std::io::Read as _;
+    let mut bytes = Vec::new();
+    std::fs::File::open(path).ok()?.take(MOST_BYTES).read_to_end(&mut bytes).ok()?;
+    let text = String::from_utf8_lossy(&bytes);
+    let lines = || text.lines().map(str::trim);
+    let has_section = |name: &str| {
+        let head = |line: &str| line.trim_start_matches('[').split([']', '.', ' ']).next() == Some(name);
+        lines().any(|line| line.starts_with('[') && head(line))
+    };
+    // Keys of the file itself stand before its first section.
+    let key = |line: &str| line.split('=').next().unwrap_or_default().trim().to_owned();
+    let keys: Vec<String> = lines().take_while(|line| !line.starts_with('[')).map(key).collect();
+    let has_key = |name: &str| keys.iter().any(|key| key == name);
+    let shape = || lines().any(|line| key(line) == "shape");
+    Some(if has_key("id") && has_key("campaign") {
+        Kind::RunSidecar
+    } else if has_section("rig") {
+        Kind::Drive
+    } else if has_section("source") {
+        Kind::Campaign
+    } else if has_section("columns") || has_section("constants") {
+        Kind::TableSidecar
+    } else if has_section("body") && shape() {
+        Kind::Body
+    } else {
+        return None;
+    })
+}
