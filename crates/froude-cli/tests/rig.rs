@@ -439,9 +439,9 @@ impl SecondHost {
         Self { line, writer: FrameWriter::default(), said: now, stopped: now, stop_every, stops: 0 }
     }
 
-    fn say(&mut self, says: ToBoard) {
+    fn say(&mut self, says: &ToBoard) {
         let mut wire = [0_u8; 1_024];
-        let frame = self.writer.write(&says.from_session(Self::SESSION), &mut wire);
+        let frame = self.writer.write(&(*says).from_session(Self::SESSION), &mut wire);
         self.line.write_all(frame).unwrap();
     }
 
@@ -452,9 +452,9 @@ impl SecondHost {
         self.said = Instant::now();
         let profile = Move { target_m: 0.1, speed_m_s: 0.4, acceleration_m_s2: 0.5, jerk_m_s3: 0.0, is_shaped: false };
         let jog = Excitation::Jog { volts: 2.0, distance_m: 0.5, duration_s: 5.0 };
-        self.say(ToBoard::Hello);
-        self.say(ToBoard::Heartbeat);
-        self.say(ToBoard::Configure { id: 1, config: control_config(&[Load::default(); 2]) });
+        self.say(&ToBoard::Hello);
+        self.say(&ToBoard::Heartbeat);
+        self.say(&ToBoard::Configure { id: 1, config: control_config(&[Load::default(); 2]) });
         let requests = [
             Request::Move { axis: 0, profile },
             Request::Excite { axis: 0, excitation: jog },
@@ -462,13 +462,13 @@ impl SecondHost {
             Request::Home { axis: 1 },
         ];
         for (id, request) in (2..).zip(requests) {
-            self.say(ToBoard::Request { id, request });
+            self.say(&ToBoard::Request { id, request });
         }
         if self.stopped.elapsed() > self.stop_every {
             (self.stopped, self.stops) = (Instant::now(), self.stops + 1);
             // Twice, as a program does whose answer was lost.
             for _ in 0..2 {
-                self.say(ToBoard::Request { id: 9, request: Request::Stop(StopCategory::Two) });
+                self.say(&ToBoard::Request { id: 9, request: Request::Stop(StopCategory::Two) });
             }
         }
     }
