@@ -136,7 +136,7 @@ fn quantity(option: &str, text: &str, dimension: Dimension) -> Result<f64, Error
 /// A density of water, or 1 kg/m³ for added mass over ρ.
 fn density(text: &str) -> Result<f64, Error> {
     let rho = positive("--density", text, Dimension::DENSITY)?;
-    match plausible::density_of_displaced_water(rho).filter(|_| rho != 1.0) {
+    match plausible::density_of_displaced_water(rho) {
         Some(problem) => Err(wrong("--density", text, format!("it {problem}"))),
         None => Ok(rho),
     }

@@ -129,6 +129,9 @@ impl Takes {
                     format!("Open {} in a browser", path.join("report.html").display())
                 }
             }
+            Kind::Folder if is_of_runs => {
+                "No run lies in it; froude run CAMPAIGN drives them, and says where they lie".to_owned()
+            }
             Kind::Folder => "Name a file in it".to_owned(),
         }
     }

@@ -81,7 +81,10 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
         ),
         (
             vec!["inspect", text(&empty)],
-            format!("{} is a folder; froude inspect takes {of_files}. Name a file in it", text(&empty)),
+            format!(
+                "{} is a folder; froude inspect takes {of_files}. No run lies in it; froude run CAMPAIGN drives them, and says where they lie",
+                text(&empty)
+            ),
         ),
         (
             vec!["inspect", sidecar],

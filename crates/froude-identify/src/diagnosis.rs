@@ -175,7 +175,8 @@ pub fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Uneven
     let r = model.law.responses.iter().position(|name| name == load)?;
     let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
     let size: Vec<f64> = (r * n..(r + 1) * n).map(|row| model.fit.residuals[row].abs() * weight(row).sqrt()).collect();
-    let rho = rank_correlation(&size, speed);
+    let speed: Vec<f64> = speed.iter().map(|u| u.abs()).collect();
+    let rho = rank_correlation(&size, &speed);
     Some(Unevenness { rho, z: rho * ((n - 1) as f64).sqrt() })
 }
 

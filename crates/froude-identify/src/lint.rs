@@ -3,7 +3,7 @@
 //! A lint changes nothing except that identical copies are dropped, and says so.
 //! Every limit is a constant with its reason.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use froude_records::campaign::{BodySpec, Campaign};
 use froude_records::finding::{Finding, Severity};
@@ -133,8 +133,11 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
         // At rest there is no angle; a turn more is the same one.
         let speed = data.values("speed").unwrap_or_default();
         let moving = moving(speed, AT_REST);
+        let stated_speed = read("speed");
         let apart = |i: usize| {
-            let by = stated[i] - derived[i];
+            // With a speed below zero the body moves the other way than its angle says.
+            let astern = if stated_speed.as_ref().is_some_and(|u| u[i] < 0.0) { PI } else { 0.0 };
+            let by = stated[i] + astern - derived[i];
             (by - TAU * (by / TAU).round()).abs()
         };
         let worst = moving.into_iter().rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
@@ -157,7 +160,7 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
         }
     }
     if has_velocity && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed")) {
-        let apart = |i: usize| (stated[i] - derived[i]).abs();
+        let apart = |i: usize| (stated[i].abs() - derived[i].abs()).abs();
         let worst = (0..data.rows).rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
         let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > 0.01 * scale) {
@@ -206,7 +209,12 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
             if all {
                 format!(
                     "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
-                     way round, say sign = -1 for its column"
+                     way round, say sign = -1 for its column{}",
+                    if motion == "v_y" && data.channels.contains_key("angle") {
+                        "; if the angle counts the other way (beta of a ship's drift test does), say it for the angle's"
+                    } else {
+                        ""
+                    }
                 )
             } else {
                 format!(
@@ -222,21 +230,21 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
 /// A speed that no tank and no model has.
 fn implausible_speed(data: &Dataset) -> Option<Finding> {
     let speed = data.values("speed")?;
-    let i = (0..data.rows).max_by(|&i, &j| speed[i].total_cmp(&speed[j]))?;
+    let i = (0..data.rows).max_by(|&i, &j| speed[i].abs().total_cmp(&speed[j].abs()))?;
     let is_air = data.values("density").is_some_and(|d| AIR_KG_M3.contains(&d[i]));
     let (most, than) = if is_air {
         (FASTEST_IN_AIR_M_S, "than tests with these laws go, which know no compressible air (Mach 0.3 is 100 m/s)")
     } else {
         (FASTEST_M_S, "than any towing carriage (20 to 30 m/s)")
     };
-    (speed[i] > most).then(|| {
+    (speed[i].abs() > most).then(|| {
         Finding::new(
             Severity::Warning,
             "implausible-speed",
             format!(
                 "line {}: {:.1} m/s is faster {than}; check the unit of the speed",
                 data.line.get(i).copied().unwrap_or(i + 1),
-                speed[i]
+                speed[i].abs()
             ),
         )
     })
@@ -249,9 +257,7 @@ fn implausible_speed(data: &Dataset) -> Option<Finding> {
 /// With a stated reference area it is asked for the drag coefficient that bodies have.
 fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> {
     let speed = data.values("speed")?;
-    let largest = speed.iter().fold(0.0_f64, |m, u| m.max(*u));
-    let near: Vec<usize> =
-        (0..data.rows).filter(|&i| speed[i] > 0.0 && speed[i] >= NEAR_LARGEST_SPEED * largest).collect();
+    let near = moving(speed, NEAR_LARGEST_SPEED);
     let (load, i, f) = ["f_x", "f_y", "f_z"]
         .into_iter()
         .filter_map(|load| Some((load, data.values(load)?)))

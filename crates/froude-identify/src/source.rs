@@ -458,14 +458,15 @@ fn has_two_angles(data: &Dataset, along: &str, across: &str, with_straight_rows:
     high - low > std::f64::consts::PI / 180.0
 }
 
-/// What a strut that turns with the body carries, f_x = −D_xU·v_x·U + X_vv·v_y², f_y = −D_yU·v_y·U, m_z = N_vU·v_y·U.
+/// What a strut that turns with the body carries, f_x = −D_xU·v_x·U + X_vv·v_y²·sign(v_x), f_y = −D_yU·v_y·U, m_z = N_vU·v_y·U.
 ///
 /// Exact for a round one (D_xU = D_yU, X_vv = 0). A section up to its stall has a lift of slope a across the flow: its forward
 /// part is X_vv = a, its sideways part makes D_yU = D_xU + a, but for the cosine of the drift angle. U is without a sign: a table may write a
-/// run astern as a speed below zero.
+/// run astern as a speed below zero. Astern the forward part turns round with the flow, for a section that is the same fore and aft; another
+/// one wants a tare for each way.
 fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, IdentifyError> {
     let along = if moves(data, "v_y") && has_two_angles(data, "v_x", "v_y", true) {
-        "-D_xU*v_x*abs(speed) + X_vv*v_y*v_y"
+        "-D_xU*v_x*abs(speed) + X_vv*v_y*v_y*sign(v_x)"
     } else {
         "-D_xU*v_x*abs(speed)"
     };

@@ -87,7 +87,21 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
     let severity = if error.is_some() { Severity::Note } else { Severity::Warning };
     let mut findings = vec![Finding::new(severity, "tare-subtracted", message)];
     findings.extend(askew);
+    findings.extend(signed_speed(data, estimate));
     Ok((error, findings))
+}
+
+/// A law in bare `speed`, as strut had it once, turns its loads round in rows that write a run astern as a speed below zero.
+fn signed_speed(data: &Dataset, estimate: &Estimate) -> Option<Finding> {
+    let is_bare = estimate.law.formulas.values().any(|text| text.replace("abs(speed)", "").contains("speed"));
+    let astern = data.values("speed")?.iter().filter(|speed| **speed < 0.0).count();
+    (is_bare && astern > 0).then(|| {
+        let text = format!(
+            "the tare of {} is a law in `speed`, which {astern} of the rows have below zero: its loads are turned round there. Fit the tare again",
+            estimate.id
+        );
+        Finding::new(Severity::Warning, "tare-of-signed-speed", text)
+    })
 }
 
 /// Largest angle to the x axis at which a tare was taken, rad; `None` where nothing says.

@@ -74,9 +74,9 @@ pub fn found(data: &Dataset, loads: &[&'static str]) -> Option<TwoUnits> {
 
 fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>]) -> Option<TwoUnits> {
     let speed = data.values("speed");
-    let fastest = speed.map_or(0.0, |u| u.iter().fold(0.0_f64, |m, x| m.max(*x)));
+    let fastest = speed.map_or(0.0, |u| u.iter().fold(0.0_f64, |m, x| m.max(x.abs())));
     // At rest (a rotor's torque) the load itself is compared.
-    let u = |i: usize| speed.map(|u| u[i]).filter(|_| fastest > 0.0).unwrap_or(1.0);
+    let u = |i: usize| speed.map(|u| u[i].abs()).filter(|_| fastest > 0.0).unwrap_or(1.0);
     // The upper quartile: one wild row does not make all others small.
     let mut sizes: Vec<f64> = f.iter().map(|x| x.abs()).collect();
     sizes.sort_by(f64::total_cmp);

@@ -26,7 +26,7 @@ impl Round<'_> {
 }
 
 /// Names that laboratories give to what is known under another, by what they measure; without spaces, lines and capitals.
-const KNOWN: [(Dimension, &[&str], &str); 19] = [
+const KNOWN: [(Dimension, &[&str], &str); 21] = [
     (
         Dimension::SPEED,
         &["u", "v", "speed", "velocity", "vel", "carriagespeed", "towingspeed", "towspeed", "flowspeed"],
@@ -44,7 +44,10 @@ const KNOWN: [(Dimension, &[&str], &str); 19] = [
     (Dimension::ANGULAR_SPEED, &["wx", "p"], "w_x"),
     (Dimension::ANGULAR_SPEED, &["wy", "q"], "w_y"),
     (Dimension::ANGULAR_SPEED, &["wz", "r", "yawrate"], "w_z"),
-    (Dimension::ANGLE, &["angle", "beta", "β", "drift", "driftangle", "theta", "θ"], "angle"),
+    (Dimension::ANGLE, &["angle"], "angle"),
+    // Their sign is somebody's own: they keep their names, and what reads them says which sign the angle has.
+    (Dimension::ANGLE, &["beta", "β"], "beta"),
+    (Dimension::ANGLE, &["drift", "driftangle"], "drift"),
     (Dimension::TEMPERATURE, &["t", "tw", "temp", "temperature", "watertemperature"], "temperature"),
     (Dimension::DENSITY, &["rho", "ρ", "density"], "density"),
     (Dimension::KINEMATIC_VISCOSITY, &["nu", "ν", "viscosity"], "kinematic_viscosity"),
@@ -65,7 +68,7 @@ fn round(header: &str) -> Option<Round<'_>> {
     let dimension = parse_unit(unit).ok()?.dimension;
     let plain: String = name.to_lowercase().chars().filter(|c| !matches!(c, ' ' | '_' | '-')).collect();
     let known = KNOWN.iter().find(|(of, names, _)| *of == dimension && names.contains(&plain.as_str()));
-    let known = known.map(|(.., known)| *known).filter(|known| *known != "angle" || is_angle(unit));
+    let known = known.map(|(.., known)| *known).filter(|_| dimension != Dimension::ANGLE || is_angle(unit));
     Some(Round {
         header,
         name: known.unwrap_or(name).to_owned(),
@@ -90,6 +93,13 @@ pub(crate) fn advice(path: &Path, header: &str, headers: &[String]) -> Option<St
         {
             round.name = round.header.split('(').next().unwrap_or_default().trim().to_owned();
             round.is_resistance = false;
+        }
+    }
+    // Beside a side force or a yaw moment v is the velocity that makes them.
+    if all.iter().flatten().any(|round| matches!(round.name.as_str(), "f_y" | "m_z")) {
+        let is_v = |round: &Round<'_>| round.header.split('(').next().is_some_and(|name| name.trim() == "v");
+        for round in all.iter_mut().flatten().filter(|round| is_v(round) && round.name == "speed") {
+            "v_y".clone_into(&mut round.name);
         }
     }
     let own = all.iter().flatten().find(|round| round.header.trim() == header.trim())?;
@@ -159,7 +169,8 @@ mod tests {
         assert_eq!(one("Carriage speed(mm/s)"), write("speed [mm/s]"));
         assert_eq!(one("F_x (N)"), write("f_x [N]"));
         assert_eq!(one("Mz (N m)"), write("m_z [N m]"));
-        assert_eq!(one("Beta (°)"), write("angle [°]"));
+        assert_eq!(one("Beta (°)"), write("beta [°]"));
+        assert_eq!(one("angle (deg)"), write("angle [deg]"));
         assert_eq!(one("T (degC)"), write("temperature [degC]"));
         assert_eq!(one("t (s)"), write("time [s]"));
         assert_eq!(one("strain (N) (N)"), write("strain (N) [N]"));
@@ -167,6 +178,14 @@ mod tests {
         for other in ["U [m/s]", "U", "drag (tare)", "run (1)", "(m/s)", "U (m/s) raw"] {
             assert_eq!(one(other), None, "{other}");
         }
+    }
+
+    #[test]
+    fn v_is_sway_beside_a_side_force_and_a_speed_beside_a_drag() {
+        let all = |headers: &[&str]| said(headers, headers[0]).unwrap();
+        assert!(all(&["v (m/s)", "Y (N)"]).ends_with("`v_y [m/s],f_y [N]`"));
+        assert!(all(&["v (m/s)", "Fx (N)"]).ends_with("`speed [m/s],f_x [N]`"));
+        assert!(all(&["velocity (m/s)", "Y (N)"]).ends_with("`speed [m/s],f_y [N]`"));
     }
 
     #[test]

@@ -81,16 +81,16 @@ pub fn density(kg_m3: f64, kinematic_viscosity_m2_s: Option<f64>) -> Option<Stri
             "{problem}, or, if the test was in air, the kinematic viscosity beside it: {nu:e} m^2/s is not that of air, some 1.5e-5 m^2/s"
         )),
         None => Some(format!(
-            "{problem}; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: kinematic_viscosity in [fluid] of the \
-             campaign, or a column kinematic_viscosity [m^2/s]"
+            "{problem}; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: kinematic_viscosity beside density, in \
+             [fluid] of the campaign or as columns"
         )),
     }
 }
 
-/// The same for added mass, which asks for no viscosity and is in proportion to the density.
+/// The same for added mass, which asks for no viscosity and is in proportion to the density: 1 kg/m³ is taken for A/ρ.
 #[must_use]
 pub fn density_of_displaced_water(kg_m3: f64) -> Option<String> {
-    let problem = no_water(kg_m3)?;
+    let problem = no_water(kg_m3).filter(|_| kg_m3 != 1.0)?;
     let is_air = AIR_KG_M3.contains(&kg_m3);
     let advice =
         if is_air { "; in air, ask for \"1 kg/m^3\" and take the result times the density of the air" } else { "" };

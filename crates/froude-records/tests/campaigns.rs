@@ -258,7 +258,7 @@ fn quantities_of_another_kind_name_both() {
         "\"1.025 kg/m^3\"",
         "lab/campaign.toml:5:11: `density` is \"1.025 kg/m^3\", which is the density of no water (500 to 2000 kg/m^3 are taken); \
          write 1.025 g/cm^3 or 1025 kg/m^3; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: \
-         kinematic_viscosity in [fluid] of the campaign, or a column kinematic_viscosity [m^2/s]",
+         kinematic_viscosity beside density, in [fluid] of the campaign or as columns",
     );
     // What the message proposes is no water of 1.025 kg/m^3.
     refused(

@@ -133,7 +133,10 @@ impl Idle {
                 Some(error.into())
             }
         };
-        if self.trouble.is_none() && trouble.is_some() {
+        // A rig that another program has taken or stopped for good is the graver trouble.
+        let is_graver = matches!(self.trouble, Some(RunnerError::StoppedAtRest { .. }))
+            && !matches!(trouble, Some(RunnerError::StoppedAtRest { .. }));
+        if (self.trouble.is_none() || is_graver) && trouble.is_some() {
             self.trouble = trouble;
             engine.call();
         }

@@ -756,7 +756,7 @@ impl<'a, 'o> Session<'a, 'o> {
         }
         let sample = self.rig_tick(request)?;
         if let Some(Stranger::Stopped(session)) = sample.stranger {
-            self.until_rest()?;
+            self.rest_without_fault()?;
             return Err(RunnerError::StoppedByAnother { run: self.run.id.clone(), session });
         }
         if let Some((fault, _)) = sample.fault {
@@ -791,6 +791,11 @@ impl<'a, 'o> Session<'a, 'o> {
         if let Some(sentence) = sentence {
             self.event(EventKind::Operator, sentence);
         }
+        self.rest_without_fault()
+    }
+
+    /// Goes on until both axes are at rest; a fault on the way is an error.
+    fn rest_without_fault(&mut self) -> Result<(), RunnerError> {
         self.until_rest()?;
         // That nobody records any more is a fault by intent; any other one came while the carriage was being stopped.
         match self.last.fault {

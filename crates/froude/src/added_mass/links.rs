@@ -271,11 +271,15 @@ mu_z = "C_Az*volume*density"   # not in the paper
 
 [[identify.model]]
 name = "per_link"              # through the origin: eq. 24, its n read as the number of links
+mu_x = "m_link_x*n_links"      # mu_x and mu_z are not in the paper
 mu_y = "m_link*n_links"
+mu_z = "m_link_z*n_links"
 
 [[identify.model]]
 name = "affine"
+mu_x = "m_link_x*n_links + m_ends_x"
 mu_y = "m_link*n_links + m_ends"
+mu_z = "m_link_z*n_links + m_ends_z"
 "#
     )
 }

@@ -151,12 +151,18 @@ fn part_of(runs: &Runs) -> Option<PartOf> {
         [one] => one.meta.id.clone(),
         _ => format!("{named} of {all} runs"),
     };
-    let folder = if runs.folder.as_os_str().is_empty() { Path::new(".") } else { &runs.folder };
+    let mut folders: Vec<_> = runs.logs.iter().filter_map(|log| log.path.parent()).collect();
+    folders.dedup();
+    let folders: Vec<String> = folders
+        .into_iter()
+        .map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
+        .map(|folder| folder.display().to_string())
+        .collect();
     let text = format!(
         "{named} of the {all} runs that lie there and tell drag {} named: this is no result of the campaign, and its record is called \
          {of:?}. froude carriage drag {} takes them all",
         if named == 1 { "was" } else { "were" },
-        folder.display(),
+        folders.join(" "),
     );
     Some(PartOf { of, finding: Finding::new(Severity::Warning, "part-of-a-campaign", text) })
 }
@@ -415,7 +421,14 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
         let value = half.map_or_else(|| number::plain(c.value, 4), |h| number::plus_minus(c.value, h));
         out.push(format!("Recommended: {}, D_d = {value} N s²/m² (95 %).", c.method.words()));
     } else {
-        out.push("No D_d is recommended: no method can state an interval from these runs.".to_owned());
+        let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());
+        let why = if has_interval {
+            "neither the force sensor nor the difference of wet and dry runs states an interval here, and those of the models rest on \
+             their own friction"
+        } else {
+            "no method can state an interval from these runs"
+        };
+        out.push(format!("No D_d is recommended: {why}."));
     }
     if setup.calibration.is_none() {
         out.push(
