@@ -254,10 +254,11 @@ fn a_campaign_goes_on_after_each_of_its_runs_and_gives_the_same_drag() {
         for ((model, d, u), (_, resumed, _)) in at_once.iter().zip(coefficients(&drag(&out))) {
             let part = (resumed - d).abs() / u;
             println!("after {k} runs: {model} {d} at once, {resumed} resumed, {part:.4} u");
-            assert!(part <= 0.1, "after {k} runs: {model} differs by {part} u");
             worst = worst.max(part);
         }
         std::fs::remove_dir_all(&out).unwrap();
     }
     println!("{} driven on to their end: largest difference {worst:.4} u", ends.len());
+    // What is left is the quantisation of the encoder: after another homing its counts fall at other moments.
+    assert!(worst <= 0.1, "D_d differs by {worst} u");
 }
