@@ -443,11 +443,7 @@ fn a_run_is_complete_only_when_log_and_sidecar_are_what_was_written() {
 
     let (log, text) = (std::fs::read(&path).unwrap(), std::fs::read(&sidecar).unwrap());
     std::fs::write(&path, &log[..log.len() - 1]).unwrap();
-    let cut = format!(
-        "run.mcap has {} of the {} bytes that were recorded: it was cut off; copy it again from where it was recorded",
-        log.len() - 1,
-        log.len()
-    );
+    let cut = format!("run.mcap has {} of the {} bytes that were recorded: it was cut off", log.len() - 1, log.len());
     assert_eq!(reason(at, "run"), cut);
     std::fs::remove_file(&path).unwrap();
     assert_eq!(reason(at, "run"), "the log run.mcap is gone; run.toml says complete");

@@ -170,9 +170,9 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let is_pulley_measured = driving.iter().any(|r| r.weight_n > 0.0 && r.direction < 0.0);
     if !is_pulley_measured && weights[0] > 0.9 * weights[1] {
         return Err(DragError::Calibration(format!(
-            "{}, lifting {:.2} N: friction and weight cannot be told apart; add runs without weight, or lower \
+            "{}, all lifting {:.2} N: friction and weight cannot be told apart; add runs without weight, or lower \
              a weight that is lighter than the friction",
-            counted(total, "run", "runs, all"),
+            counted(total, "run", "runs"),
             weights[1]
         )));
     }
