@@ -29,3 +29,12 @@ fn rare_endings_are_allowed_for_what_they_are() {
     assert!(sweep.refused.is_empty(), "{:#?}", sweep.refused);
     assert_eq!(sweep.taken_over, sweep.runs);
 }
+
+/// Seeds among the first 10⁵ where a stop came between a request and its tick: what was asked for before a stop and not begun is refused.
+#[test]
+fn a_stop_that_comes_between_a_request_and_its_tick_is_the_last_word() {
+    let seeds =
+        [3054, 3618, 13_116, 15_526, 20_092, 24_872, 27_024, 30_010, 30_874, 31_544, 33_298, 39_076, 39_288, 43_878];
+    let sweep = Hosts::new().sweep(seeds);
+    assert!(sweep.refused.is_empty(), "{:#?}", sweep.refused);
+}

@@ -135,9 +135,20 @@ impl Spec {
         }
     }
 
+    /// What was asked for before a stop and not begun is not begun after it.
+    fn refuse_what_waits(&mut self) {
+        let is_stop = |waiting: &(u32, u16, Request)| matches!(waiting.2, Request::Stop(_));
+        let refused = self.waiting.iter().rfind(|w| !is_stop(w) && w.0 == self.holder);
+        self.answered = refused.map(|w| w.1).or(self.answered);
+        self.waiting.retain(is_stop);
+    }
+
     fn hear(&mut self, &HostFrame { session, says }: &HostFrame) {
         if let ToBoard::Request { id, request: request @ Request::Stop(_) } = says {
             let is_repeated = session == self.holder && self.answered == Some(id);
+            if !is_repeated {
+                self.refuse_what_waits();
+            }
             if !is_repeated && !self.waiting.iter().any(|w| (w.0, w.1) == (session, id)) {
                 self.waiting.truncate(7);
                 self.waiting.push_front((session, id, request));
