@@ -212,9 +212,17 @@ fn complete_of(folder: &Path) -> Vec<String> {
     if folder.exists() { complete(folder) } else { Vec::new() }
 }
 
-/// Cut after a run and driven on for one more, and driven on to the end; with the whole example after each of its runs, and ten times.
-#[test]
-fn a_campaign_goes_on_after_each_of_its_runs_and_gives_the_same_drag() {
+/// A campaign that was driven in one go.
+struct Driven {
+    folder: tempfile::TempDir,
+    campaign: PathBuf,
+    full: PathBuf,
+    runs: Vec<String>,
+    began: Instant,
+}
+
+/// The whole example, or the short one, in one go.
+fn driven() -> Driven {
     let folder = tempfile::tempdir().unwrap();
     let full = folder.path().join("full");
     let began = Instant::now();
@@ -222,12 +230,19 @@ fn a_campaign_goes_on_after_each_of_its_runs_and_gives_the_same_drag() {
     to_the_end(&campaign, &full);
     let runs = complete(&full);
     println!("{} runs driven in one go in {:.0} s", runs.len(), began.elapsed().as_secs_f64());
-    let (cuts, ends): (Vec<usize>, Vec<usize>) = if is_all() {
-        // Ends: two of each ABBA block, and the beginning.
-        ((0..runs.len()).collect(), vec![3, 37, 60, 88, 99, 107, 119, 147, 163, 199])
-    } else {
-        (vec![1, runs.len() / 2, runs.len() - 1], vec![runs.len() / 2])
-    };
+    Driven { folder, campaign, full, runs, began }
+}
+
+/// Whether all files that lay in a folder lie there unchanged.
+fn is_untouched(before: &BTreeMap<String, Vec<u8>>, folder: &Path) -> bool {
+    let after = files(folder, true);
+    before.iter().all(|(name, content)| after.get(name) == Some(content))
+}
+
+#[test]
+fn a_campaign_goes_on_after_each_of_its_runs() {
+    let Driven { folder, campaign, full, runs, began } = driven();
+    let cuts: Vec<usize> = if is_all() { (0..runs.len()).collect() } else { vec![1, runs.len() / 2, runs.len() - 1] };
     for &k in &cuts {
         let out = folder.path().join(format!("cut-{k}"));
         let first = cut_after(&full, k, &out);
@@ -237,11 +252,17 @@ fn a_campaign_goes_on_after_each_of_its_runs_and_gives_the_same_drag() {
         let now = complete(&out);
         assert_eq!(now[..k], first[..]);
         assert_eq!(now.get(k), runs.get(k), "after {k} runs");
-        let after = files(&out, true);
-        assert!(before.iter().all(|(name, content)| after.get(name) == Some(content)), "after {k} runs");
+        assert!(is_untouched(&before, &out), "after {k} runs");
         std::fs::remove_dir_all(&out).unwrap();
     }
     println!("cut after {} of {} runs: all driven on, {:.0} s", cuts.len(), runs.len(), began.elapsed().as_secs_f64());
+}
+
+#[test]
+fn a_campaign_driven_on_to_its_end_gives_the_same_drag() {
+    let Driven { folder, campaign, full, runs, .. } = driven();
+    // Two of each ABBA block, and the beginning.
+    let ends = if is_all() { vec![3, 37, 60, 88, 99, 107, 119, 147, 163, 199] } else { vec![runs.len() / 2] };
     let at_once = coefficients(&drag(&full));
     let mut worst = 0.0_f64;
     for &k in &ends {
@@ -249,8 +270,7 @@ fn a_campaign_goes_on_after_each_of_its_runs_and_gives_the_same_drag() {
         cut_after(&full, k, &out);
         let before = files(&out, true);
         to_the_end(&campaign, &out);
-        let after = files(&out, true);
-        assert!(before.iter().all(|(name, content)| after.get(name) == Some(content)), "after {k} runs");
+        assert!(is_untouched(&before, &out), "after {k} runs");
         for ((model, d, u), (_, resumed, _)) in at_once.iter().zip(coefficients(&drag(&out))) {
             let part = (resumed - d).abs() / u;
             println!("after {k} runs: {model} {d} at once, {resumed} resumed, {part:.4} u");
@@ -259,6 +279,8 @@ fn a_campaign_goes_on_after_each_of_its_runs_and_gives_the_same_drag() {
         std::fs::remove_dir_all(&out).unwrap();
     }
     println!("{} driven on to their end: largest difference {worst:.4} u", ends.len());
-    // What is left is the quantisation of the encoder: after another homing its counts fall at other moments.
-    assert!(worst <= 0.1, "D_d differs by {worst} u");
+    // What is left: after another homing the encoder's counts fall at other moments (a millivolt), and the first run sets out from another state
+    // of stiction, which the chain takes two seconds to forget. In the short campaign that run is one of six calibrations at two weights.
+    let bar = if is_all() { 0.1 } else { 0.3 };
+    assert!(worst <= bar, "D_d differs by {worst} u");
 }

@@ -183,6 +183,9 @@ pub trait Rig {
     /// Begins a run with what the operator has mounted. Nothing to do on a real rig.
     fn begin_run(&mut self, load: &Load, run_number: u64);
 
+    /// Begins what is recorded of the run, at rest where it starts. Nothing to do on a real rig.
+    fn begin_recording(&mut self) {}
+
     /// What it is, for the record: `twin`, or the firmware's name and version.
     fn version(&self) -> String;
 }

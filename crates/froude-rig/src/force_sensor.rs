@@ -56,13 +56,21 @@ impl ForceSensor {
     /// Draws the run's drift.
     #[must_use]
     pub fn new(config: ForceSensorConfig, tick_s: f64, rng: &mut Pcg64Mcg) -> Self {
-        let (zero_n, walk) = match config.drift {
-            Drift::None => (0.0, None),
-            Drift::PerRun(half_n) => (half_n * (2.0 * rng.random::<f64>() - 1.0), None),
-            Drift::Walk(rms_n, time_s) => (0.0, Some(OrnsteinUhlenbeck::new(rms_n, time_s, tick_s, rng))),
+        let zero_n = match config.drift {
+            Drift::PerRun(half_n) => half_n * (2.0 * rng.random::<f64>() - 1.0),
+            Drift::None | Drift::Walk(..) => 0.0,
         };
         let gain = 1.0 - libm::exp(-2.0 * core::f64::consts::PI * config.filter_hz * tick_s);
-        Self { config, gain, filtered_n: 0.0, zero_n, walk }
+        let mut sensor = Self { config, gain, filtered_n: 0.0, zero_n, walk: None };
+        sensor.wander_anew(tick_s, rng);
+        sensor
+    }
+
+    /// A zero that walks sets out anew, anywhere in its range.
+    pub fn wander_anew(&mut self, tick_s: f64, rng: &mut Pcg64Mcg) {
+        if let Drift::Walk(rms_n, time_s) = self.config.drift {
+            self.walk = Some(OrnsteinUhlenbeck::new(rms_n, time_s, tick_s, rng));
+        }
     }
 
     /// A sample of the true force.

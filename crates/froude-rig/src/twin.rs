@@ -56,6 +56,10 @@ impl Spread {
     /// No chance at all.
     pub const NONE: Self =
         Self { friction_run: 0.0, torque_constant_run: 0.0, friction_noise_n: 0.0, friction_noise_s: 1.0 };
+
+    fn friction_noise(&self, rng: &mut Pcg64Mcg) -> OrnsteinUhlenbeck {
+        OrnsteinUhlenbeck::new(self.friction_noise_n, self.friction_noise_s, TICK_S, rng)
+    }
 }
 
 /// One axis of the twin.
@@ -190,7 +194,7 @@ impl Axis {
         };
         self.friction_factor = factor(spread.friction_run);
         self.torque_factor = factor(spread.torque_constant_run);
-        self.noise = OrnsteinUhlenbeck::new(spread.friction_noise_n, spread.friction_noise_s, TICK_S, rng);
+        self.noise = spread.friction_noise(rng);
         self.config.load = load;
         let p = &self.config.parameters;
         self.newtons_per_ampere = p.torque_constant_n_m_a * self.torque_factor / p.chain_m_rad();
@@ -288,6 +292,15 @@ impl Twin {
             axis.begin_run(load, &self.spread, &mut self.rng);
         }
         self.sensor = ForceSensor::new(self.force_sensor, TICK_S, &mut self.rng);
+    }
+
+    /// What is noise within a run is drawn anew from this seed: the record does not depend on the way to its start.
+    pub fn begin_recording(&mut self, seed: u64) {
+        self.rng = Pcg64Mcg::seed_from_u64(seed);
+        for axis in &mut self.axes {
+            axis.noise = self.spread.friction_noise(&mut self.rng);
+        }
+        self.sensor.wander_anew(TICK_S, &mut self.rng);
     }
 
     /// Breaks something later.

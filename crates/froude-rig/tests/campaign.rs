@@ -280,6 +280,10 @@ impl Rig for Stopped {
     fn begin_run(&mut self, load: &Load, number: u64) {
         self.rig.begin_run(load, number);
     }
+
+    fn begin_recording(&mut self) {
+        self.rig.begin_recording();
+    }
     fn version(&self) -> String {
         self.rig.version()
     }

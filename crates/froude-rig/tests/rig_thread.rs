@@ -66,6 +66,10 @@ impl Rig for Running {
     fn begin_run(&mut self, load: &Load, run_number: u64) {
         self.twin.begin_run(load, run_number);
     }
+
+    fn begin_recording(&mut self) {
+        self.twin.begin_recording();
+    }
     fn version(&self) -> String {
         self.twin.version()
     }

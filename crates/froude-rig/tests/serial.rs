@@ -336,20 +336,22 @@ fn a_line_without_a_board_is_told_with_what_to_do() {
     assert!(error.to_string().starts_with("the board at a socket has sent no valid frame for 5."), "{error}");
 }
 
-/// Ticks a rig until told to end; the sessions that it was told of, and why it ended if it did by itself.
-fn driven(mut rig: SerialRig, is_over: Arc<AtomicBool>) -> JoinHandle<(Vec<Stranger>, Result<(), RigError>)> {
+/// Ticks a rig until it has read this tick of the board; the sessions that it was told of, and why it ended if it did by itself.
+fn driven(mut rig: SerialRig, last: Arc<AtomicU64>) -> JoinHandle<(Vec<Stranger>, Result<(), RigError>)> {
     std::thread::spawn(move || {
         let mut strangers = vec![];
-        while !is_over.load(Ordering::SeqCst) {
+        loop {
             match rig.tick(None) {
                 Ok(sample) => {
                     assert_eq!(sample.fault, None, "{sample:?}");
                     strangers.extend(sample.stranger);
+                    if sample.tick >= last.load(Ordering::SeqCst) {
+                        return (strangers, Ok(()));
+                    }
                 }
                 Err(error) => return (strangers, Err(error)),
             }
         }
-        (strangers, Ok(()))
     })
 }
 
@@ -359,15 +361,15 @@ fn a_second_host_is_refused_while_the_first_lives_and_the_first_learns_of_it() {
     let mut rig = SerialRig::on("a socket", Box::new(line), config()).unwrap();
     rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
     until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
-    let is_over = Arc::new(AtomicBool::new(false));
-    let first = driven(rig, Arc::clone(&is_over));
+    let last = Arc::new(AtomicU64::new(u64::MAX));
+    let first = driven(rig, Arc::clone(&last));
     let error = SerialRig::on("a socket", Box::new(other), config()).map(|_| ()).unwrap_err();
     assert!(matches!(error, RigError::Held { holder, .. } if holder != NOBODY), "{error}");
     let said = error.to_string();
     assert!(said.starts_with("the board at a socket is being driven by another program (session "), "{said}");
     assert!(said.ends_with("End that program, then run again"), "{said}");
     running.pass_s(1.0);
-    is_over.store(true, Ordering::SeqCst);
+    last.store(running.ticks.load(Ordering::SeqCst), Ordering::SeqCst);
     let (strangers, end) = first.join().unwrap();
     end.unwrap();
     assert!(matches!(strangers[..], [Stranger::TurnedAway(_)]), "said once: {strangers:x?}");
@@ -381,13 +383,13 @@ fn a_stop_from_another_host_is_obeyed_and_the_first_learns_whose_it_was() {
     let mut rig = SerialRig::on("a socket", Box::new(line), config()).unwrap();
     rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
     until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
-    let is_over = Arc::new(AtomicBool::new(false));
-    let first = driven(rig, Arc::clone(&is_over));
+    let last = Arc::new(AtomicU64::new(u64::MAX));
+    let first = driven(rig, Arc::clone(&last));
     let (mut writer, mut wire) = (FrameWriter::default(), [0_u8; 256]);
     let stop = ToBoard::Request { id: 1, request: Request::Stop(StopCategory::One) };
     std::io::Write::write_all(&mut other, writer.write(&stop.from_session(0xb), &mut wire)).unwrap();
     running.pass_s(1.0);
-    is_over.store(true, Ordering::SeqCst);
+    last.store(running.ticks.load(Ordering::SeqCst), Ordering::SeqCst);
     let (strangers, end) = first.join().unwrap();
     end.unwrap();
     assert_eq!(strangers, [Stranger::Stopped(0xb)]);

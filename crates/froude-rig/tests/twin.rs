@@ -161,3 +161,17 @@ fn a_new_run_keeps_the_place_and_draws_anew() {
     assert_eq!(twin.truth(0).motor_position_m.to_bits(), place_m.to_bits());
     assert_ne!(twin.run_factors(0), factors);
 }
+
+#[test]
+fn a_record_does_not_hold_how_the_axis_came_to_its_start() {
+    let currents = |ticks_before: usize, seed: u64| -> Vec<u64> {
+        let mut twin = Twin::new(&TwinConfig::default(), 1);
+        for _ in 0..ticks_before {
+            twin.tick(Command::default());
+        }
+        twin.begin_recording(seed);
+        (0..2_000).map(|_| twin.tick(volts(2.0, 0.0)).axes[0].current_a.to_bits()).collect()
+    };
+    assert_eq!(currents(10, 7), currents(5_000, 7));
+    assert_ne!(currents(10, 7), currents(10, 8));
+}

@@ -637,6 +637,7 @@ impl<'a, 'o> Session<'a, 'o> {
 
     /// Still, motion, still. Gives why the planned motion was not done, where it was not.
     pub(super) fn motion(&mut self) -> Result<Option<String>, RunnerError> {
+        self.rig.begin_recording();
         let still_s = self.setting.asked.still_s;
         self.wait(still_s)?;
         self.event(EventKind::Phase, "the motion begins");

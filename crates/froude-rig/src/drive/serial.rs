@@ -288,7 +288,14 @@ impl SerialRig {
         for &byte in &bytes[..n] {
             if let Some(received) = self.reader.feed(byte) {
                 // Answers about the time do not say what the carriage does: without telemetry the board is given up.
-                if matches!(received.message, FromBoard::Telemetry(_) | FromBoard::Ack(_) | FromBoard::Hello(_)) {
+                // Neither do answers to another host.
+                let is_for_us = match received.message {
+                    FromBoard::Telemetry(_) => true,
+                    FromBoard::Ack(ack) => ack.session == self.session,
+                    FromBoard::Hello(hello) => hello.session == self.session,
+                    _ => false,
+                };
+                if is_for_us {
                     self.unheard = Duration::ZERO;
                 }
                 self.take(received.message)?;

@@ -16,6 +16,7 @@ pub struct TwinRig {
     controller: Controller,
     command: Command,
     seed: u64,
+    run_seed: u64,
     hung_n: f64,
     is_truth_told: bool,
     has_force_sensor: bool,
@@ -37,6 +38,7 @@ impl TwinRig {
             controller: Controller::new(config).map_err(RigError::Config)?,
             command: Command::default(),
             seed,
+            run_seed: seed,
             hung_n: 0.0,
             is_truth_told: true,
             has_force_sensor: true,
@@ -101,6 +103,7 @@ impl Rig for TwinRig {
     fn begin_run(&mut self, load: &Load, run_number: u64) {
         // A stream of its own for each run, so that a resumed campaign draws what it would have drawn.
         let seed = self.seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(run_number);
+        self.run_seed = seed;
         let hung_n = load.hung.weight_n;
         // Nobody drops a weight onto the cord: it is let down in half a second, while the loop holds.
         let steps = if hung_n == self.hung_n { 1 } else { LETTING_DOWN };
@@ -115,6 +118,11 @@ impl Rig for TwinRig {
             }
         }
         self.hung_n = hung_n;
+    }
+
+    fn begin_recording(&mut self) {
+        // Homing takes its draws too, and only the first run of a session homes.
+        self.twin.begin_recording(!self.run_seed);
     }
 
     fn version(&self) -> String {
