@@ -19,6 +19,15 @@ fn record(folder: &Path) -> Vec<u8> {
     std::fs::read(folder.join("estimate.json")).unwrap()
 }
 
+/// A campaign with its runs and their result: its folder, and the record in it.
+fn reduced() -> (Bench, PathBuf, Vec<u8>) {
+    let bench = Bench::new();
+    bench.drag();
+    let whole = bench.folder.path().join("campaign-runs-drag");
+    let before = record(&whole);
+    (bench, whole, before)
+}
+
 /// Both files of a run.
 fn delete(log: &Path) {
     std::fs::remove_file(log).unwrap();
@@ -27,10 +36,7 @@ fn delete(log: &Path) {
 
 #[test]
 fn one_run_has_a_result_of_its_own_name_and_recommends_nothing() {
-    let bench = Bench::new();
-    bench.drag();
-    let whole = bench.folder.path().join("campaign-runs-drag");
-    let before = record(&whole);
+    let (bench, whole, before) = reduced();
     let wet = &bench.logs("wet")[2];
     let one = drag(&[wet]);
     assert_eq!(record(&whole), before, "the campaign's own result stays");
@@ -61,10 +67,7 @@ fn one_run_has_a_result_of_its_own_name_and_recommends_nothing() {
 
 #[test]
 fn a_part_never_takes_the_place_of_more() {
-    let bench = Bench::new();
-    bench.drag();
-    let whole = bench.folder.path().join("campaign-runs-drag");
-    let before = record(&whole);
+    let (bench, whole, before) = reduced();
     // As a shell names them: `014*`, log and sidecar.
     let second: Vec<PathBuf> =
         bench.logs("p2").iter().flat_map(|log| [log.clone(), log.with_extension("toml")]).collect();
@@ -105,14 +108,12 @@ fn a_part_never_takes_the_place_of_more() {
 
 #[test]
 fn two_folders_have_a_result_of_their_own() {
-    let bench = Bench::new();
-    bench.drag();
-    let before = record(&bench.folder.path().join("campaign-runs-drag"));
+    let (bench, whole, before) = reduced();
     let other = bench.folder.path().join("other-runs");
     copy(&bench::driven(2).join("campaign-runs"), &other);
     drag(&[&bench.runs, &other]);
     assert!(bench.folder.path().join("campaign-runs-and-1-more-drag/estimate.json").exists());
-    assert_eq!(record(&bench.folder.path().join("campaign-runs-drag")), before);
+    assert_eq!(record(&whole), before);
 }
 
 #[test]

@@ -271,7 +271,7 @@ fn facts(source: &SourceResult) -> Vec<(String, String)> {
 
 /// The channel that a response is drawn against: speed where there is motion, else the first channel of its law.
 fn abscissa(model: &ModelFit, data: &Dataset) -> Option<String> {
-    if data.values("speed").is_some_and(|u| u.iter().any(|x| *x > 0.0)) && law_moves(model) {
+    if data.values("speed").is_some_and(|u| u.iter().any(|x| *x != 0.0)) && law_moves(model) {
         return None;
     }
     let used: Vec<String> = match &model.law.kind {

@@ -369,14 +369,15 @@ fn differences_per_speed(points: &[Point]) -> usize {
     points.iter().filter(|p| p.speed_m_s.abs() > 0.99 * fastest).count()
 }
 
-/// The narrowest interval among the methods that need no model of the friction.
+/// The narrowest interval among the methods that need no model of the friction, or the first method's; a number without an interval is
+/// recommended to nobody.
 fn recommended(all: &[Coefficient]) -> Option<Method> {
     all.iter()
         .filter(|c| matches!(c.method, Method::Fsm | Method::Mcd))
         .filter_map(|c| c.relative_half_width().map(|h| (c.method, h)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|m| m.0)
-        .or_else(|| all.first().map(|c| c.method))
+        .or_else(|| all.first().filter(|c| c.interval_95.is_some()).map(|c| c.method))
 }
 
 /// Lints of the result.

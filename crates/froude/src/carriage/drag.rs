@@ -97,7 +97,6 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
         setup.name = format!("{}, {}", setup.name, part.of);
     }
     let mut report = drag_report(&reduced, &setup)?;
-    none_without_interval(&mut report);
     report.findings.extend(undeclared);
     report.findings.extend(part.map(|part| part.finding));
     report.findings.extend(stopped.map(|stop| stop.finding(runs.beside > 0)));
@@ -151,8 +150,7 @@ fn part_of(runs: &Runs) -> Option<PartOf> {
         [one] => one.meta.id.clone(),
         _ => format!("{named} of {all} runs"),
     };
-    let mut folders: Vec<_> = runs.logs.iter().filter_map(|log| log.path.parent()).collect();
-    folders.dedup();
+    let folders: BTreeSet<_> = runs.logs.iter().filter_map(|log| log.path.parent()).collect();
     let folders: Vec<String> = folders
         .into_iter()
         .map(|folder| if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
@@ -165,15 +163,6 @@ fn part_of(runs: &Runs) -> Option<PartOf> {
         folders.join(" "),
     );
     Some(PartOf { of, finding: Finding::new(Severity::Warning, "part-of-a-campaign", text) })
-}
-
-/// A number without an interval is recommended to nobody.
-fn none_without_interval(report: &mut DragReport) {
-    let is_stated = |c: &&Coefficient| Some(c.method) == report.recommended && c.interval_95.is_some();
-    if report.recommended.is_some() && !report.coefficients.iter().any(|c| is_stated(&c)) {
-        report.recommended = None;
-        report.estimates.iter_mut().for_each(|estimate| estimate.recommended = false);
-    }
 }
 
 /// A campaign that stopped because its interval was short enough.

@@ -1,5 +1,6 @@
 //! Runs of a carriage, read from a folder as the reductions take them.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use froude_hydro::fluid::Water;
@@ -156,8 +157,7 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     let mut folders: Vec<PathBuf> = paths.iter().filter(|path| path.is_dir()).cloned().collect();
     if out.beside == 0 {
         // All that lies there was named, one by one.
-        folders.extend(singles.iter().map(|log| folder_of(log)));
-        folders.dedup();
+        folders.extend(singles.iter().map(|log| folder_of(log)).collect::<BTreeSet<_>>());
     }
     for folder in &folders {
         // That a campaign stopped early is said by whoever pays for it.
