@@ -795,24 +795,32 @@ fn a_faired_strut_as_tare_leaves_nothing_in_the_force_along_the_body() {
     assert!((x_uu / -10.0 - 1.0).abs() < 0.01, "X_uu {x_uu}");
 }
 
-/// A section that is the same fore and aft: towed astern its forward part turns round with the flow. A law of an earlier version in bare
-/// `speed` would turn the drag round with it, and says so.
-#[test]
-fn a_strut_towed_both_ways_is_one_strut() {
-    const LIFT: f64 = 10.0 * STRUT;
+/// Side force of the strut per sine of its angle, N s²/m².
+const LIFT: f64 = 10.0 * STRUT;
+
+/// A strut that is the same fore and aft, towed ahead and astern at these angles.
+fn strut_both_ways(angles_deg: &[f64]) -> String {
     let mut noise = noise(17);
-    let mut tare = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+    let mut out = "speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
     for i in 1..=10 {
-        for angle in [-20.0_f64, -10.0, 0.0, 10.0, 20.0] {
+        for angle in angles_deg {
             for way in [1.0, -1.0] {
                 let speed = 0.1 * f64::from(i);
                 let (sin, cos) = angle.to_radians().sin_cos();
                 let (drag, lift) = (STRUT * speed * speed, LIFT * speed * speed * sin);
                 let (f_x, f_y) = (way * (-drag * cos + lift * sin), way * (drag * sin + lift * cos));
-                writeln!(tare, "{},{angle},{},{}", way * speed, f_x + 0.01 * noise(), f_y + 0.01 * noise()).unwrap();
+                writeln!(out, "{},{angle},{},{}", way * speed, f_x + 0.01 * noise(), f_y + 0.01 * noise()).unwrap();
             }
         }
     }
+    out
+}
+
+/// A section that is the same fore and aft: towed astern its forward part turns round with the flow. A law of an earlier version in bare
+/// `speed` would turn the drag round with it, and says so.
+#[test]
+fn a_strut_towed_both_ways_is_one_strut() {
+    let tare = strut_both_ways(&[-20.0, -10.0, 0.0, 10.0, 20.0]);
     let folder = folder_of(&[("tare.csv", &tare)]);
     let fitted = json_in(folder.path(), &["identify", "tare.csv", "--models", "strut"]);
     let strut = estimate(&fitted, "strut");
@@ -836,6 +844,77 @@ fn a_strut_towed_both_ways_is_one_strut() {
         std::fs::write(folder.path().join("tare/estimate.json"), &record).unwrap();
         let out = json_in(folder.path(), &["identify", "c.toml"]);
         assert_eq!(findings(&out, "tare-of-signed-speed").len(), usize::from(is_warned), "{}", out["findings"]);
+    }
+}
+
+/// At one magnitude of the angle, ahead and astern, f_x has one shape: its two terms would not be told apart.
+#[test]
+fn a_strut_at_one_angle_has_one_term_along_the_body() {
+    let tare = strut_both_ways(&[-20.0, 20.0]);
+    let out = json(&[("tare.csv", &tare)], &["identify", "tare.csv", "--models", "strut"]);
+    let strut = estimate(&out, "strut");
+    assert_eq!(strut["law"]["formulas"]["f_x"], "-D_xU*v_x*abs(speed)");
+    let sin = f64::to_radians(20.0).sin();
+    // f_x = −(STRUT − LIFT tan 20° sin 20°) cos 20° U|U| is what both make of it.
+    let both = STRUT - LIFT * sin * f64::to_radians(20.0).tan();
+    assert!((value(strut, "D_xU") - both).abs() < 0.02 * STRUT, "{}", strut["coefficients"]);
+    assert!(
+        findings(&out, "lack-of-fit").is_empty() && findings(&out, "undetermined").is_empty(),
+        "{}",
+        out["findings"]
+    );
+}
+
+/// A table and its mirror image, towed the other way with every load turned round, are told the same.
+#[test]
+fn a_run_astern_is_judged_as_a_run_ahead() {
+    let mut noise = noise(18);
+    let mut table = |factor: &dyn Fn(usize) -> f64, stretch: f64| -> Vec<[f64; 4]> {
+        (0..16)
+            .map(|i| {
+                let speed = stretch * 0.1 * (i / 2 + 2) as f64;
+                [speed, speed, (i % 2 + 1) as f64, -factor(i) * (20.0 * speed * speed + 0.02 * noise())]
+            })
+            .collect()
+    };
+    let written = |rows: &[[f64; 4]], way: f64| {
+        let mut out = "speed [m/s],v_x [m/s],repeat [1],f_x [N]\n".to_owned();
+        for [speed, v_x, repeat, f_x] in rows {
+            writeln!(out, "{},{},{repeat},{:.4}", way * speed, way * v_x, way * f_x).unwrap();
+        }
+        out
+    };
+    let codes = |text: &str| -> Vec<String> {
+        let campaign = "schema = 1\nname = \"x\"\n[fluid]\ntemperature = \"15 degC\"\n[body]\nreference_area = \
+                        \"0.02 m^2\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n";
+        let out = json(&[("t.csv", text), ("c.toml", campaign)], &["identify", "c.toml"]);
+        out["findings"].as_array().unwrap().iter().map(|f| f["code"].as_str().unwrap().to_owned()).collect()
+    };
+    let clean = table(&|_| 1.0, 1.0);
+    let fast = table(&|_| 1.0, 80.0);
+    let small = table(&|_| 1e-3, 1.0);
+    let mut contradicting = clean.clone();
+    contradicting[7][1] *= 0.9;
+    let mut uneven = clean.clone();
+    uneven
+        .iter_mut()
+        .enumerate()
+        .for_each(|(i, row)| row[3] += if i > 7 { 0.8 * (1.0 - 2.0 * (i % 2) as f64) } else { 0.0 });
+    for (rows, expected) in [
+        (&clean, None),
+        (&fast, Some("implausible-speed")),
+        (&small, Some("unphysical-drag-coefficient")),
+        (&contradicting, Some("speed-contradicts-velocity")),
+        (&uneven, Some("uneven-scatter")),
+    ] {
+        let ahead = codes(&written(rows, 1.0));
+        assert!(expected.is_none_or(|code| ahead.iter().any(|c| c == code)), "{expected:?}: {ahead:?}");
+        assert_eq!(codes(&written(rows, -1.0)), ahead);
+    }
+    let mixed = table(&|i| if i % 2 == 1 { 101.97 } else { 1.0 }, 1.0);
+    for way in [1.0, -1.0] {
+        let said = refusal(&[("t.csv", &written(&mixed, way))], &["identify", "t.csv"]);
+        assert!(said.contains("gram-force"), "{said}");
     }
 }
 

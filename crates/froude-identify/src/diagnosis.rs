@@ -30,7 +30,7 @@ pub const FEWEST_FOR_SCATTER: usize = 8;
 /// A channel that the law needs and the data lack.
 pub fn diagnostics(model: &ModelFit, data: &Dataset, score: &Score) -> Result<Diagnostics, IdentifyError> {
     let f = &model.fit;
-    let has_motion = data.values("speed").is_some_and(|u| u.iter().any(|x| *x > 0.0));
+    let has_motion = data.values("speed").is_some_and(|u| u.iter().any(|x| *x != 0.0));
     let force_law = matches!(model.law.kind, Kind::Drag { .. }) && has_motion;
     Ok(Diagnostics {
         condition_number: Some(f.condition_number).filter(|c| c.is_finite()),

@@ -48,7 +48,7 @@ const REPEATS_WITHIN: f64 = 2e-3;
 const AHEAD: f64 = 0.99;
 /// The fastest towing carriages run 20 to 30 m/s; a model that is said to go faster was typed in another unit.
 const FASTEST_M_S: f64 = 40.0;
-/// The same of air: at Mach 0.3 its compressibility is 5 % of the drag, and no law here knows of it.
+/// The same of air: at Mach 0.3 its compressibility moves pressures by 5 % (Prandtl and Glauert, 1/√(1 − M²)), and no law here knows of it.
 const FASTEST_IN_AIR_M_S: f64 = 100.0;
 
 /// Every lint that looks at observations alone.
@@ -269,7 +269,7 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
         return None;
     }
     // The reference is a frontal area: a side force on it says nothing (a torpedo at broadside has 15).
-    let goes_ahead = load == "f_x" && data.velocity_m_s(i)[0].abs() >= AHEAD * speed[i];
+    let goes_ahead = load == "f_x" && data.velocity_m_s(i)[0].abs() >= AHEAD * speed[i].abs();
     if let Some(reference) = reference_area_m2.filter(|_| goes_ahead)
         && !BODY_DRAG_COEFFICIENT.contains(&(area_m2 / reference))
     {

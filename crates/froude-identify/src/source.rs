@@ -13,12 +13,14 @@ use indexmap::IndexMap;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::{ForceLaw, aliased};
+use crate::lint::moving;
 use crate::record;
 use crate::reduce::{Reduced, reduce};
 use crate::regression::{ModelFit, Settings, regress};
 use crate::selection::{
     BlockScore, NestedTest, Recommendation, Score, leave_one_out, nested_tests, range_block, recommend,
 };
+use crate::validity::{AT_REST, off_axis};
 use crate::{bootstrap, columns, diagnosis, lint, uncertainty, validity};
 
 /// Everything that identification found out about one source.
@@ -348,7 +350,7 @@ const MOMENTS: [(&str, &str, &str, &str); 2] = [("m_z", "v_x", "v_y", "N"), ("m_
 
 /// Whether there is motion along or about an axis in some row; cos 90° is 6e-17, which is none.
 fn moves(data: &Dataset, channel: &str) -> bool {
-    let largest = data.values("speed").map_or(0.0, |u| u.iter().copied().fold(0.0, f64::max));
+    let largest = data.values("speed").map_or(0.0, |u| u.iter().fold(0.0_f64, |m, u| m.max(u.abs())));
     let least = if channel.starts_with("v_") { 1e-9 * largest } else { 0.0 };
     data.values(channel).is_some_and(|v| v.iter().any(|x| x.abs() > least))
 }
@@ -435,7 +437,7 @@ fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Resu
         if moves_along {
             terms.push(format!("{letter}_{u}{v}*{along}*{across}"));
         }
-        if !moves_along || has_two_angles(data, along, across, false) {
+        if !moves_along || has_two_angles(data, along, across) {
             terms.push(format!("{letter}_{v}{v}*{across}*abs({across})"));
         }
         let text = terms.join(" + ");
@@ -444,17 +446,18 @@ fn polynomial(name: &str, data: &Dataset, source: &Source, linear: bool) -> Resu
     ForceLaw::formulas(name, &texts, data)
 }
 
-/// Whether the rows that move askew, or all that move, do so at two angles to the axis at least, 1° apart; ahead and astern are two.
-fn has_two_angles(data: &Dataset, along: &str, across: &str, with_straight_rows: bool) -> bool {
+/// Whether the rows that move askew do so at two angles to the axis at least; ahead and astern are two.
+fn has_two_angles(data: &Dataset, along: &str, across: &str) -> bool {
     let (Some(u), Some(v)) = (data.values(along), data.values(across)) else { return false };
     let largest = u.iter().zip(v).map(|(u, v)| u.hypot(*v)).fold(0.0, f64::max);
-    let is_none = |x: f64| x.abs() <= 1e-9 * largest;
-    let (low, high) = u
-        .iter()
-        .zip(v)
-        .filter(|(u, v)| !is_none(**v) || (with_straight_rows && !is_none(**u)))
-        .map(|(u, v)| v.abs().atan2(*u))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), angle| (low.min(angle), high.max(angle)));
+    let askew = u.iter().zip(v).filter(|(_, v)| v.abs() > 1e-9 * largest);
+    are_apart(askew.map(|(u, v)| v.abs().atan2(*u)))
+}
+
+/// Whether angles differ by 1° at least, rad.
+fn are_apart(angles: impl Iterator<Item = f64>) -> bool {
+    let (low, high) =
+        angles.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), angle| (low.min(angle), high.max(angle)));
     high - low > std::f64::consts::PI / 180.0
 }
 
@@ -465,7 +468,9 @@ fn has_two_angles(data: &Dataset, along: &str, across: &str, with_straight_rows:
 /// run astern as a speed below zero. Astern the forward part turns round with the flow, for a section that is the same fore and aft; another
 /// one wants a tare for each way.
 fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, IdentifyError> {
-    let along = if moves(data, "v_y") && has_two_angles(data, "v_x", "v_y", true) {
+    // Ahead and astern are one angle: at one alone, straight ahead included, the two terms of f_x have one shape.
+    let rows = moving(data.values("speed").unwrap_or_default(), AT_REST);
+    let along = if moves(data, "v_y") && are_apart(rows.into_iter().map(|i| off_axis(data.velocity_m_s(i)))) {
         "-D_xU*v_x*abs(speed) + X_vv*v_y*v_y*sign(v_x)"
     } else {
         "-D_xU*v_x*abs(speed)"

@@ -194,7 +194,7 @@ impl SectionBody {
     /// Volume of the body itself, m³, exact: what its meshes come to.
     ///
     /// Section by section, w and h being its half-width and half-height: ∫ π w h dx. A straight piece has w h of second order in x, and Simpson's
-    /// rule is exact. An elliptic one has both in proportion to the sine of an angle, x going with its cosine: ∫ sin = 1, ∫ sin² = π/4 and
+    /// rule is exact. An elliptic one has both grow with the sine of an angle, x going with its cosine: ∫ sin = 1, ∫ sin² = π/4 and
     /// ∫ sin³ = 2/3 over a quarter.
     #[must_use]
     pub fn volume_m3(&self) -> f64 {

@@ -6,7 +6,7 @@
 //!
 //! Sea water in g/cm³ under a head of kg/m³ is the number of air: 1.025 and 1.2.
 //! The kinematic viscosity beside it tells them apart: ρν of air is some 1.8e-5
-//! Pa s at any height and in any tunnel, and with the ν of water eighteen times less.
+//! Pa s, whatever its pressure, and with the ν of water eighteen times less.
 
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
@@ -22,7 +22,7 @@ pub const LIQUID_KG_M3: RangeInclusive<f64> = 500.0..=2000.0;
 /// Densities of air, kg/m³: 0.9 at 3000 m of height, 1.5 at −40 °C.
 pub const AIR_KG_M3: RangeInclusive<f64> = 0.9..=1.5;
 
-/// Dynamic viscosities of air, Pa s: 1.5e-5 at −40 °C to 2.0e-5 at 60 °C, and what rounded numbers make of them.
+/// Dynamic viscosities of air, Pa s: 1.51e-5 at −40 °C to 2.00e-5 at 60 °C by Sutherland's law, and what rounded numbers make of them.
 const AIR_PA_S: RangeInclusive<f64> = 1.3e-5..=2.5e-5;
 
 /// Rounding of a whole turn through a unit.
