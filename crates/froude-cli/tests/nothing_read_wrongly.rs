@@ -816,6 +816,89 @@ fn strut_both_ways(angles_deg: &[f64]) -> String {
     out
 }
 
+/// A strut alone and under a body, in two tanks: what a tare in another fluid, beyond its speeds, of the other way or with an ERROR of its own
+/// leaves in the loads.
+#[test]
+fn a_tare_that_does_not_fit_is_told_with_its_size() {
+    let of = |speeds: &[f64], newtons_s2_m2: f64, seed: u64| {
+        let mut noise = noise(seed);
+        let row = |u: &f64| format!("{u},{}\n", -newtons_s2_m2 * u * u.abs() + 1e-4 * noise());
+        "speed [m/s],f_x [N]\n".to_owned() + &speeds.iter().map(row).collect::<String>()
+    };
+    let speeds = |from: i32, to: i32| (from..=to).map(|i| 0.05 * f64::from(i)).collect::<Vec<f64>>();
+    let codes = ["tare-in-another-fluid", "tare-beyond-its-speeds", "tare-of-the-other-way", "tare-with-errors"];
+    let told = |tare: &str, density: [&str; 2], body: &str, spoil: bool| -> Vec<(usize, String)> {
+        let of = |name: &str, table: &str, density: &str, rest: &str| {
+            format!(
+                "schema = 1\nname = \"{name}\"\n[fluid]\ndensity = \"{density}\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \
+                 \"{table}\"\n{rest}[identify]\nmodels = [\"quadratic\"]\n"
+            )
+        };
+        let folder = folder_of(&[
+            ("tare.csv", tare),
+            ("tare.toml", &of("tare", "tare.csv", density[0], "")),
+            ("gross.csv", body),
+            ("c.toml", &of("c", "gross.csv", density[1], "tare = { record = \"tare-results/estimate.json\" }\n")),
+        ]);
+        json_in(folder.path(), &["identify", "tare.toml"]);
+        if spoil {
+            let path = folder.path().join("tare-results/estimate.json");
+            let mut record: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+            record.as_object_mut().unwrap().remove("checksum");
+            record["findings"] = serde_json::json!([{"severity": "error", "code": "not-dissipative", "message": "it drives the body", "source": "s"}]);
+            std::fs::write(&path, record.to_string()).unwrap();
+        }
+        let out = json_in(folder.path(), &["identify", "c.toml"]);
+        codes
+            .iter()
+            .enumerate()
+            .flat_map(|(k, code)| findings(&out, code).into_iter().map(move |f| (k, f.1.to_owned())))
+            .collect()
+    };
+    let (sea, fresh) = ("1025 kg/m^3", "998 kg/m^3");
+    // The strut is half of the drag.
+    let strut = of(&speeds(4, 20), 10.0, 1);
+    let body = of(&speeds(4, 20), 20.0, 2);
+    assert_eq!(told(&strut, [fresh, fresh], &body, false), []);
+    assert_eq!(told(&strut, [fresh, fresh], &of(&speeds(4, 21), 20.0, 2), false), [], "5 % beyond is no extrapolation");
+
+    let fluid = told(&strut, [fresh, sea], &body, false);
+    // 10 · 27/998 of 20 N s²/m², at 1 m/s.
+    assert!(
+        fluid.len() == 1
+            && fluid[0].0 == 0
+            && fluid[0].1.contains("was taken at 998.00 kg/m^3 and is used at 1025.00 kg/m^3")
+            && fluid[0].1.contains("up to 0.271 N, 1.4 % of the measured f_x"),
+        "{fluid:?}"
+    );
+    let beyond = told(&strut, [sea, sea], &of(&speeds(4, 30), 20.0, 2), false);
+    assert!(
+        beyond.len() == 1
+            && beyond[0].0 == 1
+            && beyond[0].1.contains("was taken at 0.200 to 1.000 m/s and is used beyond that in 9 of 27 rows")
+            && beyond[0].1.contains("up to 22.50"),
+        "{beyond:?}"
+    );
+    let turned: Vec<f64> = speeds(4, 20).iter().map(|u| -u).collect();
+    let both: Vec<f64> = turned.iter().copied().chain(speeds(4, 20)).collect();
+    for (tare, body, own) in
+        [(&speeds(4, 20), &turned, "ahead"), (&turned, &speeds(4, 20), "astern"), (&speeds(4, 20), &both, "ahead")]
+    {
+        let way = told(&of(tare, 10.0, 1), [sea, sea], &of(body, 20.0, 2), false);
+        let said = format!("was towed {own} only and is used");
+        assert!(way.len() == 1 && way[0].0 == 2 && way[0].1.contains(&said), "{way:?}");
+    }
+    assert_eq!(told(&of(&both, 10.0, 1), [sea, sea], &of(&both, 20.0, 2), false), []);
+
+    let ill = told(&strut, [sea, sea], &body, true);
+    assert!(
+        ill.len() == 1
+            && ill[0].0 == 3
+            && ill[0].1.contains("has 1 ERROR of its own, [not-dissipative] first: it drives the body"),
+        "{ill:?}"
+    );
+}
+
 /// A section that is the same fore and aft: towed astern its forward part turns round with the flow. A law of an earlier version in bare
 /// `speed` would turn the drag round with it, and says so.
 #[test]
