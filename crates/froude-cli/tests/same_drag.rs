@@ -1,0 +1,104 @@
+//! The drag of six campaigns on the twin, as the program gave it before all methods went one way.
+//!
+//! Whatever is rebuilt between a run and its record, these numbers stay: values within 1e-12, ends of intervals within 1e-9, both relative.
+//! `FROUDE_WRITE_FIXTURES=1` writes them anew.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bench;
+
+use std::path::{Path, PathBuf};
+
+use bench::{campaign, json, text};
+use serde_json::{Map, Value};
+
+const CALIBRATION: &str = "[carriage.calibration]            # weights over a pulley, lifted and lowered\n";
+const ONE_FRICTION_SPEED: &str = r#"speeds = ["0.4 m/s"]"#;
+
+fn fixture(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/drag").join(format!("{name}.json"))
+}
+
+/// What stays: every number of every estimate, what is recommended and which findings there are.
+fn kept(record: &Value) -> Value {
+    let estimates = record["estimates"].as_array().unwrap().iter().map(|estimate| {
+        let names = ["coefficients", "recommended", "n_observations", "validity"];
+        let parts = names.iter().map(|name| ((*name).to_owned(), estimate[*name].clone()));
+        (estimate["model"].as_str().unwrap().to_owned(), Value::Object(parts.collect()))
+    });
+    let mut codes: Vec<&str> =
+        record["findings"].as_array().unwrap().iter().map(|f| f["code"].as_str().unwrap()).collect();
+    codes.sort_unstable();
+    serde_json::json!({ "estimates": Map::from_iter(estimates), "findings": codes })
+}
+
+/// Compares two trees leaf by leaf; numbers within a part of themselves, which is wider where an interval or an uncertainty is meant.
+fn compare(place: &str, before: &Value, now: &Value) {
+    match (before, now) {
+        (Value::Object(a), Value::Object(b)) => {
+            assert_eq!(a.keys().collect::<Vec<_>>(), b.keys().collect::<Vec<_>>(), "{place}");
+            a.iter().for_each(|(key, value)| compare(&format!("{place}/{key}"), value, &b[key]));
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            assert_eq!(a.len(), b.len(), "{place}: {before} is {now}");
+            a.iter().zip(b).enumerate().for_each(|(i, (a, b))| compare(&format!("{place}/{i}"), a, b));
+        }
+        (Value::Number(a), Value::Number(b)) => {
+            let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
+            let part = if place.ends_with("/value") { 1e-12 } else { 1e-9 };
+            assert!((a - b).abs() <= part * a.abs(), "{place}: {a} is {b}");
+        }
+        _ => assert_eq!(before, now, "{place}"),
+    }
+}
+
+/// Drives a changed example, reduces it and holds the numbers against those of the old program.
+fn stays(name: &str, changes: &[(&str, &str)]) {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = campaign(folder.path(), changes);
+    json(&["run", text(&campaign), "--yes", "--json"]);
+    let runs = folder.path().join("campaign-runs");
+    let now = kept(&json(&["carriage", "drag", text(&runs), "--json"]));
+    let path = fixture(name);
+    if std::env::var_os("FROUDE_WRITE_FIXTURES").is_some() {
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(&path, serde_json::to_string_pretty(&now).unwrap() + "\n").unwrap();
+    }
+    let before: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+    compare(name, &before, &now);
+}
+
+#[test]
+fn the_example() {
+    stays("example", &[]);
+}
+
+#[test]
+fn without_calibration() {
+    let example = std::fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/towing-carriage/campaign.toml"),
+    )
+    .unwrap();
+    let from = example.find(CALIBRATION).unwrap();
+    let to = example.find("[carriage.excitation]").unwrap();
+    stays("uncalibrated", &[(&example[from..to], ""), ("repeats = 5  ", "repeats = 2  ")]);
+}
+
+#[test]
+fn without_ballast() {
+    stays("unballasted", &[("ballasted = true ", "ballasted = false "), ("repeats = 5  ", "repeats = 2  ")]);
+}
+
+#[test]
+fn one_pair() {
+    stays("one-pair", &[("repeats = 5  ", "repeats = 1  ")]);
+}
+
+#[test]
+fn four_pairs() {
+    stays("four-pairs", &[("repeats = 5  ", "repeats = 4  "), (bench::SIX_FRICTION_SPEEDS, ONE_FRICTION_SPEED)]);
+}
+
+#[test]
+fn stopped_early() {
+    stays("stopped-early", &[(r#"stop_when = "1.5 %""#, r#"stop_when = "4 %""#)]);
+}
