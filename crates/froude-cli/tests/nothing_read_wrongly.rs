@@ -826,7 +826,14 @@ fn a_tare_that_does_not_fit_is_told_with_its_size() {
         "speed [m/s],f_x [N]\n".to_owned() + &speeds.iter().map(row).collect::<String>()
     };
     let speeds = |from: i32, to: i32| (from..=to).map(|i| 0.05 * f64::from(i)).collect::<Vec<f64>>();
-    let codes = ["tare-in-another-fluid", "tare-beyond-its-speeds", "tare-of-the-other-way", "tare-with-errors"];
+    let codes = [
+        "tare-in-another-fluid",
+        "tare-beyond-its-speeds",
+        "tare-of-the-other-way",
+        "tare-with-errors",
+        "tare-pushes",
+        "tare-beyond-its-angles",
+    ];
     let told = |tare: &str, density: [&str; 2], body: &str, spoil: bool| -> Vec<(usize, String)> {
         let of = |name: &str, table: &str, density: &str, rest: &str| {
             format!(
@@ -900,7 +907,7 @@ fn a_tare_that_does_not_fit_is_told_with_its_size() {
 }
 
 /// A section that is the same fore and aft: towed astern its forward part turns round with the flow. A law of an earlier version in bare
-/// `speed` would turn the drag round with it, and says so.
+/// `speed` would push the body along there, and says so.
 #[test]
 fn a_strut_towed_both_ways_is_one_strut() {
     let tare = strut_both_ways(&[-20.0, -10.0, 0.0, 10.0, 20.0]);
@@ -926,7 +933,7 @@ fn a_strut_towed_both_ways_is_one_strut() {
         std::fs::create_dir(folder.path().join("tare")).unwrap();
         std::fs::write(folder.path().join("tare/estimate.json"), &record).unwrap();
         let out = json_in(folder.path(), &["identify", "c.toml"]);
-        assert_eq!(findings(&out, "tare-of-signed-speed").len(), usize::from(is_warned), "{}", out["findings"]);
+        assert_eq!(findings(&out, "tare-pushes").len(), usize::from(is_warned), "{}", out["findings"]);
     }
 }
 
@@ -946,6 +953,94 @@ fn a_strut_at_one_angle_has_one_term_along_the_body() {
         "{}",
         out["findings"]
     );
+
+    // That one term holds at its angle alone: as a tare nearer to straight ahead it is a guess, and here even pushes.
+    let gross = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &drift_test(21), |r| {
+        format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y)
+    });
+    let folder = folder_of(&[("gross.csv", &gross), ("tare.csv", &tare), ("c.toml", SUBTRACTED)]);
+    json_in(folder.path(), &["identify", "tare.csv", "--models", "strut"]);
+    let out = json_in(folder.path(), &["identify", "c.toml"]);
+    for (code, said) in [
+        (
+            "tare-beyond-its-angles",
+            "was taken at 20.0 deg from straight ahead and more, and is used nearer to it in 56 of 72 rows",
+        ),
+        ("tare-pushes", "pushes the body along in "),
+    ] {
+        let told = findings(&out, code);
+        assert!(told.len() == 1 && told[0].1.contains(said), "{code}: {told:?}");
+    }
+}
+
+/// A law that pushes its body is told, and held back by `dissipative = true`, whichever way all rows went.
+#[test]
+fn power_is_asked_for_astern_too() {
+    let campaign = |hold: &str| {
+        format!(
+            "schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[body]\nlink = {{ major_semi_axis = \"58.8 mm\", minor_semi_axis = \
+             \"39.4 mm\", half_length = \"90 mm\" }}\nhead_side_area = \"0.011 m^2\"\ntail_side_area = \"0.008 m^2\"\n[[source]]\nname = \
+             \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n[identify]\nmodels = [\"f1\"]\n{hold}"
+        )
+    };
+    for way in [1.0, -1.0] {
+        let mut noise = noise(23);
+        let mut text = "configuration,n_links [1],speed [m/s],angle [deg],f_x [N],f_y [N]\n".to_owned();
+        for i in 1..=8 {
+            for angle in [-20.0_f64, -10.0, 10.0, 20.0] {
+                let speed = 0.1 * f64::from(i);
+                let (sin, cos) = angle.to_radians().sin_cos();
+                let (u, v) = (way * speed * cos, -way * speed * sin);
+                let (f_x, f_y) = (3.0 * u * u.abs() + 0.01 * noise(), -20.0 * v * v.abs() + 0.01 * noise());
+                writeln!(text, "H3LT,3,{},{angle},{f_x},{f_y}", way * speed).unwrap();
+            }
+        }
+        let free = json(&[("t.csv", &text), ("c.toml", &campaign(""))], &["identify", "c.toml"]);
+        assert_eq!(findings(&free, "not-dissipative").len(), 1, "{}", free["findings"]);
+        let held = json(&[("t.csv", &text), ("c.toml", &campaign("dissipative = true\n"))], &["identify", "c.toml"]);
+        assert!(findings(&held, "not-dissipative").is_empty(), "{}", held["findings"]);
+        assert!(value(estimate(&held, "f1"), "C_f").abs() < 1e-6, "{}", estimate(&held, "f1")["coefficients"]);
+    }
+}
+
+/// Straight ahead and straight across: the forward part of the lift is zero in all rows, and left out.
+#[test]
+fn a_strut_ahead_and_across_can_be_a_tare() {
+    let tare = strut_both_ways(&[0.0, 90.0]);
+    let out = json(&[("tare.csv", &tare)], &["identify", "tare.csv", "--models", "strut"]);
+    let strut = estimate(&out, "strut");
+    assert_eq!(strut["law"]["formulas"]["f_x"], "-D_xU*v_x*abs(speed)");
+    assert!(strut["undetermined"].as_array().unwrap().is_empty(), "{}", strut["undetermined"]);
+}
+
+/// Bearings of a rotor: their torque goes neither with the density nor with the speed of the carriage.
+#[test]
+fn a_tare_that_does_not_go_with_fluid_or_speed_is_not_judged_by_them() {
+    let mut tare = "speed [m/s],w_x [rad/s],m_x [N m]\n".to_owned();
+    let mut body = tare.clone();
+    for i in 1..=12 {
+        let w = f64::from(i);
+        writeln!(tare, "0,{w},{}", -0.5 - 0.1 * w).unwrap();
+        writeln!(body, "{},{w},{}", 0.1 * w, -0.7 - 0.3 * w).unwrap();
+    }
+    let of = |name: &str, table: &str, density: &str, rest: &str| {
+        format!(
+            "schema = 1\nname = \"{name}\"\n[fluid]\ndensity = \"{density}\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \
+             \"{table}\"\n{rest}[identify]\n[[identify.model]]\nname = \"bearing\"\nm_x = \"K_0 + K_p*p\"\n"
+        )
+    };
+    let with_tare = "tare = { record = \"tare-results/estimate.json\" }\n";
+    let folder = folder_of(&[
+        ("tare.csv", &tare),
+        ("tare.toml", &of("tare", "tare.csv", "1000 kg/m^3", "")),
+        ("body.csv", &body),
+        ("c.toml", &of("c", "body.csv", "1025 kg/m^3", with_tare)),
+    ]);
+    json_in(folder.path(), &["identify", "tare.toml"]);
+    let out = json_in(folder.path(), &["identify", "c.toml"]);
+    let codes: Vec<&str> =
+        out["findings"].as_array().unwrap().iter().filter_map(|f| f["code"].as_str()?.strip_prefix("tare-")).collect();
+    assert_eq!(codes, ["subtracted"], "{}", out["findings"]);
 }
 
 /// A table and its mirror image, towed the other way with every load turned round, are told the same.
@@ -978,6 +1073,7 @@ fn a_run_astern_is_judged_as_a_run_ahead() {
     let small = table(&|_| 1e-3, 1.0);
     let mut contradicting = clean.clone();
     contradicting[7][1] *= 0.9;
+    let pushing = table(&|_| -1.0, 1.0);
     let mut uneven = clean.clone();
     uneven
         .iter_mut()
@@ -989,6 +1085,7 @@ fn a_run_astern_is_judged_as_a_run_ahead() {
         (&small, Some("unphysical-drag-coefficient")),
         (&contradicting, Some("speed-contradicts-velocity")),
         (&uneven, Some("uneven-scatter")),
+        (&pushing, Some("negative-drag")),
     ] {
         let ahead = codes(&written(rows, 1.0));
         assert!(expected.is_none_or(|code| ahead.iter().any(|c| c == code)), "{expected:?}: {ahead:?}");

@@ -21,6 +21,7 @@
 //! | [`stream`]      | more rows than memory holds, one pass                                |
 //! | [`wild`]        | wild cluster bootstrap                                               |
 //! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
+//! | [`budget`]      | what each error does to the coefficients, intervals, jackknife       |
 //! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
 //!
@@ -39,6 +40,7 @@
 mod block;
 pub mod bootstrap;
 pub mod bounded;
+pub mod budget;
 mod constrained;
 mod covariance;
 pub mod coverage;

@@ -315,11 +315,14 @@ fn beside_v_x(data: &Dataset) -> &'static str {
 fn side_force_says(angle_rad: &[f64], data: &Dataset) -> Option<(f64, usize, usize)> {
     let side = data.values("f_y")?;
     let largest = side.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    // Astern, with a speed below zero, the flow comes from the other side.
+    let is_astern = |i: usize| data.values("speed").is_some_and(|u| u[i] < 0.0);
     let told: Vec<bool> = angle_rad
         .iter()
         .zip(side)
-        .filter(|(a, f)| a.sin().abs() > STRAIGHT_RAD && f.abs() > SIGN_MATTERS_ABOVE * largest)
-        .map(|(a, f)| a.sin() * f > 0.0)
+        .enumerate()
+        .filter(|(_, (a, f))| a.sin().abs() > STRAIGHT_RAD && f.abs() > SIGN_MATTERS_ABOVE * largest)
+        .map(|(i, (a, f))| (a.sin() * f > 0.0) != is_astern(i))
         .collect();
     let positive = told.iter().filter(|same| **same).count();
     let agreed = |n: usize| n as f64 >= AGREED * told.len() as f64;

@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-12;
 /// The force is affine in the number of links, so what holds at both ends holds between them.
 #[must_use]
 pub fn grid(data: &Dataset) -> Dataset {
-    let largest = data.values("speed").map_or(0.0, |u| u.iter().copied().fold(0.0, f64::max));
+    let largest = data.values("speed").map_or(0.0, |u| u.iter().fold(0.0_f64, |m, u| m.max(u.abs())));
     let velocities: Vec<[f64; 2]> = VelocityGrid::over(largest).points().collect();
     let links = |i: usize| data.values("n_links").map_or(0.0, |v| v[i]);
     let ends = [

@@ -253,6 +253,26 @@ impl ForceLaw {
         Ok((0..x.nrows()).map(|i| (0..terms).map(|j| x[(i, j)] * at[j]).sum()).collect())
     }
 
+    /// Whether a response goes with the speed or the angle of the motion through the water.
+    #[must_use]
+    pub fn moves(&self, response: usize) -> bool {
+        self.reads(response, |c| matches!(c, "v_x" | "v_y" | "v_z" | "speed" | "angle"))
+    }
+
+    /// Whether a response goes with the density already.
+    #[must_use]
+    pub fn has_density(&self, response: usize) -> bool {
+        matches!(self.kind, Kind::Drag { .. }) || self.reads(response, |c| c == "density")
+    }
+
+    fn reads(&self, response: usize, is_meant: impl Fn(&str) -> bool) -> bool {
+        match &self.kind {
+            Kind::Drag { .. } => is_meant("v_x"),
+            Kind::PowerLaw { channel, .. } => is_meant(channel),
+            Kind::Formulas(formulas) => formulas[response].channels.iter().any(|c| is_meant(aliased(c))),
+        }
+    }
+
     /// The measured responses, stacked like those of [`Self::predict`].
     ///
     /// # Errors

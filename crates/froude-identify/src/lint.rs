@@ -301,7 +301,7 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
             "line {}: {load} = {f:.3e} N at {} m/s is the drag of {area_m2:.1e} m^2 (|F|/(½ρU²)), {side} {yardstick}: \
              a prefix may be wrong in the unit of `{}`, or in that of the speed",
             data.line.get(i).copied().unwrap_or(i + 1),
-            if speed[i] < 0.01 { format!("{:.2e}", speed[i]) } else { format!("{:.3}", speed[i]) },
+            if speed[i].abs() < 0.01 { format!("{:.2e}", speed[i]) } else { format!("{:.3}", speed[i]) },
             data.header(load),
         ),
     ))
@@ -352,7 +352,8 @@ fn angle_in_radians(data: &Dataset) -> Option<Finding> {
 /// Too few distinct speeds to tell a linear from a quadratic term.
 fn distinct_speeds(data: &Dataset) -> Option<Finding> {
     let speed = data.values("speed")?;
-    let n = distinct_count(speed);
+    // The laws are odd in the speed: ahead and astern are one.
+    let n = distinct_count(&speed.iter().map(|u| u.abs()).collect::<Vec<_>>());
     (n < DISTINCT_SPEEDS_NEEDED).then(|| {
         Finding::new(
             Severity::Warning,

@@ -468,9 +468,12 @@ fn are_apart(angles: impl Iterator<Item = f64>) -> bool {
 /// run astern as a speed below zero. Astern the forward part turns round with the flow, for a section that is the same fore and aft; another
 /// one wants a tare for each way.
 fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, IdentifyError> {
-    // Ahead and astern are one angle: at one alone, straight ahead included, the two terms of f_x have one shape.
+    // Ahead and astern are one angle: at one alone, straight ahead included, the two terms of f_x have one shape; straight ahead and
+    // straight across the second one is zero.
     let rows = moving(data.values("speed").unwrap_or_default(), AT_REST);
-    let along = if moves(data, "v_y") && are_apart(rows.into_iter().map(|i| off_axis(data.velocity_m_s(i)))) {
+    let angles: Vec<f64> = rows.into_iter().map(|i| off_axis(data.velocity_m_s(i))).collect();
+    let is_askew = angles.iter().any(|angle| (2.0 * angle).sin() > 1e-9);
+    let along = if is_askew && are_apart(angles.into_iter()) {
         "-D_xU*v_x*abs(speed) + X_vv*v_y*v_y*sign(v_x)"
     } else {
         "-D_xU*v_x*abs(speed)"

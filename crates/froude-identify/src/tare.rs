@@ -7,10 +7,9 @@ mod angles;
 mod setting;
 
 use froude_records::campaign::Tare;
-use froude_records::estimate::{Estimate, EstimateFile};
+use froude_records::estimate::EstimateFile;
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
-use froude_records::text::counted;
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
@@ -55,7 +54,8 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
         used.other_fluid(),
         used.other_speeds(),
         used.other_way(),
-        signed_speed(data, estimate),
+        used.pushes(),
+        used.smaller_angles(),
     ]
     .into_iter()
     .flatten()
@@ -100,30 +100,15 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
     Ok((error, findings))
 }
 
-/// `strut` of an earlier version was a law in bare `speed`: that turns its loads round where the table writes a run astern as a speed below zero.
-fn signed_speed(data: &Dataset, estimate: &Estimate) -> Option<Finding> {
-    let is_bare = estimate.model == "strut"
-        && estimate.law.formulas.values().any(|text| text.replace("abs(speed)", "").contains("speed"));
-    let astern = data.values("speed")?.iter().filter(|speed| **speed < 0.0).count();
-    (is_bare && astern > 0).then(|| {
-        let text = format!(
-            "the tare of {} is of an earlier version, whose strut turns its loads round where speed is below zero, as in {} here: fit the tare again",
-            estimate.id,
-            counted(astern, "row", "rows")
-        );
-        Finding::new(Severity::Warning, "tare-of-signed-speed", text)
-    })
-}
-
-/// Largest force that stays in a measured load, N, and its least-squares share, %: by so much the coefficients of that load are
-/// off. `None` where it does not matter.
+/// Largest force that stays in a measured load, N, and its share of the load over all rows, Σ|f stays|/Σf², %: by no more than that a
+/// coefficient of that load is off. `None` where it does not matter.
 fn size(rows: &[usize], stays_n: &dyn Fn(usize) -> f64, load_n: &[f64]) -> Option<(f64, f64)> {
-    let (mut along, mut all, mut most_n) = (0.0, 0.0, 0.0_f64);
+    let all: f64 = load_n.iter().map(|f| f * f).sum();
+    let (mut along, mut most_n) = (0.0, 0.0_f64);
     for &i in rows {
-        along += stays_n(i) * load_n[i];
-        all += load_n[i] * load_n[i];
+        along += (stays_n(i) * load_n[i]).abs();
         most_n = most_n.max(stays_n(i).abs());
     }
-    let share = if all > 0.0 { (along / all).abs() } else { 0.0 };
+    let share = if all > 0.0 { along / all } else { 0.0 };
     (share > MATTERS_ABOVE).then_some((most_n, 100.0 * share))
 }

@@ -84,9 +84,12 @@ fn of_load(load: &'static str, f: &[f64], data: &Dataset, settings: &[Vec<usize>
     settings.iter().find_map(|setting| {
         let mut rows: Vec<(f64, usize)> =
             setting.iter().filter(|&&i| u(i) >= SLOW * fastest).map(|&i| (f[i].abs() / (u(i) * u(i)), i)).collect();
-        // Astern, with a speed below zero, a load that resists has the other sign.
-        let sided = |i: usize| if speed.is_some_and(|u| u[i] < 0.0) { -f[i] } else { f[i] };
-        let is_one_sided = rows.iter().all(|(_, i)| sided(*i) > 0.0) || rows.iter().all(|(_, i)| sided(*i) < 0.0);
+        // Astern, with a speed below zero, a load that resists has the other sign; a lift has not.
+        let way = |i: usize| if speed.is_some_and(|u| u[i] < 0.0) { -1.0 } else { 1.0 };
+        let has_one_sign = |of: &dyn Fn(usize) -> f64| {
+            rows.iter().all(|(_, i)| of(*i) > 0.0) || rows.iter().all(|(_, i)| of(*i) < 0.0)
+        };
+        let is_one_sided = has_one_sign(&|i| f[i]) || has_one_sign(&|i| way(i) * f[i]);
         if rows.len() < FEWEST_ROWS || !is_one_sided || rows.iter().all(|(_, i)| f[*i].abs() < small) {
             return None;
         }

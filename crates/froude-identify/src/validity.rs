@@ -23,6 +23,9 @@ pub(crate) const AT_REST: f64 = 0.01;
 /// Name of the range of the angle between the motion and the x axis, ahead or astern: what a strut sees of the angle.
 pub(crate) const OFF_AXIS: &str = "angle_off_axis";
 
+/// Name of the range of the velocity along x, over the rows that move: whether a tare was towed ahead, astern or both.
+pub(crate) const ALONG: &str = "v_x";
+
 /// Angle between a velocity and the x axis, ahead or astern, rad.
 pub(crate) fn off_axis([v_x, v_y]: [f64; 2]) -> f64 {
     v_y.abs().atan2(v_x.abs())
@@ -52,6 +55,9 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
             Some(values) => put(name, values, unit),
             None => {}
         }
+    }
+    if data.values("v_x").is_some() {
+        put(ALONG, &moving.iter().map(|&i| data.velocity_m_s(i)[0]).collect::<Vec<_>>(), "m/s");
     }
     for (name, channel) in &data.channels {
         let is_rate = matches!(name.as_str(), "v_z" | "w_x" | "w_y" | "w_z") || name.ends_with("_dot");

@@ -271,7 +271,9 @@ fn facts(source: &SourceResult) -> Vec<(String, String)> {
 
 /// The channel that a response is drawn against: speed where there is motion, else the first channel of its law.
 fn abscissa(model: &ModelFit, data: &Dataset) -> Option<String> {
-    if data.values("speed").is_some_and(|u| u.iter().any(|x| *x != 0.0)) && law_moves(model) {
+    if data.values("speed").is_some_and(|u| u.iter().any(|x| *x != 0.0))
+        && (0..model.law.responses.len()).any(|r| model.law.moves(r))
+    {
         return None;
     }
     let used: Vec<String> = match &model.law.kind {
@@ -281,16 +283,6 @@ fn abscissa(model: &ModelFit, data: &Dataset) -> Option<String> {
         _ => Vec::new(),
     };
     used.into_iter().find(|c| c != "density")
-}
-
-fn law_moves(model: &ModelFit) -> bool {
-    match &model.law.kind {
-        froude_identify::law::Kind::Formulas(f) => f
-            .iter()
-            .flat_map(|f| &f.channels)
-            .any(|c| matches!(froude_identify::law::aliased(c), "v_x" | "v_y" | "speed" | "angle")),
-        _ => true,
-    }
 }
 
 fn points(model: &ModelFit, data: &Dataset) -> Result<Vec<Point>, IdentifyError> {
@@ -403,10 +395,10 @@ fn curves(model: &ModelFit, data: &Dataset) -> Result<Vec<Curve>, IdentifyError>
                 .map(|&i| v.get(i).copied().unwrap_or(0.0))
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)))
         };
-        let (_, fastest) = range("speed");
+        let (slowest, fastest) = range("speed");
         let (least, most) = range("angle");
         for angle in angles {
-            let x = line(0.0, fastest);
+            let x = line(slowest.min(0.0), fastest.max(0.0));
             let places = place(data, rows[0], &x, |d, x| {
                 d.put("speed", x.to_vec(), Dimension::SPEED);
                 d.put("angle", vec![angle; x.len()], Dimension::ONE);

@@ -16,7 +16,7 @@ use crate::lint::moving;
 use crate::validity::{AT_REST, OFF_AXIS, off_axis};
 
 /// Angles this far beyond those of the tare runs are still theirs, 1°: at it a round strut's side force is 2 % of its drag.
-const SAME_ANGLE_RAD: f64 = PI / 180.0;
+pub(super) const SAME_ANGLE_RAD: f64 = PI / 180.0;
 
 /// Largest angle to the x axis at which a tare was taken, rad; `None` where nothing says.
 fn reach(estimate: &Estimate, gives_f_y: bool) -> Option<f64> {

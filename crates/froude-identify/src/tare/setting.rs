@@ -1,19 +1,22 @@
-//! A tare in another setting than its own: another fluid, other speeds, the other way; or one that its own record calls wrong.
+//! A tare in another setting than its own: another fluid, other speeds or angles, the other way; or one that its own record calls wrong.
 
 use froude_records::estimate::{Estimate, EstimateFile, Range};
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
+use super::angles::SAME_ANGLE_RAD;
 use super::size;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::lint::moving;
-use crate::validity::AT_REST;
+use crate::validity::{ALONG, AT_REST, OFF_AXIS, off_axis};
 
 /// Speeds this far beyond those of the tare runs are still theirs.
 const SAME_SPEED: f64 = 0.05;
+/// Velocities along x below this part of the speed go neither ahead nor astern.
+const ACROSS: f64 = 0.02;
 
-/// What the tare's loads would be elsewhere, and how much of a load that makes.
+/// What the tare's loads are where it is used.
 pub(super) struct Use<'a> {
     pub data: &'a Dataset,
     pub estimate: &'a Estimate,
@@ -23,23 +26,35 @@ pub(super) struct Use<'a> {
 }
 
 impl Use<'_> {
-    /// For each load of the tare, the size of a part of it in the measured load, over some rows.
-    fn sizes(&self, rows: &[usize], part: &dyn Fn(usize) -> f64) -> Vec<String> {
+    /// For each load of the tare that goes with the motion, the size of a part of it in the measured load, over some rows.
+    fn sizes(&self, rows: &[usize], part: &dyn Fn(usize, usize) -> f64) -> Vec<String> {
         let n = self.data.rows;
         let of = |(r, load): (usize, &String)| {
-            let (most, percent) = size(rows, &|i| part(i) * self.predicted[r * n + i], self.data.values(load)?)?;
+            let (most, percent) = size(rows, &|i| part(r, i) * self.predicted[r * n + i], self.data.values(load)?)?;
             let unit = if load.starts_with('m') { "N m" } else { "N" };
             Some(format!("up to {most:.3} {unit}, {percent:.1} % of the measured {load}"))
         };
-        self.law.responses.iter().enumerate().filter_map(of).collect()
+        self.law.responses.iter().enumerate().filter(|(r, _)| self.law.moves(*r)).filter_map(of).collect()
     }
 
-    /// Drag goes with the density: fresh water and the sea differ by 2.5 %.
+    /// Rows that move and are as `is_meant` says.
+    fn rows(&self, is_meant: impl Fn(usize) -> bool) -> Vec<usize> {
+        let speed = self.data.values("speed").unwrap_or_default();
+        moving(speed, AT_REST).into_iter().filter(|&i| is_meant(i)).collect()
+    }
+
+    /// `N of M rows`.
+    fn of_all(&self, rows: &[usize]) -> String {
+        format!("{} of {}", rows.len(), counted(self.data.rows, "row", "rows"))
+    }
+
+    /// Drag goes with the density: fresh water and the sea differ by 2.7 %. A law that reads the density has that of these rows.
     pub fn other_fluid(&self) -> Option<Finding> {
         let own = self.estimate.density.as_ref()?.value;
         let here = self.data.values("density")?;
         let rows: Vec<usize> = (0..self.data.rows).collect();
-        let left = self.sizes(&rows, &|i| here[i] / own - 1.0);
+        let part = |r: usize, i: usize| if self.law.has_density(r) { 0.0 } else { here[i] / own - 1.0 };
+        let left = self.sizes(&rows, &part);
         let furthest = here.iter().copied().max_by(|a, b| (a - own).abs().total_cmp(&(b - own).abs()))?;
         (!left.is_empty()).then(|| {
             let text = format!(
@@ -54,57 +69,96 @@ impl Use<'_> {
 
     /// Beyond the speeds of the tare runs its law is a guess.
     pub fn other_speeds(&self) -> Option<Finding> {
-        let range = self.estimate.validity.get("speed")?;
+        let (low, high) = sizes_of(self.estimate.validity.get("speed")?);
         let speed = self.data.values("speed")?;
-        let (low, high) = sizes_of(range);
-        let is_beyond = |u: f64| u.abs() > (1.0 + SAME_SPEED) * high || u.abs() < (1.0 - SAME_SPEED) * low;
-        let rows: Vec<usize> = moving(speed, AT_REST).into_iter().filter(|&i| is_beyond(speed[i])).collect();
-        let taken = self.sizes(&rows, &|_| 1.0);
+        let rows =
+            self.rows(|i| speed[i].abs() > (1.0 + SAME_SPEED) * high || speed[i].abs() < (1.0 - SAME_SPEED) * low);
+        let taken = self.sizes(&rows, &|_, _| 1.0);
         (!taken.is_empty()).then(|| {
             let text = format!(
-                "the tare {} was taken at {low:.3} to {high:.3} m/s and is used beyond that in {} of {}: what it takes off there ({}) was \
-                 not measured; tow the strut alone at the speeds of the test",
+                "the tare {} was taken at {low:.3} to {high:.3} m/s and is used beyond that in {}: what it takes off there ({}) was not \
+                 measured; tow the strut alone at the speeds of the test",
                 self.estimate.id,
-                rows.len(),
-                counted(self.data.rows, "row", "rows"),
+                self.of_all(&rows),
                 taken.join(", ")
             );
             Finding::new(Severity::Warning, "tare-beyond-its-speeds", text)
         })
     }
 
+    /// Nearer to straight ahead than any of the tare runs. (Further from it: [`super::angles`].)
+    pub fn smaller_angles(&self) -> Option<Finding> {
+        let least = self.estimate.validity.get(OFF_AXIS)?.low;
+        let rows = self.rows(|i| off_axis(self.data.velocity_m_s(i)) < least - SAME_ANGLE_RAD);
+        let taken = self.sizes(&rows, &|_, _| 1.0);
+        (!taken.is_empty()).then(|| {
+            let text = format!(
+                "the tare {} was taken at {:.1} deg from straight ahead and more, and is used nearer to it in {}: what it takes off there \
+                 ({}) was not measured; tow the strut alone at the angles of the test, straight ahead included",
+                self.estimate.id,
+                least.to_degrees(),
+                self.of_all(&rows),
+                taken.join(", ")
+            );
+            Finding::new(Severity::Warning, "tare-beyond-its-angles", text)
+        })
+    }
+
     /// A tare that was towed one way only, and is used the other way.
     pub fn other_way(&self) -> Option<Finding> {
-        let range = self.estimate.validity.get("speed")?;
-        let turned = self.estimate.validity.get("angle").map_or([false; 2], |angle| {
-            let largest = angle.low.abs().max(angle.high.abs());
-            let least = if angle.low <= 0.0 && angle.high >= 0.0 { 0.0 } else { angle.low.abs().min(angle.high.abs()) };
-            [least.cos() < 0.0, largest.cos() < 0.0]
-        });
-        // Ahead: some speed above zero not turned round, or one below zero that is.
-        let goes = |forth: bool, back: bool, turned: [bool; 2]| (forth && !turned[0]) || (back && turned[1]);
-        let (forth, back) = (range.high > 0.0, range.low < 0.0);
-        let (ahead, astern) = (goes(forth, back, turned), goes(back, forth, turned));
+        let (ahead, astern) = self.ways()?;
         let speed = self.data.values("speed")?;
-        let rows: Vec<usize> = moving(speed, AT_REST)
-            .into_iter()
-            .filter(|&i| {
-                let v_x = self.data.velocity_m_s(i)[0];
-                (v_x > 0.0 && !ahead) || (v_x < 0.0 && !astern)
-            })
-            .collect();
-        let taken = self.sizes(&rows, &|_| 1.0);
+        let rows = self.rows(|i| {
+            let along = self.data.velocity_m_s(i)[0];
+            along.abs() > ACROSS * speed[i].abs() && !(if along > 0.0 { ahead } else { astern })
+        });
+        let taken = self.sizes(&rows, &|_, _| 1.0);
         (!taken.is_empty()).then(|| {
             let [own, here] = if ahead { ["ahead", "astern"] } else { ["astern", "ahead"] };
             let text = format!(
-                "the tare {} was towed {own} only and is used {here} in {} of {}: what it takes off there ({}) is that of a strut that is the \
-                 same fore and aft",
+                "the tare {} was towed {own} only and is used {here} in {}: what it takes off there ({}) was not measured; it holds for a \
+                 strut that is the same fore and aft, by a law that is odd in the velocity",
                 self.estimate.id,
-                rows.len(),
-                counted(self.data.rows, "row", "rows"),
+                self.of_all(&rows),
                 taken.join(", ")
             );
             Finding::new(Severity::Note, "tare-of-the-other-way", text)
+        })
+    }
+
+    /// Whether the tare was towed ahead and astern; `None` where its record does not say.
+    fn ways(&self) -> Option<(bool, bool)> {
+        let validity = &self.estimate.validity;
+        let range = match (validity.get(ALONG), validity.get("speed")) {
+            (Some(along), _) => along,
+            (None, Some(speed)) if !validity.contains_key("angle") => speed,
+            _ => return None,
+        };
+        let least = ACROSS * range.low.abs().max(range.high.abs());
+        let (ahead, astern) = (range.high > least, range.low < -least);
+        (ahead || astern).then_some((ahead, astern))
+    }
+
+    /// A strut resists. A law that is even in the velocity, or at other angles than its own, may push the body along.
+    pub fn pushes(&self) -> Option<Finding> {
+        let n = self.data.rows;
+        let of = |load: &str| self.law.responses.iter().position(|response| response == load);
+        let power = |i: usize| {
+            let velocity = self.data.velocity_m_s(i);
+            let of_axis = |(load, v): (&str, f64)| of(load).map_or(0.0, |r| self.predicted[r * n + i] * v);
+            [("f_x", velocity[0]), ("f_y", velocity[1])].into_iter().map(of_axis).sum::<f64>()
+        };
+        let rows = self.rows(|i| power(i) > 0.0);
+        let taken = self.sizes(&rows, &|_, _| 1.0);
+        (!taken.is_empty()).then(|| {
+            let text = format!(
+                "the tare {} pushes the body along in {}, which no strut does: {}. Look at the sign of the speed where the strut went astern, \
+                 at a law that is even in it, and at the angles of the tare runs",
+                self.estimate.id,
+                self.of_all(&rows),
+                taken.join(", ")
+            );
+            Finding::new(Severity::Warning, "tare-pushes", text)
         })
     }
 }
