@@ -10,7 +10,7 @@ use froude::carriage::tune::{
     candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
 };
 use froude::carriage::{calibrate, runs};
-use froude::identify::carriage::Uncertain;
+use froude::fit::budget::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
 use froude::records::run::RunKind;
 use froude::records::text::counted;

@@ -28,7 +28,7 @@ fn kept(record: &Value) -> Value {
     let mut codes: Vec<&str> =
         record["findings"].as_array().unwrap().iter().map(|f| f["code"].as_str().unwrap()).collect();
     codes.sort_unstable();
-    serde_json::json!({ "estimates": Map::from_iter(estimates), "findings": codes })
+    serde_json::json!({ "estimates": estimates.collect::<Map<_, _>>(), "findings": codes })
 }
 
 /// Compares two trees leaf by leaf; numbers within a part of themselves, which is wider where an interval or an uncertainty is meant.

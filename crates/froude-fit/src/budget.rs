@@ -206,6 +206,12 @@ pub fn jackknife(groups: usize, without: impl Fn(usize) -> Option<Vec<f64>>) -> 
     Some((Mat::from_fn(p, p, |a, b| (g - 1.0) / g * moment(a, b)), g - 1.0))
 }
 
+/// [`jackknife`] of one number: standard uncertainty and degrees of freedom.
+#[must_use]
+pub fn jackknife_of_one(groups: usize, without: impl Fn(usize) -> Option<f64>) -> Option<(f64, f64)> {
+    jackknife(groups, |g| without(g).map(|value| vec![value])).map(|(covariance, dof)| (covariance[(0, 0)].sqrt(), dof))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

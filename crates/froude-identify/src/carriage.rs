@@ -47,4 +47,4 @@ pub mod steady;
 
 pub use error::DragError;
 pub use report::{DragReport, drag_report};
-pub use run::{BodyState, DragRun, DragSetup, RunKind, Uncertain};
+pub use run::{BodyState, DragRun, DragSetup, RunKind};

@@ -129,9 +129,9 @@ fn coefficients(model: &ModelFit) -> IndexMap<String, Coefficient> {
             let centre = fitted.unconstrained;
             let interval_95 = match (combined, centre) {
                 (Some(c), Some(u)) => {
-                    let half = c.coverage * c.standard;
+                    let [low, high] = c.interval(u);
                     let bound = model.options.bounds.get(j).copied().unwrap_or(fit::Bound::FREE);
-                    let (low, high) = ((u - half).max(bound.lower), (u + half).min(bound.upper));
+                    let (low, high) = (low.max(bound.lower), high.min(bound.upper));
                     (low <= high).then_some([low, high])
                 }
                 _ => None,

@@ -2,13 +2,14 @@
 
 use faer::Mat;
 use froude_fit as fit;
+use froude_fit::budget::{Combined, OUTSIDE_95, Part, combine};
 use froude_records::campaign::{AngleOffset, BoundKind, BudgetEntry, Identify, SourceKind};
 use froude_records::finding::{Finding, Severity};
 
 use crate::dataset::{Dataset, distinct, labels};
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
-use crate::uncertainty::{Combined, Contribution, Linearised, SharedError, combine, contributions};
+use crate::uncertainty::{Linearised, SharedError, contributions, scatter};
 use crate::{dissipation, eiv};
 
 /// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
@@ -60,8 +61,8 @@ pub struct ModelFit {
     pub combined: Vec<Option<Combined>>,
     /// Combined covariance, p × p.
     pub covariance: Mat<f64>,
-    /// The budget's parts.
-    pub contributions: Vec<Contribution>,
+    /// The budget: the scatter, the declared entries, the shared errors.
+    pub budget: Vec<Part>,
     /// True where errors of speed and angle were fitted too.
     pub in_variables: bool,
     /// Words for the covariance kind.
@@ -196,14 +197,15 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             part.in_scatter |= eiv::is_input_error(entry);
         }
     }
+    let budget: Vec<Part> = std::iter::once(scatter(&fitted)).chain(contributions).collect();
     let combined: Vec<Option<Combined>> = fitted
         .coefficients
         .iter()
         .enumerate()
-        .map(|(j, c)| c.standard.map(|a| combine(a, c.dof.unwrap_or(f64::INFINITY), j, &contributions)))
+        .map(|(j, c)| c.standard.map(|_| combine(&budget, j, OUTSIDE_95)))
         .collect();
-    let mut covariance = fitted.covariance.clone();
-    for part in contributions.iter().filter(|c| !c.in_scatter) {
+    let mut covariance = Mat::zeros(specs.len(), specs.len());
+    for part in budget.iter().filter(|part| !part.in_scatter) {
         covariance += &part.covariance;
     }
     // A coefficient that was not estimated has no covariance, whatever the budget says.
@@ -231,7 +233,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         coefficients,
         combined,
         covariance,
-        contributions,
+        budget,
         in_variables,
         covariance_kind: if in_variables { "model-based, errors in variables".to_owned() } else { covariance_kind },
         findings,
@@ -618,12 +620,13 @@ fn contradicted_priors(
     };
     let values = step(&free);
     let at = Linearised { law, data, coefficients: &values[..law.coefficients.len()], sensitivity: &free.sensitivity };
-    let parts = contributions(at, settings.budget, settings.shared_errors, settings.kind != SourceKind::Cfd)?;
+    let declared = contributions(at, settings.budget, settings.shared_errors, settings.kind != SourceKind::Cfd)?;
+    let parts: Vec<Part> = std::iter::once(scatter(&free)).chain(declared).collect();
     let mut findings = Vec::new();
     for prior in &options.priors {
         let c = &free.coefficients[prior.index];
-        let (Some(value), Some(scatter)) = (c.unconstrained, c.standard) else { continue };
-        let standard = combine(scatter, c.dof.unwrap_or(f64::INFINITY), prior.index, &parts).standard;
+        let (Some(value), Some(_)) = (c.unconstrained, c.standard) else { continue };
+        let standard = combine(&parts, prior.index, OUTSIDE_95).standard;
         let apart = (value - prior.value).abs() / standard.hypot(prior.standard);
         if apart > PRIOR_CONTRADICTED_ABOVE {
             findings.push(Finding::new(

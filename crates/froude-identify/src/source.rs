@@ -207,7 +207,7 @@ fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, dr
     let (shared, drawn): (Vec<_>, Vec<_>) = settings
         .budget
         .iter()
-        .zip(&model.contributions)
+        .zip(&model.budget[1..])
         .filter(|(_, part)| !part.in_scatter)
         .map(|(entry, part)| (entry.clone(), part))
         .unzip();

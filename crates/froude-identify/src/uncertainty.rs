@@ -10,8 +10,9 @@
 //! `kind = "cfd"` there is no scatter, so it is added.
 
 use faer::Mat;
+use froude_fit as fit;
+use froude_fit::budget::{Kind, Part, Shape};
 use froude_records::campaign::{BudgetEntry, Shared};
-use indexmap::IndexMap;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -20,6 +21,9 @@ use rayon::prelude::*;
 use crate::dataset::{Dataset, labels};
 use crate::error::IdentifyError;
 use crate::law::{ForceLaw, aliased};
+
+/// The scatter itself as an input of the budget: no error that rows share.
+pub const SCATTER: &str = "scatter of the observations";
 
 /// An error that many observations share: `directions · e`, with `e` of the given covariance.
 #[derive(Debug, Clone)]
@@ -30,21 +34,6 @@ pub struct SharedError {
     pub directions: Vec<(String, Vec<Vec<f64>>)>,
     /// Covariance of `e`.
     pub covariance: Vec<Vec<f64>>,
-}
-
-/// What one budget entry adds to the covariance of the coefficients.
-#[derive(Debug, Clone)]
-pub struct Contribution {
-    /// Name of the entry, with its quantity.
-    pub name: String,
-    /// `sample`, `run`, `setup`, `campaign`.
-    pub shared: &'static str,
-    /// Its part of the covariance, p × p.
-    pub covariance: Mat<f64>,
-    /// Degrees of freedom of the declared standard deviation; infinite unless stated.
-    pub dof: f64,
-    /// True where it is part of the residual scatter and not added again.
-    pub in_scatter: bool,
 }
 
 /// A fit as the propagation sees it.
@@ -70,7 +59,7 @@ pub fn contributions(
     budget: &[BudgetEntry],
     shared_errors: &[SharedError],
     scatter_is_noise: bool,
-) -> Result<Vec<Contribution>, IdentifyError> {
+) -> Result<Vec<Part>, IdentifyError> {
     let mut out = Vec::new();
     for entry in budget {
         let direction = direction(fit, entry)?;
@@ -89,14 +78,16 @@ pub fn contributions(
             }
         }
         let covariance = &moved * moved.transpose();
-        out.push(Contribution {
+        out.push(Part {
             name: entry
                 .name
                 .clone()
                 .map_or_else(|| entry.quantity.clone(), |name| format!("{name} ({})", entry.quantity)),
             shared: entry.shared.name(),
+            kind: Kind::B,
             covariance,
-            dof: entry.dof.unwrap_or(f64::INFINITY),
+            dof: vec![entry.dof.unwrap_or(f64::INFINITY); p],
+            shape: Shape::Normal,
             in_scatter: single && scatter_is_noise,
         });
     }
@@ -190,7 +181,7 @@ fn groups(data: &Dataset, shared: Shared) -> Vec<usize> {
 }
 
 /// A subtracted tare: S·D·C·Dᵀ·Sᵀ.
-fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Contribution, IdentifyError> {
+fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, IdentifyError> {
     let (p, n, q) = (fit.sensitivity.nrows(), fit.data.rows, error.covariance.len());
     let mut moved = Mat::<f64>::zeros(p, q);
     let mut per_newton = vec![1.0; n * fit.law.responses.len()];
@@ -207,45 +198,29 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Contribution
         }
     }
     let c = Mat::from_fn(q, q, |a, b| error.covariance[a][b]);
-    Ok(Contribution {
+    Ok(Part {
         name: error.name.clone(),
         shared: "campaign",
+        kind: Kind::B,
         covariance: &moved * c * moved.transpose(),
-        dof: f64::INFINITY,
+        dof: vec![f64::INFINITY; p],
+        shape: Shape::Normal,
         in_scatter: false,
     })
 }
 
-/// Combined uncertainty of one coefficient.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Combined {
-    /// Type A, from the scatter.
-    pub type_a: f64,
-    /// Type B, from the budget.
-    pub type_b: f64,
-    /// Root of the sum of squares.
-    pub standard: f64,
-    /// Effective degrees of freedom (Welch–Satterthwaite, GUM G.4.1).
-    pub dof: f64,
-    /// Coverage factor of the 95 % interval.
-    pub coverage: f64,
-}
-
-/// Combines the scatter of coefficient `j` with the budget.
+/// The scatter of the observations as the first part of the budget.
 #[must_use]
-pub fn combine(type_a: f64, dof_a: f64, j: usize, parts: &[Contribution]) -> Combined {
-    let mut variance_b = 0.0;
-    let mut quartic = if dof_a.is_finite() && dof_a > 0.0 { type_a.powi(4) / dof_a } else { 0.0 };
-    for part in parts.iter().filter(|c| !c.in_scatter) {
-        let variance = part.covariance[(j, j)];
-        variance_b += variance;
-        if part.dof.is_finite() {
-            quartic += variance * variance / part.dof;
-        }
+pub fn scatter(fit: &fit::Fit) -> Part {
+    Part {
+        name: SCATTER.to_owned(),
+        shared: "sample",
+        kind: Kind::A,
+        covariance: fit.covariance.clone(),
+        dof: fit.coefficients.iter().map(|c| c.dof.unwrap_or(f64::INFINITY)).collect(),
+        shape: Shape::Normal,
+        in_scatter: false,
     }
-    let variance = type_a * type_a + variance_b;
-    let dof = if quartic > 0.0 { variance * variance / quartic } else { f64::INFINITY };
-    Combined { type_a, type_b: variance_b.sqrt(), standard: variance.sqrt(), dof, coverage: coverage_factor(dof) }
 }
 
 /// Two-sided 95 % quantile of Student's t.
@@ -299,20 +274,4 @@ pub fn monte_carlo(
 #[must_use]
 pub fn generator(seed: u64) -> Pcg64 {
     Pcg64::seed_from_u64(seed)
-}
-
-/// Share of each part in the variance of coefficient `j`, scatter first.
-#[must_use]
-pub fn shares(type_a: f64, j: usize, parts: &[Contribution]) -> IndexMap<String, (f64, &'static str)> {
-    let mut out = IndexMap::new();
-    out.insert("scatter of the observations".to_owned(), (type_a, "sample"));
-    for part in parts {
-        if part.in_scatter {
-            // Listed, so that nobody looks for it in vain; the scatter holds it already.
-            out.insert(format!("{}, in the scatter", part.name), (0.0, part.shared));
-        } else {
-            out.insert(part.name.clone(), (part.covariance[(j, j)].max(0.0).sqrt(), part.shared));
-        }
-    }
-    out
 }

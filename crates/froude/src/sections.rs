@@ -10,7 +10,7 @@ use froude_identify::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use froude_identify::regression::ModelFit;
 use froude_identify::selection::aicc_of;
 use froude_identify::source::SourceResult;
-use froude_identify::uncertainty::{coverage_factor, shares};
+use froude_identify::uncertainty::{SCATTER, coverage_factor};
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::text::counted;
@@ -20,8 +20,6 @@ use froude_report::{
     JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection, number,
 };
 
-/// The scatter itself as an input of the budget: no error that rows share.
-const SCATTER: &str = "scatter of the observations";
 /// Places along a curve.
 const CURVE_POINTS: usize = 60;
 /// Curves against speed drawn per configuration at most, one an angle; more would hide the points.
@@ -320,11 +318,17 @@ fn budget(model: &ModelFit) -> Vec<BudgetRow> {
     let mut out = Vec::new();
     for (j, spec) in model.specs.iter().enumerate() {
         let Some(combined) = model.combined[j] else { continue };
-        for (input, (contribution, shared)) in shares(combined.type_a, j, &model.contributions) {
+        for part in &model.budget {
+            // Listed, so that nobody looks for it in vain; the scatter holds it already.
+            let (input, contribution) = if part.in_scatter {
+                (format!("{}, in the scatter", part.name), 0.0)
+            } else {
+                (part.name.clone(), part.standard(j))
+            };
             out.push(BudgetRow {
                 model: model.law.name.clone(),
                 coefficient: spec.name.clone(),
-                shared: if input == SCATTER { String::new() } else { shared.to_owned() },
+                shared: if input == SCATTER { String::new() } else { part.shared.to_owned() },
                 input,
                 contribution,
                 unit: spec.unit.clone(),

@@ -18,9 +18,9 @@
 //!
 //! Valid from rest; flow history (start-up of the wake) is in the result.
 
-use super::coefficient::jackknife;
-use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind, Uncertain};
+use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
 use super::steady::{SteadySettings, driving_part, tapered, window};
+use froude_fit::budget::{Uncertain, jackknife_of_one};
 
 /// Water that moves along with the body.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,7 +152,7 @@ pub fn added_mass(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<AddedMass> 
     pairs.dedup();
     let of = |skip: Option<u32>| mass(all.iter().filter(|a| Some(a.pair) != skip));
     let moved = of(None)?;
-    let (scatter, dof) = jackknife(pairs.len(), |g| of(Some(pairs[g])))?;
+    let (scatter, dof) = jackknife_of_one(pairs.len(), |g| of(Some(pairs[g])))?;
     let scale = match (setup.calibration, setup.efficiency) {
         (Some(c), _) => c.force_per_volt_n.relative(),
         (None, Efficiency::Declared(e)) => e.relative().hypot(setup.torque_constant_relative),

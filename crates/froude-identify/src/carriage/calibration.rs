@@ -15,6 +15,7 @@
 //! a prior of a₂.
 //! Position-dependent friction cancels only if all runs cover the same positions.
 
+use froude_fit::budget::Uncertain;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_fit::{CovarianceKind, Fit, Options, Prior, Problem, fit};
@@ -22,7 +23,7 @@ use froude_records::text::counted;
 
 use super::error::DragError;
 use super::fsm::reach;
-use super::run::{DragRun, RunKind, Uncertain};
+use super::run::{DragRun, RunKind};
 use super::steady::{SteadySettings, mean, window};
 
 /// The pulley's loss where both directions with light weights do not measure it, and nobody declared it: a ball bearing

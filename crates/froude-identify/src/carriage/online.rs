@@ -96,7 +96,8 @@ mod tests {
     use super::*;
     use crate::carriage::calibration::ForcePerVolt;
     use crate::carriage::coefficient::slope;
-    use crate::carriage::run::{Efficiency, Uncertain};
+    use crate::carriage::run::Efficiency;
+    use froude_fit::budget::Uncertain;
 
     fn point(pair: u32, v: f64, force_n: f64) -> Point {
         Point {

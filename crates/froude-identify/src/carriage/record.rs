@@ -1,5 +1,6 @@
 //! D_d and C_D as an estimate record.
 
+use froude_fit::budget::Kind;
 use froude_records::estimate::{Coefficient as Recorded, Diagnostics, Estimate, Law, Measured, Range, Status};
 use froude_records::text::counted;
 use indexmap::IndexMap;
@@ -35,6 +36,7 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
     let mut validity = IndexMap::new();
     let range = Range { low: speeds[0], high: speeds[1], unit: "m/s".to_owned() };
     validity.insert("speed".to_owned(), range);
+    let scatter = c.budget.iter().find(|p| p.kind == Kind::A);
     Estimate {
         id: format!("{}/{}", setup.name, c.method.name()),
         source: setup.name.clone(),
@@ -46,8 +48,8 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
         frame: "along the chain; F = D_d v|v| resists the motion".to_owned(),
         reference_point: String::new(),
         method: format!("{}; least squares over v|v| through the origin", c.method.words()),
-        covariance_kind: c.budget.iter().find(|p| p.kind == 'A').map_or("none stated", |p| &p.name).to_owned(),
-        dof: std::iter::once(("f_x".to_owned(), c.budget.iter().find(|p| p.kind == 'A').map(|p| p.dof))).collect(),
+        covariance_kind: scatter.map_or("none stated", |p| &p.name).to_owned(),
+        dof: std::iter::once(("f_x".to_owned(), scatter.map(|p| p.dof[0]))).collect(),
         sigma: IndexMap::new(),
         n_observations: c.points.len(),
         coefficients,
@@ -72,8 +74,8 @@ fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) -> Vec<String
                 p.name,
                 p.kind,
                 p.shared,
-                p.standard,
-                100.0 * p.standard / c.value.abs()
+                p.standard(0),
+                100.0 * p.standard(0) / c.value.abs()
             )
         })
         .collect();

@@ -1,13 +1,12 @@
 //! All methods side by side over one campaign: the paper's Table IV with what it lacked.
 
+use froude_fit::budget::{Kind, Part, jackknife_of_one};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
 use super::added_mass::{AddedMass, added_mass};
-use super::coefficient::{
-    Coefficient, Method, Part, Point, Shape, TypeA, coefficient, each_alone, jackknife, pairs, scatter, slope, slope_of,
-};
+use super::coefficient::{Coefficient, Method, Point, TypeA, coefficient, each_alone, pairs, scatter, slope, slope_of};
 use super::detectability::{Agreement, Detectability, DryMean, agreement, floored, predict, zero_change};
 use super::error::DragError;
 use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
@@ -166,15 +165,8 @@ fn with_drift(mut c: Coefficient, wet: &[&DragRun<'_>], setup: &DragSetup, findi
     let open = wet.iter().filter(is_open).count();
     if open > 0 {
         let half = setup.sensor.drift_half_width_n * slope_of(&c.points, |_| 1.0).abs();
-        c.widen(Part {
-            name: "drift of the sensor that no still window shows".to_owned(),
-            shared: "campaign",
-            standard: half / 3.0_f64.sqrt(),
-            dof: f64::INFINITY,
-            shape: Shape::Between(-half, half),
-            kind: 'B',
-            in_scatter: false,
-        });
+        let name = "drift of the sensor that no still window shows".to_owned();
+        c.widen(Part::of_one_between(name, "campaign", [-half, half]));
         findings.push(Finding::new(
             Severity::Warning,
             "zero-on-one-side",
@@ -266,8 +258,8 @@ fn model_based(
     let mut sweeps: Vec<Cluster> =
         without_drag.iter().map(|c| c.0).filter(|c| matches!(c, Cluster::Sweep(_))).collect();
     sweeps.dedup();
-    let of_pairs = jackknife(groups.len(), |g| without(Cluster::Pair(groups[g])));
-    let of_sweeps = jackknife(sweeps.len(), |g| without(sweeps[g]));
+    let of_pairs = jackknife_of_one(groups.len(), |g| without(Cluster::Pair(groups[g])));
+    let of_sweeps = jackknife_of_one(sweeps.len(), |g| without(sweeps[g]));
     // A wet run alone has half the variance of a difference, and friction that is known exactly adds none.
     let promised = predict(
         &dry.iter().filter_map(|r| DryMean::of(r, setup)).collect::<Vec<_>>(),
@@ -307,15 +299,8 @@ fn model_based(
                     100.0 * phantom / out.value
                 ),
             ));
-            out.widen(Part {
-                name: "friction where it was not identified, left as it is".to_owned(),
-                shared: "campaign",
-                standard: phantom.abs(),
-                dof: f64::INFINITY,
-                shape: Shape::Bell,
-                kind: 'B',
-                in_scatter: false,
-            });
+            let name = "friction where it was not identified, left as it is".to_owned();
+            out.widen(Part::of_one(name, "campaign", Kind::B, phantom.abs(), f64::INFINITY));
         }
     }
     Some(out)
@@ -432,7 +417,7 @@ fn doubts(
         {
             out.push(finding);
         }
-        let scatter_dof = c.budget.iter().find(|p| p.kind == 'A').map_or(0.0, |p| p.dof);
+        let scatter_dof = c.budget.iter().find(|p| p.kind == Kind::A).map_or(0.0, |p| p.dof[0]);
         if c.pairs < FEW_PAIRS && scatter_dof < FEW_PAIRS as f64 {
             let so = match (c.interval_95, scatter_dof.round() as usize) {
                 (None, _) => "nothing tells their scatter, and no interval is stated".to_owned(),

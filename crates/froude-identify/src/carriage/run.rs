@@ -1,33 +1,10 @@
 //! What the reduction of a carriage's runs takes: the columns of each run and what is declared about the rig.
 
+use froude_fit::budget::Uncertain;
+
 use super::calibration::ForcePerVolt;
 use super::mbdp::Flexible;
 use super::steady::SteadySettings;
-
-/// A number with its standard uncertainty.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Uncertain {
-    /// The number.
-    pub value: f64,
-    /// Its standard uncertainty, same unit.
-    pub standard: f64,
-    /// Degrees of freedom of the standard uncertainty; infinite for a certificate.
-    pub dof: f64,
-}
-
-impl Uncertain {
-    /// A number whose standard uncertainty is known well.
-    #[must_use]
-    pub const fn new(value: f64, standard: f64) -> Self {
-        Self { value, standard, dof: f64::INFINITY }
-    }
-
-    /// Standard uncertainty as part of the number.
-    #[must_use]
-    pub fn relative(self) -> f64 {
-        (self.standard / self.value).abs()
-    }
-}
 
 /// What hangs on the strut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

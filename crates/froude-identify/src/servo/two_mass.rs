@@ -25,13 +25,13 @@
 //! MCD eq. 2a, 2b, 3b for the sums; Ljung (1999), *System Identification*, 2nd ed., 7.2 and 4.3 (prediction errors of a state-space model
 //! in innovations form).
 
+use froude_fit::budget::Uncertain;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 use froude_fit::{End, Report};
 use froude_signal::{decimate, differences};
 
-use crate::carriage::Uncertain;
 use crate::carriage::mbdp;
 use crate::servo::chain::{Chain, norm};
 use crate::servo::cluster::{Clustered, Enlarged, stretches};

@@ -1,5 +1,6 @@
 //! Drag read from a carriage: the pinned scenario observation by observation, and what the paper prints.
 
+use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
 use froude::identify::carriage::calibration::{CalibrationSetup, ForcePerVolt, calibrate};
 use froude::identify::carriage::coefficient::{Coefficient, Method, coefficient};
@@ -8,7 +9,7 @@ use froude::identify::carriage::online::OnLine;
 use froude::identify::carriage::run::Ballast;
 use froude::identify::carriage::simulate::Scenario;
 use froude::identify::carriage::steady::SteadySettings;
-use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, Uncertain, drag_report, mcd};
+use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, drag_report, mcd};
 use froude::identify::lint;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;

@@ -8,11 +8,12 @@ use std::path::Path;
 
 use froude::control::config::Config;
 use froude::control::request::{Move, Request};
+use froude::fit::budget::Uncertain;
 use froude::identify::carriage::calibration::ForcePerVolt;
 use froude::identify::carriage::coefficient::{Coefficient, Method};
 use froude::identify::carriage::run::RunKind;
 use froude::identify::carriage::simulate::Logged;
-use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, Uncertain, drag_report};
+use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, drag_report};
 use froude::records::campaign::read_campaign;
 use froude::rig::campaign::setup;
 use froude::rig::closed_loop::ClosedLoop;

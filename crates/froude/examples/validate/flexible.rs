@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::f64::consts::PI;
 
-use froude::identify::carriage::Uncertain;
+use froude::fit::budget::Uncertain;
 use froude::identify::servo::flexible::TwoMass;
 use froude::identify::servo::synthetic::{Noise, carriage, record};
 use froude::identify::servo::{FlexibleOptions, FlexibleReport, Gear, MotorSide, ServoError, identify_flexible};

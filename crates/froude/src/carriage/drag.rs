@@ -3,12 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use froude_fit::budget::Uncertain;
 use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
 use froude_identify::carriage::coefficient::{Coefficient, Method};
 use froude_identify::carriage::report::{DragReport, drag_report};
-use froude_identify::carriage::run::{
-    self as drag_run, Ballast, DragRun, DragSetup, Efficiency, SensorBudget, Uncertain,
-};
+use froude_identify::carriage::run::{self as drag_run, Ballast, DragRun, DragSetup, Efficiency, SensorBudget};
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
@@ -510,7 +509,7 @@ pub fn methods_table(report: &DragReport) -> TextTable {
 }
 
 fn budget_table(c: &Coefficient) -> TextTable {
-    let total: f64 = c.budget.iter().filter(|p| !p.in_scatter).map(|p| p.standard * p.standard).sum();
+    let total: f64 = c.budget.iter().filter(|p| !p.in_scatter).map(|p| p.covariance[(0, 0)]).sum();
     TextTable {
         caption: format!("{}.", c.method.words()),
         head: ["input", "standard uncertainty [N s²/m²]", "of the variance"].map(str::to_owned).to_vec(),
@@ -521,9 +520,9 @@ fn budget_table(c: &Coefficient) -> TextTable {
                 let share = if p.in_scatter {
                     "in the scatter".to_owned()
                 } else {
-                    number::percent(if total > 0.0 { p.standard * p.standard / total } else { 0.0 })
+                    number::percent(if total > 0.0 { p.covariance[(0, 0)] / total } else { 0.0 })
                 };
-                vec![p.name.to_string(), number::significant(p.standard, 2), share]
+                vec![p.name.to_string(), number::significant(p.standard(0), 2), share]
             })
             .collect(),
     }

@@ -6,7 +6,7 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use froude_identify::carriage::Uncertain;
+use froude_fit::budget::Uncertain;
 use froude_identify::carriage::steady::{SteadySettings, mean, window};
 use froude_identify::servo::chain::Rows;
 use froude_identify::servo::motor::MotorSide;
