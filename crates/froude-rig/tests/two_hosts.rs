@@ -22,10 +22,11 @@ fn whatever_a_second_host_says_the_board_does_what_the_first_one_asks_and_stops_
     }
 }
 
-/// Seeds of rare endings among the first 10⁵: the second host got the board after the first one's silence and tripped a limit itself.
+/// Seeds of rare endings among the first 10⁵: the second host got the board after the first one's silence and tripped a limit itself; in the
+/// last it cleared the fault of a dead encoder twice and homed again, into the hard stop.
 #[test]
 fn rare_endings_are_allowed_for_what_they_are() {
-    let sweep = Hosts::new().sweep([3473, 12897, 32542, 39917, 45676, 96662, 97162]);
+    let sweep = Hosts::new().sweep([3473, 12897, 32542, 39917, 45676, 96662, 97162, 90401]);
     assert!(sweep.refused.is_empty(), "{:#?}", sweep.refused);
     assert_eq!(sweep.taken_over, sweep.runs);
 }

@@ -12,7 +12,9 @@
 //! - No load touches a hard stop, no command is not finite, and after the silence both axes come to rest without torque.
 //! - As long as nobody stops the carriage and the first host lives, what breaks is named in time, as without a second host. Otherwise
 //!   the first fault is one that the catalogue accepts, or the host's own silence, or none. Where the second host had got the board
-//!   before, it drives as wildly as it talks (open-loop jogs, moves on a broken axis), and what it trips is its own.
+//!   before, it drives as wildly as it talks (open-loop jogs, moves on a broken axis), and what it trips is its own. Where it also clears
+//!   the fault of a dead encoder and homes again while the load still coasts, no controller knows where the load is: the hard stops are
+//!   then its own too.
 //! - The second host gets the board only when the controller had stopped for the silence of the first, or no axis had torque.
 //!
 //! A current that is not a number cannot come out of a converter; where the catalogue draws one the amplifier fails instead.
@@ -363,6 +365,8 @@ pub struct Ending {
     pub detected: Option<(Fault, f64)>,
     /// The second host had the board when the fault was latched.
     pub is_its_own: bool,
+    /// The second host cleared a fault that something broken had brought about.
+    pub was_cleared: bool,
     /// A fault was there before anything broke.
     pub was_faulted: bool,
     /// Until something was detected, or until it had to be: nobody stopped, and the first host was not silent.
@@ -392,10 +396,11 @@ impl Ending {
             let own = [Fault::HostSilent, Fault::RecorderFailed];
             self.is_its_own || self.detected.is_none_or(|(fault, _)| accepted.contains(&fault) || own.contains(&fault))
         };
+        let is_blind = self.was_cleared && matches!(injection, Injection::EncoderSilent | Injection::EncoderStuck);
         self.unequal.is_none()
             && !self.has_slipped
             && !self.has_bad_command
-            && (is_chain || (is_named && !self.has_left_travel && self.is_at_rest))
+            && (is_chain || (is_named && (is_blind || !self.has_left_travel) && self.is_at_rest))
     }
 }
 
@@ -441,6 +446,7 @@ impl Hosts {
             taken_over: None,
             detected: None,
             is_its_own: false,
+            was_cleared: false,
             was_faulted: false,
             is_undisturbed: true,
             unequal: None,
@@ -479,6 +485,7 @@ impl Hosts {
                     ending.is_undisturbed &= ending.stops == 0 && !first.was_silent(tick);
                 }
             }
+            ending.was_cleared |= ending.is_its_own && bench.fault().is_none();
         }
         let ended = bench.output().status.axes[scene.axis];
         ending.has_arrived = ended.phase == Phase::Holding && (ended.reference_m - ended.position_m).abs() < ARRIVED_M;
