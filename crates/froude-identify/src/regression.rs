@@ -38,8 +38,12 @@ pub struct Settings<'a> {
     pub identify: &'a Identify,
     /// The declared budget.
     pub budget: &'a [BudgetEntry],
-    /// Errors from subtracted tares.
+    /// Errors from subtracted tares, and those that the source's method knows.
     pub shared_errors: &'a [SharedError],
+    /// The scatter, where the method has more to shake than its rows; else that of the residuals.
+    pub scatter: Option<&'a Part>,
+    /// Looks that an interval pays for (Bonferroni), 1 or more.
+    pub looks: usize,
 }
 
 /// A fitted law.
@@ -197,12 +201,17 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             part.in_scatter |= eiv::is_input_error(entry);
         }
     }
-    let budget: Vec<Part> = std::iter::once(scatter(&fitted)).chain(contributions).collect();
+    let given = settings.scatter;
+    let budget: Vec<Part> =
+        std::iter::once(given.cloned().unwrap_or_else(|| scatter(&fitted))).chain(contributions).collect();
+    let outside = OUTSIDE_95 / settings.looks.max(1) as f64;
     let combined: Vec<Option<Combined>> = fitted
         .coefficients
         .iter()
         .enumerate()
-        .map(|(j, c)| c.standard.map(|_| combine(&budget, j, OUTSIDE_95)))
+        .map(|(j, c)| {
+            (c.standard.is_some() || (given.is_some() && c.value.is_some())).then(|| combine(&budget, j, outside))
+        })
         .collect();
     let mut covariance = Mat::zeros(specs.len(), specs.len());
     for part in budget.iter().filter(|part| !part.in_scatter) {
@@ -235,7 +244,11 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         covariance,
         budget,
         in_variables,
-        covariance_kind: if in_variables { "model-based, errors in variables".to_owned() } else { covariance_kind },
+        covariance_kind: match given {
+            Some(part) => part.name.clone(),
+            None if in_variables => "model-based, errors in variables".to_owned(),
+            None => covariance_kind,
+        },
         findings,
     })
 }

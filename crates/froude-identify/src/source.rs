@@ -94,6 +94,8 @@ pub fn identify_source(
         identify: &campaign.identify,
         budget: &source.uncertainty,
         shared_errors: &shared_errors,
+        scatter: None,
+        looks: 1,
     };
     let laws = laws(campaign, source, &data)?;
     check_budget(source, &data)?;

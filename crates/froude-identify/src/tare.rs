@@ -82,6 +82,10 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
         let columns: Vec<usize> = covariance.names.iter().filter_map(|name| law.position(name)).collect();
         SharedError {
             name: format!("tare {}", estimate.id),
+            shared: "campaign",
+            dof: f64::INFINITY,
+            limits: None,
+            is_of_each_row: false,
             directions: law
                 .responses
                 .iter()

@@ -11,7 +11,7 @@
 
 use faer::Mat;
 use froude_fit as fit;
-use froude_fit::budget::{Kind, Part, Shape};
+use froude_fit::budget::{Kind, Part, Shape, one_sided};
 use froude_records::campaign::{BudgetEntry, Shared};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -25,15 +25,52 @@ use crate::law::{ForceLaw, aliased};
 /// The scatter itself as an input of the budget: no error that rows share.
 pub const SCATTER: &str = "scatter of the observations";
 
-/// An error that many observations share: `directions · e`, with `e` of the given covariance.
+/// An error of the loads that a source's method knows: `directions · e`, with `e` of the given covariance.
 #[derive(Debug, Clone)]
 pub struct SharedError {
     /// What it is, for the budget.
     pub name: String,
+    /// Who shares it: `run`, `setup`, `campaign`.
+    pub shared: &'static str,
     /// Which load it belongs to, and a column per component of `e`, a row per observation.
     pub directions: Vec<(String, Vec<Vec<f64>>)>,
     /// Covariance of `e`.
     pub covariance: Vec<Vec<f64>>,
+    /// Degrees of freedom of that, infinite for a certificate.
+    pub dof: f64,
+    /// Limits of an `e` of one component that is uniform between them; else it is normal.
+    pub limits: Option<[f64; 2]>,
+    /// True where every observation has an `e` of its own, which the scatter shows already.
+    pub is_of_each_row: bool,
+}
+
+impl SharedError {
+    /// A normal error that goes into a load by a number in each row.
+    #[must_use]
+    pub fn of_load(name: &str, load: &str, direction: &[f64], standard: f64, dof: f64) -> Self {
+        Self {
+            name: name.to_owned(),
+            shared: "campaign",
+            directions: vec![(load.to_owned(), direction.iter().map(|d| vec![*d]).collect())],
+            covariance: vec![vec![standard * standard]],
+            dof,
+            limits: None,
+            is_of_each_row: false,
+        }
+    }
+
+    /// An error between two limits that goes into a load by a number in each row.
+    #[must_use]
+    pub fn between(name: &str, load: &str, direction: &[f64], [low, high]: [f64; 2]) -> Self {
+        let limits = Some([low, high]);
+        Self { limits, ..Self::of_load(name, load, direction, one_sided(low, high), f64::INFINITY) }
+    }
+
+    /// Standard uncertainties of a load, row by row and independent: part of the scatter.
+    #[must_use]
+    pub fn of_each_row(name: &str, load: &str, standard: &[f64]) -> Self {
+        Self { shared: "run", is_of_each_row: true, ..Self::of_load(name, load, standard, 1.0, f64::INFINITY) }
+    }
 }
 
 /// A fit as the propagation sees it.
@@ -180,15 +217,17 @@ fn groups(data: &Dataset, shared: Shared) -> Vec<usize> {
     }
 }
 
-/// A subtracted tare: S·D·C·Dᵀ·Sᵀ.
+/// S·D·C·Dᵀ·Sᵀ, the sum over the rows inside where each row has an error of its own.
 fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, IdentifyError> {
     let (p, n, q) = (fit.sensitivity.nrows(), fit.data.rows, error.covariance.len());
-    let mut moved = Mat::<f64>::zeros(p, q);
     let mut per_newton = vec![1.0; n * fit.law.responses.len()];
     as_logarithms(fit, &mut per_newton, &fit.law.measured(fit.data)?);
-    for (response, rows) in &error.directions {
-        if let Some(r) = fit.law.responses.iter().position(|name| name == response) {
-            for (i, row) in rows.iter().enumerate().take(n) {
+    let c = Mat::from_fn(q, q, |a, b| error.covariance[a][b]);
+    let mut moved = Mat::<f64>::zeros(p, q);
+    let mut covariance = Mat::<f64>::zeros(p, p);
+    for i in 0..n {
+        for (response, rows) in &error.directions {
+            if let (Some(r), Some(row)) = (fit.law.responses.iter().position(|name| name == response), rows.get(i)) {
                 for (k, d) in row.iter().enumerate() {
                     for j in 0..p {
                         moved[(j, k)] += fit.sensitivity[(j, r * n + i)] * d * per_newton[r * n + i];
@@ -196,16 +235,28 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, Identi
                 }
             }
         }
+        if error.is_of_each_row {
+            covariance += &moved * &c * moved.transpose();
+            moved.fill(0.0);
+        }
     }
-    let c = Mat::from_fn(q, q, |a, b| error.covariance[a][b]);
+    if !error.is_of_each_row {
+        covariance = &moved * &c * moved.transpose();
+    }
+    let limits_of = |j: usize, [low, high]: [f64; 2]| {
+        let ends = [moved[(j, 0)] * low, moved[(j, 0)] * high];
+        [ends[0].min(ends[1]), ends[0].max(ends[1])]
+    };
     Ok(Part {
         name: error.name.clone(),
-        shared: "campaign",
+        shared: error.shared,
         kind: Kind::B,
-        covariance: &moved * c * moved.transpose(),
-        dof: vec![f64::INFINITY; p],
-        shape: Shape::Normal,
-        in_scatter: false,
+        covariance,
+        dof: vec![error.dof; p],
+        shape: error
+            .limits
+            .map_or(Shape::Normal, |limits| Shape::Between((0..p).map(|j| limits_of(j, limits)).collect())),
+        in_scatter: error.is_of_each_row,
     })
 }
 

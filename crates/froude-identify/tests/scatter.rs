@@ -60,7 +60,7 @@ fn campaign(pairs: u32, trouble: Trouble, seed: u64) -> (bool, f64) {
         }
     }
     let promised = predict(&dry, 2 * pairs as usize, pairs as usize, &setup);
-    let c = of_differences(points, promised.as_ref(), &setup).unwrap();
+    let c = of_differences(points, promised.as_ref(), &setup).unwrap().unwrap();
     let [low, high] = c.interval_95.unwrap();
     ((low..=high).contains(&TRUTH), 0.5 * (high - low))
 }

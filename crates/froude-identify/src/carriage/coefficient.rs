@@ -7,9 +7,17 @@
 //!
 //! **Source.** Efron & Stein (1981), Ann. Stat. 9 (jackknife); JCGM 100:2008 (GUM).
 
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Uncertain, combine, jackknife_of_one};
+use froude_fit::budget::{Kind, Part, Uncertain, jackknife_of_one};
+use froude_records::campaign::{Identify, SourceKind};
+use froude_records::units::Dimension;
+use indexmap::IndexMap;
 
 use super::run::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLARED_ROLLING};
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+use crate::regression::{Settings, regress};
+use crate::uncertainty::SharedError;
 
 /// A steady force.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,20 +132,6 @@ impl Coefficient {
     }
 }
 
-impl Coefficient {
-    /// Adds a line to the budget and widens the interval by it.
-    pub(super) fn widen(&mut self, part: Part) {
-        self.budget.push(part);
-        let combined = combined(&self.budget, self.looks);
-        self.type_b = combined.type_b;
-        if self.standard.is_some() {
-            self.standard = Some(combined.standard);
-            self.dof = combined.dof;
-            self.interval_95 = Some(combined.interval(self.value));
-        }
-    }
-}
-
 /// Slope through the origin over v|v|; `None` without a moving point.
 #[must_use]
 pub fn slope<'a>(points: impl IntoIterator<Item = &'a Point>) -> Option<f64> {
@@ -216,20 +210,23 @@ pub struct TypeA {
     pub name: &'static str,
 }
 
-/// D_d of points already in newtons, its scatter replaced by `type_a` where the method has more to shake than its points.
+/// D_d of points already in newtons: the common regression on f_x = −D v_x|v_x|, all rows with one weight. The scatter is replaced by `type_a`
+/// where the method has more to shake than its points; `more` are errors that only it knows.
 ///
 /// `None` without a moving point.
-#[must_use]
+///
+/// # Errors
+///
+/// Numbers that leave what a computer holds.
 pub fn coefficient(
     method: Method,
     mut points: Vec<Point>,
     setup: &DragSetup,
     type_a: Option<TypeA>,
-) -> Option<Coefficient> {
-    let mut budget = Vec::new();
+    more: Vec<SharedError>,
+) -> Result<Option<Coefficient>, IdentifyError> {
     restore_buoyancy(method, &mut points, setup);
-    let measured = slope(&points)?;
-    let value = measured - setup.strut_n_s2_m2.map_or(0.0, |s| s.value);
+    let Some(measured) = slope(&points) else { return Ok(None) };
     let found = match type_a {
         Some(TypeA { standard, dof, name }) => Some((standard, dof, "pair", name)),
         None => scatter(&points).map(|(u, dof, shared)| {
@@ -237,18 +234,40 @@ pub fn coefficient(
             (u, dof, shared, name)
         }),
     };
-    if let Some((standard, dof, shared, name)) = found {
-        budget.push(Part::of_one(name.to_owned(), shared, Kind::A, standard, dof));
-    }
-    shared_errors(method, &points, measured, setup, &mut budget);
-    let all = combined(&budget, setup.looks);
-    let stated = found.map(|_| all);
-    Some(Coefficient {
+    let given =
+        found.map(|(standard, dof, shared, name)| Part::of_one(name.to_owned(), shared, Kind::A, standard, dof));
+    let mut errors = shared_errors(method, &points, measured, setup);
+    errors.extend(more);
+    let data = observations(&points, setup);
+    let law = ForceLaw::formulas(
+        "quadratic",
+        &IndexMap::from([(LOAD.to_owned(), "-D_x_II*v_x*abs(v_x)".to_owned())]),
+        &data,
+    )?;
+    let model = regress(
+        &law,
+        &data,
+        Settings {
+            source_name: &setup.name,
+            kind: SourceKind::Towing,
+            identify: &Identify::default(),
+            budget: &[],
+            shared_errors: &errors,
+            scatter: given.as_ref(),
+            looks: setup.looks,
+        },
+    )?;
+    let value = model.coefficients[0];
+    let stated = model.combined[0].filter(|_| given.is_some());
+    let budget: Vec<Part> =
+        model.budget.into_iter().skip(usize::from(given.is_none())).filter(|part| part.standard(0) > 0.0).collect();
+    let declared = |part: &&Part| part.kind == Kind::B && !part.in_scatter;
+    Ok(Some(Coefficient {
         method,
         value,
         standard: stated.map(|c| c.standard),
         type_a: stated.map(|c| c.type_a),
-        type_b: all.type_b,
+        type_b: budget.iter().filter(declared).map(|part| part.covariance[(0, 0)]).sum::<f64>().sqrt(),
         dof: stated.map_or(f64::NAN, |c| c.dof),
         interval_95: stated.map(|c| c.interval(value)),
         looks: setup.looks,
@@ -256,12 +275,31 @@ pub fn coefficient(
         offset_n: offset(&points),
         budget,
         points,
-    })
+    }))
 }
 
-/// All parts together, the interval held over so many looks (Bonferroni).
-fn combined(budget: &[Part], looks: usize) -> Combined {
-    combine(budget, 0, OUTSIDE_95 / looks.max(1) as f64)
+/// The load along the travel.
+pub(super) const LOAD: &str = "f_x";
+
+/// The points as observations, the drag of the strut taken off: loads of the fluid on the body, against the motion.
+fn observations(points: &[Point], setup: &DragSetup) -> Dataset {
+    let strut = setup.strut_n_s2_m2.map_or(0.0, |s| s.value);
+    let speed: Vec<f64> = points.iter().map(|p| p.speed_m_s).collect();
+    let load = points.iter().map(|p| strut * p.speed_m_s * p.speed_m_s.abs() - p.force_n).collect();
+    let texts = |of: &dyn Fn(&Point) -> String| points.iter().map(of).collect::<Vec<_>>();
+    let mut data = Dataset {
+        rows: points.len(),
+        configuration: vec![String::new(); points.len()],
+        setup: vec![String::new(); points.len()],
+        run: texts(&|p| p.run.clone()),
+        group: Some(texts(&|p| p.pair.to_string())),
+        line: (1..=points.len()).collect(),
+        ..Dataset::default()
+    };
+    data.put("v_x", speed, Dimension::SPEED);
+    data.put("density", vec![setup.density_kg_m3; points.len()], Dimension::DENSITY);
+    data.put(LOAD, load, Dimension::FORCE);
+    data
 }
 
 /// Puts the friction back that buoyancy took off the wheels in the wet runs, where the rolling coefficient is declared.
@@ -275,64 +313,57 @@ fn restore_buoyancy(method: Method, points: &mut [Point], setup: &DragSetup) {
 }
 
 /// Errors that all pairs share, and those that the scatter already shows.
-fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSetup, budget: &mut Vec<Part>) {
-    let mut add = |part: Part| {
-        if part.standard(0) > 0.0 {
-            budget.push(part);
-        }
-    };
-    let of_campaign =
-        |name: &str, standard: f64, dof: f64| Part::of_one(name.to_owned(), "campaign", Kind::B, standard, dof);
-    let in_scatter = |name: &str, standard: f64| Part {
-        in_scatter: true,
-        ..Part::of_one(name.to_owned(), "run", Kind::B, standard, f64::INFINITY)
+fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSetup) -> Vec<SharedError> {
+    // An error of the resistance is one of the load with the other sign.
+    let by = |of: &dyn Fn(&Point) -> f64| points.iter().map(|p| -of(p)).collect::<Vec<f64>>();
+    let of_force = by(&|p| p.force_n);
+    let of = |name: &str, direction: &[f64], standard: f64, dof: f64| {
+        SharedError::of_load(name, LOAD, direction, standard, dof)
     };
     let never = f64::INFINITY;
-    let size = measured.abs();
+    let mut out = Vec::new();
     if method.is_sensorless() {
         match (setup.calibration, setup.efficiency) {
             (Some(c), _) => {
                 let f = c.force_per_volt_n;
-                add(of_campaign("newtons a volt, calibrated", size * f.relative(), f.dof));
+                out.push(of("newtons a volt, calibrated", &of_force, f.relative(), f.dof));
             }
             (None, efficiency) => {
-                add(of_campaign("K_T and amplifier gain, declared", size * setup.torque_constant_relative, never));
-                add(match efficiency {
-                    Efficiency::Declared(e) => of_campaign("gear efficiency, declared", size * e.relative(), e.dof),
+                out.push(of("K_T and amplifier gain, declared", &of_force, setup.torque_constant_relative, never));
+                out.push(match efficiency {
+                    Efficiency::Declared(e) => of("gear efficiency, declared", &of_force, e.relative(), e.dof),
                     Efficiency::Undeclared => {
-                        let limits = UNDECLARED_EFFICIENCY.map(|e| measured * (e - 1.0));
-                        Part::of_one_between("gear efficiency, not declared".to_owned(), "campaign", limits)
+                        let limits = UNDECLARED_EFFICIENCY.map(|e| e - 1.0);
+                        SharedError::between("gear efficiency, not declared", LOAD, &of_force, limits)
                     }
                 });
             }
         }
-        let drift = size * setup.torque_constant_drift_relative * each_alone(points, |p| p.speed_m_s.powi(2));
-        add(in_scatter("drift of K_T from run to run, on the drag", drift));
+        let drift = by(&|p| setup.torque_constant_drift_relative * measured * p.speed_m_s.powi(2));
+        out.push(SharedError::of_each_row("drift of K_T from run to run, on the drag", LOAD, &drift));
         if let Ballast::Unballasted { unloaded_n, rolling } = setup.ballast {
-            let per_newton = slope_of(points, |p| p.speed_m_s.signum());
-            add(match rolling {
-                Some(r) => {
-                    let standard = per_newton * unloaded_n * r.standard;
-                    of_campaign("rolling friction that buoyancy takes off", standard, r.dof)
-                }
+            let of_load = by(&|p| unloaded_n * p.speed_m_s.signum());
+            out.push(match rolling {
+                Some(r) => of("rolling friction that buoyancy takes off", &of_load, r.standard, r.dof),
                 None => {
                     let name = "rolling friction that buoyancy takes off, not declared";
-                    let limits = UNDECLARED_ROLLING.map(|c| c * unloaded_n * per_newton);
-                    Part::of_one_between(name.to_owned(), "campaign", limits)
+                    SharedError::between(name, LOAD, &of_load, UNDECLARED_ROLLING)
                 }
             });
         }
     } else {
-        add(of_campaign("gain of the sensor", size * setup.sensor.gain_relative, never));
-        let zero = each_alone(points, |p| p.standard_n);
-        add(in_scatter("noise, zero of the sensor and its drift", zero));
+        out.push(of("gain of the sensor", &of_force, setup.sensor.gain_relative, never));
+        let zero = by(&|p| p.standard_n);
+        out.push(SharedError::of_each_row("noise, zero of the sensor and its drift", LOAD, &zero));
     }
     // v² takes the sprocket's radius twice; newtons that are not calibrated, (n/R) K_T K_amp, once more in the same direction.
     let times = if method.is_sensorless() && setup.calibration.is_none() { 3.0 } else { 2.0 };
-    add(of_campaign("length of an encoder count", times * size * setup.speed_scale_relative, never));
+    out.push(of("length of an encoder count", &of_force, times * setup.speed_scale_relative, never));
     if let Some(strut) = setup.strut_n_s2_m2 {
-        add(of_campaign("drag of the strut", strut.standard, strut.dof));
+        let of_strut = by(&|p| p.speed_m_s * p.speed_m_s.abs());
+        out.push(of("drag of the strut", &of_strut, strut.standard, strut.dof));
     }
+    out
 }
 
 /// Standard uncertainty of the slope from forces that err independently, each by `standard_n`: √(Σ x² u²)/Σ x², x = v².
@@ -391,9 +422,10 @@ mod tests {
     #[test]
     fn one_pair_alone_says_so_and_one_run_alone_has_no_interval() {
         let setup = DragSetup::of_the_paper();
-        let alone = coefficient(Method::Fsm, vec![point(1, 0.5, 5.0)], &setup, None).unwrap();
+        let of = |points: Vec<Point>| coefficient(Method::Fsm, points, &setup, None, vec![]).unwrap().unwrap();
+        let alone = of(vec![point(1, 0.5, 5.0)]);
         assert!(alone.interval_95.is_none() && (alone.value - 20.0).abs() < 1e-12);
-        let pair = coefficient(Method::Fsm, vec![point(1, 0.5, 5.0), point(1, 0.3, 1.9)], &setup, None).unwrap();
+        let pair = of(vec![point(1, 0.5, 5.0), point(1, 0.3, 1.9)]);
         assert_eq!(pair.budget[0].shared, "run");
         assert!(pair.interval_95.is_some());
     }

@@ -66,7 +66,7 @@ impl OnLine {
     pub fn status(&self, setup: &DragSetup) -> Option<Status> {
         let n = pairs(&self.points).len();
         let promised = predict(&self.dry, n * self.per_pair, n, setup);
-        let c = of_differences(self.points.clone(), promised.as_ref(), setup)?;
+        let c = of_differences(self.points.clone(), promised.as_ref(), setup).ok()??;
         let target = self.target_relative * c.value.abs();
         // One pair alone has an interval of its runs about the law, which is none of repeats.
         let half_width = c.interval_95.filter(|_| n > 1).map(|[low, high]| (high - c.value).max(c.value - low));

@@ -1,11 +1,13 @@
 //! D_d and C_D as an estimate record.
 
 use froude_fit::budget::Kind;
-use froude_records::estimate::{Coefficient as Recorded, Diagnostics, Estimate, Law, Measured, Range, Status};
+use froude_records::estimate::{
+    Coefficient as Recorded, Covariance, Diagnostics, Estimate, Law, Measured, Range, Status,
+};
 use froude_records::text::counted;
 use indexmap::IndexMap;
 
-use super::coefficient::{Coefficient, Method};
+use super::coefficient::{Coefficient, LOAD, Method};
 use super::run::{DragRun, DragSetup, Efficiency};
 
 /// The record of one method's result.
@@ -36,16 +38,17 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
     let mut validity = IndexMap::new();
     let range = Range { low: speeds[0], high: speeds[1], unit: "m/s".to_owned() };
     validity.insert("speed".to_owned(), range);
+    let formulas = IndexMap::from([(LOAD.to_owned(), "-D_d*v_x*abs(v_x)".to_owned())]);
     let scatter = c.budget.iter().find(|p| p.kind == Kind::A);
     Estimate {
         id: format!("{}/{}", setup.name, c.method.name()),
         source: setup.name.clone(),
         kind: "towing".to_owned(),
         model: format!("drag_{}", c.method.name()),
-        law: Law { version: 1, constants, formulas: IndexMap::new() },
+        law: Law { version: 1, constants, formulas },
         geometry,
         density: Some(Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() }),
-        frame: "along the chain; F = D_d v|v| resists the motion".to_owned(),
+        frame: "x along the chain; f_x of the fluid on the body".to_owned(),
         reference_point: String::new(),
         method: format!("{}; least squares over v|v| through the origin", c.method.words()),
         covariance_kind: scatter.map_or("none stated", |p| &p.name).to_owned(),
@@ -53,7 +56,7 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
         sigma: IndexMap::new(),
         n_observations: c.points.len(),
         coefficients,
-        covariance: None,
+        covariance: c.standard.map(|u| Covariance { names: vec!["D_d".to_owned()], matrix: vec![vec![u * u]] }),
         undetermined: Vec::new(),
         validity,
         diagnostics: Diagnostics { notes: notes(c, setup, runs), ..Diagnostics::default() },

@@ -1,18 +1,22 @@
 //! All methods side by side over one campaign: the paper's Table IV with what it lacked.
 
-use froude_fit::budget::{Kind, Part, jackknife_of_one};
+use froude_fit::budget::{Kind, jackknife_of_one};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
 use super::added_mass::{AddedMass, added_mass};
-use super::coefficient::{Coefficient, Method, Point, TypeA, coefficient, each_alone, pairs, scatter, slope, slope_of};
+use super::coefficient::{
+    Coefficient, LOAD, Method, Point, TypeA, coefficient, each_alone, pairs, scatter, slope, slope_of,
+};
 use super::detectability::{Agreement, Detectability, DryMean, agreement, floored, predict, zero_change};
 use super::error::DragError;
 use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
 use super::steady::{Rejected, still_windows};
 use super::{fsm, mbdp, mcd, record};
+use crate::error::IdentifyError;
+use crate::uncertainty::SharedError;
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;
@@ -66,8 +70,9 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
         let all = wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
         let points = keep(all, Method::Fsm, &mut rejected);
         let type_a = sensed_scatter(&points);
-        let sensed = coefficient(Method::Fsm, points, setup, type_a);
-        coefficients.extend(sensed.map(|c| with_drift(c, &wet, setup, &mut findings)));
+        let drift = unseen_drift(&points, &wet, setup, &mut findings);
+        let sensed = coefficient(Method::Fsm, points, setup, type_a, drift.into_iter().collect());
+        coefficients.extend(or_told(Method::Fsm, sensed, &mut findings));
     }
     let k = setup.force_per_volt_n();
     let differences = wet.iter().map(|w| match dry.iter().find(|d| d.is_partner_of(w)) {
@@ -82,7 +87,8 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
         let points = keep(differences, Method::Mcd, &mut rejected);
         let of_pairs = predict(&means, differences_per_speed(&points), pairs(&points).len(), setup);
         agrees = of_pairs.as_ref().and_then(|d| agreement(&points, d, setup));
-        coefficients.extend(of_differences(points, of_pairs.as_ref(), setup));
+        let of_current = of_differences(points, of_pairs.as_ref(), setup);
+        coefficients.extend(or_told(Method::Mcd, of_current, &mut findings));
         detectability = of_pairs.map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
     }
     let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
@@ -158,27 +164,44 @@ fn keep(
     out
 }
 
+/// A method that cannot be fitted costs its own row and says so.
+fn or_told(
+    method: Method,
+    fitted: Result<Option<Coefficient>, IdentifyError>,
+    findings: &mut Vec<Finding>,
+) -> Option<Coefficient> {
+    fitted.unwrap_or_else(|error| {
+        findings.push(Finding::new(Severity::Warning, "not-fitted", format!("{}: {error}", method.name())));
+        None
+    })
+}
+
 /// Where stand-stills do not bracket the tow, the sensor's drift is not seen and may be the same in all runs: then it does
 /// not average down, except that it pulls the same way in tows out and back.
-fn with_drift(mut c: Coefficient, wet: &[&DragRun<'_>], setup: &DragSetup, findings: &mut Vec<Finding>) -> Coefficient {
+fn unseen_drift(
+    points: &[Point],
+    wet: &[&DragRun<'_>],
+    setup: &DragSetup,
+    findings: &mut Vec<Finding>,
+) -> Option<SharedError> {
     let is_open = |r: &&&DragRun<'_>| r.force_n.is_some() && still_windows(r, setup.steady).iter().any(Option::is_none);
     let open = wet.iter().filter(is_open).count();
-    if open > 0 {
-        let half = setup.sensor.drift_half_width_n * slope_of(&c.points, |_| 1.0).abs();
-        let name = "drift of the sensor that no still window shows".to_owned();
-        c.widen(Part::of_one_between(name, "campaign", [-half, half]));
-        findings.push(Finding::new(
-            Severity::Warning,
-            "zero-on-one-side",
-            format!(
-                "fsm: {} no still window on one side of the tow; the declared drift of ± {:.2} N moves D_d by \
-                 up to {half:.2} N s^2/m^2. Stand still for two seconds before and after",
-                counted(open, "wet run has", "wet runs have"),
-                setup.sensor.drift_half_width_n
-            ),
-        ));
+    if open == 0 || points.is_empty() {
+        return None;
     }
-    c
+    let half_n = setup.sensor.drift_half_width_n;
+    findings.push(Finding::new(
+        Severity::Warning,
+        "zero-on-one-side",
+        format!(
+            "fsm: {} no still window on one side of the tow; the declared drift of ± {half_n:.2} N moves D_d by \
+             up to {:.2} N s^2/m^2. Stand still for two seconds before and after",
+            counted(open, "wet run has", "wet runs have"),
+            half_n * slope_of(points, |_| 1.0).abs(),
+        ),
+    ));
+    let name = "drift of the sensor that no still window shows";
+    Some(SharedError::between(name, LOAD, &vec![1.0; points.len()], [-half_n, half_n]))
 }
 
 /// Whom a run that the friction is identified from stands or falls with.
@@ -280,28 +303,30 @@ fn model_based(
         }
         None => a,
     });
-    let mut out = coefficient(method, points, setup, named)?;
     // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
     let of_nothing: Vec<Point> = dry.iter().filter_map(|d| point(d).ok()).collect();
-    if let Some(phantom) = slope(&of_nothing) {
-        let scatter = named.map_or(f64::INFINITY, |t| t.standard);
-        if phantom.abs() > scatter {
-            let from = friction.range_m;
-            findings.push(Finding::new(
-                Severity::Warning,
-                "friction-elsewhere",
-                format!(
-                    "{}: the friction identified from {:.2} to {:.2} m leaves a drag of {phantom:.3} N s^2/m^2 ({:.1} % of D_d) \
-                     on the dry tows; identify it where the body is towed, or use the map",
-                    method.name(),
-                    from[0],
-                    from[1],
-                    100.0 * phantom / out.value
-                ),
-            ));
-            let name = "friction where it was not identified, left as it is".to_owned();
-            out.widen(Part::of_one(name, "campaign", Kind::B, phantom.abs(), f64::INFINITY));
-        }
+    let scatter = named.map_or(f64::INFINITY, |t| t.standard);
+    let phantom = slope(&of_nothing).filter(|phantom| phantom.abs() > scatter);
+    let left = phantom.map(|phantom| {
+        let squares: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
+        let name = "friction where it was not identified, left as it is";
+        SharedError::of_load(name, LOAD, &squares, phantom.abs(), f64::INFINITY)
+    });
+    let out = or_told(method, coefficient(method, points, setup, named, left.into_iter().collect()), findings)?;
+    if let Some(phantom) = phantom {
+        let from = friction.range_m;
+        findings.push(Finding::new(
+            Severity::Warning,
+            "friction-elsewhere",
+            format!(
+                "{}: the friction identified from {:.2} to {:.2} m leaves a drag of {phantom:.3} N s^2/m^2 ({:.1} % of D_d) \
+                 on the dry tows; identify it where the body is towed, or use the map",
+                method.name(),
+                from[0],
+                from[1],
+                100.0 * phantom / out.value
+            ),
+        ));
     }
     Some(out)
 }
@@ -312,13 +337,20 @@ fn together((u, dof): (f64, f64), (v, other): (f64, f64)) -> (f64, f64) {
 }
 
 /// D_d from wet-less-dry differences, its scatter held against what the dry repeats show.
-#[must_use]
-pub fn of_differences(points: Vec<Point>, promised: Option<&Detectability>, setup: &DragSetup) -> Option<Coefficient> {
+///
+/// # Errors
+///
+/// As [`coefficient`].
+pub fn of_differences(
+    points: Vec<Point>,
+    promised: Option<&Detectability>,
+    setup: &DragSetup,
+) -> Result<Option<Coefficient>, IdentifyError> {
     let type_a = scatter(&points).and_then(|(u, dof, shared)| {
         let (rest, rest_dof) = promised.filter(|_| shared == "pair")?.floor_n_s2_m2;
         Some(held((u, dof), (rest.hypot(on_drag(&points, setup)), rest_dof)))
     });
-    coefficient(Method::Mcd, points, setup, type_a)
+    coefficient(Method::Mcd, points, setup, type_a, Vec::new())
 }
 
 /// The scatter of pairs, or the floor under it.

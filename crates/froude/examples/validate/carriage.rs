@@ -397,7 +397,8 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
                 let status = live.status(&setup)?;
                 if status.may_stop || pair == scenario.pairs {
                     let shown = (status.value - d).abs() <= status.half_width?;
-                    let plain = coefficient(Method::Mcd, all, &DragSetup { looks: 1, ..setup }, None)?;
+                    let plain =
+                        coefficient(Method::Mcd, all, &DragSetup { looks: 1, ..setup }, None, vec![]).ok()??;
                     let [low, high] = plain.interval_95?;
                     return Some((pair, shown, (low..=high).contains(&d)));
                 }

@@ -276,6 +276,8 @@ fn settings(campaign: &Campaign) -> Settings<'_> {
         identify: &campaign.identify,
         budget: &[],
         shared_errors: &[],
+        scatter: None,
+        looks: 1,
     }
 }
 
