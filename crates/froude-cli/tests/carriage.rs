@@ -313,3 +313,63 @@ fn anyones_servo_log_is_identified_with_intervals() {
     assert!((mass["value"].as_f64().unwrap() - 95.1089).abs() < 0.1085, "{mass}");
     assert!(out.join("report.html").exists());
 }
+
+/// The drag of a carriage is a law like any other: set beside a table's, subtracted as a tare, the truth of a simulation.
+#[test]
+fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
+    let bench = bench::Bench::new();
+    let folder = bench.folder.path();
+    let drag = bench.drag();
+    let of = |drag: &Value| {
+        let estimate = drag["estimates"].as_array().unwrap().iter().find(|e| e["recommended"] == true).unwrap();
+        let d = &estimate["coefficients"]["D_d"];
+        (d["value"].as_f64().unwrap(), d["standard_uncertainty"].as_f64().unwrap())
+    };
+    let (d, u) = of(&drag);
+    // A table of the same body, 5 N s²/m² more; exact, so that what is left is the tare's.
+    let speeds = [0.46, 0.48, 0.5, 0.52];
+    let rows = |d: f64| {
+        "speed [m/s],f_x [N]\n".to_owned() + &speeds.map(|v: f64| format!("{v},{}\n", -d * v * v.abs())).concat()
+    };
+    std::fs::write(folder.join("gross.csv"), rows(d + 5.0)).unwrap();
+    let campaign = "schema = 1\nname = \"hull\"\n[[source]]\nname = \"hull\"\nkind = \"towing\"\ntable = \"gross.csv\"\ntare = { record = \
+                    \"campaign-runs-drag/estimate.json\" }\n[identify]\nmodels = [\"quadratic\"]\n";
+    std::fs::write(folder.join("hull.toml"), campaign).unwrap();
+    let hull = json(&["identify", text(&folder.join("hull.toml")), "--json"]);
+    let net = &hull["estimates"][0]["coefficients"]["D_x_II"];
+    assert!((net["value"].as_f64().unwrap() - 5.0).abs() < 1e-9, "{net}");
+    assert!((net["type_b"].as_f64().unwrap() / u - 1.0).abs() < 1e-9, "{net}: the tare's {u}");
+
+    // Beside a table of the same drag with a scatter of its own: forces by both, and E_n.
+    let noisy: String = "speed [m/s],f_x [N]\n".to_owned()
+        + &[0.45, 0.47, 0.49, 0.5, 0.51, 0.53, 0.55]
+            .map(|v: f64| format!("{v},{}\n", -d * v * v * (1.0 + 0.01 * (100.0 * v).sin())))
+            .concat();
+    std::fs::write(folder.join("tow.csv"), noisy).unwrap();
+    json(&["identify", text(&folder.join("tow.csv")), "--models", "quadratic", "--json"]);
+    let records = [folder.join("campaign-runs-drag/estimate.json"), folder.join("tow-results/estimate.json")];
+    let compared = json(&["compare", text(&records[0]), text(&records[1]), "--json"]);
+    let forces = compared["forces"].as_array().unwrap();
+    assert!(!forces.is_empty() && forces.iter().all(|row| row["e_n"][0]["e_n"].is_number()), "{compared}");
+
+    // As the truth of a twin without noise.
+    let twin = "schema = 1\nname = \"twin\"\n[fluid]\ndensity = \"998 kg/m^3\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"twin.csv\"\n[[source.plan]]\nspeed = [\"0.3 m/s\", \
+                \"0.5 m/s\"]\n[simulate]\nseed = 1\nrecord = \"campaign-runs-drag/estimate.json\"\n";
+    std::fs::write(folder.join("twin.toml"), twin).unwrap();
+    json(&["simulate", text(&folder.join("twin.toml")), "--json"]);
+    let table = std::fs::read_to_string(folder.join("twin.csv")).unwrap();
+    let last: Vec<f64> = table.lines().last().unwrap().split(',').filter_map(|cell| cell.parse().ok()).collect();
+    assert!(last.iter().any(|f| (f + d * 0.25).abs() < 1e-9), "{table}");
+}
+
+/// Two records without anything in common are not called compared.
+#[test]
+fn a_comparison_of_nothing_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("a.csv"), "speed [m/s],f_x [N]\n0.2,-0.8\n0.3,-1.8\n0.4,-3.2\n0.5,-5.0\n").unwrap();
+    json(&["identify", text(&path("a.csv")), "--models", "quadratic", "--json"]);
+    let compared = json(&["compare", text(&path("a-results/estimate.json")), "--json"]);
+    let told = findings_of(&compared, "nothing-compared");
+    assert!(told.len() == 1 && told[0].1.contains("a.csv/quadratic (quadratic; f_x)"), "{compared}");
+}

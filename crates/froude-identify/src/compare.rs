@@ -187,6 +187,8 @@ pub fn named<'a>(files: &'a [(String, EstimateFile)]) -> Vec<Named<'a>> {
         .collect()
 }
 
+/// Estimates named where nothing could be compared.
+const MOST_NAMED: usize = 6;
 /// Most estimates that are set side by side: 44,850 pairs, more than anybody reads.
 pub const MOST_COMPARED: usize = 300;
 
@@ -221,7 +223,32 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
     }
     out.findings.extend(differing_constants(all));
     predict_forces(all, &mut out);
+    out.findings.extend(nothing_compared(all, &out));
     out
+}
+
+/// That no two estimates have anything in common, and what each has.
+fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
+    if !out.coefficients.is_empty() || !out.joint.is_empty() || !out.forces.is_empty() {
+        return None;
+    }
+    let each = all.iter().map(|n| {
+        let estimate = n.estimate;
+        let loads: Vec<&str> = estimate.law.formulas.keys().map(String::as_str).collect();
+        let law = if loads.is_empty() { "no formula".to_owned() } else { loads.join(", ") };
+        format!("{} ({}; {law})", estimate.id, estimate.model)
+    });
+    let each: Vec<String> = each.take(MOST_NAMED).collect();
+    let more = if all.len() > MOST_NAMED { format!(" and {} more", all.len() - MOST_NAMED) } else { String::new() };
+    Some(Finding::new(
+        Severity::Warning,
+        "nothing-compared",
+        format!(
+            "nothing could be set side by side: no two estimates have the same model, and fewer than two give forces over a common range of \
+             speed; there are {}{more}",
+            each.join(", ")
+        ),
+    ))
 }
 
 /// Why so many estimates are not compared.
