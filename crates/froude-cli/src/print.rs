@@ -55,18 +55,22 @@ pub fn outcome(outcome: &Outcome) {
     for source in &outcome.sources {
         say!("\n{} ({})", source.name, observations(source.data.rows));
         if let Some(r) = &source.recommendation {
-            say!("  recommended: {}", r.reason);
+            let is_recommended = source.estimates[r.index].recommended;
+            say!("  {}: {}", if is_recommended { "recommended" } else { "method" }, r.reason);
             if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
                 say!("  cross-validation: {why}");
             }
         }
-        for estimate in source.estimates.iter().filter(|e| e.recommended) {
+        // Of several models the recommended one; of a method's only one, that.
+        let (shown, others): (Vec<&Estimate>, Vec<&Estimate>) =
+            source.estimates.iter().partition(|e| e.recommended || source.estimates.len() == 1);
+        for estimate in shown {
             say!("{}", coefficients(estimate));
             for combination in &estimate.undetermined {
                 say!("  determined only together: {combination}");
             }
         }
-        let others: Vec<&str> = source.estimates.iter().filter(|e| !e.recommended).map(|e| e.model.as_str()).collect();
+        let others: Vec<&str> = others.into_iter().map(|e| e.model.as_str()).collect();
         if !others.is_empty() {
             say!("  also fitted: {} (see the report)", others.join(", "));
         }

@@ -373,3 +373,55 @@ fn a_comparison_of_nothing_says_so() {
     let told = findings_of(&compared, "nothing-compared");
     assert!(told.len() == 1 && told[0].1.contains("a.csv/quadratic (quadratic; f_x)"), "{compared}");
 }
+
+/// Runs beside a table in one campaign: a result for each method, set beside the table's; keys of tables are refused for runs.
+#[test]
+fn runs_are_a_source_of_a_campaign() {
+    let bench = bench::Bench::new();
+    let folder = bench.folder.path();
+    let drag = bench.drag();
+    let rows = [0.45, 0.47, 0.49, 0.5, 0.51, 0.53, 0.55]
+        .map(|v: f64| format!("{v},{}\n", -20.0 * v * v * (1.0 + 0.01 * (100.0 * v).sin())));
+    std::fs::write(folder.join("tow.csv"), "speed [m/s],f_x [N]\n".to_owned() + &rows.concat()).unwrap();
+    let campaign = |of_runs: &str| {
+        let text = format!(
+            "schema = 1\nname = \"both\"\n[[source]]\nname = \"carriage\"\nkind = \"towing\"\nruns = \"campaign-runs\"\n{of_runs}[[source]]\nname = \
+             \"tank\"\nkind = \"towing\"\ntable = \"tow.csv\"\nmodels = [\"quadratic\"]\n"
+        );
+        let path = folder.join("both.toml");
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    let of_all = drag["estimates"].as_array().unwrap();
+    for (keys, methods) in
+        [("", vec![]), ("method = \"mcd\"\n", vec!["mcd"]), ("method = [\"mcd\", \"fsm\"]\n", vec!["mcd", "fsm"])]
+    {
+        let out = json(&["identify", text(&campaign(keys)), "--json"]);
+        let ids: Vec<&str> = out["estimates"].as_array().unwrap().iter().map(|e| e["id"].as_str().unwrap()).collect();
+        let mut wanted: Vec<String> = methods.iter().map(|m| format!("carriage/{m}")).collect();
+        if methods.is_empty() {
+            wanted = of_all
+                .iter()
+                .map(|e| e["id"].as_str().unwrap().rsplit_once('/').unwrap().1)
+                .map(|m| format!("carriage/{m}"))
+                .collect();
+        }
+        wanted.push("tank/quadratic".to_owned());
+        assert_eq!(ids, wanted);
+        let others = out["findings"].as_array().unwrap().iter().map(|f| f["message"].as_str().unwrap());
+        assert!(methods.is_empty() || others.into_iter().all(|text| !text.starts_with("mbdp")), "{}", out["findings"]);
+        let page = std::fs::read_to_string(folder.join("both-results/report.html")).unwrap();
+        assert!(page.contains("motor current difference of wet and dry runs") && page.contains("carriage, mcd"));
+    }
+    let refused = |keys: &str| bench::refusal(&["identify", text(&campaign(keys))]);
+    let said = refused("method = [\"fsm\", \"mdc\"]\n");
+    assert!(
+        said.contains("both.toml:7:") && said.contains("method \"mdc\" is not known; did you mean `mcd`?"),
+        "{said}"
+    );
+    assert!(refused("keep = \"speed > 0.2 m/s\"\n").contains("`keep` belongs to the rows of a table"));
+    let table = "schema = 1\nname = \"x\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"tow.csv\"\nmethod = \"mcd\"\n";
+    std::fs::write(folder.join("t.toml"), table).unwrap();
+    let said = bench::refusal(&["identify", text(&folder.join("t.toml"))]);
+    assert!(said.contains("`method` says how runs are reduced, but the source names no runs"), "{said}");
+}

@@ -51,13 +51,39 @@ fn compare(place: &str, before: &Value, now: &Value) {
     }
 }
 
+/// The same runs as a source of a campaign, by the same methods in another order: the same estimates, bit for bit.
+fn as_a_source(folder: &Path, drag: &Value) {
+    let estimates = drag["estimates"].as_array().unwrap();
+    let method = |estimate: &Value| estimate["model"].as_str().unwrap().strip_prefix("drag_").unwrap().to_owned();
+    let methods: Vec<String> = estimates.iter().rev().map(method).collect();
+    let campaign = format!(
+        "schema = 1\nname = \"x\"\n[[source]]\nname = \"carriage\"\nkind = \"towing\"\nruns = \"campaign-runs\"\nmethod = {methods:?}\n"
+    );
+    std::fs::write(folder.join("source.toml"), campaign).unwrap();
+    let sourced = json(&["identify", text(&folder.join("source.toml")), "--json"]);
+    let of_source = sourced["estimates"].as_array().unwrap();
+    assert_eq!(of_source.len(), estimates.len());
+    for (estimate, same) in estimates.iter().rev().zip(of_source) {
+        assert_eq!(same["id"], format!("carriage/{}", method(estimate)));
+        for (key, value) in estimate.as_object().unwrap() {
+            assert!(["id", "source"].contains(&key.as_str()) || &same[key] == value, "{key}: {value} is {}", same[key]);
+        }
+    }
+    assert_eq!(
+        sourced["findings"].as_array().unwrap().iter().map(|f| &f["code"]).collect::<Vec<_>>(),
+        drag["findings"].as_array().unwrap().iter().map(|f| &f["code"]).collect::<Vec<_>>()
+    );
+}
+
 /// Drives a changed example, reduces it and holds the numbers against those of the old program.
 fn stays(name: &str, changes: &[(&str, &str)]) {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), changes);
     json(&["run", text(&campaign), "--yes", "--json"]);
     let runs = folder.path().join("campaign-runs");
-    let now = kept(&json(&["carriage", "drag", text(&runs), "--json"]));
+    let drag = json(&["carriage", "drag", text(&runs), "--json"]);
+    as_a_source(folder.path(), &drag);
+    let now = kept(&drag);
     let path = fixture(name);
     if std::env::var_os("FROUDE_WRITE_FIXTURES").is_some() {
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();

@@ -114,6 +114,10 @@ pub struct Source {
     pub models: Vec<String>,
     /// Where each of `models` is named; empty where no file names them.
     pub model_places: Vec<Place>,
+    /// Methods that reduce its runs; empty for all that they allow.
+    pub methods: Vec<String>,
+    /// Where each of `methods` is named.
+    pub method_places: Vec<Place>,
     /// Which observations are used.
     pub keep: Option<Keep>,
     /// Text column whose values belong together (clusters, cross-validation).
@@ -438,6 +442,8 @@ impl Campaign {
                 sidecar,
                 models: Vec::new(),
                 model_places: Vec::new(),
+                methods: Vec::new(),
+                method_places: Vec::new(),
                 keep: None,
                 group: None,
                 uncertainty: Vec::new(),

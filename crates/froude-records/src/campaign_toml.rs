@@ -141,7 +141,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 15] = [
+const SOURCE_KEYS: [&str; 16] = [
     "name",
     "kind",
     "table",
@@ -152,6 +152,7 @@ const SOURCE_KEYS: [&str; 15] = [
     "select",
     "sidecar",
     "models",
+    "method",
     "keep",
     "group",
     "uncertainty",
@@ -202,12 +203,26 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         })
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
+    let (methods, method_places) = s.placed_texts("method")?.into_iter().unzip();
+    if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs(_))) {
+        return Err(s.wrong("method", value, "says how runs are reduced, but the source names no runs"));
+    }
+    // What belongs to the rows of a table would be passed over.
+    let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
+    if let (Some(key), true) = (of_tables.into_iter().find(|key| s.get(key).is_some()), matches!(input, Input::Runs(_)))
+    {
+        let problem =
+            "belongs to the rows of a table; the budget of runs follows from the campaign that they were driven by";
+        return Err(s.get(key).map_or_else(|| s.missing(key, problem), |value| s.wrong(key, value, problem)));
+    }
     Ok(Source {
         name,
         kind,
         sidecar: path("sidecar")?,
         models,
         model_places,
+        methods,
+        method_places,
         keep,
         group: s.text("group")?.map(str::to_owned),
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,

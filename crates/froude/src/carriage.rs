@@ -8,6 +8,7 @@
 //! | [`calibrate`] | `froude carriage calibrate` | newtons a volt from known weights, polarity                  |
 //! | [`tune`]      | `froude carriage tune`, `resonance` | experiments on the loop: gains, margins, modes, shaper |
 //! | [`runs`]      |                           | runs as these take them                                        |
+//! | `source`      | `froude identify`         | runs as a source of a campaign, method by method               |
 //!
 //! A folder of runs holds a copy of its campaign (`campaign.toml`), so it says by itself what body and rig it belongs to.
 
@@ -17,5 +18,6 @@ pub mod drive;
 pub mod runs;
 pub mod servo;
 pub(crate) mod set;
+pub(crate) mod source;
 pub mod tune;
 pub(crate) mod whole;

@@ -90,10 +90,17 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
             files.push(path.clone());
             findings.push(froude_identify::source::published_note(source));
             published.push((relative(path, &campaign.path), record));
-        } else {
-            let result = identify_source(&campaign, source, &|model| {
+            continue;
+        }
+        let results = match &source.input {
+            Input::Runs(folder) => crate::carriage::source::identify(source, folder, &|step| {
+                progress(&format!("{}: {step}", source.name))
+            })?,
+            _ => vec![identify_source(&campaign, source, &|model| {
                 progress(&format!("{}: fitting {model}", source.name));
-            })?;
+            })?],
+        };
+        for result in results {
             files.extend(result.files.iter().cloned());
             findings.extend(result.findings.iter().cloned());
             sources.push(result);

@@ -16,7 +16,7 @@ use super::run::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLAR
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::regression::{Settings, regress};
+use crate::regression::{ModelFit, Settings, regress};
 use crate::uncertainty::SharedError;
 
 /// A steady force.
@@ -56,6 +56,9 @@ pub enum Method {
 }
 
 impl Method {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Fsm, Self::Mcd, Self::MbdpConstant, Self::MbdpMapped, Self::MbdpFlexible];
+
     /// As it stands in records and tables.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -88,10 +91,14 @@ impl Method {
 }
 
 /// D_d by one method.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Coefficient {
     /// How.
     pub method: Method,
+    /// The fit.
+    pub model: ModelFit,
+    /// The observations that were fitted, a row per point.
+    pub data: Dataset,
     /// D_d, N s²/m².
     pub value: f64,
     /// Combined standard uncertainty; `None` where nothing tells the scatter.
@@ -260,7 +267,7 @@ pub fn coefficient(
     let value = model.coefficients[0];
     let stated = model.combined[0].filter(|_| given.is_some());
     let budget: Vec<Part> =
-        model.budget.into_iter().skip(usize::from(given.is_none())).filter(|part| part.standard(0) > 0.0).collect();
+        model.budget.iter().skip(usize::from(given.is_none())).filter(|part| part.standard(0) > 0.0).cloned().collect();
     let declared = |part: &&Part| part.kind == Kind::B && !part.in_scatter;
     Ok(Some(Coefficient {
         method,
@@ -275,6 +282,8 @@ pub fn coefficient(
         offset_n: offset(&points),
         budget,
         points,
+        model,
+        data,
     }))
 }
 

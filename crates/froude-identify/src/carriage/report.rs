@@ -26,7 +26,7 @@ const OFFSET_TOLD: f64 = 3.0;
 const OFFSET_MATTERS: f64 = 0.005;
 
 /// What the runs say about the drag.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct DragReport {
     /// D_d by every method that the runs allow: FSM, MCD, MBDP constant, mapped, flexible.
     pub coefficients: Vec<Coefficient>,

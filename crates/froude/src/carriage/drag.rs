@@ -54,7 +54,8 @@ pub struct DragOutcome {
 }
 
 /// Kinds of run that tell drag; pulses tell the two masses of the flexible model.
-const KINDS: [RunKind; 5] = [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration, RunKind::Excitation];
+pub(super) const KINDS: [RunKind; 5] =
+    [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration, RunKind::Excitation];
 
 /// Standard acceleration of gravity, m/s².
 const G_M_S2: f64 = 9.80665;
@@ -68,18 +69,16 @@ const UNDECLARED_GAIN: f64 = 0.01;
 /// Standard uncertainty of the ballast that the operator puts on, as a part: it is weighed, the body's volume is what limits it.
 const BALLAST_RELATIVE: f64 = 0.005;
 
-/// Reads, calibrates where known weights were hung, reduces by every method, writes `estimate.json` and `report.html`.
-///
-/// # Errors
-///
-/// See [`Error`].
-pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
-    let runs = read(&job.runs, &KINDS, job.campaign.as_deref())?;
-    let out = job.out.clone().unwrap_or_else(|| runs.results("drag"));
-    crate::results::can_be_written(&out)?;
-    if runs.beside > 0 {
-        replaces_no_more(&out, &runs, job.out.is_some())?;
-    }
+/// Runs of a campaign, reduced by every method that they allow.
+pub(super) struct Reduction {
+    pub runs: Runs,
+    pub setup: DragSetup,
+    pub calibration: Option<Calibration>,
+    pub report: DragReport,
+}
+
+/// Calibrates where known weights were hung, and reduces by every method.
+pub(super) fn reduce(runs: Runs) -> Result<Reduction, Error> {
     let reduced: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
@@ -103,6 +102,23 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     report.findings.extend(why_not);
     report.findings.extend(no_two_masses);
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    drop(reduced);
+    Ok(Reduction { runs, setup, calibration, report })
+}
+
+/// Reads, calibrates where known weights were hung, reduces by every method, writes `estimate.json` and `report.html`.
+///
+/// # Errors
+///
+/// See [`Error`].
+pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
+    let runs = read(&job.runs, &KINDS, job.campaign.as_deref())?;
+    let out = job.out.clone().unwrap_or_else(|| runs.results("drag"));
+    crate::results::can_be_written(&out)?;
+    if runs.beside > 0 {
+        replaces_no_more(&out, &runs, job.out.is_some())?;
+    }
+    let Reduction { runs, setup, calibration, report } = reduce(runs)?;
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
         data: data_of(&runs)?,
