@@ -94,7 +94,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         }
         let results = match &source.input {
             Input::Runs(folder) => crate::carriage::source::identify(source, folder, &|step| {
-                progress(&format!("{}: {step}", source.name))
+                progress(&format!("{}: {step}", source.name));
             })?,
             _ => vec![identify_source(&campaign, source, &|model| {
                 progress(&format!("{}: fitting {model}", source.name));
