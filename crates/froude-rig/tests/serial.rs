@@ -336,6 +336,69 @@ fn a_line_without_a_board_is_told_with_what_to_do() {
     assert!(error.to_string().starts_with("the board at a socket has sent no valid frame for 5."), "{error}");
 }
 
+/// A port whose buffer is full two times of three, and takes a byte or two then.
+struct Full {
+    line: UnixStream,
+    asked: u32,
+}
+
+impl std::io::Read for Full {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        self.line.read(bytes)
+    }
+}
+
+impl std::io::Write for Full {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.asked += 1;
+        match self.asked % 3 {
+            0 => self.line.write(&bytes[..bytes.len().min(2)]),
+            1 => Err(std::io::ErrorKind::WouldBlock.into()),
+            _ => Err(std::io::ErrorKind::TimedOut.into()),
+        }
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.line.flush()
+    }
+}
+
+/// A port that takes nothing.
+struct Shut(UnixStream);
+
+impl std::io::Read for Shut {
+    fn read(&mut self, bytes: &mut [u8]) -> std::io::Result<usize> {
+        self.0.read(bytes)
+    }
+}
+
+impl std::io::Write for Shut {
+    fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+        Err(std::io::ErrorKind::WouldBlock.into())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A busy machine, or a hub: what cannot be written now is written a moment later, whole. A port that takes nothing for a second is lost.
+#[test]
+fn a_port_that_is_full_for_a_moment_is_no_error() {
+    let (running, line) = board();
+    let mut rig = SerialRig::on("a socket", Box::new(Full { line, asked: 0 }), config()).unwrap();
+    rig.tick(Some(Request::Enable { axis: 0 })).unwrap();
+    until(&mut rig, 20.0, |s| s.axes[0].phase == Phase::Holding);
+    let (fault, phases) = running.end();
+    assert_eq!((fault, phases[0]), (None, Phase::Holding));
+    let (line, _other) = UnixStream::pair().unwrap();
+    line.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
+    let began = std::time::Instant::now();
+    let error = SerialRig::on("a socket", Box::new(Shut(line)), config()).map(|_| ()).unwrap_err();
+    assert!(matches!(error, RigError::Port { .. }), "{error}");
+    assert!(began.elapsed() >= Duration::from_secs(1));
+}
+
 /// Ticks a rig until it has read this tick of the board; the sessions that it was told of, and why it ended if it did by itself.
 fn driven(mut rig: SerialRig, last: Arc<AtomicU64>) -> JoinHandle<(Vec<Stranger>, Result<(), RigError>)> {
     std::thread::spawn(move || {

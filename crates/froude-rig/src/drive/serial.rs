@@ -46,6 +46,8 @@ const REPEAT: Duration = Duration::from_millis(50);
 const SILENCE: Duration = Duration::from_secs(1);
 /// No longer than this has it listened between two looks at the line: a computer that stood still itself heard nobody's silence.
 const ATTENTION: Duration = Duration::from_millis(50);
+/// Pause before a port is asked again that takes nothing at the moment.
+const BETWEEN_WRITES: Duration = Duration::from_micros(200);
 /// How long the greeting and the configuration may take.
 const GREETING: Duration = Duration::from_secs(5);
 /// Holding samples after homing over which the beginning of the counts is averaged.
@@ -56,6 +58,24 @@ const LONGEST_FRAME: usize = 1_024;
 /// Any line: a serial port, or whatever a test puts in its place. Reads must return after a few milliseconds at the latest.
 pub trait Line: Read + Write + Send {}
 impl<T: Read + Write + Send> Line for T {}
+
+/// Writes a whole frame. A port whose buffer is full for the moment says so (`WouldBlock`, `TimedOut`): it is asked again for as long as a
+/// board may be silent.
+fn write_with_patience(line: &mut dyn Line, mut frame: &[u8]) -> std::io::Result<()> {
+    use std::io::ErrorKind::{Interrupted, TimedOut, WouldBlock, WriteZero};
+    let begun = Instant::now();
+    while !frame.is_empty() {
+        match line.write(frame) {
+            Ok(0) => return Err(WriteZero.into()),
+            Ok(n) => frame = &frame[n..],
+            Err(e) if matches!(e.kind(), WouldBlock | TimedOut | Interrupted) && begun.elapsed() < SILENCE => {
+                std::thread::sleep(BETWEEN_WRITES);
+            }
+            Err(e) => return Err(e),
+        }
+    }
+    Ok(())
+}
 
 /// Where the counts of an axis begin.
 #[derive(Debug, Clone, Copy, Default)]
@@ -268,7 +288,8 @@ impl SerialRig {
         let mut wire = [0_u8; LONGEST_FRAME];
         let frame = self.writer.write(&(*says).from_session(self.session), &mut wire);
         self.last_sent = Instant::now();
-        self.line.write_all(frame).map_err(|e| RigError::Port { port: self.port.clone(), reason: e.to_string() })
+        write_with_patience(&mut *self.line, frame)
+            .map_err(|e| RigError::Port { port: self.port.clone(), reason: e.to_string() })
     }
 
     /// Takes what has come; returns after a few milliseconds when nothing has.
