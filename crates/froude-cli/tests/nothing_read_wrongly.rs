@@ -762,10 +762,12 @@ fn a_side_force_that_does_not_matter_is_no_warning() {
     }
 }
 
+/// Side force of the strut per sine of its angle, N s²/m².
+const LIFT: f64 = 10.0 * STRUT;
+
 /// The lift of a faired strut stands across the flow: a part of it points forward.
 #[test]
-fn a_faired_strut_as_tare_leaves_nothing_in_the_force_along_the_body() {
-    const LIFT: f64 = 10.0 * STRUT;
+fn a_faired_strut_as_tare_leaves_nothing_in_the_forces() {
     let of = |speed: f64, angle_deg: f64| {
         let (sin, cos) = angle_deg.to_radians().sin_cos();
         let (drag, lift) = (STRUT * speed * speed, LIFT * speed * speed * sin);
@@ -791,12 +793,34 @@ fn a_faired_strut_as_tare_leaves_nothing_in_the_force_along_the_body() {
     assert!((value(strut, "D_xU") / STRUT - 1.0).abs() < 0.01, "{}", strut["coefficients"]);
     let out = json_in(folder.path(), &["identify", "c.toml"]);
     assert!(findings(&out, "tare-straight-ahead").is_empty());
-    let x_uu = value(estimate(&out, "whole"), "X_uu");
-    assert!((x_uu / -10.0 - 1.0).abs() < 0.01, "X_uu {x_uu}");
+    let whole = estimate(&out, "whole");
+    for (name, truth) in [("X_uu", -10.0), ("Y_uv", -Y_UV), ("Y_vv", -Y_VV)] {
+        let u = whole["coefficients"][name]["standard_uncertainty"].as_f64().unwrap();
+        let off = value(whole, name) - truth;
+        assert!(off.abs() < 3.0 * u && u < 0.01 * truth.abs(), "{name} {off} ± {u}");
+    }
 }
 
-/// Side force of the strut per sine of its angle, N s²/m².
-const LIFT: f64 = 10.0 * STRUT;
+/// Laws of one's own beside a source that names its models without them.
+#[test]
+fn a_law_that_no_source_asks_for_is_told() {
+    let rows = drift_test(24);
+    let text = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &rows, |r| {
+        format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y)
+    });
+    let campaign = |models: &str| {
+        format!(
+            "schema = 1\nname = \"x\"\n[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\n{models}[identify]\n[[identify.model]]\n\
+             name = \"own\"\nf_y = \"Y_uv*u*v + Y_vv*v*abs(v)\"\n"
+        )
+    };
+    let of = |models: &str| json(&[("t.csv", &text), ("c.toml", &campaign(models))], &["identify", "c.toml"]);
+    assert!(findings(&of(""), "law-not-asked").is_empty());
+    assert!(findings(&of("models = [\"quadratic\", \"own\"]\n"), "law-not-asked").is_empty());
+    let out = of("models = [\"quadratic\"]\n");
+    let told = findings(&out, "law-not-asked");
+    assert!(told.len() == 1 && told[0].1.starts_with("[[identify.model]] own: fitted to no source"), "{told:?}");
+}
 
 /// A strut that is the same fore and aft, towed ahead and astern at these angles.
 fn strut_both_ways(angles_deg: &[f64]) -> String {
@@ -875,7 +899,7 @@ fn a_tare_that_does_not_fit_is_told_with_its_size() {
         fluid.len() == 1
             && fluid[0].0 == 0
             && fluid[0].1.contains("was taken at 998.00 kg/m^3 and is used at 1025.00 kg/m^3")
-            && fluid[0].1.contains("up to 0.271 N, 1.4 % of the measured f_x"),
+            && fluid[0].1.contains("up to 0.271 N, over all rows 1.4 % of the measured f_x"),
         "{fluid:?}"
     );
     let beyond = told(&strut, [sea, sea], &of(&speeds(4, 30), 20.0, 2), false);
@@ -914,7 +938,7 @@ fn a_strut_towed_both_ways_is_one_strut() {
     let folder = folder_of(&[("tare.csv", &tare)]);
     let fitted = json_in(folder.path(), &["identify", "tare.csv", "--models", "strut"]);
     let strut = estimate(&fitted, "strut");
-    for (name, truth) in [("X_vv", LIFT), ("D_xU", STRUT)] {
+    for (name, truth) in [("X_vv", LIFT), ("D_xU", STRUT), ("D_yU", STRUT)] {
         assert!((value(strut, name) / truth - 1.0).abs() < 0.01, "{name}: {}", strut["coefficients"]);
     }
     assert!(findings(&fitted, "lack-of-fit").is_empty());

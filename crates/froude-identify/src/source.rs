@@ -79,13 +79,15 @@ pub fn identify_source(
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     findings.extend(lint::observations(&data, campaign));
-    if source.uncertainty.is_empty() && shared_errors.is_empty() {
+    if source.uncertainty.is_empty() {
         findings.push(Finding::new(
             Severity::Note,
             "no-budget",
-            "no uncertainty of an instrument is declared: the intervals hold the scatter of the observations and nothing else \
-             (a calibration error does not show in the scatter)"
-                .to_owned(),
+            format!(
+                "no uncertainty of an instrument is declared: the intervals hold the scatter of the observations{} and nothing else \
+                 (a calibration error does not show in the scatter)",
+                if shared_errors.is_empty() { "" } else { ", that of the tare" }
+            ),
         ));
     }
     let settings = Settings {
@@ -463,24 +465,26 @@ fn are_apart(angles: impl Iterator<Item = f64>) -> bool {
     high - low > std::f64::consts::PI / 180.0
 }
 
-/// What a strut that turns with the body carries, f_x = −D_xU·v_x·U + X_vv·v_y²·sign(v_x), f_y = −D_yU·v_y·U, m_z = N_vU·v_y·U.
+/// What a strut that turns with the body carries, f_x = −D_xU·v_x·U + X_vv·v_y²·sign(v_x), f_y = −D_yU·v_y·U − X_vv·|v_x|·v_y, m_z = N_vU·v_y·U.
 ///
-/// Exact for a round one (D_xU = D_yU, X_vv = 0). A section up to its stall has a lift of slope a across the flow: its forward
-/// part is X_vv = a, its sideways part makes D_yU = D_xU + a, but for the cosine of the drift angle. U is without a sign: a table may write a
-/// run astern as a speed below zero. Astern the forward part turns round with the flow, for a section that is the same fore and aft; another
-/// one wants a tare for each way.
+/// Exact for a round one (D_xU = D_yU, X_vv = 0) and for a section up to its stall, whose lift of slope X_vv stands across the flow beside a
+/// drag D_xU = D_yU along it. Where X_vv is not determined, D_yU holds the lift too, and is right at the angles of the test only. U is without
+/// a sign: a table may write a run astern as a speed below zero. Astern the forward part turns round with the flow, for a section that is the
+/// same fore and aft; another one wants a tare for each way.
 fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, IdentifyError> {
     // Ahead and astern are one angle: at one alone, straight ahead included, the two terms of f_x have one shape; straight ahead and
     // straight across the second one is zero.
     let rows = moving(data.values("speed").unwrap_or_default(), AT_REST);
     let angles: Vec<f64> = rows.into_iter().map(|i| off_axis(data.velocity_m_s(i))).collect();
     let is_askew = angles.iter().any(|angle| (2.0 * angle).sin() > 1e-9);
-    let along = if is_askew && are_apart(angles.into_iter()) {
-        "-D_xU*v_x*abs(speed) + X_vv*v_y*v_y*sign(v_x)"
+    // The lift is told by its forward part; sideways it has nearly the shape of the drag.
+    let has_lift = is_askew && are_apart(angles.into_iter()) && data.channels.contains_key("f_x");
+    let [along, across] = if has_lift {
+        ["-D_xU*v_x*abs(speed) + X_vv*v_y*v_y*sign(v_x)", "-D_yU*v_y*abs(speed) - X_vv*abs(v_x)*v_y"]
     } else {
-        "-D_xU*v_x*abs(speed)"
+        ["-D_xU*v_x*abs(speed)", "-D_yU*v_y*abs(speed)"]
     };
-    let terms = [("f_x", "v_x", along), ("f_y", "v_y", "-D_yU*v_y*abs(speed)"), ("m_z", "v_y", "N_vU*v_y*abs(speed)")];
+    let terms = [("f_x", "v_x", along), ("f_y", "v_y", across), ("m_z", "v_y", "N_vU*v_y*abs(speed)")];
     let texts: IndexMap<String, String> = terms
         .into_iter()
         .filter(|(load, motion, _)| data.channels.contains_key(*load) && moves(data, motion))

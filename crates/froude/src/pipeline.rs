@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::compare::{Comparison, compare, named};
-use froude_identify::source::{SourceResult, identify_source};
+use froude_identify::source::{SourceResult, asked_models, identify_source};
 use froude_records::campaign::{Campaign, Input, Shared, read_campaign};
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
@@ -106,6 +106,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
             sources.push(result);
         }
     }
+    findings.extend(laws_not_asked(&campaign));
     if sources.is_empty() && published.is_empty() {
         return Err(Error::Nothing(format!("{}: the campaign has no [[source]]", job.input.display())));
     }
@@ -157,6 +158,24 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         observations: written.observations,
         sources,
         comparison,
+    })
+}
+
+/// Laws of a person that no source is fitted with: a source that names its models is fitted with these alone.
+fn laws_not_asked(campaign: &Campaign) -> Option<Finding> {
+    let tables: Vec<_> = campaign.sources.iter().filter(|s| matches!(s.input, Input::Table(_))).collect();
+    let asked: Vec<String> =
+        tables.iter().flat_map(|source| asked_models(campaign, source).unwrap_or_default()).collect();
+    let left: Vec<&str> = campaign.identify.user_models.iter().map(|m| m.name.as_str()).collect();
+    let left: Vec<&str> = left.into_iter().filter(|name| !asked.iter().any(|a| a == name)).collect();
+    (!left.is_empty() && !tables.is_empty()).then(|| {
+        let text = format!(
+            "[[identify.model]] {}: fitted to no source, since each names its models without {}; add {} to `models`",
+            left.join(", "),
+            if left.len() == 1 { "it" } else { "them" },
+            if left.len() == 1 { "it" } else { "them" },
+        );
+        Finding::new(Severity::Warning, "law-not-asked", text)
     })
 }
 

@@ -32,7 +32,7 @@ impl Use<'_> {
         let of = |(r, load): (usize, &String)| {
             let (most, percent) = size(rows, &|i| part(r, i) * self.predicted[r * n + i], self.data.values(load)?)?;
             let unit = if load.starts_with('m') { "N m" } else { "N" };
-            Some(format!("up to {most:.3} {unit}, {percent:.1} % of the measured {load}"))
+            Some(format!("up to {most:.3} {unit}, over all rows {percent:.1} % of the measured {load}"))
         };
         self.law.responses.iter().enumerate().filter(|(r, _)| self.law.moves(*r)).filter_map(of).collect()
     }
@@ -77,7 +77,7 @@ impl Use<'_> {
         (!taken.is_empty()).then(|| {
             let text = format!(
                 "the tare {} was taken at {low:.3} to {high:.3} m/s and is used beyond that in {}: what it takes off there ({}) was not \
-                 measured; tow the strut alone at the speeds of the test",
+                 measured; tow the strut alone at the speeds of the test, or leave the others out with `keep`",
                 self.estimate.id,
                 self.of_all(&rows),
                 taken.join(", ")
