@@ -412,6 +412,8 @@ fn runs_are_a_source_of_a_campaign() {
         assert!(methods.is_empty() || others.into_iter().all(|text| !text.starts_with("mbdp")), "{}", out["findings"]);
         let page = std::fs::read_to_string(folder.join("both-results/report.html")).unwrap();
         assert!(page.contains("motor current difference of wet and dry runs") && page.contains("carriage, mcd"));
+        let recommended = out["estimates"].as_array().unwrap().iter().filter(|e| e["recommended"] == true).count();
+        assert_eq!(recommended, 2, "one of the runs, one of the table");
     }
     let refused = |keys: &str| bench::refusal(&["identify", text(&campaign(keys))]);
     let said = refused("method = [\"fsm\", \"mdc\"]\n");
@@ -419,6 +421,7 @@ fn runs_are_a_source_of_a_campaign() {
         said.contains("both.toml:7:") && said.contains("method \"mdc\" is not known; did you mean `mcd`?"),
         "{said}"
     );
+    assert!(refused("method = [\"mcd\", \"mcd\"]\n").contains("method \"mcd\" is named twice"));
     assert!(refused("keep = \"speed > 0.2 m/s\"\n").contains("`keep` belongs to the rows of a table"));
     let table = "schema = 1\nname = \"x\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"tow.csv\"\nmethod = \"mcd\"\n";
     std::fs::write(folder.join("t.toml"), table).unwrap();

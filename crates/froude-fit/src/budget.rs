@@ -16,7 +16,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::distribution::coverage_factor;
 use crate::propagate::{effective_dof, expanded};
 
-/// Draws for an interval: its ends then scatter by 1.5 % of the standard uncertainty.
+/// Draws for an interval: its ends then scatter by 1.9 % of the standard uncertainty at 95 %, by 4.5 % over ten looks.
 const DRAWS: usize = 20_000;
 /// Seed of the draws.
 const SEED: u64 = 0x5eed;

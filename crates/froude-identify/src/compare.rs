@@ -223,13 +223,14 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
     }
     out.findings.extend(differing_constants(all));
     predict_forces(all, &mut out);
-    out.findings.extend(nothing_compared(all, &out));
     out
 }
 
-/// That no two estimates have anything in common, and what each has.
-fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
-    if !out.coefficients.is_empty() || !out.joint.is_empty() || !out.forces.is_empty() {
+/// That no two estimates have anything in common, and what each has: for whoever asked for nothing but a comparison.
+#[must_use]
+pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
+    let is_said = out.findings.iter().any(|f| matches!(f.code.as_str(), "no-common-range" | "not-compared"));
+    if is_said || !out.coefficients.is_empty() || !out.joint.is_empty() || !out.forces.is_empty() {
         return None;
     }
     let each = all.iter().map(|n| {

@@ -227,8 +227,8 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         }
     }
     let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
-    let standards = combined.iter().flatten().map(|c| c.standard);
-    if let Some(number) = coefficients.iter().copied().chain(of_fit).chain(standards).find(|x| !x.is_finite()) {
+    let variances = (0..specs.len()).map(|j| covariance[(j, j)]);
+    if let Some(number) = coefficients.iter().copied().chain(of_fit).chain(variances).find(|x| !x.is_finite()) {
         return Err(no_fit(format!(
             "its numbers leave what a computer holds ({number}): look for a value of absurd size in the table or in [identify]"
         )));

@@ -83,7 +83,11 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
         SharedError {
             name: format!("tare {}", estimate.id),
             shared: "campaign",
-            dof: f64::INFINITY,
+            dof: covariance
+                .names
+                .iter()
+                .filter_map(|name| estimate.coefficients.get(name)?.effective_dof)
+                .fold(f64::INFINITY, f64::min),
             limits: None,
             is_of_each_row: false,
             directions: law

@@ -55,5 +55,7 @@ pub fn compare_files(paths: &[std::path::PathBuf]) -> Result<identify::compare::
     if all.len() > identify::compare::MOST_COMPARED {
         return Err(Error::Nothing(identify::compare::too_many(all.len())));
     }
-    Ok(identify::compare::compare(&all))
+    let mut comparison = identify::compare::compare(&all);
+    comparison.findings.extend(identify::compare::nothing_compared(&all, &comparison));
+    Ok(comparison)
 }

@@ -132,7 +132,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
             Comparison::default()
         };
     findings.extend(comparison.findings.iter().cloned());
-    if !comparison.coefficients.is_empty() {
+    if !comparison.coefficients.is_empty() || !comparison.forces.is_empty() {
         findings.extend(shared_errors(&campaign));
     }
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
@@ -197,6 +197,9 @@ fn shared_errors(campaign: &Campaign) -> Vec<Finding> {
                 && x.record == y.record
             {
                 what.push("the same subtracted tare".to_owned());
+            }
+            if matches!((&a.input, &b.input), (Input::Runs(_), Input::Runs(_))) {
+                what.push("a rig, where it is one (its gain, gear, length of a count, calibration)".to_owned());
             }
             if !what.is_empty() {
                 out.push(Finding::new(

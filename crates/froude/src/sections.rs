@@ -467,18 +467,22 @@ fn bands(
     for (r, response) in model.law.responses.iter().enumerate() {
         // Of the scatter: the fewest among the coefficients of this load, those of the clusters, say.
         let touches = |j: usize| (0..n).any(|i| slopes[(r * n + i, j)] != 0.0);
-        let scatter_dof = (0..slopes.ncols())
-            .filter(|&j| touches(j))
-            .filter_map(|j| model.fit.coefficients[j].dof)
-            .fold(f64::INFINITY, f64::min);
-        let half: Vec<f64> = (0..n)
+        let scatter_dof =
+            (0..slopes.ncols()).filter(|&j| touches(j)).map(|j| model.budget[0].dof[j]).fold(f64::INFINITY, f64::min);
+        let arms: Vec<[f64; 2]> = (0..n)
             .map(|i| {
                 let row: Vec<f64> = (0..slopes.ncols()).map(|j| slopes[(r * n + i, j)]).collect();
+                // A law of one coefficient has the interval of that, with looks and errors to one side.
+                if let ([slope], Some(Some(combined))) = (row.as_slice(), model.combined.first()) {
+                    let [below, above] = combined.arms.map(|arm| arm * slope.abs());
+                    return if *slope < 0.0 { [above, below] } else { [below, above] };
+                }
                 let standard = model.prediction_std(&row);
                 // Welch–Satterthwaite (GUM G.4.1) with a budget of infinitely many degrees of freedom.
-                let scatter = spread(&model.fit.covariance, &row);
+                let scatter = spread(&model.budget[0].covariance, &row);
                 let share = if scatter > 0.0 { (standard / scatter).powi(4) } else { f64::INFINITY };
-                coverage_factor(scatter_dof * share) * standard
+                let half = coverage_factor(scatter_dof * share) * standard;
+                [half, half]
             })
             .collect();
         let y = &y[r * n..(r + 1) * n];
@@ -490,8 +494,8 @@ fn bands(
             against: against.clone(),
             x: x.to_vec(),
             y: y.to_vec(),
-            low: y.iter().zip(&half).map(|(y, h)| y - h).collect(),
-            high: y.iter().zip(&half).map(|(y, h)| y + h).collect(),
+            low: y.iter().zip(&arms).map(|(y, [below, _])| y - below).collect(),
+            high: y.iter().zip(&arms).map(|(y, [_, above])| y + above).collect(),
         });
     }
     Ok(out)

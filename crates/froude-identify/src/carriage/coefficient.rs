@@ -71,6 +71,12 @@ impl Method {
         }
     }
 
+    /// The model in records.
+    #[must_use]
+    pub fn model(self) -> String {
+        format!("drag_{}", self.name())
+    }
+
     /// In words.
     #[must_use]
     pub const fn words(self) -> &'static str {
@@ -246,11 +252,7 @@ pub fn coefficient(
     let mut errors = shared_errors(method, &points, measured, setup);
     errors.extend(more);
     let data = observations(&points, setup);
-    let law = ForceLaw::formulas(
-        "quadratic",
-        &IndexMap::from([(LOAD.to_owned(), "-D_x_II*v_x*abs(v_x)".to_owned())]),
-        &data,
-    )?;
+    let law = ForceLaw::formulas(&method.model(), &IndexMap::from([(LOAD.to_owned(), LAW.to_owned())]), &data)?;
     let model = regress(
         &law,
         &data,
@@ -266,8 +268,13 @@ pub fn coefficient(
     )?;
     let value = model.coefficients[0];
     let stated = model.combined[0].filter(|_| given.is_some());
-    let budget: Vec<Part> =
-        model.budget.iter().skip(usize::from(given.is_none())).filter(|part| part.standard(0) > 0.0).cloned().collect();
+    let budget: Vec<Part> = model
+        .budget
+        .iter()
+        .skip(usize::from(given.is_none()))
+        .filter(|part| part.kind == Kind::A || part.standard(0) > 0.0)
+        .cloned()
+        .collect();
     let declared = |part: &&Part| part.kind == Kind::B && !part.in_scatter;
     Ok(Some(Coefficient {
         method,
@@ -289,6 +296,8 @@ pub fn coefficient(
 
 /// The load along the travel.
 pub(super) const LOAD: &str = "f_x";
+/// Its law.
+pub(super) const LAW: &str = "-D_d*v_x*abs(v_x)";
 
 /// The points as observations, the drag of the strut taken off: loads of the fluid on the body, against the motion.
 fn observations(points: &[Point], setup: &DragSetup) -> Dataset {

@@ -7,8 +7,9 @@ use froude_records::estimate::{
 use froude_records::text::counted;
 use indexmap::IndexMap;
 
-use super::coefficient::{Coefficient, LOAD, Method};
+use super::coefficient::{Coefficient, LAW, LOAD, Method};
 use super::run::{DragRun, DragSetup, Efficiency};
+use crate::validity::{ALONG, OFF_AXIS};
 
 /// The record of one method's result.
 pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>], recommended: bool) -> Estimate {
@@ -38,13 +39,18 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
     let mut validity = IndexMap::new();
     let range = Range { low: speeds[0], high: speeds[1], unit: "m/s".to_owned() };
     validity.insert("speed".to_owned(), range);
-    let formulas = IndexMap::from([(LOAD.to_owned(), "-D_d*v_x*abs(v_x)".to_owned())]);
+    let ways = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s).collect::<Vec<_>>());
+    for (name, [low, high], unit) in [("angle", [0.0, 0.0], "rad"), (OFF_AXIS, [0.0, 0.0], "rad"), (ALONG, ways, "m/s")]
+    {
+        validity.insert(name.to_owned(), Range { low, high, unit: unit.to_owned() });
+    }
+    let formulas = IndexMap::from([(LOAD.to_owned(), LAW.to_owned())]);
     let scatter = c.budget.iter().find(|p| p.kind == Kind::A);
     Estimate {
         id: format!("{}/{}", setup.name, c.method.name()),
         source: setup.name.clone(),
         kind: "towing".to_owned(),
-        model: format!("drag_{}", c.method.name()),
+        model: c.method.model(),
         law: Law { version: 1, constants, formulas },
         geometry,
         density: Some(Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() }),

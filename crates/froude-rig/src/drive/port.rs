@@ -11,7 +11,7 @@ use serial2::SerialPort;
 
 use super::RigError;
 
-/// A read returns after so long at the latest.
+/// A read or a write returns after so long at the latest.
 const READ: Duration = Duration::from_millis(2);
 
 /// An open port.
@@ -33,6 +33,7 @@ impl Port {
         };
         let mut line = alone(port, baud).map_err(failed)?;
         line.set_read_timeout(READ).map_err(failed)?;
+        line.set_write_timeout(READ).map_err(failed)?;
         line.discard_buffers().map_err(failed)?;
         Ok(Self(line))
     }

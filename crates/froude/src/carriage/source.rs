@@ -46,12 +46,45 @@ pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) 
         let (coefficient, estimate) = fitted.swap_remove(i);
         out.push(result(source, coefficient, estimate, runs.logs.len()));
     }
+    if !out.iter().any(|result| result.estimates[0].recommended) {
+        recommend_narrowest(&mut out);
+    }
+    if runs.campaign.is_none() {
+        report.findings.push(Finding::new(
+            Severity::Warning,
+            "no-campaign-of-runs",
+            format!(
+                "{}: no copy of their campaign lies with the runs; rig, body and water are taken as of the paper",
+                folder.display()
+            ),
+        ));
+    }
     let Some(first) = out.first_mut() else {
-        return Err(Error::Nothing(format!("{}: none of the methods asked for can use these runs", folder.display())));
+        let why: String = report.findings.iter().map(|finding| format!("; {}", finding.message)).collect();
+        return Err(Error::Nothing(format!(
+            "{}: none of the methods asked for can use these runs{why}",
+            folder.display()
+        )));
     };
     first.findings = report.findings.into_iter().map(|finding| finding.of_source(&source.name)).collect();
     first.files = files;
     Ok(out)
+}
+
+/// Where the campaign's recommended method was not asked for: the narrowest interval among those that were.
+fn recommend_narrowest(out: &mut [SourceResult]) {
+    let relative = |result: &SourceResult| {
+        let coefficient = result.estimates[0].coefficients.first()?.1;
+        let [low, high] = coefficient.interval_95?;
+        Some((high - low) / coefficient.value?.abs())
+    };
+    let narrowest = out
+        .iter_mut()
+        .filter(|r| relative(r).is_some())
+        .min_by(|a, b| relative(a).unwrap_or(f64::INFINITY).total_cmp(&relative(b).unwrap_or(f64::INFINITY)));
+    if let Some(result) = narrowest {
+        result.estimates[0].recommended = true;
+    }
 }
 
 /// The methods that a source asks for; all of them where it asks for none.
@@ -67,7 +100,15 @@ fn methods(source: &Source) -> Result<Vec<Method>, Error> {
             Error::Identify(IdentifyError::Campaign { place, what: format!("method {name:?} is not known; {advice}") })
         })
     };
-    source.methods.iter().enumerate().map(of).collect()
+    let methods: Vec<Method> = source.methods.iter().enumerate().map(of).collect::<Result<_, Error>>()?;
+    match (1..methods.len()).find(|&i| methods[..i].contains(&methods[i])) {
+        None => Ok(methods),
+        Some(i) => {
+            let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);
+            let what = format!("method {:?} is named twice", methods[i].name());
+            Err(Error::Identify(IdentifyError::Campaign { place, what }))
+        }
+    }
 }
 
 fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read: usize) -> SourceResult {
