@@ -422,6 +422,10 @@ fn runs_are_a_source_of_a_campaign() {
         "{said}"
     );
     assert!(refused("method = [\"mcd\", \"mcd\"]\n").contains("method \"mcd\" is named twice"));
+    let twice = "method = \"mcd\"\n[[source]]\nname = \"again\"\nkind = \"towing\"\nruns = \"./campaign-runs\"\n";
+    assert!(
+        refused(twice).contains("carriage and again name the same runs; name them once, with all methods in `method`")
+    );
     assert!(refused("keep = \"speed > 0.2 m/s\"\n").contains("`keep` belongs to the rows of a table"));
     let table = "schema = 1\nname = \"x\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"tow.csv\"\nmethod = \"mcd\"\n";
     std::fs::write(folder.join("t.toml"), table).unwrap();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::compare::{Comparison, compare, named};
 use froude_identify::source::{SourceResult, asked_models, identify_source};
-use froude_records::campaign::{Campaign, Input, Shared, read_campaign};
+use froude_records::campaign::{Campaign, Input, Shared, Source, read_campaign};
 use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
@@ -75,6 +75,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
             source.models.clear();
         }
     }
+    runs_once(&campaign)?;
     let mut sources = Vec::new();
     let mut published: Vec<(String, EstimateFile)> = Vec::new();
     let mut files: Vec<PathBuf> = if is_campaign(&job.input) { vec![campaign.path.clone()] } else { Vec::new() };
@@ -159,6 +160,23 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         sources,
         comparison,
     })
+}
+
+/// Refuses the same runs in two sources: readings of one current would be compared as if they were independent.
+fn runs_once(campaign: &Campaign) -> Result<(), Error> {
+    let folder = |source: &Source| match &source.input {
+        Input::Runs(path) => Some(std::fs::canonicalize(path).unwrap_or_else(|_| path.clone())),
+        _ => None,
+    };
+    for (i, b) in campaign.sources.iter().enumerate() {
+        if let Some(a) = campaign.sources[..i].iter().find(|a| folder(a).is_some() && folder(a) == folder(b)) {
+            return Err(Error::Nothing(format!(
+                "{}: {} and {} name the same runs; name them once, with all methods in `method`",
+                b.place, a.name, b.name
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// Laws of a person that no source is fitted with: a source that names its models is fitted with these alone.
