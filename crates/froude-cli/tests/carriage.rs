@@ -338,6 +338,7 @@ fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
     let hull = json(&["identify", text(&folder.join("hull.toml")), "--json"]);
     let net = &hull["estimates"][0]["coefficients"]["D_x_II"];
     assert!((net["value"].as_f64().unwrap() - 5.0).abs() < 1e-9, "{net}");
+    assert_eq!(findings_of(&hull, "tare-along-the-chain").len(), 1);
     assert!((net["type_b"].as_f64().unwrap() / u - 1.0).abs() < 1e-9, "{net}: the tare's {u}");
 
     // Beside a table of the same drag with a scatter of its own: forces by both, and E_n.
@@ -351,6 +352,9 @@ fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
     let compared = json(&["compare", text(&records[0]), text(&records[1]), "--json"]);
     let forces = compared["forces"].as_array().unwrap();
     assert!(!forces.is_empty() && forces.iter().all(|row| row["e_n"][0]["e_n"].is_number()), "{compared}");
+
+    assert_eq!(findings_of(&compared, "axes-not-tied").len(), 1, "{}", compared["findings"]);
+    assert!(findings_of(&compared, "density-differs").is_empty(), "no water is stated for the table");
 
     // As the truth of a twin without noise.
     let twin = "schema = 1\nname = \"twin\"\n[fluid]\ndensity = \"998 kg/m^3\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"twin.csv\"\n[[source.plan]]\nspeed = [\"0.3 m/s\", \
@@ -427,6 +431,9 @@ fn runs_are_a_source_of_a_campaign() {
         refused(twice).contains("carriage and again name the same runs; name them once, with all methods in `method`")
     );
     assert!(refused("keep = \"speed > 0.2 m/s\"\n").contains("`keep` belongs to the rows of a table"));
+    std::fs::rename(bench.runs.join("campaign.toml"), folder.join("away.toml")).unwrap();
+    let out = json(&["identify", text(&campaign("method = \"mcd\"\n")), "--json"]);
+    assert!(findings_of(&out, "no-campaign-of-runs")[0].1.contains("fresh water at 20 degC is taken, no area"));
     let table = "schema = 1\nname = \"x\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"tow.csv\"\nmethod = \"mcd\"\n";
     std::fs::write(folder.join("t.toml"), table).unwrap();
     let said = bench::refusal(&["identify", text(&folder.join("t.toml"))]);

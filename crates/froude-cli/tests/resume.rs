@@ -280,7 +280,8 @@ fn a_campaign_driven_on_to_its_end_gives_the_same_drag() {
     }
     println!("{} driven on to their end: largest difference {worst:.4} u", ends.len());
     // What is left: after another homing the encoder's counts fall at other moments (a millivolt), and the first run sets out from another state
-    // of stiction, which the chain takes two seconds to forget. In the short campaign that run is one of six calibrations at two weights.
-    let bar = if is_all() { 0.1 } else { 0.3 };
+    // of stiction, which the chain takes two seconds to forget. In the short campaign that run is one of two with the light weight: 0.191 u,
+    // the same whenever it is driven.
+    let bar = if is_all() { 0.1 } else { 0.2 };
     assert!(worst <= bar, "D_d differs by {worst} u");
 }

@@ -39,7 +39,7 @@ pub mod fsm;
 pub mod mbdp;
 pub mod mcd;
 pub mod online;
-mod record;
+pub(crate) mod record;
 pub mod report;
 pub mod run;
 pub mod simulate;

@@ -22,6 +22,7 @@ use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Range, Statu
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
 
+use crate::carriage::record::FRAME;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::uncertainty::coverage_factor;
@@ -526,6 +527,41 @@ fn digits_exchanged(a: f64, b: f64) -> bool {
 /// Relative difference of density that a dimensional coefficient shows: a tenth of fresh against sea water.
 const DENSITY_MATTERS: f64 = 0.002;
 
+/// Densities of two estimates that differ, where the coefficients go with them.
+fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
+    let (x, y) = (a.density.as_ref()?, b.density.as_ref()?);
+    let has_dimension = |e: &Estimate| e.coefficients.values().any(|c| c.unit.contains("kg") || c.unit.contains('N'));
+    ((x.value - y.value).abs() > DENSITY_MATTERS * x.value && (has_dimension(a) || has_dimension(b))).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "density-differs",
+            format!(
+                "{} was measured in water of {} {}, {} in {} {}: coefficients with kg or N in their unit, and the forces that they give, go \
+                 with the density; scale one of them before comparing",
+                a.id, x.value, x.unit, b.id, y.value, y.unit
+            ),
+        )
+    })
+}
+
+/// Forces of a carriage, which knows no axis of the body, beside those in body axes.
+fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
+    let (chain, body) = match [a, b].map(|e| e.frame == FRAME) {
+        [true, false] => (a, b),
+        [false, true] => (b, a),
+        _ => return None,
+    };
+    Some(Finding::new(
+        Severity::Warning,
+        "axes-not-tied",
+        format!(
+            "{} is along the chain of its carriage, {} in body axes: their f_x are set side by side as if the body had been towed along its x \
+             axis; if it was towed across it, they are two forces",
+            chain.id, body.id
+        ),
+    ))
+}
+
 /// Geometry or density that differ between estimates of one model: coefficients then mean different things.
 fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
     let mut out: Vec<Finding> = Vec::new();
@@ -534,20 +570,7 @@ fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
             if a.estimate.model != b.estimate.model {
                 continue;
             }
-            if let (Some(x), Some(y)) = (&a.estimate.density, &b.estimate.density)
-                && (x.value - y.value).abs() > DENSITY_MATTERS * x.value
-                && a.estimate.coefficients.values().any(|c| c.unit.contains("kg"))
-            {
-                out.push(Finding::new(
-                    Severity::Warning,
-                    "density-differs",
-                    format!(
-                        "{} was measured in water of {} {}, {} in {} {}: coefficients with kg in their unit, and the forces that they \
-                         give, go with the density; scale one of them before comparing",
-                        a.estimate.id, x.value, x.unit, b.estimate.id, y.value, y.unit
-                    ),
-                ));
-            }
+            out.extend(density_differs(a.estimate, b.estimate));
             for (key, x) in &a.estimate.geometry {
                 if let Some(y) = b.estimate.geometry.get(key)
                     && (x.value - y.value).abs() > 1e-9 * x.value.abs()
@@ -644,6 +667,12 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
                 .of_source(&n.estimate.source),
             );
         }
+    }
+    let first = predictions[0].3.estimate;
+    for (.., other) in &predictions[1..] {
+        out.findings.extend(axes_not_tied(first, other.estimate));
+        // Of one model it is said already.
+        out.findings.extend(density_differs(first, other.estimate).filter(|_| first.model != other.estimate.model));
     }
     let ids = out.force_ids.clone();
     let predicted_by: Vec<Named<'_>> = predictions.iter().map(|(.., n)| **n).collect();

@@ -51,6 +51,7 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
     let used = Use { data, estimate, law: &law, predicted: &predicted };
     let mut misfits: Vec<Finding> = [
         own_errors(&file, estimate),
+        used.along_the_chain(),
         used.other_fluid(),
         used.other_speeds(),
         used.other_way(),

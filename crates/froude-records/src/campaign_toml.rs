@@ -209,11 +209,11 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     // What belongs to the rows of a table would be passed over.
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
-    if let (Some(key), true) = (of_tables.into_iter().find(|key| s.get(key).is_some()), matches!(input, Input::Runs(_)))
-    {
+    let of_table = of_tables.into_iter().find_map(|key| s.get(key).map(|value| (key, value)));
+    if let (Some((key, value)), Input::Runs(_)) = (of_table, &input) {
         let problem =
             "belongs to the rows of a table; the budget of runs follows from the campaign that they were driven by";
-        return Err(s.get(key).map_or_else(|| s.missing(key, problem), |value| s.wrong(key, value, problem)));
+        return Err(s.wrong(key, value, problem));
     }
     Ok(Source {
         name,

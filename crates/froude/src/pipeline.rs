@@ -184,14 +184,13 @@ fn laws_not_asked(campaign: &Campaign) -> Option<Finding> {
     let tables: Vec<_> = campaign.sources.iter().filter(|s| matches!(s.input, Input::Table(_))).collect();
     let asked: Vec<String> =
         tables.iter().flat_map(|source| asked_models(campaign, source).unwrap_or_default()).collect();
-    let left: Vec<&str> = campaign.identify.user_models.iter().map(|m| m.name.as_str()).collect();
-    let left: Vec<&str> = left.into_iter().filter(|name| !asked.iter().any(|a| a == name)).collect();
+    let own = campaign.identify.user_models.iter().map(|model| model.name.as_str());
+    let left: Vec<&str> = own.filter(|name| !asked.iter().any(|a| a == name)).collect();
     (!left.is_empty() && !tables.is_empty()).then(|| {
+        let it = if left.len() == 1 { "it" } else { "them" };
         let text = format!(
-            "[[identify.model]] {}: fitted to no source, since each names its models without {}; add {} to `models`",
+            "[[identify.model]] {}: fitted to no source, since each names its models without {it}; add {it} to `models`",
             left.join(", "),
-            if left.len() == 1 { "it" } else { "them" },
-            if left.len() == 1 { "it" } else { "them" },
         );
         Finding::new(Severity::Warning, "law-not-asked", text)
     })

@@ -268,13 +268,12 @@ pub fn coefficient(
     )?;
     let value = model.coefficients[0];
     let stated = model.combined[0].filter(|_| given.is_some());
-    let budget: Vec<Part> = model
-        .budget
-        .iter()
-        .skip(usize::from(given.is_none()))
-        .filter(|part| part.kind == Kind::A || part.standard(0) > 0.0)
-        .cloned()
-        .collect();
+    // Without pairs or runs to leave out nothing tells the scatter: residuals of one mount are not asked.
+    let counts = |part: &&Part| match part.kind {
+        Kind::A => given.is_some(),
+        Kind::B => part.standard(0) > 0.0,
+    };
+    let budget: Vec<Part> = model.budget.iter().filter(counts).cloned().collect();
     let declared = |part: &&Part| part.kind == Kind::B && !part.in_scatter;
     Ok(Some(Coefficient {
         method,

@@ -11,6 +11,9 @@ use super::coefficient::{Coefficient, LAW, LOAD, Method};
 use super::run::{DragRun, DragSetup, Efficiency};
 use crate::validity::{ALONG, OFF_AXIS};
 
+/// The axis of a carriage's drag: nobody has said which axis of the body lies along it.
+pub(crate) const FRAME: &str = "x along the chain; f_x of the fluid on the body";
+
 /// The record of one method's result.
 pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>], recommended: bool) -> Estimate {
     let mut coefficients = IndexMap::new();
@@ -54,7 +57,7 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
         law: Law { version: 1, constants, formulas },
         geometry,
         density: Some(Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() }),
-        frame: "x along the chain; f_x of the fluid on the body".to_owned(),
+        frame: FRAME.to_owned(),
         reference_point: String::new(),
         method: format!("{}; least squares over v|v| through the origin", c.method.words()),
         covariance_kind: scatter.map_or("none stated", |p| &p.name).to_owned(),

@@ -388,13 +388,15 @@ fn differences_per_speed(points: &[Point]) -> usize {
 
 /// The narrowest interval among the methods that need no model of the friction, or the first method's; a number without an interval is
 /// recommended to nobody.
-fn recommended(all: &[Coefficient]) -> Option<Method> {
-    all.iter()
+#[must_use]
+pub fn recommended<'a>(all: impl IntoIterator<Item = &'a Coefficient> + Clone) -> Option<Method> {
+    all.clone()
+        .into_iter()
         .filter(|c| matches!(c.method, Method::Fsm | Method::Mcd))
         .filter_map(|c| c.relative_half_width().map(|h| (c.method, h)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|m| m.0)
-        .or_else(|| all.first().filter(|c| c.interval_95.is_some()).map(|c| c.method))
+        .or_else(|| all.into_iter().next().filter(|c| c.interval_95.is_some()).map(|c| c.method))
 }
 
 /// Lints of the result.

@@ -6,6 +6,7 @@ use froude_records::text::counted;
 
 use super::angles::SAME_ANGLE_RAD;
 use super::size;
+use crate::carriage::record::FRAME;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::lint::moving;
@@ -64,6 +65,17 @@ impl Use<'_> {
                 left.join(", ")
             );
             Finding::new(Severity::Warning, "tare-in-another-fluid", text)
+        })
+    }
+
+    /// The drag of a carriage is along its chain, and taken off along x.
+    pub fn along_the_chain(&self) -> Option<Finding> {
+        (self.estimate.frame == FRAME).then(|| {
+            let text = format!(
+                "the tare {} is along the chain of its carriage and is taken off f_x: that is right where x was along the travel",
+                self.estimate.id
+            );
+            Finding::new(Severity::Note, "tare-along-the-chain", text)
         })
     }
 

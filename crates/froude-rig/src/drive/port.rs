@@ -12,7 +12,7 @@ use serial2::SerialPort;
 use super::RigError;
 
 /// A read or a write returns after so long at the latest.
-const READ: Duration = Duration::from_millis(2);
+const WAIT: Duration = Duration::from_millis(2);
 
 /// An open port.
 #[derive(Debug)]
@@ -32,8 +32,8 @@ impl Port {
             _ => RigError::Port { port: port.to_owned(), reason: e.to_string() },
         };
         let mut line = alone(port, baud).map_err(failed)?;
-        line.set_read_timeout(READ).map_err(failed)?;
-        line.set_write_timeout(READ).map_err(failed)?;
+        line.set_read_timeout(WAIT).map_err(failed)?;
+        line.set_write_timeout(WAIT).map_err(failed)?;
         line.discard_buffers().map_err(failed)?;
         Ok(Self(line))
     }

@@ -13,8 +13,7 @@
 //! - As long as nobody stops the carriage and the first host lives, what breaks is named in time, as without a second host. Otherwise
 //!   the first fault is one that the catalogue accepts, or the host's own silence, or none. Where the second host had got the board
 //!   before, it drives as wildly as it talks (open-loop jogs, moves on a broken axis), and what it trips is its own. Where it also clears
-//!   the fault of a dead encoder and homes again while the load still coasts, no controller knows where the load is: the hard stops are
-//!   then its own too.
+//!   the fault of a dead encoder and drives again, no controller knows where the load is: the hard stops are then its own too.
 //! - The second host gets the board only when the controller had stopped for the silence of the first, or no axis had torque.
 //!
 //! A current that is not a number cannot come out of a converter; where the catalogue draws one the amplifier fails instead.

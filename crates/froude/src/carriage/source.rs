@@ -4,6 +4,7 @@ use std::path::Path;
 
 use froude_identify::IdentifyError;
 use froude_identify::carriage::coefficient::{Coefficient, Method};
+use froude_identify::carriage::report::recommended;
 use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::SourceResult;
 use froude_records::campaign::Source;
@@ -34,6 +35,8 @@ pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) 
     let mut out = Vec::new();
     let fitted = std::mem::take(&mut report.coefficients).into_iter().zip(std::mem::take(&mut report.estimates));
     let mut fitted: Vec<(Coefficient, Estimate)> = fitted.collect();
+    // One of the methods that were asked for.
+    let chosen = recommended(fitted.iter().map(|(coefficient, _)| coefficient).filter(|c| methods.contains(&c.method)));
     for &method in &methods {
         let Some(i) = fitted.iter().position(|(coefficient, _)| coefficient.method == method) else {
             // Whoever names no method gets those that the runs allow.
@@ -44,17 +47,15 @@ pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) 
             continue;
         };
         let (coefficient, estimate) = fitted.swap_remove(i);
+        let estimate = Estimate { recommended: chosen == Some(method), ..estimate };
         out.push(result(source, coefficient, estimate, runs.logs.len()));
-    }
-    if !out.iter().any(|result| result.estimates[0].recommended) {
-        recommend_narrowest(&mut out);
     }
     if runs.campaign.is_none() {
         report.findings.push(Finding::new(
             Severity::Warning,
             "no-campaign-of-runs",
             format!(
-                "{}: no copy of their campaign lies with the runs; rig, body and water are taken as of the paper",
+                "{}: no copy of their campaign lies with the runs: fresh water at 20 degC is taken, no area, and of the rig what the runs say",
                 folder.display()
             ),
         ));
@@ -69,22 +70,6 @@ pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) 
     first.findings = report.findings.into_iter().map(|finding| finding.of_source(&source.name)).collect();
     first.files = files;
     Ok(out)
-}
-
-/// Where the campaign's recommended method was not asked for: the narrowest interval among those that were.
-fn recommend_narrowest(out: &mut [SourceResult]) {
-    let relative = |result: &SourceResult| {
-        let coefficient = result.estimates[0].coefficients.first()?.1;
-        let [low, high] = coefficient.interval_95?;
-        Some((high - low) / coefficient.value?.abs())
-    };
-    let narrowest = out
-        .iter_mut()
-        .filter(|r| relative(r).is_some())
-        .min_by(|a, b| relative(a).unwrap_or(f64::INFINITY).total_cmp(&relative(b).unwrap_or(f64::INFINITY)));
-    if let Some(result) = narrowest {
-        result.estimates[0].recommended = true;
-    }
 }
 
 /// The methods that a source asks for; all of them where it asks for none.
