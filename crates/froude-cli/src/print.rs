@@ -70,7 +70,7 @@ pub fn outcome(outcome: &Outcome) {
                 say!("  determined only together: {combination}");
             }
         }
-        let others: Vec<&str> = others.into_iter().map(|e| e.model.as_str()).collect();
+        let others: Vec<&str> = others.into_iter().map(|e| e.law.name.as_str()).collect();
         if !others.is_empty() {
             say!("  also fitted: {} (see the report)", others.join(", "));
         }
@@ -228,7 +228,12 @@ fn estimate_facts(e: &Estimate) {
         sentence(reason);
     }
     let mut about = vec![observations(e.n_observations)];
-    about.extend([&e.kind, &e.method, &e.covariance_kind].into_iter().filter(|t| !t.is_empty()).cloned());
+    about.extend(
+        [e.kind.as_str(), &e.method.words, e.covariance_kind()]
+            .into_iter()
+            .filter(|t| !t.is_empty())
+            .map(str::to_owned),
+    );
     sentence(&about.join("; "));
     let mut out = table(&["coefficient", "value", "unit", "standard uncertainty", "95 % interval", "status"]);
     for (name, c) in &e.coefficients {

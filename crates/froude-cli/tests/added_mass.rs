@@ -181,7 +181,7 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
         assert!(!text.contains(".froude-"), "{name} speaks of the folder that it grew in");
     }
     let estimates = out["estimates"].as_array().unwrap();
-    let models: Vec<&str> = estimates.iter().map(|e| e["model"].as_str().unwrap()).collect();
+    let models: Vec<&str> = estimates.iter().map(|e| e["law"]["name"].as_str().unwrap()).collect();
     for model in ["displaced_volume", "per_link", "affine"] {
         assert!(models.contains(&model), "{models:?}");
     }
@@ -210,7 +210,7 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
     assert!(run(&["compare", "estimate.json", "--json"]).is_object());
 
     // Every column of its own table is in a law.
-    let fit = estimates.iter().find(|e| e["model"] == "displaced_volume").unwrap();
+    let fit = estimates.iter().find(|e| e["law"]["name"] == "displaced_volume").unwrap();
     let masses: [Vec<f64>; 2] = ["mu_z", "volume"].map(|name| {
         let dimension = if name == "volume" { Dimension::VOLUME } else { Dimension::MASS };
         table.number(name, dimension).unwrap().to_vec()
@@ -279,7 +279,7 @@ fn exports_hold_the_matrix_of_the_record() {
     write(at, "down.obj", &hull().mapped(|[x, y, z]| [x, -y, -z]));
     let args = [&["down.obj", "--up", "-z", "--export", "wamit", "--out", "down"], &ONE_MESH[..]].concat();
     let down = record(at, &args);
-    assert_eq!(down["estimates"][0]["frame"], "axes of the mesh, z down");
+    assert_eq!(down["estimates"][0]["frame"]["words"], "axes of the mesh, z down");
     assert!((matrix(&down, 0)[0][1] + a[0][1]).abs() < 1e-9 * a[0][0] && a[0][1].abs() > 1e-3 * a[0][0]);
     let of_down: [Matrix; 2] = limits("down");
     assert!(of_down.iter().all(|m| apart(m, &a) < 1e-9), "{of_down:?}");
@@ -355,7 +355,7 @@ fn an_origin_moves_the_matrix_by_the_parallel_axes() {
     let a = AddedMass { matrix: matrix(&about(&[]), 0), asymmetry: 0.0, frame: Frame::at([0.0; 3]) };
     let there = about(&["--at", "-0.3 m, 20 cm, 100 mm"]);
     assert!(apart(&a.about([-0.3, 0.2, 0.1]).matrix, &matrix(&there, 0)) < 1e-10);
-    assert_eq!(there["estimates"][0]["reference_point"], "(−0.3, 0.2, 0.1) m from the origin of the mesh");
+    assert_eq!(there["estimates"][0]["point"]["words"], "(−0.3, 0.2, 0.1) m from the origin of the mesh");
     let buoyancy = about(&["--at", "cb"]);
     let centre = Measure::of(&hull()).centroid_m;
     assert!(apart(&a.about(centre).matrix, &matrix(&buoyancy, 0)) < 1e-10);
@@ -374,7 +374,7 @@ fn standard(record: &Value, estimate: usize) -> Matrix {
 
 /// The covariance of the 21 entries.
 fn covariance(record: &Value, estimate: usize) -> Vec<Vec<f64>> {
-    let covariance = &record["estimates"][estimate]["covariance"];
+    let covariance = &record["estimates"][estimate]["type_a"];
     assert_eq!(covariance["names"].as_array().unwrap().len(), 21);
     serde_json::from_value(covariance["matrix"].clone()).unwrap()
 }
@@ -407,7 +407,7 @@ fn body_axes_turn_matrix_and_covariance_however_the_mesh_lies() {
     let of = |name: &str, args: &[&str]| record(at, &[&[name], args, &THREE_MESHES[..]].concat());
     let own = of("hull.obj", &[]);
     let [a, u] = [matrix(&own, 0), standard(&own, 0)];
-    assert_eq!(own["estimates"][0]["frame"], "axes of the mesh, z up");
+    assert_eq!(own["estimates"][0]["frame"]["words"], "axes of the mesh, z up");
     // The bow is not the stern, the keel is not the deck: every coupling is there, and of ned the usual three have the other sign.
     let ned = of("hull.obj", &["--axes", "ned"]);
     let down = matrix(&ned, 0);
@@ -439,7 +439,7 @@ fn body_axes_turn_matrix_and_covariance_however_the_mesh_lies() {
                 (0..36).all(|k| (w[k / 6][k % 6] - u[k / 6][k % 6]).abs() < 1e-9 * scale(k / 6, k % 6)),
                 "{name} {axes}"
             );
-            let frame = found["estimates"][0]["frame"].as_str().unwrap();
+            let frame = found["estimates"][0]["frame"]["words"].as_str().unwrap();
             assert!(frame.starts_with(words), "{frame}");
             if *name == "turned.obj" {
                 assert!(frame.ends_with("; in the mesh y is forward and -x up"), "{frame}");
@@ -474,7 +474,7 @@ fn a_turn_with_a_shift_keeps_the_energy_and_an_ellipsoid_is_lambs_about_any_poin
     for (axes, z) in [("ned", -0.1), ("enu", 0.1)] {
         let found = of_shape(&gravity, &["--axes", axes, "--at", "cg", "--tolerance", "0.2 %"]);
         let (a, u) = (matrix(&found, 0), standard(&found, 0));
-        let point = &found["estimates"][0]["reference_point"];
+        let point = &found["estimates"][0]["point"]["words"];
         assert_eq!(
             point,
             "(−0.3, 0, −0.1) m from the origin of the mesh, in the axes of the mesh (the centre of gravity)"
@@ -536,7 +536,7 @@ fn axes_hold_with_a_surface_a_tank_links_a_chain_and_parts() {
             let (a, b) = (matrix(&own, estimate), matrix(&ned, estimate));
             // As for numbers: zeros have no sign.
             assert!((0..36).all(|k| turned(&a)[k / 6][k % 6] == b[k / 6][k % 6]), "{args:?} {estimate}: {a:?} {b:?}");
-            let frame = ned["estimates"][estimate]["frame"].as_str().unwrap();
+            let frame = ned["estimates"][estimate]["frame"]["words"].as_str().unwrap();
             assert!(frame.starts_with("x forward, y starboard, z down"), "{frame}");
         }
     }
@@ -555,7 +555,7 @@ fn axes_hold_with_a_surface_a_tank_links_a_chain_and_parts() {
         let of_waves = wamit();
         let ned = of(&["--axes", "fossen"]);
         assert_eq!(wamit(), of_waves, "{args:?}");
-        let frame = ned["estimates"][0]["frame"].as_str().unwrap();
+        let frame = ned["estimates"][0]["frame"]["words"].as_str().unwrap();
         assert!(frame.contains("starboard, z down (SNAME, Fossen)"), "{frame}");
         for (name, own) in own["estimates"][0]["coefficients"].as_object().unwrap() {
             let (i, j) = name[1..].split_once('_').unwrap();
@@ -626,7 +626,7 @@ fn the_volume_is_exact_and_says_of_what() {
     let area = PI * 0.09 * 0.06;
     let capsule = format!("shape = \"capsule\"\nlength = \"0.8 m\"\n{section}ends = {{ length = \"100 mm\" }}\n");
     let cylinder = format!("shape = \"cylinder\"\nlength = \"0.8 m\"\n{section}");
-    let volume = |out: &Value| out["estimates"][0]["geometry"]["volume"]["value"].as_f64().unwrap();
+    let volume = |out: &Value| out["estimates"][0]["refers_to"]["volume"]["value"].as_f64().unwrap();
     for (shape, exact_m3) in [
         (EGG, 4.0 / 3.0 * PI * 0.5 * 0.3 * 0.2),
         (capsule.as_str(), area * 0.6 + 4.0 / 3.0 * area * 0.1),

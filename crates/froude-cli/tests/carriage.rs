@@ -56,9 +56,9 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
 
     let record = json(&["carriage", "drag", text(&runs), "--json"]);
     let estimates = record["estimates"].as_array().unwrap();
-    for model in ["drag_fsm", "drag_mcd", "drag_mbdp_mapped"] {
-        let estimate = estimates.iter().find(|e| e["model"] == model).unwrap();
-        let interval = &estimate["coefficients"]["D_d"]["interval_95"];
+    for model in ["fsm", "mcd", "mbdp_mapped"] {
+        let estimate = estimates.iter().find(|e| e["method"]["name"] == model).unwrap();
+        let interval = &estimate["coefficients"]["D_x_II"]["interval_95"];
         let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());
         // Three pairs: an interval of Student's t with two degrees of freedom, doubled so that one draw cannot miss it.
         let half = 0.5 * (high - low);
@@ -144,9 +144,9 @@ fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported(
     let inside = json(&["inspect", text(&run), "--json"]);
     assert!(inside["columns"].as_array().unwrap().iter().all(|c| c["name"] != "force"), "{inside}");
     let record = json(&["carriage", "drag", text(&runs), "--json"]);
-    let models: Vec<&str> =
-        record["estimates"].as_array().unwrap().iter().filter_map(|e| e["model"].as_str()).collect();
-    assert!(models.contains(&"drag_mcd") && !models.contains(&"drag_fsm"), "{models:?}");
+    let methods: Vec<&str> =
+        record["estimates"].as_array().unwrap().iter().filter_map(|e| e["method"]["name"].as_str()).collect();
+    assert!(methods.contains(&"mcd") && !methods.contains(&"fsm"), "{methods:?}");
 }
 
 #[test]
@@ -322,7 +322,7 @@ fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
     let drag = bench.drag();
     let of = |drag: &Value| {
         let estimate = drag["estimates"].as_array().unwrap().iter().find(|e| e["recommended"] == true).unwrap();
-        let d = &estimate["coefficients"]["D_d"];
+        let d = &estimate["coefficients"]["D_x_II"];
         (d["value"].as_f64().unwrap(), d["standard_uncertainty"].as_f64().unwrap())
     };
     let (d, u) = of(&drag);
@@ -364,6 +364,80 @@ fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
     let table = std::fs::read_to_string(folder.join("twin.csv")).unwrap();
     let last: Vec<f64> = table.lines().last().unwrap().split(',').filter_map(|cell| cell.parse().ok()).collect();
     assert!(last.iter().any(|f| (f + d * 0.25).abs() < 1e-9), "{table}");
+}
+
+/// Two campaigns reduced with one calibration: their records know it by one key, and what both feel alike is taken out of E_n.
+#[test]
+fn campaigns_that_share_a_calibration_are_compared_without_its_error() {
+    let folder = tempfile::tempdir().unwrap();
+    // Two pairs at one speed, and weights enough to calibrate with.
+    let driven = [1, 2].map(|seed| {
+        let seed_line = format!("seed = {seed}\n");
+        let of_calibration = ["weights", "repeats = 6"];
+        let is_other = |(from, _): &&(&str, &str)| !of_calibration.iter().any(|key| from.starts_with(key));
+        let mut changes: Vec<(&str, &str)> = bench::SHORT.iter().filter(is_other).copied().collect();
+        changes.extend([("repeats = 6\n", "repeats = 3\n"), ("seed = 1\n", &seed_line)]);
+        let own = folder.path().join(format!("{seed}"));
+        std::fs::create_dir(&own).unwrap();
+        json(&["run", text(&bench::campaign(&own, &changes)), "--yes", "--json"]);
+        own.join("campaign-runs")
+    });
+    let runs = |seed: usize, kinds: &[&str]| -> Vec<String> {
+        let all = std::fs::read_dir(&driven[seed - 1]).unwrap().map(|e| e.unwrap().path());
+        let is_meant = |p: &PathBuf| {
+            p.extension().is_some_and(|e| e == "mcap") && kinds.iter().any(|k| text(p).contains(&format!("-{k}")))
+        };
+        all.filter(is_meant).map(|p| text(&p).to_owned()).collect()
+    };
+    let drag = |name: &str, logs: &[String]| {
+        let out = folder.path().join(name);
+        let mut args = vec!["carriage", "drag"];
+        args.extend(logs.iter().map(String::as_str));
+        args.extend(["--out", text(&out), "--json"]);
+        json(&args);
+        out.join("estimate.json")
+    };
+    let monday = drag("monday", &runs(1, &["wet", "dry", "calibration"]));
+    let friday = drag("friday", &[runs(2, &["wet", "dry"]), runs(1, &["calibration"])].concat());
+    let alone = drag("alone", &runs(2, &["wet", "dry", "calibration"]));
+    // u² of the difference by MCD, from χ² = d²/u².
+    let variance = |other: &Path| {
+        let compared = json(&["compare", text(&monday), text(other), "--json"]);
+        let of_mcd = |list: &str| {
+            let is_mcd = |row: &&Value| ["first", "second"].iter().all(|k| row[*k].as_str().unwrap().contains("/mcd"));
+            compared[list].as_array().unwrap().iter().find(is_mcd).cloned().unwrap()
+        };
+        let (row, joint) = (of_mcd("coefficients"), of_mcd("joint"));
+        assert!(row["e_n"].is_number(), "{row}");
+        let difference = row["value_first"].as_f64().unwrap() - row["value_second"].as_f64().unwrap();
+        let said = findings_of(&compared, "errors-in-common");
+        assert_eq!(said.len(), 1, "{said:?}");
+        (difference * difference / joint["chi_squared"].as_f64().unwrap(), said[0].1.clone())
+    };
+    let ((shared, said), (apart, said_apart)) = (variance(&friday), variance(&alone));
+    assert!(said.contains("newtons a volt, calibrated") && said.contains("length of an encoder count"), "{said}");
+    assert!(
+        !said_apart.contains("newtons a volt") && said_apart.contains("length of an encoder count"),
+        "{said_apart}"
+    );
+    assert!(shared < apart, "{shared} {apart}");
+    // u_a² + u_b² − 2 Σ S_a C S_b over the common keys, from the two files.
+    let mcd = |record: &Path| -> Value {
+        let file: Value = serde_json::from_str(&std::fs::read_to_string(record).unwrap()).unwrap();
+        file["estimates"].as_array().unwrap().iter().find(|e| e["method"]["name"] == "mcd").unwrap().clone()
+    };
+    let (a, b) = (mcd(&monday), mcd(&friday));
+    let number = |value: &Value| value.as_f64().unwrap();
+    let square = |e: &Value| number(&e["coefficients"]["D_x_II"]["standard_uncertainty"]).powi(2);
+    let of_a = a["errors"].as_object().unwrap().iter().filter(|(key, _)| !key.starts_with("own/"));
+    let common: f64 = of_a
+        .filter_map(|(key, x)| b["errors"].get(key).map(|y| (x, y)))
+        .map(|(x, y)| {
+            number(&x["sensitivity"][0][0]) * number(&x["covariance"][0][0]) * number(&y["sensitivity"][0][0])
+        })
+        .sum();
+    let expected = square(&a) + square(&b) - 2.0 * common;
+    assert!((shared / expected - 1.0).abs() < 1e-9 && common > 0.0, "{shared} {expected}");
 }
 
 /// Two records without anything in common are not called compared.

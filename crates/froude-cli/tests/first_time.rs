@@ -161,7 +161,7 @@ fn a_unit_in_round_parentheses_is_answered_with_what_to_write() {
     assert_eq!(told, expected);
     // What was proposed is what is read.
     std::fs::write(&table, format!("{head}\n{rows}")).unwrap();
-    assert_eq!(json(&["identify", text(&table), "--json"])["estimates"][0]["n_observations"], 4);
+    assert_eq!(json(&["identify", text(&table), "--json"])["estimates"][0]["n"], 4);
 
     // A drag is written positive: renaming it would make it a thrust.
     std::fs::write(&table, format!("run,U (m/s),drag (N)\n{}", rows.replace('-', ""))).unwrap();
@@ -175,7 +175,7 @@ fn a_unit_in_round_parentheses_is_answered_with_what_to_write() {
     assert_eq!(said, expected);
     std::fs::write(table.with_extension("toml"), sidecar).unwrap();
     let fitted = json(&["identify", text(&table), "--json"]);
-    assert_eq!(fitted["estimates"][0]["n_observations"], 4);
+    assert_eq!(fitted["estimates"][0]["n"], 4);
     assert!(findings_of(&fitted, "load-along-motion").is_empty(), "{}", fitted["findings"]);
 
     // No headers at all.

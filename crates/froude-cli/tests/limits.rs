@@ -295,7 +295,7 @@ fn three_hundred_estimates_are_compared_and_not_one_more() {
         (0..n).map(|k| {
             let mut e = one.clone();
             e["id"] = format!("s{k}/m{k}").into();
-            e["model"] = format!("m{k}").into();
+            e["law"]["name"] = format!("m{k}").into();
             e["recommended"] = false.into();
             e
         })

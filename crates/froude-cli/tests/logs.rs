@@ -303,7 +303,7 @@ fn a_record_that_was_edited_is_refused_and_one_without_a_checksum_is_read() {
     bench.drag();
     let record = bench.folder.path().join("campaign-runs-drag/estimate.json");
     let written = std::fs::read_to_string(&record).unwrap();
-    assert!(written.starts_with("{\n  \"schema\": \"froude/estimate/1\",\n  \"checksum\": \""), "{written}");
+    assert!(written.starts_with("{\n  \"schema\": \"froude/estimate/2\",\n  \"checksum\": \""), "{written}");
     let (key, value) = written.split_once("\"value\": ").map(|(_, rest)| ("\"value\": ", &rest[..6])).unwrap();
     std::fs::write(&record, written.replacen(&format!("{key}{value}"), &format!("{key}1{value}"), 1)).unwrap();
     let told = format!(

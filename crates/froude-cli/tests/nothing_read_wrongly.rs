@@ -53,7 +53,7 @@ fn findings<'a>(out: &'a Value, code: &str) -> Vec<(&'a str, &'a str)> {
 }
 
 fn estimate<'a>(out: &'a Value, model: &str) -> &'a Value {
-    out["estimates"].as_array().unwrap().iter().find(|e| e["model"] == model).unwrap()
+    out["estimates"].as_array().unwrap().iter().find(|e| e["law"]["name"] == model).unwrap()
 }
 
 fn value(estimate: &Value, coefficient: &str) -> f64 {
@@ -244,7 +244,7 @@ fn air_is_taken_where_its_viscosity_is_stated_and_water_in_other_units_is_not() 
         let out = json(&[("t.csv", &table), ("c.toml", &campaign(fluid))], &["identify", "c.toml"]);
         let quadratic = estimate(&out, "quadratic");
         assert!((value(quadratic, "D_x_II") - 0.02).abs() < 1e-4, "{}", quadratic["coefficients"]);
-        assert!((quadratic["density"]["value"].as_f64().unwrap() - 1.11).abs() < 1e-12);
+        assert!((quadratic["refers_to"]["density"]["value"].as_f64().unwrap() - 1.11).abs() < 1e-12);
         let highest = quadratic["validity"]["Re"]["high"].as_f64().unwrap();
         assert!((highest / (60.0 / 1.75e-5) - 1.0).abs() < 1e-9, "Re {highest}");
         assert!(findings(&out, "implausible-speed").is_empty() && findings(&out, "implausible-drag-area").is_empty());
@@ -505,7 +505,7 @@ fn the_moment_of_a_bare_table_is_fitted_beside_its_forces() {
     });
     let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
     let quadratic = estimate(&out, "quadratic");
-    assert_eq!(quadratic["law"]["formulas"]["m_z"], "N_uv*v_x*v_y + N_vv*v_y*abs(v_y)");
+    assert_eq!(quadratic["law"]["outputs"]["m_z"]["formula"], "N_uv*v_x*v_y + N_vv*v_y*abs(v_y)");
     for (name, truth) in [("N_uv", N_UV), ("N_vv", N_VV)] {
         let c = &quadratic["coefficients"][name];
         assert_eq!(c["unit"], "kg");
@@ -514,7 +514,7 @@ fn the_moment_of_a_bare_table_is_fitted_beside_its_forces() {
         assert!(standard < 0.02 * truth.abs(), "{name}: {c}");
     }
     assert_eq!(
-        estimate(&out, "linear_quadratic")["law"]["formulas"]["m_z"],
+        estimate(&out, "linear_quadratic")["law"]["outputs"]["m_z"]["formula"],
         "N_v*v_y + N_uv*v_x*v_y + N_vv*v_y*abs(v_y)"
     );
     assert!(
@@ -548,7 +548,7 @@ fn laws_of_different_loads_are_compared_load_by_load() {
         [[identify.model]]\nname = \"whole\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_uv*u*v + Y_vv*v*abs(v)\"\nm_z = \"N_uv*u*v + N_vv*v*abs(v)\"\n";
     let out = json(&[("t.csv", &text), ("c.toml", campaign)], &["identify", "c.toml"]);
     let best = recommended(&out);
-    assert_eq!(best["model"], "whole", "{}", best["reason"]);
+    assert_eq!(best["law"]["name"], "whole", "{}", best["reason"]);
     let reason = best["reason"].as_str().unwrap();
     assert!(
         reason.contains("what a law leaves out counts as zero; load by load the smallest AICc has: f_x "),
@@ -566,7 +566,7 @@ fn laws_of_different_loads_are_compared_load_by_load() {
         [[identify.model]]\nname = \"along\"\nf_x = \"X_uu*u*abs(u)\"\n\
         [[identify.model]]\nname = \"both\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_0 + Y_u*u + Y_uu*u*u\"\n";
     let out = json(&[("t.csv", &ahead), ("c.toml", campaign)], &["identify", "c.toml"]);
-    assert_eq!(recommended(&out)["model"], "along", "{}", recommended(&out)["reason"]);
+    assert_eq!(recommended(&out)["law"]["name"], "along", "{}", recommended(&out)["reason"]);
 }
 
 /// Drag of a round strut, N s²/m²: along the flow at every angle, so that 6 % of the body's Y_uv is the strut's.
@@ -967,7 +967,7 @@ fn a_strut_at_one_angle_has_one_term_along_the_body() {
     let tare = strut_both_ways(&[-20.0, 20.0]);
     let out = json(&[("tare.csv", &tare)], &["identify", "tare.csv", "--models", "strut"]);
     let strut = estimate(&out, "strut");
-    assert_eq!(strut["law"]["formulas"]["f_x"], "-D_xU*v_x*abs(speed)");
+    assert_eq!(strut["law"]["outputs"]["f_x"]["formula"], "-D_xU*v_x*abs(speed)");
     let sin = f64::to_radians(20.0).sin();
     // f_x = −(STRUT − LIFT tan 20° sin 20°) cos 20° U|U| is what both make of it.
     let both = STRUT - LIFT * sin * f64::to_radians(20.0).tan();
@@ -1034,7 +1034,7 @@ fn a_strut_ahead_and_across_can_be_a_tare() {
     let tare = strut_both_ways(&[0.0, 90.0]);
     let out = json(&[("tare.csv", &tare)], &["identify", "tare.csv", "--models", "strut"]);
     let strut = estimate(&out, "strut");
-    assert_eq!(strut["law"]["formulas"]["f_x"], "-D_xU*v_x*abs(speed)");
+    assert_eq!(strut["law"]["outputs"]["f_x"]["formula"], "-D_xU*v_x*abs(speed)");
     assert!(strut["undetermined"].as_array().unwrap().is_empty(), "{}", strut["undetermined"]);
 }
 
@@ -1133,11 +1133,11 @@ fn one_magnitude_of_drift_leaves_the_quadratic_law_a_candidate() {
     });
     let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
     let quadratic = estimate(&out, "quadratic");
-    assert_eq!(quadratic["law"]["formulas"]["m_z"], "N_uv*v_x*v_y");
+    assert_eq!(quadratic["law"]["outputs"]["m_z"]["formula"], "N_uv*v_x*v_y");
     // N_uv stands for the moment at that angle: m_z = N_uv u v + N_vv v|v| with |v| = u tan 10°.
     let whole = N_UV + N_VV * f64::to_radians(10.0).tan();
     assert!((value(quadratic, "N_uv") / whole - 1.0).abs() < 0.02, "{}", quadratic["coefficients"]);
-    assert_eq!(recommended(&out)["model"], "quadratic", "{}", recommended(&out)["reason"]);
+    assert_eq!(recommended(&out)["law"]["name"], "quadratic", "{}", recommended(&out)["reason"]);
 }
 
 #[test]
@@ -1150,7 +1150,7 @@ fn a_reference_point_is_printed_where_somebody_named_one() {
         let folder = folder_of(&[("t.csv", text), ("c.toml", &campaign(body))]);
         let out = json_in(folder.path(), &["identify", "c.toml"]);
         let html = std::fs::read_to_string(folder.path().join("c-results/report.html")).unwrap();
-        (recommended(&out)["reference_point"].as_str().unwrap().to_owned(), html)
+        (recommended(&out)["point"]["words"].as_str().unwrap().to_owned(), html)
     };
     let (point, html) = of("");
     assert!(point.is_empty() && !html.contains("Reference point") && !html.contains("body centre"), "{point}");

@@ -137,7 +137,7 @@ fn coefficients(record: &Value) -> Vec<(String, f64, f64)> {
         .iter()
         .filter_map(|e| {
             let (_, c) = e["coefficients"].as_object()?.iter().find(|(name, _)| name.starts_with("D_"))?;
-            Some((e["model"].as_str()?.to_owned(), c["value"].as_f64()?, c["standard_uncertainty"].as_f64()?))
+            Some((e["method"]["name"].as_str()?.to_owned(), c["value"].as_f64()?, c["standard_uncertainty"].as_f64()?))
         })
         .collect()
 }

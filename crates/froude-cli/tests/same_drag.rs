@@ -18,14 +18,32 @@ fn fixture(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/drag").join(format!("{name}.json"))
 }
 
-/// What stays: every number of every estimate, what is recommended and which findings there are.
+/// What stays: every number of every estimate, what is recommended and which findings there are. The old program wrote D_x_II of `quadratic` as D_d
+/// of a law of its own, and C_D beside it with an uncertainty of its own.
 fn kept(record: &Value) -> Value {
     let estimates = record["estimates"].as_array().unwrap().iter().map(|estimate| {
-        let names = ["coefficients", "recommended", "n_observations"];
-        let parts = names.iter().map(|name| ((*name).to_owned(), estimate[*name].clone()));
-        let speed = serde_json::json!({ "speed": estimate["validity"]["speed"] });
-        let parts = parts.chain([("validity".to_owned(), speed)]);
-        (estimate["model"].as_str().unwrap().to_owned(), Value::Object(parts.collect()))
+        let mut d = estimate["coefficients"]["D_x_II"].clone();
+        assert_eq!(
+            (&estimate["law"]["name"], &d["label"], &d["unit"]),
+            (&"quadratic".into(), &"D_d".into(), &"kg/m".into())
+        );
+        d.as_object_mut().unwrap().remove("label");
+        d["unit"] = "N s^2/m^2".into();
+        let (mut c, derived) = (d.clone(), &estimate["derived"]["C_D"]);
+        let scale = derived["value"].as_f64().unwrap() / d["value"].as_f64().unwrap();
+        for key in ["type_a", "type_b"] {
+            c[key] = d[key].as_f64().map_or(Value::Null, |u| (u * scale).into());
+        }
+        for key in ["value", "unit", "standard_uncertainty", "interval_95"] {
+            c[key] = derived[key].clone();
+        }
+        let old = serde_json::json!({
+            "coefficients": { "D_d": d, "C_D": c },
+            "recommended": estimate["recommended"],
+            "n_observations": estimate["n"],
+            "validity": { "speed": estimate["validity"]["speed"] },
+        });
+        (format!("drag_{}", estimate["method"]["name"].as_str().unwrap()), old)
     });
     let mut codes: Vec<&str> =
         record["findings"].as_array().unwrap().iter().map(|f| f["code"].as_str().unwrap()).collect();
@@ -53,10 +71,16 @@ fn compare(place: &str, before: &Value, now: &Value) {
     }
 }
 
+/// What an estimate's observations came from, whatever its record calls the files.
+fn fingerprints<'a>(record: &'a Value, estimate: &Value) -> Vec<&'a Value> {
+    let keys = estimate["data"].as_array().unwrap().iter();
+    keys.map(|key| &record["data"][key.as_str().unwrap()]["sha256"]).collect()
+}
+
 /// The same runs as a source of a campaign, by the same methods in another order: the same estimates, bit for bit.
 fn as_a_source(folder: &Path, drag: &Value) {
     let estimates = drag["estimates"].as_array().unwrap();
-    let method = |estimate: &Value| estimate["model"].as_str().unwrap().strip_prefix("drag_").unwrap().to_owned();
+    let method = |estimate: &Value| estimate["method"]["name"].as_str().unwrap().to_owned();
     let methods: Vec<String> = estimates.iter().rev().map(method).collect();
     let campaign = format!(
         "schema = 1\nname = \"x\"\n[[source]]\nname = \"carriage\"\nkind = \"towing\"\nruns = \"campaign-runs\"\nmethod = {methods:?}\n"
@@ -68,8 +92,10 @@ fn as_a_source(folder: &Path, drag: &Value) {
     for (estimate, same) in estimates.iter().rev().zip(of_source) {
         assert_eq!(same["id"], format!("carriage/{}", method(estimate)));
         for (key, value) in estimate.as_object().unwrap() {
-            assert!(["id", "source"].contains(&key.as_str()) || &same[key] == value, "{key}: {value} is {}", same[key]);
+            let is_named_otherwise = ["id", "source", "data"].contains(&key.as_str());
+            assert!(is_named_otherwise || &same[key] == value, "{key}: {value} is {}", same[key]);
         }
+        assert_eq!(fingerprints(drag, estimate), fingerprints(&sourced, same));
     }
     assert_eq!(
         sourced["findings"].as_array().unwrap().iter().map(|f| &f["code"]).collect::<Vec<_>>(),

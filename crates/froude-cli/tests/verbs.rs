@@ -51,7 +51,8 @@ fn a_bare_table_gets_polynomials_and_the_power_law() {
         std::fs::copy(example("unh-rm2").join(name), folder.path().join(name)).unwrap();
     }
     let out = json(&froude(folder.path(), &["--json", "identify", "Tare-drag.csv"]));
-    let models: Vec<&str> = out["estimates"].as_array().unwrap().iter().map(|e| e["model"].as_str().unwrap()).collect();
+    let models: Vec<&str> =
+        out["estimates"].as_array().unwrap().iter().map(|e| e["law"]["name"].as_str().unwrap()).collect();
     assert_eq!(models, ["quadratic", "linear_quadratic", "power_law"]);
     let k = out["estimates"][0]["coefficients"]["D_x_II"]["value"].as_f64().unwrap();
     // The preparer's figure, printed with four digits.

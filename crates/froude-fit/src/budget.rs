@@ -75,6 +75,21 @@ pub enum Shape {
     Between(Vec<[f64; 2]>),
 }
 
+/// The error behind a line of the budget, where other fits may have the same one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Origin {
+    /// Its name among all fits: what has one key is one error.
+    pub key: String,
+    /// The quantity that errs.
+    pub quantity: String,
+    /// Covariance C of the error, q × q.
+    pub covariance: Mat<f64>,
+    /// S = ∂β/∂e, p × q: the part's covariance is S·C·Sᵀ.
+    pub sensitivity: Mat<f64>,
+    /// Limits of an error of one component that is uniform between them.
+    pub limits: Option<[f64; 2]>,
+}
+
 /// A line of the budget.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
@@ -92,6 +107,8 @@ pub struct Part {
     pub shape: Shape,
     /// True where repeats show it already: it is listed and not added.
     pub in_scatter: bool,
+    /// The error itself; `None` where no other fit can have it.
+    pub origin: Option<Origin>,
 }
 
 impl Part {
@@ -99,7 +116,7 @@ impl Part {
     #[must_use]
     pub fn of_one(name: String, shared: &'static str, kind: Kind, standard: f64, dof: f64) -> Self {
         let covariance = Mat::from_fn(1, 1, |_, _| standard * standard);
-        Self { name, shared, kind, covariance, dof: vec![dof], shape: Shape::Normal, in_scatter: false }
+        Self { name, shared, kind, covariance, dof: vec![dof], shape: Shape::Normal, in_scatter: false, origin: None }
     }
 
     /// Of a fit with one coefficient: an error between two limits.
@@ -153,7 +170,7 @@ impl Combined {
 pub fn combine(parts: &[Part], j: usize, outside: f64) -> Combined {
     let counted = || parts.iter().filter(|part| !part.in_scatter);
     let of_kind = |kind: Kind| {
-        counted().filter(|part| part.kind == kind).map(|part| part.covariance[(j, j)].max(0.0)).sum::<f64>().sqrt()
+        counted().filter(|part| part.kind == kind).fold(0.0, |sum, part| sum + part.covariance[(j, j)].max(0.0)).sqrt()
     };
     let entry = |part: &Part| (part.covariance[(j, j)].max(0.0), part.dof[j]);
     let entries: Vec<(f64, f64)> = counted().map(entry).collect();

@@ -16,6 +16,7 @@
 //! | [`rank`]        | what is determined                                                   |
 //! | [`diagnostics`] | serial correlation, collinearity                                     |
 //! | [`select`]      | F tests, AICc, cross-validation, lack of fit                         |
+//! | [`nonlinear`]   | models that are not linear in their parameters, by runs              |
 //! | [`odr`]         | orthogonal distance regression: uncertain inputs                     |
 //! | [`bootstrap`]   | pairs and cluster bootstrap                                          |
 //! | [`stream`]      | more rows than memory holds, one pass                                |
@@ -28,8 +29,8 @@
 //! All of it runs on one thread except the bootstrap, whose result does not
 //! depend on how many there are.
 //!
-//! Not here: models that are not linear in their coefficients (errors in
-//! variables aside), correlated noise other than by cluster, Bayesian
+//! Not here: correlated noise other than by cluster (and, for one long run, by
+//! [`nonlinear::Scatter::Serial`]), a search for the best of several minima, Bayesian
 //! posteriors beyond normal priors. No R² is reported: without an intercept it has
 //! no agreed meaning, and with one it praises the range of the test.
 
@@ -52,6 +53,7 @@ mod error;
 mod estimate;
 pub mod factored;
 pub mod linear;
+pub mod nonlinear;
 pub mod odr;
 mod options;
 mod outcome;

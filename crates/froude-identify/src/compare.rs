@@ -9,20 +9,24 @@
 //! U = k·u with k from Student's t of the effective degrees of freedom; 1.96
 //! where the record states none, and [`Comparison::coverage_notes`] says so.
 //!
-//! E_n and χ² hold for independent estimates. Two fits to the same table are
-//! not: they get [`SAME_DATA`] and no number.
+//! An interval that reaches to one side, or pays for looks, has the arm that points to the other value as its U.
+//!
+//! Errors that two records know by one key are one error: u²(a − b) = u_a² + u_b² − 2 cov(a, b) (GUM 5.2.2), and the part that is
+//! common is taken out of E_n and χ² exactly ([`crate::common`]). Scatter from the same observations cannot be: two fits to the same
+//! table or the same runs get [`SAME_DATA`] and no number.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use faer::Mat;
 use faer::linalg::solvers::Solve;
 use froude_fit::distribution::f_upper;
-use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Range, Status};
+use froude_records::estimate::{Coefficient, DataFile, Estimate, EstimateFile, Range, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
 
-use crate::carriage::record::FRAME;
+use crate::carriage::record::CHAIN;
+use crate::common::{self, Common, Side};
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::uncertainty::coverage_factor;
@@ -205,6 +209,7 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
     }
     let origins = origins(all);
     let mut told: BTreeSet<[(&str, &str); 2]> = BTreeSet::new();
+    let mut shared: BTreeMap<[(&str, &str); 2], Vec<Common<'_>>> = BTreeMap::new();
     for (i, a) in all.iter().enumerate() {
         for (j, b) in all.iter().enumerate().skip(i + 1) {
             let is_same_data = same_data([a, b], [&origins[i], &origins[j]]);
@@ -212,16 +217,28 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
             if is_same_data && !is_one_source(a, b) && told.insert(pair) {
                 out.findings.push(same_data_finding(a, b));
             }
-            if a.estimate.model != b.estimate.model {
+            // Nobody takes two methods of one source for independent.
+            if a.estimate.law.name != b.estimate.law.name || is_one_source(a, b) {
                 continue;
             }
-            if a.estimate.source == b.estimate.source && !have_other_tables([&origins[i], &origins[j]]) {
+            let is_one_method = a.estimate.method.name == b.estimate.method.name;
+            if a.estimate.source == b.estimate.source && is_one_method && !have_other_tables([&origins[i], &origins[j]])
+            {
                 out.findings.extend(contradiction(a, b));
             }
-            out.coefficients.extend(coefficient_rows(a, b, is_same_data));
-            out.joint.push(joint(a, b, is_same_data));
+            let common = Common::of(a.estimate, b.estimate);
+            out.coefficients.extend(coefficient_rows(a, b, &common, is_same_data));
+            out.joint.push(joint(a, b, &common, is_same_data));
+            if !is_same_data {
+                let of_pair = shared.entry(pair).or_default();
+                if of_pair.is_empty() {
+                    out.findings.extend(axes_not_tied(a.estimate, b.estimate));
+                }
+                of_pair.push(common);
+            }
         }
     }
+    out.findings.extend(shared.into_values().flat_map(|all| common::findings(&all)));
     out.findings.extend(differing_constants(all));
     predict_forces(all, &mut out);
     out
@@ -236,9 +253,9 @@ pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> 
     }
     let each = all.iter().map(|n| {
         let estimate = n.estimate;
-        let loads: Vec<&str> = estimate.law.formulas.keys().map(String::as_str).collect();
+        let loads: Vec<&str> = estimate.law.outputs.keys().map(String::as_str).collect();
         let law = if loads.is_empty() { "no formula".to_owned() } else { loads.join(", ") };
-        format!("{} ({}; {law})", estimate.id, estimate.model)
+        format!("{} ({}; {law})", estimate.id, estimate.law.name)
     });
     let each: Vec<String> = each.take(MOST_NAMED).collect();
     let more = if all.len() > MOST_NAMED { format!(" and {} more", all.len() - MOST_NAMED) } else { String::new() };
@@ -265,37 +282,47 @@ fn label(n: &Named<'_>, other: &Named<'_>) -> String {
     if n.estimate.id == other.estimate.id { format!("{} ({})", n.estimate.id, n.file) } else { n.estimate.id.clone() }
 }
 
-/// Fingerprints of the tables that a record was made from; campaigns, sidecars and records are no observations.
-fn tables(record: &EstimateFile) -> BTreeSet<&str> {
+/// What is read as something else than observations: it is the same error under its own key, or no error at all.
+const NOT_OBSERVED: [&str; 4] = ["campaign", "sidecar", "record", "calibration"];
+
+/// Whether a file holds observations; an old record does not say what it read a file as.
+fn is_observed(data: &DataFile) -> bool {
     let is_table = |path: &str| {
         Path::new(path).extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml") && !e.eq_ignore_ascii_case("json"))
     };
-    record.data.iter().filter(|d| is_table(&d.path) && !d.sha256.is_empty()).map(|d| d.sha256.as_str()).collect()
+    !data.sha256.is_empty()
+        && data.role.as_deref().map_or_else(|| is_table(&data.path), |role| !NOT_OBSERVED.contains(&role))
+}
+
+/// Fingerprints of the observations among files.
+fn fingerprints<'a>(files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a str> {
+    files.filter(|data| is_observed(data)).map(|data| data.sha256.as_str()).collect()
 }
 
 /// Where an estimate comes from, as far as its record tells.
 struct Origin<'a> {
-    /// Fingerprints of its tables.
+    /// Fingerprints of its tables or runs.
     tables: BTreeSet<&'a str>,
+    /// Whether these are its own, and not those of all estimates of its record.
+    is_exact: bool,
     /// Whether all estimates of the record are of this one's source.
     is_alone: bool,
 }
 
-/// The origin of each estimate; what a record says is gathered once for all of its own.
+/// The origin of each estimate.
 fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
-    let mut of_record: Vec<(&EstimateFile, BTreeSet<&str>, bool)> = Vec::new();
-    all.iter()
-        .map(|n| {
-            let known = of_record.last().is_some_and(|(record, ..)| std::ptr::eq(*record, n.record));
-            if !known {
-                let first = n.record.estimates.first().map(|e| &e.source);
-                let is_one = n.record.estimates.iter().all(|e| Some(&e.source) == first);
-                of_record.push((n.record, tables(n.record), is_one));
-            }
-            let (tables, is_one) = of_record.last().map(|(_, t, one)| (t.clone(), *one)).unwrap_or_default();
-            Origin { tables, is_alone: is_one }
-        })
-        .collect()
+    let of = |n: &Named<'a>| {
+        let own = fingerprints(n.record.data_of(n.estimate));
+        let is_exact = !own.is_empty();
+        let first = n.record.estimates.first().map(|e| &e.source);
+        let is_alone = || n.record.estimates.iter().all(|e| Some(&e.source) == first);
+        if is_exact {
+            Origin { tables: own, is_exact, is_alone: true }
+        } else {
+            Origin { tables: fingerprints(n.record.data.values()), is_exact, is_alone: is_alone() }
+        }
+    };
+    all.iter().map(of).collect()
 }
 
 /// True for two models of one source in one record, which nobody takes for independent.
@@ -310,7 +337,7 @@ fn have_other_tables([a, b]: [&Origin<'_>; 2]) -> bool {
 
 /// True where two estimates come from the same observations, as far as their records tell.
 ///
-/// A record names its tables, but not which source read which. A shared table counts where that is plain (one table, or
+/// A record says which files each estimate came from. An old one names its tables, but not which source read which: there a shared table counts where that is plain (one table, or
 /// one source), and else if the sources have the same name or the same observations (number and ranges). Without
 /// fingerprints only an equal fit is known to be the same.
 fn same_data([a, b]: [&Named<'_>; 2], [first, second]: [&Origin<'_>; 2]) -> bool {
@@ -320,8 +347,11 @@ fn same_data([a, b]: [&Named<'_>; 2], [first, second]: [&Origin<'_>; 2]) -> bool
     }
     let values = |e: &Estimate| e.coefficients.iter().map(|(n, c)| (n.clone(), c.value)).collect::<Vec<_>>();
     let same_observations = x.n_observations > 0 && x.n_observations == y.n_observations && x.validity == y.validity;
-    if same_observations && x.model == y.model && x.sigma == y.sigma && values(x) == values(y) {
+    if same_observations && x.law.name == y.law.name && x.sigma == y.sigma && values(x) == values(y) {
         return true;
+    }
+    if first.is_exact && second.is_exact {
+        return !first.tables.is_disjoint(&second.tables);
     }
     if std::ptr::eq(a.record, b.record) {
         // Fitted sources read tables; a published one beside them does not.
@@ -344,7 +374,7 @@ fn same_data_finding(a: &Named<'_>, b: &Named<'_>) -> Finding {
     )
 }
 
-fn coefficient_rows(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> Vec<CoefficientRow> {
+fn coefficient_rows(a: &Named<'_>, b: &Named<'_>, common: &Common<'_>, is_same_data: bool) -> Vec<CoefficientRow> {
     let (first, second) = (label(a, b), label(b, a));
     a.estimate
         .coefficients
@@ -353,13 +383,14 @@ fn coefficient_rows(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> Vec<Coe
         .map(|(name, x, y)| {
             let (by_first, by_second) = (stated(x), stated(y));
             let e_n = if x.unit == y.unit {
-                e_n(&by_first, &by_second, [&first, &second], is_same_data)
+                let sides = [Side::of_coefficient(a.estimate, name), Side::of_coefficient(b.estimate, name)];
+                e_n([&sides[0], &sides[1]], common, [&first, &second], is_same_data)
                     .and_then(|e_n| not_free(x, &first).or_else(|| not_free(y, &second)).map_or(Ok(e_n), Err))
             } else {
                 Err(format!("units differ: {} and {}", x.unit, y.unit))
             };
             CoefficientRow {
-                model: a.estimate.model.clone(),
+                model: a.estimate.law.name.clone(),
                 coefficient: name.clone(),
                 unit: x.unit.clone(),
                 first: first.clone(),
@@ -387,31 +418,31 @@ fn stated(c: &Coefficient) -> Stated {
 }
 
 /// E_n of two numbers, or why there is none.
-fn e_n(x: &Stated, y: &Stated, ids: [&str; 2], is_same_data: bool) -> Result<f64, String> {
-    let (Some(a), Some(b)) = (x.value, y.value) else { return Err("undetermined".to_owned()) };
-    let (Some(u_a), Some(u_b)) = (x.expanded(), y.expanded()) else {
-        let without: Vec<&str> =
-            [x, y].into_iter().zip(ids).filter(|(s, _)| s.standard.is_none()).map(|(_, id)| id).collect();
+fn e_n(sides: [&Side<'_>; 2], common: &Common<'_>, ids: [&str; 2], is_same_data: bool) -> Result<f64, String> {
+    let [Some(a), Some(b)] = sides.map(|side| side.stated.value) else { return Err("undetermined".to_owned()) };
+    let without: Vec<&str> =
+        sides.into_iter().zip(ids).filter(|(side, _)| side.stated.standard.is_none()).map(|(_, id)| id).collect();
+    if !without.is_empty() {
         return Err(format!("no uncertainty stated by {}", without.join(" and ")));
-    };
+    }
     if is_same_data {
         return Err(SAME_DATA.to_owned());
     }
-    let u = u_a.hypot(u_b);
+    let u = common.expanded_difference(sides, a - b);
     if u > 0.0 { Ok((a - b) / u) } else { Err("both uncertainties are zero".to_owned()) }
 }
 
-/// χ² = dᵀ(C_a + C_b)⁻¹d over the coefficients that both estimate, for independent sources.
-fn joint(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> JointRow {
+/// χ² = dᵀC⁻¹d over the coefficients that both estimate, C = C_a + C_b less what common errors make of the covariance between them.
+fn joint(a: &Named<'_>, b: &Named<'_>, common: &Common<'_>, is_same_data: bool) -> JointRow {
     let (first, second) = (label(a, b), label(b, a));
     let result = (|| {
-        let (Some(ca), Some(cb)) = (&a.estimate.covariance, &b.estimate.covariance) else {
-            let without: Vec<&str> =
-                [(&a.estimate.covariance, first.as_str()), (&b.estimate.covariance, second.as_str())]
-                    .into_iter()
-                    .filter(|(c, _)| c.is_none())
-                    .map(|(_, id)| id)
-                    .collect();
+        let (ca, cb) = (a.estimate.covariance(), b.estimate.covariance());
+        let (Some(ca), Some(cb)) = (&ca, &cb) else {
+            let without: Vec<&str> = [(&ca, first.as_str()), (&cb, second.as_str())]
+                .into_iter()
+                .filter(|(c, _)| c.is_none())
+                .map(|(_, id)| id)
+                .collect();
             return Err(format!("no covariance matrix stated by {}", without.join(" and ")));
         };
         if is_same_data {
@@ -434,7 +465,10 @@ fn joint(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> JointRow {
             i.zip(j).and_then(|(i, j)| c.matrix.get(i).and_then(|r| r.get(j)).copied()).unwrap_or(f64::NAN)
         };
         let m = names.len();
-        let sum = Mat::from_fn(m, m, |i, j| at(ca, names[i], names[j]) + at(cb, names[i], names[j]));
+        let cross = |p: &str, q: &str| common.covariance([p, q]) + common.covariance([q, p]);
+        let sum = Mat::from_fn(m, m, |i, j| {
+            at(ca, names[i], names[j]) + at(cb, names[i], names[j]) - cross(names[i], names[j])
+        });
         // Scaled to unit diagonal: the coefficients' sizes differ by orders of magnitude.
         let scale: Vec<f64> = (0..m).map(|i| sum[(i, i)].sqrt()).collect();
         let correlation = Mat::from_fn(m, m, |i, j| sum[(i, j)] / (scale[i] * scale[j]));
@@ -449,7 +483,7 @@ fn joint(a: &Named<'_>, b: &Named<'_>, is_same_data: bool) -> JointRow {
         }
         Ok((chi2, m, probability(chi2, m, least_dof([a, b], &names))))
     })();
-    JointRow { model: a.estimate.model.clone(), first, second, result }
+    JointRow { model: a.estimate.law.name.clone(), first, second, result }
 }
 
 /// Fewest degrees of freedom that one of the coefficients has; infinite where none are stated.
@@ -529,7 +563,7 @@ const DENSITY_MATTERS: f64 = 0.002;
 
 /// Densities of two estimates that differ, where the coefficients go with them.
 fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
-    let (x, y) = (a.density.as_ref()?, b.density.as_ref()?);
+    let (x, y) = (a.density()?, b.density()?);
     let has_dimension = |e: &Estimate| e.coefficients.values().any(|c| c.unit.contains("kg") || c.unit.contains('N'));
     ((x.value - y.value).abs() > DENSITY_MATTERS * x.value && (has_dimension(a) || has_dimension(b))).then(|| {
         Finding::new(
@@ -546,7 +580,7 @@ fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
 
 /// Forces of a carriage, which knows no axis of the body, beside those in body axes.
 fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
-    let (chain, body) = match [a, b].map(|e| e.frame == FRAME) {
+    let (chain, body) = match [a, b].map(|e| e.frame.name == CHAIN) {
         [true, false] => (a, b),
         [false, true] => (b, a),
         _ => return None,
@@ -556,7 +590,7 @@ fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
         "axes-not-tied",
         format!(
             "{} is along the chain of its carriage, {} in body axes: their f_x are set side by side as if the body had been towed along its x \
-             axis; if it was towed across it, they are two forces",
+             axis; if it was towed across it, they are two forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign",
             chain.id, body.id
         ),
     ))
@@ -567,12 +601,12 @@ fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
     let mut out: Vec<Finding> = Vec::new();
     for (i, a) in all.iter().enumerate() {
         for b in &all[i + 1..] {
-            if a.estimate.model != b.estimate.model {
+            if a.estimate.law.name != b.estimate.law.name || is_one_source(a, b) {
                 continue;
             }
             out.extend(density_differs(a.estimate, b.estimate));
-            for (key, x) in &a.estimate.geometry {
-                if let Some(y) = b.estimate.geometry.get(key)
+            for (key, x) in a.estimate.refers_to.iter().filter(|(key, _)| *key != "density") {
+                if let Some(y) = b.estimate.refers_to.get(key)
                     && (x.value - y.value).abs() > 1e-9 * x.value.abs()
                 {
                     out.push(Finding::new(
@@ -625,14 +659,14 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
         return;
     }
     let has_links =
-        links.is_some() || chosen.iter().any(|n| froude_hydro::DragModel::from_name(&n.estimate.model).is_some());
+        links.is_some() || chosen.iter().any(|n| froude_hydro::DragModel::from_name(&n.estimate.law.name).is_some());
     let links: Vec<f64> =
         links.map_or_else(|| vec![1.0], |r| if r.low == r.high { vec![r.low] } else { vec![r.low, r.high] });
     let data = operating_points(
         &speed,
         &angle,
         &links,
-        chosen.first().and_then(|n| n.estimate.density.as_ref()).map_or(1000.0, |d| d.value),
+        chosen.first().and_then(|n| n.estimate.density()).map_or(1000.0, |d| d.value),
     );
     let mut predictions = Vec::new();
     for n in &chosen {
@@ -670,9 +704,12 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
     }
     let first = predictions[0].3.estimate;
     for (.., other) in &predictions[1..] {
-        out.findings.extend(axes_not_tied(first, other.estimate));
         // Of one model it is said already.
-        out.findings.extend(density_differs(first, other.estimate).filter(|_| first.model != other.estimate.model));
+        if first.law.name != other.estimate.law.name {
+            out.findings.extend(axes_not_tied(first, other.estimate));
+            out.findings.extend(density_differs(first, other.estimate));
+            out.findings.extend(common::findings(&[Common::of(first, other.estimate)]));
+        }
     }
     let ids = out.force_ids.clone();
     let predicted_by: Vec<Named<'_>> = predictions.iter().map(|(.., n)| **n).collect();
@@ -680,18 +717,21 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
     let is_same_data: Vec<bool> = (0..predicted_by.len())
         .map(|j| same_data([&predicted_by[0], &predicted_by[j]], [&origins[0], &origins[j]]))
         .collect();
+    let commons: Vec<Common<'_>> = predicted_by.iter().map(|n| Common::of(first, n.estimate)).collect();
     for component in ["f_x", "f_y"] {
         for i in 0..data.rows {
-            let forces: Vec<Stated> = predictions
+            let sides: Vec<Side<'_>> = predictions
                 .iter()
                 .map(|(law, force, slopes, n)| {
                     let Some(r) = law.responses.iter().position(|name| name == component) else {
-                        return Stated::default();
+                        return Side::of_nothing(n.estimate);
                     };
                     let row = r * data.rows + i;
-                    predicted(law, force[row], slopes, row, n.estimate)
+                    let slope = |name: &str| law.position(name).map_or(0.0, |j| slopes[(row, j)]);
+                    Side::of_number(n.estimate, Some(force[row]).filter(|f| f.is_finite()), slope)
                 })
                 .collect();
+            let forces: Vec<Stated> = sides.iter().map(|side| side.stated).collect();
             if forces.iter().all(|f| f.value.is_none()) {
                 continue;
             }
@@ -701,7 +741,7 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
                     if let Some((_, id)) = without.into_iter().find(|(is_missing, _)| *is_missing) {
                         return Err(format!("{id} gives no {component}"));
                     }
-                    e_n(&forces[0], &forces[j], [&ids[0], &ids[j]], is_same_data[j])
+                    e_n([&sides[0], &sides[j]], &commons[j], [&ids[0], &ids[j]], is_same_data[j])
                 })
                 .collect();
             out.forces.push(ForceRow {
@@ -714,47 +754,6 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
             });
         }
     }
-}
-
-/// A predicted force with u² = xᵀCx and its effective degrees of freedom, x the slopes by the coefficients.
-///
-/// An approximation: a record does not say which part of its covariance is scatter, of which alone ν is known
-/// (ν = ν_A·(xᵀCx/xᵀC_Ax)², GUM G.4.1). Coefficient i makes the part w_i = x_i(Cx)_i of the variance, known with ν_i degrees
-/// of freedom; taken as fully dependent, √(2/ν)·u² = Σ w_i·√(2/ν_i). It is exact without a budget. With one it is mostly too
-/// few, so that U is wide: by a sixth where a calibration of 2 % outweighs the scatter of a force.
-/// Parts of opposite sign can carry the sum outside the ν_i: it is cut there.
-fn predicted(law: &ForceLaw, force: f64, slopes: &Mat<f64>, row: usize, estimate: &Estimate) -> Stated {
-    let value = Some(force).filter(|f| f.is_finite());
-    let Some(covariance) = &estimate.covariance else { return Stated { value, ..Stated::default() } };
-    let x: Vec<f64> = covariance.names.iter().map(|n| law.position(n).map_or(0.0, |j| slopes[(row, j)])).collect();
-    let parts: Vec<f64> = covariance
-        .matrix
-        .iter()
-        .zip(&x)
-        .map(|(line, x_i)| x_i * line.iter().zip(&x).map(|(c, x_j)| c * x_j).sum::<f64>())
-        .collect();
-    let variance = parts.iter().sum::<f64>().max(0.0);
-    let dof: Vec<Option<f64>> = covariance
-        .names
-        .iter()
-        .map(|n| estimate.coefficients.get(n).and_then(|c| c.effective_dof).filter(|d| *d > 0.0))
-        .collect();
-    Stated { value, standard: Some(variance.sqrt()), dof: effective_dof(&parts, &dof) }
-}
-
-/// Degrees of freedom of a sum of fully dependent parts of a variance; null where no touched part states any.
-fn effective_dof(parts: &[f64], dof: &[Option<f64>]) -> Option<f64> {
-    let total: f64 = parts.iter().sum();
-    let touched: Vec<(f64, Option<f64>)> =
-        parts.iter().copied().zip(dof.iter().copied()).filter(|(w, _)| *w != 0.0).collect();
-    let all = || touched.iter().map(|(_, d)| d.unwrap_or(f64::INFINITY));
-    let (least, most) = (all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max));
-    if !least.is_finite() || total <= 0.0 {
-        return None;
-    }
-    let root: f64 = touched.iter().map(|(w, d)| w / total * d.map_or(0.0, |d| d.sqrt().recip())).sum();
-    let nu = if root > 0.0 { root.powi(-2) } else { f64::INFINITY };
-    Some(nu.max(least).min(most)).filter(|d| d.is_finite())
 }
 
 fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -> Dataset {
@@ -790,28 +789,31 @@ fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use froude_records::estimate::DataFile;
+    use froude_records::estimate::{DataFile, ErrorKind, SharedError, keyed};
+
+    fn file(path: &str, sha256: &str) -> DataFile {
+        DataFile { path: path.to_owned(), sha256: sha256.to_owned(), role: None }
+    }
 
     /// A quadratic drag fit: `D` with its standard uncertainty and degrees of freedom.
     fn record(source: &str, table: &str, d: f64, standard: f64, dof: Option<f64>) -> EstimateFile {
         let estimate = serde_json::json!({
-            "id": format!("{source}/quadratic"), "source": source, "kind": "towing", "model": "quadratic",
-            "law": { "version": 1, "formulas": { "f_x": "-D*v_x*abs(v_x)" } },
+            "id": format!("{source}/quadratic"), "source": source, "kind": "towing",
+            "law": {
+                "name": "quadratic", "version": 1, "outputs": { "f_x": { "unit": "N", "formula": "-D*v_x*abs(v_x)" } },
+            },
             "sigma": { "f_x": { "value": 0.1 * d, "unit": "N" } },
-            "n_observations": 12,
+            "n": 12,
             "coefficients": { "D": {
                 "value": d, "unit": "kg/m", "status": "free", "standard_uncertainty": standard, "effective_dof": dof
             } },
-            "covariance": { "names": ["D"], "matrix": [[standard * standard]] },
+            "type_a": { "names": ["D"], "matrix": [[standard * standard]], "dof": [dof], "kind": "classical" },
             "validity": { "speed": { "low": 0.2, "high": 1.0, "unit": "m/s" } },
             "recommended": true,
         });
         EstimateFile {
             schema: froude_records::estimate::ESTIMATE_SCHEMA.to_owned(),
-            data: vec![
-                DataFile { path: "campaign.toml".to_owned(), sha256: "campaign".to_owned() },
-                DataFile { path: "drag.csv".to_owned(), sha256: table.to_owned() },
-            ],
+            data: keyed(vec![file("campaign.toml", "campaign"), file("drag.csv", table)]),
             versions: indexmap::IndexMap::new(),
             estimates: vec![serde_json::from_value(estimate).unwrap()],
             findings: Vec::new(),
@@ -862,7 +864,7 @@ mod tests {
     fn sources_of_one_record_are_independent() {
         let mut both = record("frame", "t1", 47.8, 0.4, Some(9.0));
         both.estimates.extend(record("rotor", "t2", 51.0, 0.4, Some(9.0)).estimates);
-        both.data.push(DataFile { path: "rotor.csv".to_owned(), sha256: "t2".to_owned() });
+        both.data.insert("d3".to_owned(), file("rotor.csv", "t2"));
         let files = [("a.json".to_owned(), both)];
         assert!(compare(&named(&files)).coefficients[0].e_n.is_ok());
     }
@@ -875,6 +877,86 @@ mod tests {
         both.estimates[1].n_observations = 6;
         let files = [("a.json".to_owned(), both)];
         assert_eq!(compare(&named(&files)).coefficients[0].e_n, Err(SAME_DATA.to_owned()));
+    }
+
+    /// A record that says which estimate read which file: two sources of one table are found out, whatever their names, two of two are not.
+    #[test]
+    fn a_record_that_names_the_data_of_each_estimate_is_believed() {
+        let mut both = record("all", "t1", 47.8, 0.4, Some(9.0));
+        both.estimates.extend(record("slow runs", "t2", 46.9, 0.7, Some(4.0)).estimates);
+        both.data.insert("d3".to_owned(), file("slow.csv", "t2"));
+        for (second, is_same) in [("d2", true), ("d3", false)] {
+            both.estimates[0].data = vec!["d2".to_owned()];
+            both.estimates[1].data = vec![second.to_owned()];
+            let c = compare(&named(&[("a.json".to_owned(), both.clone())]));
+            assert_eq!(c.coefficients[0].e_n == Err(SAME_DATA.to_owned()), is_same, "{second}");
+        }
+    }
+
+    /// `D` with an error of its own scatter and one of a calibration, of 0.3 and 0.4.
+    fn calibrated(source: &str, d: f64, key: &str) -> EstimateFile {
+        let mut file = record(source, source, d, 0.3, None);
+        let estimate = &mut file.estimates[0];
+        estimate.coefficients["D"].standard_uncertainty = Some(0.5);
+        let error = SharedError {
+            name: "newtons a volt".to_owned(),
+            quantity: "force_per_volt".to_owned(),
+            kind: ErrorKind::B,
+            covariance: vec![vec![1e-4]],
+            dof: None,
+            limits: None,
+            sensitivity: vec![vec![40.0]],
+        };
+        estimate.errors.insert(key.to_owned(), error);
+        file
+    }
+
+    /// u²(a − b) = 2·0.3² where both have one calibration, which moves both alike; 2·0.5² where each has its own. χ² and forces alike.
+    #[test]
+    fn what_two_records_share_by_its_key_is_taken_out() {
+        let k = NORMAL_COVERAGE;
+        for (key, u) in [("cal/1", 0.3), ("cal/2", 0.5)] {
+            let c = compared(calibrated("a", 40.0, "cal/1"), calibrated("b", 41.0, key));
+            let expected = -1.0 / (k * u * 2.0_f64.sqrt());
+            assert!((c.coefficients[0].e_n.clone().unwrap() - expected).abs() < 1e-12, "{:?}", c.coefficients[0]);
+            assert!((c.joint[0].result.clone().unwrap().0 - 1.0 / (2.0 * u * u)).abs() < 1e-9, "{:?}", c.joint);
+            assert!(c.forces.iter().all(|f| (f.e_n[0].clone().unwrap() + expected).abs() < 1e-12), "{:?}", c.forces);
+            assert_eq!(codes(&c).contains(&"errors-in-common"), key == "cal/1");
+        }
+    }
+
+    /// An error that goes into the two with different strength leaves its difference: |40 − 20|·0.01 = 0.2.
+    #[test]
+    fn an_error_that_two_records_feel_differently_leaves_a_part() {
+        let mut other = calibrated("b", 41.0, "cal/1");
+        other.estimates[0].errors["cal/1"].sensitivity = vec![vec![20.0]];
+        let c = compared(calibrated("a", 40.0, "cal/1"), other);
+        let expected = -1.0 / (NORMAL_COVERAGE * (2.0_f64 * 0.09 + 0.04).sqrt());
+        assert!((c.coefficients[0].e_n.clone().unwrap() - expected).abs() < 1e-12, "{:?}", c.coefficients[0]);
+    }
+
+    /// One calibration, declared with two uncertainties: nobody can say which is right.
+    #[test]
+    fn one_error_with_two_uncertainties_is_said_and_not_taken_out() {
+        let mut other = calibrated("b", 41.0, "cal/1");
+        other.estimates[0].errors["cal/1"].covariance = vec![vec![4e-4]];
+        let c = compared(calibrated("a", 40.0, "cal/1"), other);
+        assert_eq!(codes(&c), ["errors-contradict"]);
+    }
+
+    /// An interval that reaches to one side: from the other side the difference counts in full.
+    #[test]
+    fn an_interval_to_one_side_has_its_arm_to_the_other_value() {
+        let mut one = record("a", "a", 40.0, 1e-9, None);
+        let error = calibrated("a", 40.0, "own/limits").estimates.remove(0).errors.swap_remove("own/limits").unwrap();
+        // The truth lies up to 4 below the value.
+        let limits = Some([-4.0, 0.0]);
+        let error = SharedError { limits, sensitivity: vec![vec![1.0]], covariance: vec![vec![16.0 / 3.0]], ..error };
+        one.estimates[0].errors.insert("own/limits".to_owned(), error);
+        one.estimates[0].coefficients["D"].standard_uncertainty = Some(2.3);
+        let below = compared(one.clone(), record("b", "b", 39.0, 0.1, None)).coefficients[0].e_n.clone().unwrap();
+        let above = compared(one, record("b", "b", 41.0, 0.1, None)).coefficients[0].e_n.clone().unwrap();
+        assert!(below.abs() < 0.3 && above.abs() > 5.0, "{below} {above}");
     }
 
     /// Four degrees of freedom: Student's t is 2.776, not 1.96 (any printed table).
@@ -908,18 +990,5 @@ mod tests {
     fn a_body_without_links_has_none() {
         let c = compared(record("a", "t1", 10.0, 1.0, None), record("b", "t2", 13.0, 1.0, None));
         assert!(c.forces.iter().all(|f| f.n_links.is_none()));
-    }
-
-    #[test]
-    fn degrees_of_freedom_of_a_sum_lie_between_those_of_its_parts() {
-        let of = |parts: &[f64], dof: &[Option<f64>]| effective_dof(parts, dof);
-        assert_eq!(of(&[2.0, 1.0], &[Some(9.0), Some(9.0)]).map(|d| (d * 1e9).round() / 1e9), Some(9.0));
-        // 1/√ν = ½/√4 + ½/√16 = 3/8.
-        assert!((of(&[1.0, 1.0], &[Some(4.0), Some(16.0)]).unwrap() - 64.0 / 9.0).abs() < 1e-12);
-        // Opposite parts would leave the range.
-        assert_eq!(of(&[3.0, -2.0], &[Some(4.0), Some(16.0)]), Some(4.0));
-        // What has no part in the load has no say.
-        assert_eq!(of(&[1.0, 0.0], &[Some(4.0), Some(1.0)]), Some(4.0));
-        assert_eq!(of(&[1.0, 1.0], &[None, None]), None);
     }
 }

@@ -151,7 +151,7 @@ impl ForceLaw {
     ///
     /// A built-in drag model without its geometry, or an unknown model.
     pub fn of_estimate(estimate: &Estimate, data: &Dataset) -> Result<Self, IdentifyError> {
-        if let Some(model) = DragModel::from_name(&estimate.model) {
+        if let Some(model) = DragModel::from_name(&estimate.law.name) {
             let body = body_of(estimate)?;
             let cross_term = match estimate.law.constants.get("epsilon") {
                 Some(Measured { value, .. }) => CrossTerm::Smooth { epsilon_m_s: *value },
@@ -159,20 +159,21 @@ impl ForceLaw {
             };
             return Ok(Self::drag(model, body, cross_term));
         }
-        if !estimate.law.formulas.is_empty() {
-            return Self::formulas(&estimate.model, &estimate.law.formulas, data);
+        let formulas = estimate.law.formulas();
+        if !formulas.is_empty() {
+            return Self::formulas(&estimate.law.name, &formulas, data);
         }
-        if estimate.model.starts_with("power_law")
+        if estimate.law.name.starts_with("power_law")
             && let Some(axis) = estimate.coefficients.keys().find_map(|n| n.strip_prefix("n_"))
         {
-            let in_logarithms = estimate.model.contains("_log");
+            let in_logarithms = estimate.law.name.contains("_log");
             let (response, channel) = match axis.strip_prefix('r') {
                 Some(axis) => (format!("m_{axis}"), format!("w_{axis}")),
                 None => (format!("f_{axis}"), format!("v_{axis}")),
             };
-            return Ok(Self { name: estimate.model.clone(), ..Self::power_law(&response, &channel, in_logarithms) });
+            return Ok(Self { name: estimate.law.name.clone(), ..Self::power_law(&response, &channel, in_logarithms) });
         }
-        Err(IdentifyError::NoForceLaw { id: estimate.id.clone(), model: estimate.model.clone() })
+        Err(IdentifyError::NoForceLaw { id: estimate.id.clone(), model: estimate.law.name.clone() })
     }
 
     /// Derivatives of every response by every coefficient: rows stacked response by response,
@@ -251,6 +252,23 @@ impl ForceLaw {
         // The power law is linear in k alone: its force is k times its first column.
         let terms = if matches!(self.kind, Kind::PowerLaw { .. }) { 1 } else { at.len() };
         Ok((0..x.nrows()).map(|i| (0..terms).map(|j| x[(i, j)] * at[j]).sum()).collect())
+    }
+
+    /// The channels that it reads, each once.
+    #[must_use]
+    pub fn channels(&self) -> Vec<&str> {
+        let mut out: Vec<&str> = Vec::new();
+        let all: Vec<&str> = match &self.kind {
+            Kind::Drag { .. } => vec!["v_x", "v_y", "n_links", "density"],
+            Kind::PowerLaw { channel, .. } => vec![channel],
+            Kind::Formulas(formulas) => formulas.iter().flat_map(|f| &f.channels).map(|c| aliased(c)).collect(),
+        };
+        for channel in all {
+            if !out.contains(&channel) {
+                out.push(channel);
+            }
+        }
+        out
     }
 
     /// Whether a response goes with the speed or the angle of the motion through the water.
@@ -351,7 +369,7 @@ fn dimension_of([m, kg, s, k, a]: Dim) -> Dimension {
 fn body_of(estimate: &Estimate) -> Result<Body, IdentifyError> {
     let get = |key: &str| {
         estimate
-            .geometry
+            .refers_to
             .get(key)
             .map(|m| m.value)
             .ok_or_else(|| IdentifyError::NoGeometry { id: estimate.id.clone(), key: key.to_owned() })

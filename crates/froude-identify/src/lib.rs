@@ -14,6 +14,7 @@
 pub mod bootstrap;
 pub mod carriage;
 pub mod columns;
+mod common;
 pub mod compare;
 pub mod dataset;
 pub mod diagnosis;

@@ -1,11 +1,16 @@
 //! A fitted law as an estimate record.
 
 use froude_fit as fit;
+use froude_fit::budget::{Kind as Evaluation, Part};
+use froude_fit::faer::Mat;
 use froude_records::campaign::Source;
-use froude_records::estimate::{Coefficient, Covariance, Diagnostics, Estimate, Law, Measured, Range, Status};
+use froude_records::estimate::{
+    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, OWN, Output,
+    Range, ReferencePoint, SharedError, Signs, Status, TypeA,
+};
 use indexmap::IndexMap;
 
-use crate::dataset::{Dataset, unit_text};
+use crate::dataset::{Dataset, distinct, unit_text};
 use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
 use crate::regression::ModelFit;
 
@@ -21,33 +26,35 @@ pub fn estimate(
     reason: Option<String>,
 ) -> Estimate {
     let mut constants = IndexMap::new();
-    let mut geometry = IndexMap::new();
+    let mut refers_to = IndexMap::new();
+    if let Some(d) = data.values("density") {
+        let value = d.iter().sum::<f64>() / d.len() as f64;
+        refers_to.insert("density".to_owned(), Measured { value, unit: "kg/m^3".to_owned() });
+    }
     match &model.law.kind {
         Kind::Drag { body, .. } => {
             constants.insert("v_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
-            geometry = geometry_of(body);
+            refers_to.extend(geometry_of(body));
         }
         Kind::PowerLaw { .. } => {
             constants.insert("U_ref".to_owned(), Measured { value: REFERENCE_SPEED_M_S, unit: "m/s".to_owned() });
         }
         Kind::Formulas(_) => {}
     }
-    let density = data
-        .values("density")
-        .map(|d| Measured { value: d.iter().sum::<f64>() / d.len() as f64, unit: "kg/m^3".to_owned() });
     let in_logarithms = model.law.in_logarithms();
     Estimate {
         id: format!("{}/{}", source.name, model.law.name),
         source: source.name.clone(),
         kind: source.kind.name().to_owned(),
-        model: model.law.name.clone(),
-        law: Law { version: 1, constants, formulas: model.law.texts.clone() },
-        geometry,
-        density,
-        frame: "body axes: x forward, y to starboard, z down; loads of the fluid on the body".to_owned(),
-        reference_point: String::new(),
-        method: method(model),
-        covariance_kind: model.covariance_kind.clone(),
+        method: MethodUsed { name: "table".to_owned(), version: 1, words: method(model) },
+        frame: Frame::body(),
+        point: ReferencePoint::default(),
+        signs: Signs::default(),
+        attitude: None,
+        law: law(model, data, constants),
+        refers_to,
+        data: Vec::new(),
+        clusters: clusters(model, data),
         dof: model.fit.components.iter().map(|c| (c.name.clone(), Some(c.dof))).collect(),
         sigma: model
             .fit
@@ -60,7 +67,10 @@ pub fn estimate(
             .collect(),
         n_observations: data.rows,
         coefficients: coefficients(model),
-        covariance: covariance(model),
+        derived: IndexMap::new(),
+        type_a: type_a(model),
+        errors: errors(model),
+        interval: Interval::default(),
         undetermined: combinations(model),
         validity: validity.clone(),
         diagnostics,
@@ -138,6 +148,8 @@ fn coefficients(model: &ModelFit) -> IndexMap<String, Coefficient> {
             };
             let status = if combined.is_some() && interval_95.is_none() { Status::BoundContradicted } else { status };
             let coefficient = Coefficient {
+                label: None,
+                nuisance: j >= model.law.coefficients.len(),
                 value: fitted.value.map(|_| model.coefficients[j]),
                 unit: spec.unit.clone(),
                 status,
@@ -152,13 +164,105 @@ fn coefficients(model: &ModelFit) -> IndexMap<String, Coefficient> {
         .collect()
 }
 
-/// Covariance over the coefficients that have an uncertainty.
-fn covariance(model: &ModelFit) -> Option<Covariance> {
-    let there: Vec<usize> = (0..model.specs.len()).filter(|&j| model.combined[j].is_some()).collect();
-    (!there.is_empty()).then(|| Covariance {
+/// The law with the motion that it reads and the loads that it gives.
+pub(crate) fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) -> Law {
+    let output = |(i, load): (usize, &String)| {
+        // A text may call its load by a ship theorist's letter.
+        let formula = model.law.texts.get_index(i).map(|(_, text)| text.clone());
+        (load.clone(), Output { unit: unit_text(data, load), formula })
+    };
+    Law {
+        name: model.law.name.clone(),
+        version: 1,
+        inputs: model.law.channels().into_iter().map(|name| (name.to_owned(), unit_text(data, name))).collect(),
+        outputs: model.law.responses.iter().enumerate().map(output).collect(),
+        constants,
+    }
+}
+
+/// The clusters behind a covariance that counts them.
+fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
+    let group = data.group.as_ref().filter(|_| model.options.covariance == fit::CovarianceKind::Cr3)?;
+    Some(Clusters { by: "group".to_owned(), n: distinct(group).len() })
+}
+
+/// The coefficients that have an uncertainty.
+fn known(model: &ModelFit) -> Vec<usize> {
+    (0..model.specs.len()).filter(|&j| model.combined[j].is_some()).collect()
+}
+
+fn square(of: &Mat<f64>, there: &[usize]) -> Vec<Vec<f64>> {
+    there.iter().map(|&a| there.iter().map(|&b| of[(a, b)]).collect()).collect()
+}
+
+/// Covariance from the scatter over the coefficients that have an uncertainty.
+pub(crate) fn type_a(model: &ModelFit) -> Option<TypeA> {
+    let there = known(model);
+    let scatter = model.budget.iter().find(|part| part.kind == Evaluation::A)?;
+    (!there.is_empty()).then(|| TypeA {
         names: there.iter().map(|&j| model.specs[j].name.clone()).collect(),
-        matrix: there.iter().map(|&a| there.iter().map(|&b| model.covariance[(a, b)]).collect()).collect(),
+        matrix: square(&scatter.covariance, &there),
+        dof: there.iter().map(|&j| Some(scatter.dof[j]).filter(|d| d.is_finite())).collect(),
+        kind: model.covariance_kind.clone(),
     })
+}
+
+/// All other errors that are added, by key. One that nobody else can have is written by what it does to the coefficients, under a key of its own.
+pub(crate) fn errors(model: &ModelFit) -> IndexMap<String, SharedError> {
+    let there = known(model);
+    let is_felt = |part: &&Part| there.iter().any(|&j| part.covariance[(j, j)] > 0.0);
+    let added = model.budget.iter().filter(|part| part.kind == Evaluation::B && !part.in_scatter).filter(is_felt);
+    let mut out: IndexMap<String, SharedError> = IndexMap::new();
+    for part in added {
+        let (key, error) = match &part.origin {
+            Some(origin) => {
+                let q = origin.covariance.nrows();
+                let row = |j: usize| (0..q).map(|k| origin.sensitivity[(j, k)]).collect();
+                let error = SharedError {
+                    name: part.name.clone(),
+                    quantity: origin.quantity.clone(),
+                    kind: ErrorKind::B,
+                    covariance: square(&origin.covariance, &(0..q).collect::<Vec<_>>()),
+                    dof: finite(part.dof.first().copied()),
+                    limits: origin.limits,
+                    sensitivity: there.iter().map(|&j| row(j)).collect(),
+                };
+                (origin.key.clone(), error)
+            }
+            None => (format!("{OWN}{}", part.name), alone(part, &there)),
+        };
+        let mut unique = key.clone();
+        for k in 2.. {
+            if !out.contains_key(&unique) {
+                break;
+            }
+            unique = format!("{key}, {k}");
+        }
+        out.insert(unique, error);
+    }
+    out
+}
+
+/// An error of one estimate alone: what it does to the coefficients, the coefficients being the error's components.
+fn alone(part: &Part, there: &[usize]) -> SharedError {
+    let one = |a: usize, b: usize| if a == b { 1.0 } else { 0.0 };
+    let limits = match (&part.shape, there) {
+        (fit::budget::Shape::Between(limits), [j]) => Some(limits[*j]),
+        _ => None,
+    };
+    SharedError {
+        name: part.name.clone(),
+        quantity: String::new(),
+        kind: ErrorKind::B,
+        covariance: square(&part.covariance, there),
+        dof: finite(part.dof.first().copied()),
+        limits,
+        sensitivity: there.iter().map(|&a| there.iter().map(|&b| one(a, b)).collect()).collect(),
+    }
+}
+
+fn finite(dof: Option<f64>) -> Option<f64> {
+    dof.filter(|d| d.is_finite())
 }
 
 /// The determined combinations of undetermined coefficients, named by their physical factors where these explain them.

@@ -2,6 +2,11 @@
 //!
 //! Every step that changes a number or drops a row is told as a finding.
 
+use crate::dataset::{Channel, Dataset, LOADS};
+use crate::error::IdentifyError;
+use crate::source::ReadFile;
+use crate::uncertainty::SharedError;
+use crate::{columns, source, tare, two_units};
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
@@ -9,12 +14,6 @@ use froude_records::plausible;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
-use std::path::PathBuf;
-
-use crate::dataset::{Channel, Dataset, LOADS};
-use crate::error::IdentifyError;
-use crate::uncertainty::SharedError;
-use crate::{columns, source, tare, two_units};
 
 /// A source ready to be fitted.
 #[derive(Debug, Clone)]
@@ -28,7 +27,7 @@ pub struct Reduced {
     /// Errors shared by observations, from subtracted tares.
     pub shared_errors: Vec<SharedError>,
     /// Files that were read.
-    pub files: Vec<PathBuf>,
+    pub files: Vec<ReadFile>,
 }
 
 /// Reads and reduces the table of a source.
@@ -42,8 +41,8 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
         other => return Err(not_a_table(source, other)),
     };
     let table = read_table(&path, source.sidecar.as_deref())?;
-    let mut files = vec![path];
-    files.extend(table.sidecar.clone());
+    let mut files = vec![ReadFile::new(path, "table")];
+    files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
     let mut findings = Vec::new();
     let mut data = dataset(&table, source)?;
     water_or_air(&table, campaign)?;
@@ -81,10 +80,10 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
     one_unit(&table, &data, &fitted_loads(campaign, source, &data))?;
     let mut shared_errors = Vec::new();
     if let Some(tare) = &source.tare {
-        let (error, found) = tare::subtract(&mut data, tare)?;
-        files.push(tare.record.clone());
+        let (errors, found) = tare::subtract(&mut data, tare)?;
+        files.push(ReadFile::new(tare.record.clone(), "record"));
         findings.extend(found);
-        shared_errors.extend(error);
+        shared_errors.extend(errors);
     }
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
     Ok(Reduced { data, n_read, findings, shared_errors, files })

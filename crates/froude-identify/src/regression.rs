@@ -38,6 +38,8 @@ pub struct Settings<'a> {
     pub identify: &'a Identify,
     /// The declared budget.
     pub budget: &'a [BudgetEntry],
+    /// Key of the campaign that declares it; empty where none does.
+    pub campaign: &'a str,
     /// Errors from subtracted tares, and those that the source's method knows.
     pub shared_errors: &'a [SharedError],
     /// The scatter, where the method has more to shake than its rows; else that of the residuals.
@@ -192,6 +194,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             sensitivity: &fitted.sensitivity,
         },
         settings.budget,
+        settings.campaign,
         settings.shared_errors,
         settings.kind != SourceKind::Cfd,
     )?;
@@ -633,7 +636,13 @@ fn contradicted_priors(
     };
     let values = step(&free);
     let at = Linearised { law, data, coefficients: &values[..law.coefficients.len()], sensitivity: &free.sensitivity };
-    let declared = contributions(at, settings.budget, settings.shared_errors, settings.kind != SourceKind::Cfd)?;
+    let declared = contributions(
+        at,
+        settings.budget,
+        settings.campaign,
+        settings.shared_errors,
+        settings.kind != SourceKind::Cfd,
+    )?;
     let parts: Vec<Part> = std::iter::once(scatter(&free)).chain(declared).collect();
     let mut findings = Vec::new();
     for prior in &options.priors {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use froude_hydro::{Body, CrossTerm, DragModel, Link};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source, SourceKind};
-use froude_records::estimate::{Estimate, Range};
+use froude_records::estimate::{Estimate, Range, ReferencePoint};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
 use indexmap::IndexMap;
@@ -53,7 +53,24 @@ pub struct SourceResult {
     /// All findings.
     pub findings: Vec<Finding>,
     /// Files that were read.
-    pub files: Vec<PathBuf>,
+    pub files: Vec<ReadFile>,
+}
+
+/// A file that was read for a source.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReadFile {
+    /// Where it lies.
+    pub path: PathBuf,
+    /// What it was read as: `table`, `sidecar`, `record`, or the kind of a run.
+    pub role: String,
+}
+
+impl ReadFile {
+    /// A file read as `role`.
+    #[must_use]
+    pub fn new(path: PathBuf, role: &str) -> Self {
+        Self { path, role: role.to_owned() }
+    }
 }
 
 /// A model that was asked for and could not be fitted: it costs its own row and no other.
@@ -95,6 +112,7 @@ pub fn identify_source(
         kind: source.kind,
         identify: &campaign.identify,
         budget: &source.uncertainty,
+        campaign: &campaign.key,
         shared_errors: &shared_errors,
         scatter: None,
         looks: 1,
@@ -154,8 +172,9 @@ pub fn identify_source(
         let reason = recommendation.as_ref().filter(|_| chosen).map(|r| r.reason.clone());
         let record = record::estimate(model, &data, source, &validity, diagnostics, chosen, reason);
         // Nobody else knows the point that moments are about.
-        let reference_point = campaign.body.as_ref().and_then(|b| b.reference_point.clone()).unwrap_or_default();
-        estimates.push(Estimate { reference_point, ..record });
+        let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
+        let point = ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() };
+        estimates.push(Estimate { point, ..record });
     }
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
     Ok(SourceResult {

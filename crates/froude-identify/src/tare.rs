@@ -6,9 +6,11 @@
 mod angles;
 mod setting;
 
+use froude_fit::faer::Mat;
 use froude_records::campaign::Tare;
-use froude_records::estimate::EstimateFile;
+use froude_records::estimate::{Estimate, EstimateFile, OWN};
 use froude_records::finding::{Finding, Severity};
+use froude_records::hash::short_key;
 use froude_records::json::read_estimates;
 
 use crate::dataset::Dataset;
@@ -28,7 +30,7 @@ const MATTERS_ABOVE: f64 = 0.005;
 /// # Errors
 ///
 /// An unreadable record, one with no matching estimate, or a law that the table cannot evaluate.
-pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>, Vec<Finding>), IdentifyError> {
+pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Vec<SharedError>, Vec<Finding>), IdentifyError> {
     let file: EstimateFile = read_estimates(&tare.record)?;
     let estimate = crate::select::one_estimate(&file, tare.select.as_deref(), &tare.record)?;
     let law = ForceLaw::of_estimate(estimate, data)?;
@@ -73,40 +75,72 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Option<SharedError>,
         "the tare of {} ({}) is subtracted{}",
         estimate.id,
         law.responses.join(", "),
-        if estimate.covariance.is_some() {
+        if estimate.type_a.is_some() {
             "; its covariance is an error that all observations share"
         } else {
             "; it states no uncertainty, so none is propagated"
         }
     );
-    let error = estimate.covariance.as_ref().map(|covariance| {
-        let columns: Vec<usize> = covariance.names.iter().filter_map(|name| law.position(name)).collect();
-        SharedError {
-            name: format!("tare {}", estimate.id),
-            shared: "campaign",
-            dof: covariance
-                .names
-                .iter()
-                .filter_map(|name| estimate.coefficients.get(name)?.effective_dof)
-                .fold(f64::INFINITY, f64::min),
-            limits: None,
-            is_of_each_row: false,
-            directions: law
-                .responses
-                .iter()
-                .enumerate()
-                .map(|(r, response)| {
-                    let rows = (0..n).map(|i| columns.iter().map(|&j| -slopes[(r * n + i, j)]).collect()).collect();
-                    (response.clone(), rows)
-                })
-                .collect(),
-            covariance: covariance.matrix.clone(),
-        }
-    });
-    let severity = if error.is_some() { Severity::Note } else { Severity::Warning };
+    let errors = errors(&file, estimate, &law, &slopes);
+    let severity = if estimate.type_a.is_some() { Severity::Note } else { Severity::Warning };
     let mut findings = vec![Finding::new(severity, "tare-subtracted", message)];
     findings.extend(misfits);
-    Ok((error, findings))
+    Ok((errors, findings))
+}
+
+/// The errors of a tare as errors that all observations share: its scatter, known by the files that it came from, and what it has from
+/// elsewhere under the same keys.
+fn errors(file: &EstimateFile, estimate: &Estimate, law: &ForceLaw, slopes: &Mat<f64>) -> Vec<SharedError> {
+    let Some(scatter) = &estimate.type_a else { return Vec::new() };
+    let columns: Vec<Option<usize>> = scatter.names.iter().map(|name| law.position(name)).collect();
+    let n = slopes.nrows() / law.responses.len().max(1);
+    // ∂load/∂e of one row: −Σ_j ∂f/∂β_j · S_jk.
+    let row = |at: usize, sensitivity: &dyn Fn(usize, usize) -> f64, q: usize| -> Vec<f64> {
+        let of = |k: usize| {
+            columns.iter().enumerate().filter_map(move |(j, c)| c.map(|c| -slopes[(at, c)] * sensitivity(j, k)))
+        };
+        (0..q).map(|k| of(k).sum()).collect()
+    };
+    let directions = |sensitivity: &dyn Fn(usize, usize) -> f64, q: usize| {
+        let of = |(r, load): (usize, &String)| (load.clone(), (0..n).map(|i| row(r * n + i, sensitivity, q)).collect());
+        law.responses.iter().enumerate().map(of).collect()
+    };
+    let own = SharedError {
+        name: format!("tare {}", estimate.id),
+        key: Some(format!("tare/{}", origin(file, estimate))),
+        quantity: format!("coefficients of {}", estimate.id),
+        shared: "campaign",
+        directions: directions(&|j, k| if j == k { 1.0 } else { 0.0 }, columns.len()),
+        covariance: scatter.matrix.clone(),
+        dof: scatter.dof.iter().flatten().copied().fold(f64::INFINITY, f64::min),
+        limits: None,
+        is_of_each_row: false,
+    };
+    let others = estimate.errors.iter().map(|(key, error)| SharedError {
+        name: format!("tare {}: {}", estimate.id, error.name),
+        key: Some(if key.starts_with(OWN) { format!("tare/{}/{key}", origin(file, estimate)) } else { key.clone() }),
+        quantity: error.quantity.clone(),
+        shared: "campaign",
+        directions: directions(&|j, k| error.sensitivity[j][k], error.covariance.len()),
+        covariance: error.covariance.clone(),
+        dof: error.dof.unwrap_or(f64::INFINITY),
+        limits: error.limits,
+        is_of_each_row: false,
+    });
+    std::iter::once(own).chain(others).collect()
+}
+
+/// What an estimate came from: the same numbers made of the same files are one tare, wherever their record lies.
+fn origin(file: &EstimateFile, estimate: &Estimate) -> String {
+    let mut of: Vec<String> = file.data_of(estimate).map(|data| data.sha256.clone()).collect();
+    if of.is_empty() {
+        // An old record does not say which of its files an estimate came from.
+        of = file.data.values().map(|data| data.sha256.clone()).collect();
+    }
+    of.sort_unstable();
+    of.push(estimate.id.clone());
+    of.extend(estimate.coefficients.values().map(|c| format!("{:?}", c.value)));
+    short_key(of.join(" ").as_bytes())
 }
 
 /// Largest force that stays in a measured load, N, and its share of the load over all rows, Σ|f stays|/Σf², %: by no more than that a

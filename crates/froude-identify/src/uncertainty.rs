@@ -11,7 +11,7 @@
 
 use faer::Mat;
 use froude_fit as fit;
-use froude_fit::budget::{Kind, Part, Shape, one_sided};
+use froude_fit::budget::{Kind, Origin, Part, Shape, one_sided};
 use froude_records::campaign::{BudgetEntry, Shared};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -30,6 +30,10 @@ pub const SCATTER: &str = "scatter of the observations";
 pub struct SharedError {
     /// What it is, for the budget.
     pub name: String,
+    /// Its name among all sources and campaigns: what has one key is one error. `None` where nobody else can have it.
+    pub key: Option<String>,
+    /// The quantity that errs.
+    pub quantity: String,
     /// Who shares it: `run`, `setup`, `campaign`.
     pub shared: &'static str,
     /// Which load it belongs to, and a column per component of `e`, a row per observation.
@@ -50,6 +54,8 @@ impl SharedError {
     pub fn of_load(name: &str, load: &str, direction: &[f64], standard: f64, dof: f64) -> Self {
         Self {
             name: name.to_owned(),
+            key: None,
+            quantity: load.to_owned(),
             shared: "campaign",
             directions: vec![(load.to_owned(), direction.iter().map(|d| vec![*d]).collect())],
             covariance: vec![vec![standard * standard]],
@@ -64,6 +70,12 @@ impl SharedError {
     pub fn between(name: &str, load: &str, direction: &[f64], [low, high]: [f64; 2]) -> Self {
         let limits = Some([low, high]);
         Self { limits, ..Self::of_load(name, load, direction, one_sided(low, high), f64::INFINITY) }
+    }
+
+    /// The same error, which other sources may have too.
+    #[must_use]
+    pub fn known_as(self, key: Option<String>, quantity: &str) -> Self {
+        Self { key, quantity: quantity.to_owned(), ..self }
     }
 
     /// Standard uncertainties of a load, row by row and independent: part of the scatter.
@@ -86,7 +98,8 @@ pub struct Linearised<'a> {
     pub sensitivity: &'a Mat<f64>,
 }
 
-/// The contribution of every entry of the budget and of every shared error.
+/// The contribution of every entry of the budget and of every shared error. `campaign` is the key of the campaign that declares the budget;
+/// empty where none does.
 ///
 /// # Errors
 ///
@@ -94,6 +107,7 @@ pub struct Linearised<'a> {
 pub fn contributions(
     fit: Linearised<'_>,
     budget: &[BudgetEntry],
+    campaign: &str,
     shared_errors: &[SharedError],
     scatter_is_noise: bool,
 ) -> Result<Vec<Part>, IdentifyError> {
@@ -116,6 +130,7 @@ pub fn contributions(
         }
         let covariance = &moved * moved.transpose();
         out.push(Part {
+            origin: origin(entry, campaign, &moved),
             name: entry
                 .name
                 .clone()
@@ -132,6 +147,22 @@ pub fn contributions(
         out.push(shared_error(fit, error)?);
     }
     Ok(out)
+}
+
+/// An entry that all sources of a campaign share, as one error of unit size.
+fn origin(entry: &BudgetEntry, campaign: &str, moved: &Mat<f64>) -> Option<Origin> {
+    let is_common = entry.shared == Shared::Campaign && !campaign.is_empty() && moved.ncols() == 1;
+    is_common.then(|| {
+        let name = entry.name.as_ref().map_or_else(String::new, |name| format!(" ({name})"));
+        let relative = if entry.relative { " relative" } else { "" };
+        Origin {
+            key: format!("{campaign}/{}{name}{relative} {:e}", entry.quantity, entry.standard),
+            quantity: entry.quantity.clone(),
+            covariance: Mat::identity(1, 1),
+            sensitivity: moved.clone(),
+            limits: None,
+        }
+    })
 }
 
 /// ∂(stacked response error)/∂e times the entry's standard deviation, per stacked row.
@@ -257,6 +288,13 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, Identi
             .limits
             .map_or(Shape::Normal, |limits| Shape::Between((0..p).map(|j| limits_of(j, limits)).collect())),
         in_scatter: error.is_of_each_row,
+        origin: error.key.as_ref().map(|key| Origin {
+            key: key.clone(),
+            quantity: error.quantity.clone(),
+            covariance: c,
+            sensitivity: moved,
+            limits: error.limits,
+        }),
     })
 }
 
@@ -271,6 +309,7 @@ pub fn scatter(fit: &fit::Fit) -> Part {
         dof: fit.coefficients.iter().map(|c| c.dof.unwrap_or(f64::INFINITY)).collect(),
         shape: Shape::Normal,
         in_scatter: false,
+        origin: None,
     }
 }
 

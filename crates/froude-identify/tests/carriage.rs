@@ -69,9 +69,9 @@ fn all_methods_stand_side_by_side_and_hold_the_truth() {
 fn the_records_carry_value_interval_and_budget() {
     let scenario = scenario();
     let report = report(&scenario, &setup(&scenario), |_| true).unwrap();
-    let record = report.estimates.iter().find(|e| e.model == "drag_mcd").unwrap();
-    let [d, c] = ["D_d", "C_D"].map(|n| record.coefficients[n].clone());
-    assert_eq!((d.unit.as_str(), c.unit.as_str()), ("N s^2/m^2", "1"));
+    let record = report.estimates.iter().find(|e| e.method.name == "mcd").unwrap();
+    let (d, c) = (record.coefficients["D_x_II"].clone(), record.derived["C_D"].clone());
+    assert_eq!((d.unit.as_str(), c.unit.as_str()), ("kg/m", "1"));
     assert!((c.value.unwrap() - d.value.unwrap() / 20.0).abs() < 1e-12);
     let combined = d.type_a.unwrap().hypot(d.type_b.unwrap());
     assert!((combined / d.standard_uncertainty.unwrap() - 1.0).abs() < 1e-12);

@@ -125,7 +125,7 @@ fn a_bare_table_with_both_axes_gets_a_power_law_each() {
         }
     }
     let r = identify(&table, SOURCE);
-    let law = |name: &str| r.estimates.iter().find(|e| e.model == name).unwrap_or_else(|| panic!("no {name}"));
+    let law = |name: &str| r.estimates.iter().find(|e| e.law.name == name).unwrap_or_else(|| panic!("no {name}"));
     for (name, axis, k, n) in [("power_law_x", "x", 3.0, 1.8), ("power_law_y", "y", 40.0, 2.1)] {
         let c = &law(name).coefficients;
         assert!((value(&c[&format!("k_{axis}")]) - k).abs() < 1e-9 * k, "{name}: {c:?}");
@@ -285,7 +285,7 @@ fn the_relative_residual_of_the_power_law_is_that_of_its_loads() {
             bottom += f * f;
         }
         let found = e.diagnostics.relative_residual["f_x"];
-        assert!((found - (top / bottom).sqrt()).abs() < 1e-9, "{}: {found}", e.model);
+        assert!((found - (top / bottom).sqrt()).abs() < 1e-9, "{}: {found}", e.law.name);
     }
 }
 

@@ -134,7 +134,7 @@ fn a_fitted_tare_is_subtracted_with_its_covariance_as_a_shared_error() {
     let first = identify(folder.path(), &quadratic_table(), QUADRATIC);
     let record = froude_records::estimate::EstimateFile {
         schema: froude_records::estimate::ESTIMATE_SCHEMA.to_owned(),
-        data: Vec::new(),
+        data: indexmap::IndexMap::new(),
         versions: indexmap::IndexMap::new(),
         estimates: first.estimates.clone(),
         findings: Vec::new(),

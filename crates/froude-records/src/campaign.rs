@@ -21,6 +21,8 @@ use crate::units::Dimension;
 pub struct Campaign {
     /// The file.
     pub path: PathBuf,
+    /// Start of the SHA-256 of its text, hexadecimal: what its sources share is known by it. Empty for a bare table.
+    pub key: String,
     /// Its title.
     pub name: String,
     /// What a report on it has to cite.
@@ -39,6 +41,32 @@ pub struct Campaign {
     pub simulate: Option<Simulate>,
     /// What is driven, and what it is to do.
     pub carriage: Option<CarriageCampaign>,
+}
+
+/// An axis of the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BodyAxis {
+    /// Forward.
+    X,
+    /// To starboard.
+    Y,
+    /// Down.
+    Z,
+}
+
+impl BodyAxis {
+    /// Each of them.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+
+    /// Its letter.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        }
+    }
 }
 
 /// The water: density, or temperature and salinity.
@@ -69,6 +97,8 @@ pub struct BodySpec {
     pub reference_length_m: Option<f64>,
     /// Area for drag coefficients and blockage.
     pub reference_area_m2: Option<f64>,
+    /// The axis that lies along the travel of a carriage.
+    pub travel: Option<BodyAxis>,
     /// Displaced volume.
     pub volume_m3: Option<f64>,
     /// Displaced volume by configuration.
@@ -430,6 +460,7 @@ impl Campaign {
         let name = table.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         Self {
             path: table.to_owned(),
+            key: String::new(),
             name: name.clone(),
             cite: Vec::new(),
             fluid: Fluid::default(),

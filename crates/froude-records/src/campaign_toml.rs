@@ -8,11 +8,12 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use crate::campaign::{
-    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, LinkSpec, PlanBlock,
-    PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
+    AngleOffset, BodyAxis, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, LinkSpec,
+    PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
 };
 use crate::carriage_toml::carriage;
 use crate::error::RecordError;
+use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::nearest::suggestion;
 use crate::plausible;
@@ -42,6 +43,7 @@ pub(crate) fn parse(path: &Path, text: &str) -> Result<Campaign, RecordError> {
     ])?;
     let campaign = Campaign {
         path: path.to_owned(),
+        key: short_key(text.as_bytes()),
         name: root
             .text("name")?
             .ok_or_else(|| root.missing("name", "write name = \"what this campaign is\""))?
@@ -122,6 +124,7 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
         tail_side_area_m2: s.positive("tail_side_area", Dimension::AREA)?,
         reference_length_m: s.positive("reference_length", Dimension::LENGTH)?,
         reference_area_m2: s.positive("reference_area", Dimension::AREA)?,
+        travel: one_of(s, "travel", &BodyAxis::ALL.map(BodyAxis::name), &BodyAxis::ALL)?,
         volume_m3: s.positive("volume", Dimension::VOLUME)?,
         volumes,
         link_volume_m3: s.positive("link_volume", Dimension::VOLUME)?,

@@ -2,29 +2,39 @@
 //!
 //! This is the record that `compare`, `report`, simulators and exporters take.
 //! A number that the data do not determine is `null`, never NaN and never zero.
+//!
+//! An estimate is whole by itself: its scatter is [`Estimate::type_a`], every other error stands in [`Estimate::errors`] with a key, and
+//! `Cov(β) = type_a + Σ S·C·Sᵀ`. Two estimates that name one key share that error: its part in the covariance between them is `S_a·C·S_bᵀ`.
+//! Keys that begin with [`OWN`] are of one estimate alone.
+//! Records of version 1 are read and lifted ([`v1`]).
 
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
 use crate::finding::Finding;
 
+pub mod v1;
+
 /// Name and major version of the record, as it stands in `schema`.
-pub const ESTIMATE_SCHEMA: &str = "froude/estimate/1";
+pub const ESTIMATE_SCHEMA: &str = "froude/estimate/2";
+
+/// Start of the key of an error that no other estimate can have.
+pub const OWN: &str = "own/";
 
 /// A whole `estimate.json`.
 ///
 /// It is serialised with a `checksum` of its content, which [`crate::json::read_estimates`] holds it against.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct EstimateFile {
-    /// `froude/estimate/1`.
+    /// `froude/estimate/2`; a record of version 1 is lifted to it when it is read.
     pub schema: String,
-    /// The files that the numbers came from.
+    /// The files that the numbers came from, by a short key.
     #[serde(default)]
-    pub data: Vec<DataFile>,
+    pub data: IndexMap<String, DataFile>,
     /// Program versions by name.
     #[serde(default)]
     pub versions: IndexMap<String, String>,
-    /// One entry per source and model.
+    /// One entry per source and model or method.
     pub estimates: Vec<Estimate>,
     /// What the lints found.
     #[serde(default)]
@@ -38,6 +48,9 @@ pub struct DataFile {
     pub path: String,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
+    /// What it was read as: `campaign`, `table`, `sidecar`, `record`, `mesh`, or the kind of a run (`wet`, `dry`, …).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub role: Option<String>,
 }
 
 /// A number with its unit.
@@ -83,12 +96,18 @@ pub enum Status {
 /// One coefficient.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Coefficient {
+    /// What a paper or a trade calls it, where that is another name than the record's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// Value in `unit`; null when undetermined.
     pub value: Option<f64>,
     /// SI unit text, `1` for a pure number.
     pub unit: String,
     /// What became of it.
     pub status: Status,
+    /// True for what the fit needs and nobody asks for: an offset of an angle, a rest position.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub nuisance: bool,
     /// Combined standard uncertainty; null when none is stated or none exists.
     #[serde(default)]
     pub standard_uncertainty: Option<f64>,
@@ -106,26 +125,211 @@ pub struct Coefficient {
     pub effective_dof: Option<f64>,
 }
 
-/// The force law that the coefficients belong to.
+/// The law that the coefficients belong to.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Law {
+    /// `f1` … `f6`, `quadratic`, `linear_quadratic`, `power_law`, `added_mass_6x6`, or a user's name.
+    pub name: String,
     /// Version of the law's definition.
+    #[serde(default)]
     pub version: u32,
+    /// Units of the motion that it reads, by channel.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub inputs: IndexMap<String, String>,
+    /// What it gives, by load; a built-in law has no formula, its name says it.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub outputs: IndexMap<String, Output>,
     /// Constants that the coefficients mean nothing without (`v_ref`, `epsilon`, `mu_n`, …).
     #[serde(default)]
     pub constants: IndexMap<String, Measured>,
-    /// User-written formulas by load (`f_y` = "…"); empty for built-in laws.
-    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
-    pub formulas: IndexMap<String, String>,
+}
+
+impl Law {
+    /// Formulas by load; empty for built-in laws.
+    #[must_use]
+    pub fn formulas(&self) -> IndexMap<String, String> {
+        let of = |(load, output): (&String, &Output)| Some((load.clone(), output.formula.clone()?));
+        self.outputs.iter().filter_map(of).collect()
+    }
+}
+
+/// A load that a law gives.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Output {
+    /// SI unit text; empty where an old record did not say it.
+    #[serde(default)]
+    pub unit: String,
+    /// `-D_x_II*v_x*abs(v_x)`; null for a built-in law.
+    #[serde(default)]
+    pub formula: Option<String>,
 }
 
 /// Covariance of the estimated coefficients, in the units of their product.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Covariance {
     /// Names, in the order of the matrix.
     pub names: Vec<String>,
     /// Rows of the symmetric matrix.
     pub matrix: Vec<Vec<f64>>,
+}
+
+/// What the scatter of the observations makes of the coefficients.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct TypeA {
+    /// Names, in the order of the matrix and of the rows of every sensitivity.
+    pub names: Vec<String>,
+    /// Rows of the symmetric covariance matrix, in the units of the coefficients' products.
+    pub matrix: Vec<Vec<f64>>,
+    /// Degrees of freedom of each coefficient's standard uncertainty; null when infinite or not stated.
+    pub dof: Vec<Option<f64>>,
+    /// `classical`, `HC3`, `jackknife over pairs`, …
+    pub kind: String,
+}
+
+/// An error beside the scatter: a calibration, a tare, a constant of the rig. The file holds it by its key.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SharedError {
+    /// What errs, in words.
+    pub name: String,
+    /// The quantity that errs: a column, `force_per_volt`, a tare's coefficients.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub quantity: String,
+    /// How it was evaluated.
+    pub kind: ErrorKind,
+    /// Covariance C of the error, q × q.
+    pub covariance: Vec<Vec<f64>>,
+    /// Degrees of freedom of it; null when infinite.
+    #[serde(default)]
+    pub dof: Option<f64>,
+    /// Limits of an error of one component that is uniform between them; null where it is normal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limits: Option<[f64; 2]>,
+    /// S = ∂β/∂e, a row per name of `type_a`, a column per component of the error.
+    pub sensitivity: Vec<Vec<f64>>,
+}
+
+/// How an error was evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum ErrorKind {
+    /// By anything but scatter: a certificate, a data sheet, another fit (GUM type B).
+    B,
+    /// The mesh, the step, the iteration of a computation.
+    #[serde(rename = "numerical")]
+    Numerical,
+    /// What went into a computation.
+    #[serde(rename = "input")]
+    Input,
+    /// The law itself.
+    #[serde(rename = "model_form")]
+    ModelForm,
+}
+
+/// Axes of the coefficients.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Frame {
+    /// `body`, `chain`, …; empty where nobody said it.
+    pub name: String,
+    /// Where its axes point, in words, `x`, `y`, `z` in turn; empty where nobody said it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub axes: Vec<String>,
+    /// All of it in words.
+    #[serde(default)]
+    pub words: String,
+}
+
+impl Frame {
+    /// SNAME axes of a body.
+    #[must_use]
+    pub fn body() -> Self {
+        Self {
+            name: "body".to_owned(),
+            axes: ["forward", "starboard", "down"].map(str::to_owned).to_vec(),
+            words: "body axes: x forward, y to starboard, z down; loads of the fluid on the body".to_owned(),
+        }
+    }
+}
+
+/// The point that moments are about.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct ReferencePoint {
+    /// In words; empty where nobody named it.
+    pub words: String,
+    /// Whether somebody stated it, or it is taken for granted.
+    pub stated: bool,
+}
+
+/// What the signs mean.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Signs(pub String);
+
+impl Default for Signs {
+    fn default() -> Self {
+        Self("load of the fluid on the body; velocity of the body through the water".to_owned())
+    }
+}
+
+/// How a body was held.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Attitude {
+    /// The body axis along the travel: `x`, `y` or `z`.
+    pub travel: String,
+}
+
+/// The method that made an estimate.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct MethodUsed {
+    /// `table`, `fsm`, `mcd`, `free_decay_envelope`, …; empty where an old record did not say it.
+    #[serde(default)]
+    pub name: String,
+    /// Version of the method.
+    #[serde(default)]
+    pub version: u32,
+    /// How the numbers were made, in words.
+    #[serde(default)]
+    pub words: String,
+}
+
+/// Independent groups behind the scatter.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Clusters {
+    /// What a group is: `pair`, `configuration`, `run`.
+    pub by: String,
+    /// How many there are.
+    pub n: usize,
+}
+
+/// A number made from coefficients, outside the covariance.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Derived {
+    /// `2*D_x_II/(density*area)`, of coefficients and of what they refer to.
+    pub formula: String,
+    /// Its value; null where it has none.
+    pub value: Option<f64>,
+    /// SI unit text.
+    pub unit: String,
+    /// Combined standard uncertainty.
+    #[serde(default)]
+    pub standard_uncertainty: Option<f64>,
+    /// 95 % interval.
+    #[serde(default)]
+    pub interval_95: Option<[f64; 2]>,
+}
+
+/// What the intervals are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// Probability inside.
+    pub level: f64,
+    /// Looks that they pay for (Bonferroni), 1 or more.
+    pub looks: usize,
+    /// What they are of: `coefficient`, `mesh`, `shape`.
+    pub of: String,
+}
+
+impl Default for Interval {
+    fn default() -> Self {
+        Self { level: 0.95, looks: 1, of: "coefficient".to_owned() }
+    }
 }
 
 /// Numbers that tell how far the fit can be trusted.
@@ -177,8 +381,8 @@ pub struct NamedCorrelation {
     pub value: f64,
 }
 
-/// Coefficients of one force model from one source.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+/// Coefficients of one law from one source, by one method.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Estimate {
     /// Unique in the file, `source/model`.
     pub id: String,
@@ -187,29 +391,29 @@ pub struct Estimate {
     /// `tank`, `towing`, `cfd`, `potential` or `published`.
     #[serde(default)]
     pub kind: String,
-    /// Force model: `f1` … `f6`, `linear_quadratic`, `power_law`, `added_mass_6x6`, or a user's name.
-    pub model: String,
-    /// The law itself.
+    /// The method that made it.
     #[serde(default)]
+    pub method: MethodUsed,
+    /// Axes of the coefficients.
+    #[serde(default)]
+    pub frame: Frame,
+    /// The point that moments are about.
+    #[serde(default)]
+    pub point: ReferencePoint,
+    /// What the signs mean.
+    #[serde(default)]
+    pub signs: Signs,
+    /// How the body was held; null where nobody declared it.
+    #[serde(default)]
+    pub attitude: Option<Attitude>,
+    /// The law.
     pub law: Law,
-    /// Geometry that the coefficients refer to, by name.
+    /// What the coefficients refer to: `density`, `area`, `volume`, the body's measures.
     #[serde(default)]
-    pub geometry: IndexMap<String, Measured>,
-    /// Water density.
+    pub refers_to: IndexMap<String, Measured>,
+    /// Keys of the files that its observations came from.
     #[serde(default)]
-    pub density: Option<Measured>,
-    /// Axes of the coefficients, in words.
-    #[serde(default)]
-    pub frame: String,
-    /// Reference point, in words.
-    #[serde(default)]
-    pub reference_point: String,
-    /// How the numbers were made, in words.
-    #[serde(default)]
-    pub method: String,
-    /// `classical`, `HC3`, `CR3 by configuration`, … or `none stated`.
-    #[serde(default)]
-    pub covariance_kind: String,
+    pub data: Vec<String>,
     /// Degrees of freedom by load component.
     #[serde(default)]
     pub dof: IndexMap<String, Option<f64>>,
@@ -217,13 +421,25 @@ pub struct Estimate {
     #[serde(default)]
     pub sigma: IndexMap<String, Measured>,
     /// Observations used.
-    #[serde(default)]
+    #[serde(default, rename = "n")]
     pub n_observations: usize,
+    /// Independent groups behind its scatter, where there are such.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clusters: Option<Clusters>,
     /// The coefficients, in the order of the model.
     pub coefficients: IndexMap<String, Coefficient>,
-    /// Their covariance, where one is stated.
+    /// Numbers made from them.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub derived: IndexMap<String, Derived>,
+    /// Their covariance from scatter alone; null where none is stated.
     #[serde(default)]
-    pub covariance: Option<Covariance>,
+    pub type_a: Option<TypeA>,
+    /// All other errors, by key. An error of another estimate with the same key is the same error.
+    #[serde(default, skip_serializing_if = "IndexMap::is_empty")]
+    pub errors: IndexMap<String, SharedError>,
+    /// What the intervals are.
+    #[serde(default)]
+    pub interval: Interval,
     /// Combinations that are determined although their members are not.
     #[serde(default)]
     pub undetermined: Vec<String>,
@@ -239,4 +455,60 @@ pub struct Estimate {
     /// Why it is recommended, or why it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+}
+
+impl Estimate {
+    /// Density of the water that they refer to.
+    #[must_use]
+    pub fn density(&self) -> Option<&Measured> {
+        self.refers_to.get("density")
+    }
+
+    /// Kind of the covariance, or that there is none.
+    #[must_use]
+    pub fn covariance_kind(&self) -> &str {
+        self.type_a.as_ref().map_or("none stated", |a| &a.kind)
+    }
+
+    /// Covariance of the coefficients: scatter and all other errors.
+    #[must_use]
+    pub fn covariance(&self) -> Option<Covariance> {
+        let own = self.type_a.as_ref()?;
+        let mut matrix = own.matrix.clone();
+        for error in self.errors.values() {
+            for (row, s) in matrix.iter_mut().zip(&error.sensitivity) {
+                for (sum, t) in row.iter_mut().zip(&error.sensitivity) {
+                    *sum += error.between(s, t);
+                }
+            }
+        }
+        Some(Covariance { names: own.names.clone(), matrix })
+    }
+}
+
+impl SharedError {
+    /// `s·C·tᵀ`: the covariance that this error makes between two numbers that go with it as `s` and `t`.
+    #[must_use]
+    pub fn between(&self, s: &[f64], t: &[f64]) -> f64 {
+        let of_row = |row: &Vec<f64>| row.iter().zip(t).map(|(c, t)| c * t).sum::<f64>();
+        self.covariance.iter().zip(s).map(|(row, s)| s * of_row(row)).sum()
+    }
+}
+
+impl EstimateFile {
+    /// The files that an estimate's observations came from.
+    pub fn data_of<'a>(&'a self, estimate: &'a Estimate) -> impl Iterator<Item = &'a DataFile> {
+        estimate.data.iter().filter_map(|key| self.data.get(key))
+    }
+}
+
+/// Files by short keys, `d1`, `d2`, ….
+#[must_use]
+pub fn keyed(files: Vec<DataFile>) -> IndexMap<String, DataFile> {
+    files.into_iter().enumerate().map(|(i, file)| (format!("d{}", i + 1), file)).collect()
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_false(value: &bool) -> bool {
+    !value
 }

@@ -43,6 +43,15 @@ pub fn sha256_of_bytes(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
+/// Hexadecimal digits of a [`short_key`]: 64 bits.
+const SHORT: usize = 16;
+
+/// Start of the SHA-256 of bytes: enough to tell what a lab has apart, short enough to stand in a record.
+#[must_use]
+pub fn short_key(bytes: &[u8]) -> String {
+    sha256_of_bytes(bytes)[..SHORT].to_owned()
+}
+
 /// Of everything that can be read from here on.
 pub(crate) fn fingerprint_of(input: &mut impl Read) -> std::io::Result<Fingerprint> {
     let mut hash = Sha256::new();

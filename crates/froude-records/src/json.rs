@@ -16,8 +16,8 @@ use serde::{Deserialize, Serialize};
 use crate::checksum;
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::estimate::{
-    Coefficient, Covariance, DataFile, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, NamedCorrelation,
-    Status,
+    Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law,
+    NamedCorrelation, SharedError, Status, TypeA, v1,
 };
 use crate::finding::Finding;
 use crate::hash::sha256_of_file;
@@ -30,7 +30,7 @@ const LARGEST_BYTES: u64 = 64 << 20;
 const LONGEST_NAME: usize = 1000;
 
 /// Newest major version that is read.
-const NEWEST: u64 = 1;
+const NEWEST: u64 = 2;
 
 /// Reads `estimate.json`.
 ///
@@ -57,7 +57,11 @@ pub fn parse_estimates(path: &Path, text: &str) -> Result<EstimateFile, RecordEr
     if let Some(sum) = &head.checksum {
         check_sum(path, text, sum)?;
     }
-    let file: EstimateFile = serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?;
+    let file = if head.schema.as_ref().and_then(|s| s.as_str()) == Some(v1::SCHEMA) {
+        EstimateFile::from(serde_json::from_str::<v1::FileV1>(text).map_err(|e| syntax(path, text, &e))?)
+    } else {
+        serde_json::from_str(text).map_err(|e| syntax(path, text, &e))?
+    };
     check(path, text, &file)?;
     Ok(file)
 }
@@ -89,7 +93,7 @@ impl DataFile {
     ///
     /// [`RecordError::Read`] when the file cannot be read.
     pub fn of(path: &Path, named: &str) -> Result<Self, RecordError> {
-        Ok(Self { path: named.to_owned(), sha256: sha256_of_file(path)? })
+        Ok(Self { path: named.to_owned(), sha256: sha256_of_file(path)?, role: None })
     }
 }
 
@@ -106,7 +110,7 @@ struct Summed<'a> {
     schema: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     checksum: Option<String>,
-    data: &'a [DataFile],
+    data: &'a IndexMap<String, DataFile>,
     versions: &'a IndexMap<String, String>,
     estimates: &'a [Estimate],
     findings: &'a [Finding],
@@ -212,7 +216,7 @@ fn check_schema(path: &Path, text: &str, found: Option<&serde_json::Value>) -> R
     let Some(found) = found else {
         return Err(RecordError::Schema { place: Place::whole(path), found: "missing".to_owned(), known });
     };
-    if found.as_str() == Some(ESTIMATE_SCHEMA) {
+    if [ESTIMATE_SCHEMA, v1::SCHEMA].map(Some).contains(&found.as_str()) {
         return Ok(());
     }
     let version = found.as_str().and_then(|s| s.strip_prefix("froude/estimate/")).and_then(|v| v.parse::<u64>().ok());
@@ -250,7 +254,7 @@ fn check(path: &Path, text: &str, file: &EstimateFile) -> Result<(), RecordError
         let refuse = |problem: String| {
             Err(RecordError::Syntax { place: place(0), problem: format!("estimate {}: {problem}", estimate.id) })
         };
-        let names = [("id", &estimate.id), ("source", &estimate.source), ("model", &estimate.model)].into_iter();
+        let names = [("id", &estimate.id), ("source", &estimate.source), ("law", &estimate.law.name)].into_iter();
         let texts = estimate.coefficients.iter().flat_map(|(name, c)| [("name", name), ("unit", &c.unit)]);
         if let Some((what, long)) = names.chain(texts).find(|(_, text)| text.len() > LONGEST_NAME) {
             return Err(RecordError::Syntax {
@@ -266,17 +270,43 @@ fn check(path: &Path, text: &str, file: &EstimateFile) -> Result<(), RecordError
                 return refuse(format!("coefficient {name} {problem}"));
             }
         }
-        if let Some(covariance) = &estimate.covariance {
-            let n = covariance.names.len();
-            if covariance.matrix.len() != n || covariance.matrix.iter().any(|row| row.len() != n) {
-                return refuse(format!("the covariance names {n} coefficients, its matrix is not {n} by {n}"));
-            }
-            if let Some(name) = covariance.names.iter().find(|name| !estimate.coefficients.contains_key(*name)) {
-                return refuse(format!("the covariance names {name}, which is no coefficient of it"));
-            }
+        if let Some(problem) = shape(file, estimate) {
+            return refuse(problem);
         }
     }
     Ok(())
+}
+
+/// What does not fit together in the covariance, the other errors and the data of an estimate.
+fn shape(file: &EstimateFile, estimate: &Estimate) -> Option<String> {
+    let is = |rows: &[Vec<f64>], n: usize, q: usize| rows.len() == n && rows.iter().all(|row| row.len() == q);
+    if let Some(key) = estimate.data.iter().find(|key| !file.data.contains_key(*key)) {
+        return Some(format!("its data names {key}, which is no file of the record"));
+    }
+    let Some(TypeA { names, matrix, dof, kind: _ }) = &estimate.type_a else {
+        let first = estimate.errors.keys().next()?;
+        return Some(format!("the error {first} has a sensitivity, and no covariance names its rows"));
+    };
+    let n = names.len();
+    if !is(matrix, n, n) {
+        return Some(format!("the covariance names {n} coefficients, its matrix is not {n} by {n}"));
+    }
+    if let Some(name) = names.iter().find(|name| !estimate.coefficients.contains_key(*name)) {
+        return Some(format!("the covariance names {name}, which is no coefficient of it"));
+    }
+    if dof.len() != n {
+        return Some(format!("the covariance names {n} coefficients, {} have degrees of freedom", dof.len()));
+    }
+    estimate.errors.iter().find_map(|(key, error)| {
+        let q = error.covariance.len();
+        if !is(&error.covariance, q, q) {
+            return Some(format!("the covariance of the error {key} is not {q} by {q}"));
+        }
+        let fits = is(&error.sensitivity, n, q);
+        (!fits).then(|| {
+            format!("the sensitivity to the error {key} is not {n} by {q}: a row per coefficient of the covariance")
+        })
+    })
 }
 
 fn contradiction(c: &Coefficient) -> Option<String> {
@@ -333,41 +363,53 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         id: _,
         source: _,
         kind: _,
-        model: _,
-        law: Law { version: _, constants, formulas: _ },
-        geometry,
-        density,
-        frame: _,
-        reference_point: _,
         method: _,
-        covariance_kind: _,
+        frame: _,
+        point: _,
+        signs: _,
+        attitude: _,
+        law: Law { name: _, version: _, inputs: _, outputs: _, constants },
+        refers_to,
+        data: _,
+        n_observations: _,
+        clusters: _,
         dof,
         sigma,
-        n_observations: _,
         coefficients,
-        covariance,
+        derived,
+        type_a,
+        errors,
+        interval: Interval { level, looks: _, of: _ },
         undetermined: _,
         validity,
         diagnostics,
         recommended: _,
         reason: _,
     } = estimate;
-    for (section, measured) in [("law.constants", constants), ("geometry", geometry), ("sigma", sigma)] {
+    for (section, measured) in [("law.constants", constants), ("refers_to", refers_to), ("sigma", sigma)] {
         for (name, m) in measured {
             see(&|| format!("{section}.{name}"), m.value);
         }
     }
-    if let Some(m) = density {
-        see(&|| "density".to_owned(), m.value);
-    }
+    see(&|| "interval.level".to_owned(), *level);
     for (name, dof) in dof {
         if let Some(dof) = dof {
             see(&|| format!("dof.{name}"), *dof);
         }
     }
     for (name, coefficient) in coefficients {
-        let Coefficient { value, unit: _, status: _, standard_uncertainty, type_a, type_b, interval_95, effective_dof } =
-            coefficient;
+        let Coefficient {
+            label: _,
+            value,
+            unit: _,
+            status: _,
+            nuisance: _,
+            standard_uncertainty,
+            type_a,
+            type_b,
+            interval_95,
+            effective_dof,
+        } = coefficient;
         let named = [
             ("value", value),
             ("standard_uncertainty", standard_uncertainty),
@@ -384,9 +426,24 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
             see(&|| format!("coefficients.{name}.interval_95"), *end);
         }
     }
-    if let Some(Covariance { names: _, matrix }) = covariance {
+    for (name, Derived { formula: _, value, unit: _, standard_uncertainty, interval_95 }) in derived {
+        for number in value.iter().chain(standard_uncertainty).chain(interval_95.iter().flatten()) {
+            see(&|| format!("derived.{name}"), *number);
+        }
+    }
+    if let Some(TypeA { names: _, matrix, dof, kind: _ }) = type_a {
         for number in matrix.iter().flatten() {
-            see(&|| "covariance.matrix".to_owned(), *number);
+            see(&|| "type_a.matrix".to_owned(), *number);
+        }
+        for number in dof.iter().flatten() {
+            see(&|| "type_a.dof".to_owned(), *number);
+        }
+    }
+    for (key, error) in errors {
+        let SharedError { name: _, quantity: _, kind: _, covariance, dof, limits, sensitivity } = error;
+        let matrices = covariance.iter().chain(sensitivity).flatten();
+        for number in matrices.chain(dof).chain(limits.iter().flatten()) {
+            see(&|| format!("errors.{key}"), *number);
         }
     }
     for (name, range) in validity {

@@ -4,16 +4,19 @@
 use std::path::Path;
 
 use froude_records::estimate::{
-    Coefficient, Covariance, DataFile, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, Measured,
-    NamedCorrelation, Range, Status,
+    Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, ErrorKind, Estimate,
+    EstimateFile, Frame, Interval, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
+    SharedError, Signs, Status, TypeA, keyed,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::{parse_estimates, read_estimates, write_estimates};
-use froude_records::schema::ESTIMATE_JSON_SCHEMA;
+use froude_records::schema::{ESTIMATE_1_JSON_SCHEMA, ESTIMATE_JSON_SCHEMA};
 use proptest::prelude::*;
 
 fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
     Coefficient {
+        label: Some("C".to_owned()),
+        nuisance: false,
         value,
         unit: "m/s".to_owned(),
         status,
@@ -34,27 +37,60 @@ fn sample() -> EstimateFile {
         id: "tank/f4".to_owned(),
         source: "tank".to_owned(),
         kind: "tank".to_owned(),
-        model: "f4".to_owned(),
+        method: MethodUsed { name: "table".to_owned(), version: 1, words: "least squares".to_owned() },
+        frame: Frame::body(),
+        point: ReferencePoint { words: "centre".to_owned(), stated: true },
+        signs: Signs::default(),
+        attitude: Some(Attitude { travel: "y".to_owned() }),
         law: Law {
+            name: "f4".to_owned(),
             version: 1,
+            inputs: [("v_y".to_owned(), "m/s".to_owned())].into(),
+            outputs: [("f_y".to_owned(), Output { unit: "N".to_owned(), formula: Some("Y_v*v".to_owned()) })].into(),
             constants: [("v_ref".to_owned(), measured(1.0, "m/s"))].into(),
-            formulas: [("f_y".to_owned(), "Y_v*v".to_owned())].into(),
         },
-        geometry: [("a".to_owned(), measured(0.0588, "m"))].into(),
-        density: Some(measured(1025.0, "kg/m^3")),
-        frame: "body axes".to_owned(),
-        reference_point: "centre".to_owned(),
-        method: "least squares".to_owned(),
-        covariance_kind: "classical".to_owned(),
+        refers_to: [("density".to_owned(), measured(1025.0, "kg/m^3")), ("a".to_owned(), measured(0.0588, "m"))].into(),
+        data: vec!["d1".to_owned()],
+        n_observations: 12,
+        clusters: Some(Clusters { by: "configuration".to_owned(), n: 3 }),
         dof: [("f_x".to_owned(), Some(10.0)), ("f_y".to_owned(), None)].into(),
         sigma: [("f_x".to_owned(), measured(0.02, "N"))].into(),
-        n_observations: 12,
         coefficients: [
             ("C_d_I".to_owned(), coefficient(Some(0.4), Status::Free)),
             ("C_f_I".to_owned(), coefficient(None, Status::Undetermined)),
         ]
         .into(),
-        covariance: Some(Covariance { names: vec!["C_d_I".to_owned()], matrix: vec![vec![0.01]] }),
+        derived: [(
+            "D".to_owned(),
+            Derived {
+                formula: "2*C_d_I".to_owned(),
+                value: Some(0.8),
+                unit: "1".to_owned(),
+                standard_uncertainty: None,
+                interval_95: Some([0.6, 1.0]),
+            },
+        )]
+        .into(),
+        type_a: Some(TypeA {
+            names: vec!["C_d_I".to_owned()],
+            matrix: vec![vec![0.01]],
+            dof: vec![Some(7.5)],
+            kind: "classical".to_owned(),
+        }),
+        errors: [(
+            "cal/1".to_owned(),
+            SharedError {
+                name: "calibration".to_owned(),
+                quantity: "f_y".to_owned(),
+                kind: ErrorKind::B,
+                covariance: vec![vec![0.25]],
+                dof: Some(20.0),
+                limits: Some([-0.5, 0.5]),
+                sensitivity: vec![vec![0.2]],
+            },
+        )]
+        .into(),
+        interval: Interval { level: 0.95, looks: 3, of: "coefficient".to_owned() },
         undetermined: vec!["k*G_T*C_f_II + G_HTx*C_fHT_II".to_owned()],
         validity: [("speed".to_owned(), Range { low: 0.1, high: 1.0, unit: "m/s".to_owned() })].into(),
         diagnostics: Diagnostics {
@@ -69,7 +105,11 @@ fn sample() -> EstimateFile {
     };
     EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
-        data: vec![DataFile { path: "tank.csv".to_owned(), sha256: "0".repeat(64) }],
+        data: keyed(vec![DataFile {
+            path: "tank.csv".to_owned(),
+            sha256: "0".repeat(64),
+            role: Some("table".to_owned()),
+        }]),
         versions: [("froude".to_owned(), "0.1.0".to_owned())].into(),
         estimates: vec![estimate],
         findings: vec![Finding::new(Severity::Warning, "one-sided", "only one sign of angle was run".to_owned())],
@@ -128,8 +168,11 @@ fn records_are_valid_against_the_published_schema() {
         *value.pointer_mut(pointer).unwrap() = new;
         assert!(!validator.is_valid(&value), "{pointer}");
     };
-    spoilt("/schema", "froude/estimate/2".into());
-    spoilt("/data/0/sha256", "xyz".into());
+    spoilt("/schema", "froude/estimate/3".into());
+    spoilt("/data/d1/sha256", "xyz".into());
+    spoilt("/estimates/0/errors/cal~11/kind", "C".into());
+    spoilt("/estimates/0/type_a/dof", 3.0.into());
+    spoilt("/estimates/0/attitude/travel", "up".into());
     spoilt("/estimates/0/coefficients/C_d_I/status", "guessed".into());
     spoilt("/estimates/0/coefficients/C_d_I/value", "0.4".into());
     spoilt("/estimates/0/coefficients/C_d_I/interval_95", serde_json::json!([1.0]));
@@ -170,24 +213,70 @@ fn every_status_and_every_key_of_the_types_is_in_the_schema() {
 #[test]
 fn versions_are_compared() {
     refused(
-        "froude/estimate/1",
         "froude/estimate/2",
-        "estimate.json:2: this is froude/estimate/2; this program reads up to froude/estimate/1: use a newer Froude",
+        "froude/estimate/3",
+        "estimate.json:2: this is froude/estimate/3; this program reads up to froude/estimate/2: use a newer Froude",
     );
     refused(
-        "froude/estimate/1",
+        "froude/estimate/2",
         "froude/campaign/1",
-        "estimate.json:2: `schema` is \"froude/campaign/1\"; expected froude/estimate/1",
+        "estimate.json:2: `schema` is \"froude/campaign/1\"; expected froude/estimate/2",
     );
     assert_eq!(
         parse("{\"estimates\": []}").unwrap_err(),
-        "estimate.json: `schema` is missing; expected froude/estimate/1"
+        "estimate.json: `schema` is missing; expected froude/estimate/2"
     );
     // A newer record may look quite different: the version is told first.
     assert_eq!(
         parse("{\"schema\": \"froude/estimate/7\", \"estimates\": 3}").unwrap_err(),
-        "estimate.json:1: this is froude/estimate/7; this program reads up to froude/estimate/1: use a newer Froude"
+        "estimate.json:1: this is froude/estimate/7; this program reads up to froude/estimate/2: use a newer Froude"
     );
+}
+
+/// A record of version 1 says what it said: one covariance, words for axes and point, all of its files for all of its estimates.
+#[test]
+fn a_record_of_version_1_is_lifted() {
+    let old = serde_json::json!({
+        "schema": "froude/estimate/1",
+        "data": [{ "path": "tank.csv", "sha256": "0".repeat(64) }],
+        "versions": {},
+        "estimates": [{
+            "id": "tank/sway", "source": "tank", "kind": "tank", "model": "sway",
+            "law": { "version": 1, "formulas": { "f_y": "Y_v*v" }, "constants": { "L": { "value": 2.0, "unit": "m" } } },
+            "geometry": { "a": { "value": 0.0588, "unit": "m" } },
+            "density": { "value": 1025.0, "unit": "kg/m^3" },
+            "frame": "body axes", "reference_point": "centre", "method": "least squares", "covariance_kind": "HC3",
+            "n_observations": 12,
+            "coefficients": { "Y_v": {
+                "value": 0.4, "unit": "kg/s", "status": "free", "standard_uncertainty": 0.1, "effective_dof": 7.5
+            } },
+            "covariance": { "names": ["Y_v"], "matrix": [[0.01]] },
+            "recommended": true,
+        }],
+        "findings": [],
+    });
+    let schema: serde_json::Value = serde_json::from_str(ESTIMATE_1_JSON_SCHEMA).unwrap();
+    assert!(jsonschema::draft202012::new(&schema).unwrap().is_valid(&old));
+    let file = parse(&old.to_string()).unwrap();
+    assert_eq!((file.schema.as_str(), file.data["d1"].path.as_str()), (ESTIMATE_SCHEMA, "tank.csv"));
+    let e = &file.estimates[0];
+    assert_eq!((e.law.name.as_str(), e.law.formulas()["f_y"].as_str(), e.n_observations), ("sway", "Y_v*v", 12));
+    assert_eq!((e.frame.words.as_str(), e.point.words.as_str(), e.point.stated), ("body axes", "centre", false));
+    assert_eq!((e.density().unwrap().value, e.refers_to["a"].value, e.covariance_kind()), (1025.0, 0.0588, "HC3"));
+    assert_eq!(e.covariance().unwrap().matrix, [[0.01]]);
+    assert_eq!((e.type_a.as_ref().unwrap().dof.as_slice(), e.errors.len(), e.data.len()), (&[Some(7.5)][..], 0, 0));
+    // What was lifted is a whole record of today.
+    let schema: serde_json::Value = serde_json::from_str(ESTIMATE_JSON_SCHEMA).unwrap();
+    assert!(jsonschema::draft202012::new(&schema).unwrap().is_valid(&serde_json::to_value(&file).unwrap()));
+    assert_eq!(parse(&summed(&file)).unwrap(), file);
+}
+
+/// Cov = type A + S·C·Sᵀ.
+#[test]
+fn the_covariance_is_that_of_the_scatter_and_of_every_error() {
+    let c = sample().estimates[0].covariance().unwrap();
+    assert_eq!(c.names, ["C_d_I"]);
+    assert!((c.matrix[0][0] - (0.01 + 0.2 * 0.25 * 0.2)).abs() < 1e-15);
 }
 
 #[test]
@@ -234,16 +323,33 @@ fn records_that_contradict_themselves_are_refused() {
             "estimate.json:{id}: estimate tank/f4: coefficient C_d_I has standard_uncertainty -0.1; an uncertainty is not negative"
         ),
     );
-    let mut file = sample();
-    file.estimates[0].covariance = Some(Covariance { names: vec!["C_d_I".to_owned()], matrix: vec![vec![0.01, 0.0]] });
+    let spoil = |of: &dyn Fn(&mut TypeA)| {
+        let mut file = sample();
+        of(file.estimates[0].type_a.as_mut().unwrap());
+        file
+    };
+    let file = spoil(&|a| a.matrix = vec![vec![0.01, 0.0]]);
     assert_eq!(
         parse(&text(&file)).unwrap_err(),
         format!("estimate.json:{id}: estimate tank/f4: the covariance names 1 coefficients, its matrix is not 1 by 1")
     );
-    file.estimates[0].covariance = Some(Covariance { names: vec!["C_q".to_owned()], matrix: vec![vec![0.01]] });
+    let file = spoil(&|a| a.names = vec!["C_q".to_owned()]);
     assert_eq!(
         parse(&text(&file)).unwrap_err(),
         format!("estimate.json:{id}: estimate tank/f4: the covariance names C_q, which is no coefficient of it")
+    );
+    refused(
+        "\"sensitivity\": [\n            [\n              0.2",
+        "\"sensitivity\": [\n            [\n              0.1, 0.2",
+        &format!(
+            "estimate.json:{id}: estimate tank/f4: the sensitivity to the error cal/1 is not 1 by 1: a row per coefficient of the covariance"
+        ),
+    );
+    let mut file = sample();
+    file.estimates[0].data = vec!["d9".to_owned()];
+    assert_eq!(
+        parse(&text(&file)).unwrap_err(),
+        format!("estimate.json:{id}: estimate tank/f4: its data names d9, which is no file of the record")
     );
     let mut file = sample();
     file.estimates.push(file.estimates[0].clone());
@@ -284,12 +390,13 @@ fn a_number_that_is_not_finite_is_never_written_as_null() {
     let path = folder.path().join("estimate.json");
     write_estimates(&path, &sample()).unwrap();
     let before = std::fs::read(&path).unwrap();
-    let cases: [(&str, &str, Spoil); 6] = [
+    let cases: [(&str, &str, Spoil); 7] = [
         ("coefficients.C_d_I.value", "NaN", |e| e.coefficients["C_d_I"].value = Some(f64::NAN)),
         ("coefficients.C_d_I.interval_95", "inf", |e| e.coefficients["C_d_I"].interval_95 = Some([0.0, f64::INFINITY])),
         ("diagnostics.condition_number", "inf", |e| e.diagnostics.condition_number = Some(f64::INFINITY)),
-        ("covariance.matrix", "NaN", |e| e.covariance.as_mut().unwrap().matrix[0][0] = f64::NAN),
-        ("geometry.a", "NaN", |e| e.geometry["a"].value = f64::NAN),
+        ("type_a.matrix", "NaN", |e| e.type_a.as_mut().unwrap().matrix[0][0] = f64::NAN),
+        ("errors.cal/1", "NaN", |e| e.errors["cal/1"].sensitivity[0][0] = f64::NAN),
+        ("refers_to.a", "NaN", |e| e.refers_to["a"].value = f64::NAN),
         ("dof.f_x", "inf", |e| e.dof["f_x"] = Some(f64::INFINITY)),
     ];
     for (item, value, spoil) in cases {
@@ -316,7 +423,7 @@ proptest! {
     ) {
         let mut file = sample();
         file.estimates[0].coefficients["C_d_I"].value = Some(value);
-        file.estimates[0].density = Some(measured(other, "kg/m^3"));
+        file.estimates[0].refers_to["density"] = measured(other, "kg/m^3");
         let read = parse(&summed(&file)).unwrap();
         let found = read.estimates[0].coefficients["C_d_I"].value.unwrap();
         prop_assert_eq!(found.to_bits(), value.to_bits());

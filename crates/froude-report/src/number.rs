@@ -455,6 +455,8 @@ mod tests {
     #[test]
     fn an_undetermined_coefficient_is_a_dash_whatever_it_holds() {
         let mut c = Coefficient {
+            label: None,
+            nuisance: false,
             value: Some(0.0),
             unit: "1".to_owned(),
             status: Status::Undetermined,

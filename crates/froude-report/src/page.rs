@@ -414,7 +414,7 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
             h3 {
                 a href={ "#source-" (i + 1) } { (source.name) }
                 @match best {
-                    Some(best) => span class="chosen" { "model " (best.model) },
+                    Some(best) => span class="chosen" { "model " (best.law.name) },
                     None => span class="chosen" { "no model is recommended" },
                 }
                 span class="kind" {
@@ -511,22 +511,21 @@ fn facts(source: &SourceSection, estimate: Option<&Estimate>) -> Markup {
         }
     };
     if let Some(e) = estimate {
-        if !e.method.is_empty() {
-            add("Method", html! { (e.method) });
+        if !e.method.words.is_empty() {
+            add("Method", html! { (e.method.words) });
         }
-        if !e.covariance_kind.is_empty() {
-            add("Covariance", html! { (e.covariance_kind) });
+        add("Covariance", html! { (e.covariance_kind()) });
+        if !e.frame.words.is_empty() {
+            add("Axes", html! { (e.frame.words) });
         }
-        if !e.frame.is_empty() {
-            add("Axes", html! { (e.frame) });
+        if !e.point.words.is_empty() {
+            add("Reference point", html! { (e.point.words) });
         }
-        if !e.reference_point.is_empty() {
-            add("Reference point", html! { (e.reference_point) });
-        }
-        if let Some(density) = &e.density {
+        if let Some(density) = e.density() {
             add("Density", measured(density));
         }
-        let list = |entries: &indexmap::IndexMap<String, Measured>| {
+        let geometry: Vec<(&String, &Measured)> = e.refers_to.iter().filter(|(name, _)| *name != "density").collect();
+        let list = |entries: &[(&String, &Measured)]| {
             html! {
                 @for (i, (name, m)) in entries.iter().enumerate() {
                     @if i > 0 { "; " }
@@ -534,8 +533,8 @@ fn facts(source: &SourceSection, estimate: Option<&Estimate>) -> Markup {
                 }
             }
         };
-        if !e.geometry.is_empty() {
-            add("Geometry", list(&e.geometry));
+        if !geometry.is_empty() {
+            add("Geometry", list(&geometry));
         }
         if !e.law.constants.is_empty() {
             let constants = html! {
@@ -546,7 +545,7 @@ fn facts(source: &SourceSection, estimate: Option<&Estimate>) -> Markup {
             };
             add("Constants of the law", constants);
         }
-        for (load, formula) in &e.law.formulas {
+        for (load, formula) in &e.law.formulas() {
             add(&format!("Formula of {load}"), html! { code { (load) " = " (formula) } });
         }
     }
@@ -562,7 +561,7 @@ fn determined(estimates: &[Estimate]) -> Markup {
     html! {
         @for e in estimates.iter().filter(|e| !e.undetermined.is_empty()) {
             p {
-                "Model " (e.model) " is not determined coefficient by coefficient; determined are the combinations "
+                "Model " (e.law.name) " is not determined coefficient by coefficient; determined are the combinations "
                 @for (i, combination) in e.undetermined.iter().enumerate() {
                     @if i > 0 { ", " }
                     code { (combination) }
@@ -579,7 +578,7 @@ fn notes(estimates: &[Estimate], with_cross_validation: bool) -> Markup {
         .iter()
         .flat_map(|e| {
             let note = e.diagnostics.cross_validation_note.as_deref().filter(|_| with_cross_validation);
-            e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (e.model.as_str(), n))
+            e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (e.law.name.as_str(), n))
         })
         .collect();
     // The same sentence of several models is told once.

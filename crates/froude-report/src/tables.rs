@@ -208,7 +208,7 @@ fn groups(estimates: &[Estimate]) -> Vec<Vec<&Estimate>> {
         let belongs = |group: &Vec<&Estimate>| {
             group.len() < MOST_COLUMNS
                 && group.iter().any(|o| {
-                    (is_robot_model(&o.model) && is_robot_model(&e.model))
+                    (is_robot_model(&o.law.name) && is_robot_model(&e.law.name))
                         || o.coefficients.keys().any(|name| e.coefficients.contains_key(name))
                 })
         };
@@ -246,7 +246,7 @@ impl Tables {
         let tables: Vec<Markup> = groups(estimates)
             .into_iter()
             .map(|group| match group.as_slice() {
-                [single] if single.model == "added_mass_6x6" => self.matrix(source, single),
+                [single] if single.law.name == "added_mass_6x6" => self.matrix(source, single),
                 _ => self.coefficient_group(source, &group),
             })
             .collect();
@@ -301,7 +301,7 @@ impl Tables {
                     thead {
                         tr {
                             th scope="col" { "Coefficient" }
-                            @for e in group { th scope="col" class=(class(e)) { (e.model) } }
+                            @for e in group { th scope="col" class=(class(e)) { (e.law.name) } }
                         }
                     }
                     tbody { @for row in &rows { (row) } }
@@ -372,7 +372,7 @@ impl Tables {
         let caption = self.caption(&format!(
             "Model {} in detail: standard uncertainty from the scatter of the data (type A), from the declared budget (type B), combined, \
              and with its effective degrees of freedom.",
-            e.model
+            e.law.name
         ));
         // Nothing is known about a coefficient that is not determined, whatever its record holds.
         let known = |c: &Coefficient, x: Option<f64>| number::finite(x).filter(|_| c.status != Status::Undetermined);
@@ -442,7 +442,7 @@ impl Tables {
         let blocks = union(rows.iter().flat_map(|r| r.range_blocks.iter().map(|(name, _)| name)));
         let has_lack = rows.iter().any(|r| r.lack_of_fit_p.is_some());
         let components = union(rows.iter().map(|r| &r.component));
-        let best = crate::figures::recommended(source).map(|e| e.model.as_str());
+        let best = crate::figures::recommended(source).map(|e| e.law.name.as_str());
         let has_scores = rows.iter().any(|r| r.cross_validation.is_ok());
         let scored = |r: &'a SelectionRow| r.cross_validation.as_ref().err().filter(|_| has_scores);
         let reasons = union(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));
@@ -587,7 +587,7 @@ impl Tables {
     pub(crate) fn validity(&mut self, e: &Estimate) -> Markup {
         let caption = self.caption(&format!(
             "Range of the observations behind model {}. Outside it every prediction is extrapolation.",
-            e.model
+            e.law.name
         ));
         html! {
             div class="table" {

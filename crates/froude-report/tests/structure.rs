@@ -134,6 +134,8 @@ fn the_same_input_gives_the_same_bytes() {
 
 fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
     Coefficient {
+        label: None,
+        nuisance: false,
         value,
         unit: "1".to_owned(),
         status,
@@ -150,24 +152,10 @@ fn estimate(source: &str, model: &str, coefficients: &[(&str, Coefficient)]) -> 
         id: format!("{source}/{model}"),
         source: source.to_owned(),
         kind: "tank".to_owned(),
-        model: model.to_owned(),
-        law: froude_records::estimate::Law::default(),
-        geometry: indexmap::IndexMap::new(),
-        density: None,
-        frame: String::new(),
-        reference_point: String::new(),
-        method: String::new(),
-        covariance_kind: String::new(),
-        dof: indexmap::IndexMap::new(),
-        sigma: indexmap::IndexMap::new(),
-        n_observations: 0,
+        law: froude_records::estimate::Law { name: model.to_owned(), ..Default::default() },
         coefficients: coefficients.iter().map(|(n, c)| ((*n).to_owned(), c.clone())).collect(),
-        covariance: None,
-        undetermined: Vec::new(),
-        validity: indexmap::IndexMap::new(),
-        diagnostics: froude_records::estimate::Diagnostics::default(),
         recommended: true,
-        reason: None,
+        ..Estimate::default()
     }
 }
 
@@ -243,13 +231,14 @@ const HOSTILE: &str = "\"><script>alert('x')</script><svg onload=x>&amp;\u{0}\u{
 fn hostile_names_are_escaped_everywhere() {
     let h = || HOSTILE.to_owned();
     let mut e = estimate(HOSTILE, HOSTILE, &[(HOSTILE, coefficient(Some(1.0), Status::Free))]);
-    for text in [&mut e.method, &mut e.frame, &mut e.kind, &mut e.reference_point, &mut e.covariance_kind] {
+    let kind = &mut e.type_a.get_or_insert_default().kind;
+    for text in [&mut e.method.words, &mut e.frame.words, &mut e.kind, &mut e.point.words, kind] {
         *text = h();
     }
     e.undetermined = vec![h()];
     e.diagnostics.notes = vec![h()];
-    e.law.formulas.insert(h(), h());
-    e.geometry.insert(h(), Measured { value: 1.0, unit: h() });
+    e.law.outputs.insert(h(), froude_records::estimate::Output { unit: h(), formula: Some(h()) });
+    e.refers_to.insert(h(), Measured { value: 1.0, unit: h() });
     e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
     e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
     let side = || Side { source: h(), value: Some(1.0), standard: None, expanded: None };
@@ -555,7 +544,7 @@ proptest! {
         let mut e = estimate("tank", "f4", &[("C_d_II", c.clone()), ("C_f_II", c)]);
         e.validity.insert("speed".to_owned(), Range { low: values[0], high: values[1], unit: "rad".to_owned() });
         e.sigma.insert("f_x".to_owned(), Measured { value: values[2], unit: "N".to_owned() });
-        e.density = Some(Measured { value: values[7], unit: "kg/m^3".to_owned() });
+        e.refers_to.insert("density".to_owned(), Measured { value: values[7], unit: "kg/m^3".to_owned() });
         e.diagnostics.relative_residual.insert("f_x".to_owned(), values[3]);
         e.diagnostics.condition_number = Some(values[4]);
         let side = Side { source: "s".to_owned(), value: Some(values[0]), standard: Some(values[1]), expanded: Some(values[2]) };

@@ -386,7 +386,7 @@ fn budget_facts(entry: &BudgetEntry) -> BudgetFacts {
 fn estimates(path: &Path) -> Result<Inspection, Error> {
     let record = read_estimates(path)?;
     let mut facts = vec![("schema".to_owned(), record.schema.clone())];
-    facts.extend(record.data.iter().map(|d| ("data".to_owned(), d.path.clone())));
+    facts.extend(record.data.values().map(|d| ("data".to_owned(), d.path.clone())));
     Ok(Inspection { estimates: record.estimates, ..Inspection::new("estimate", facts, record.findings) })
 }
 

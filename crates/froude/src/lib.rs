@@ -23,9 +23,11 @@ pub use froude_rig as rig;
 
 pub mod added_mass;
 pub mod carriage;
+mod data_files;
 pub mod demo;
 mod error;
 pub mod inspect;
+mod method;
 mod observations;
 pub mod pipeline;
 mod results;

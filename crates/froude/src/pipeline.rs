@@ -3,16 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use froude_identify::compare::{Comparison, compare, named};
-use froude_identify::source::{SourceResult, asked_models, identify_source};
-use froude_records::campaign::{Campaign, Input, Shared, Source, read_campaign};
-use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
+use froude_identify::source::{SourceResult, asked_models};
+use froude_records::campaign::{Campaign, Input, Source, read_campaign};
+use froude_records::estimate::{ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
-use froude_records::hash::sha256_of_file;
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
 
 use crate::Error;
-use crate::{observations, results, sections};
+use crate::data_files::DataFiles;
+use crate::{method, observations, results, sections};
 
 /// What to identify and where the results go.
 #[derive(Debug, Clone)]
@@ -78,7 +78,11 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     runs_once(&campaign)?;
     let mut sources = Vec::new();
     let mut published: Vec<(String, EstimateFile)> = Vec::new();
-    let mut files: Vec<PathBuf> = if is_campaign(&job.input) { vec![campaign.path.clone()] } else { Vec::new() };
+    let named_as = |path: &Path| relative(path, &campaign.path);
+    let mut files = DataFiles::new(&named_as);
+    if is_campaign(&job.input) {
+        files.key(&campaign.path, "campaign")?;
+    }
     let mut findings: Vec<Finding> = Vec::new();
     for source in &campaign.sources {
         if let Input::Record { path, select } = &source.input {
@@ -88,21 +92,19 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
                 let one = froude_identify::select::one_estimate(&record, Some(select), path)?.clone();
                 record.estimates = vec![one];
             }
-            files.push(path.clone());
+            files.key(path, "record")?;
             findings.push(froude_identify::source::published_note(source));
             published.push((relative(path, &campaign.path), record));
             continue;
         }
-        let results = match &source.input {
-            Input::Runs(folder) => crate::carriage::source::identify(source, folder, &|step| {
-                progress(&format!("{}: {step}", source.name));
-            })?,
-            _ => vec![identify_source(&campaign, source, &|model| {
-                progress(&format!("{}: fitting {model}", source.name));
-            })?],
-        };
-        for result in results {
-            files.extend(result.files.iter().cloned());
+        let (method, asked) = method::of(source)?;
+        let results = method.identify(&campaign, source, &asked, &|step| {
+            progress(&format!("{}: {step}", source.name));
+        })?;
+        for mut result in results {
+            for estimate in &mut result.estimates {
+                estimate.data = files.keys_of(&result.files, |role| method.observes(&estimate.method.name, role))?;
+            }
             findings.extend(result.findings.iter().cloned());
             sources.push(result);
         }
@@ -112,11 +114,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         return Err(Error::Nothing(format!("{}: the campaign has no [[source]]", job.input.display())));
     }
     progress("comparing the sources");
-    files.dedup();
-    let data = files
-        .iter()
-        .map(|path| Ok(DataFile { path: relative(path, &campaign.path), sha256: sha256_of_file(path)? }))
-        .collect::<Result<Vec<_>, Error>>()?;
+    let data = files.into_map();
     let fitted = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
         data: data.clone(),
@@ -133,9 +131,6 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
             Comparison::default()
         };
     findings.extend(comparison.findings.iter().cloned());
-    if !comparison.coefficients.is_empty() || !comparison.forces.is_empty() {
-        findings.extend(shared_errors(&campaign));
-    }
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
@@ -194,45 +189,6 @@ fn laws_not_asked(campaign: &Campaign) -> Option<Finding> {
         );
         Finding::new(Severity::Warning, "law-not-asked", text)
     })
-}
-
-/// Errors that two fitted sources have in common: the comparison takes their uncertainties as independent.
-///
-/// u²(a − b) = u_a² + u_b² − 2 cov(a, b) (GUM 5.2.2): with the same error on both sides E_n and χ² come out too small.
-fn shared_errors(campaign: &Campaign) -> Vec<Finding> {
-    let mut out = Vec::new();
-    for (i, a) in campaign.sources.iter().enumerate() {
-        for b in &campaign.sources[i + 1..] {
-            let mut what: Vec<String> = a
-                .uncertainty
-                .iter()
-                .filter(|x| x.shared == Shared::Campaign)
-                .filter(|x| b.uncertainty.iter().any(|y| y.shared == Shared::Campaign && x.quantity == y.quantity))
-                .map(|x| format!("an error of {} shared by the campaign", x.quantity))
-                .collect();
-            if let (Some(x), Some(y)) = (&a.tare, &b.tare)
-                && x.record == y.record
-            {
-                what.push("the same subtracted tare".to_owned());
-            }
-            if matches!((&a.input, &b.input), (Input::Runs(_), Input::Runs(_))) {
-                what.push("a rig, where it is one (its gain, gear, length of a count, calibration)".to_owned());
-            }
-            if !what.is_empty() {
-                out.push(Finding::new(
-                    Severity::Warning,
-                    "shared-errors",
-                    format!(
-                        "{} and {} have in common: {}; E_n and χ² take the two as independent and are too small by that part",
-                        a.name,
-                        b.name,
-                        what.join(", ")
-                    ),
-                ));
-            }
-        }
-    }
-    out
 }
 
 /// A campaign as it is read, or the one that a bare table stands for.

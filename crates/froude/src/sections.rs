@@ -1,10 +1,8 @@
 //! Identification results as the report wants them: points, curves with bands, budget, selection.
 
-use std::collections::BTreeMap;
-
 use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
-use froude_identify::compare::{Comparison, SAME_DATA, Stated};
+use froude_identify::compare::{Comparison, Stated};
 use froude_identify::dataset::{Dataset, unit_text};
 use froude_identify::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use froude_identify::regression::ModelFit;
@@ -42,12 +40,12 @@ pub fn report(
 ) -> Result<Report, IdentifyError> {
     // A line per file and source that reads it; a file that several name is one file.
     let mut data: Vec<InputFile> = Vec::new();
-    for d in &file.data {
+    for d in file.data.values() {
         if data.iter().any(|seen| seen.path == d.path) {
             continue;
         }
         let line = InputFile { path: d.path.clone(), sha256: d.sha256.clone(), ..InputFile::default() };
-        let readers = sources.iter().filter(|s| s.files.first().is_some_and(|f| f.ends_with(&d.path)));
+        let readers = sources.iter().filter(|s| s.files.first().is_some_and(|f| f.path.ends_with(&d.path)));
         let lines: Vec<InputFile> = readers
             .map(|s| InputFile {
                 n_rows: Some(s.n_read),
@@ -69,7 +67,7 @@ pub fn report(
         data,
         versions: file.versions.clone(),
         citations: campaign.cite.clone(),
-        comparison: comparison_section(comparison, sources, file),
+        comparison: comparison_section(comparison),
     })
 }
 
@@ -565,8 +563,8 @@ fn frequent(held: &Settings, moving: &Settings, most: usize) -> Vec<f64> {
     values
 }
 
-/// The comparison with what this campaign knows beside the records: which source reads which table.
-fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateFile) -> Option<ComparisonSection> {
+/// The comparison as the report shows it.
+fn comparison_section(c: &Comparison) -> Option<ComparisonSection> {
     if c.coefficients.is_empty() && c.forces.is_empty() {
         return None;
     }
@@ -576,35 +574,24 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
         standard: s.standard,
         expanded: s.expanded(),
     };
-    let tables = tables_behind(sources, file);
-    let reads_same = |a: &str, b: &str| {
-        let (a, b) = (table_behind(a, &tables), table_behind(b, &tables));
-        a.is_some() && a == b
-    };
-    let difference = |e_n: &Result<f64, String>, a: &str, b: &str| {
-        if e_n.is_ok() && reads_same(a, b) { Err(SAME_DATA.to_owned()) } else { e_n.clone() }
-    };
     let coefficients = c
         .coefficients
         .iter()
-        .map(|r| {
-            let e_n = difference(&r.e_n, &r.first, &r.second);
-            CoefficientComparison {
-                model: r.model.clone(),
-                coefficient: r.coefficient.clone(),
-                unit: r.unit.clone(),
-                first: side(&r.first, &r.by_first),
-                second: side(&r.second, &r.by_second),
-                e_n: e_n.as_ref().ok().copied(),
-                note: e_n.err().unwrap_or_default(),
-            }
+        .map(|r| CoefficientComparison {
+            model: r.model.clone(),
+            coefficient: r.coefficient.clone(),
+            unit: r.unit.clone(),
+            first: side(&r.first, &r.by_first),
+            second: side(&r.second, &r.by_second),
+            e_n: r.e_n.as_ref().ok().copied(),
+            note: r.e_n.clone().err().unwrap_or_default(),
         })
         .collect();
     let joint = c
         .joint
         .iter()
         .map(|r| {
-            let result = r.result.as_ref().ok().filter(|_| !reads_same(&r.first, &r.second));
+            let result = r.result.as_ref().ok();
             JointComparison {
                 model: r.model.clone(),
                 first: r.first.clone(),
@@ -612,11 +599,7 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
                 chi_squared: result.map(|x| x.0),
                 dof: result.map_or(0.0, |x| x.1 as f64),
                 p: result.map(|x| x.2),
-                note: match (&r.result, result) {
-                    (_, Some(_)) => String::new(),
-                    (Err(why), None) => why.clone(),
-                    (Ok(_), None) => SAME_DATA.replace("E_n", "χ²"),
-                },
+                note: r.result.as_ref().err().cloned().unwrap_or_default(),
             }
         })
         .collect();
@@ -624,7 +607,6 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
     for row in &c.forces {
         let Some((first, others)) = row.forces.split_first() else { continue };
         for ((other, id), e_n) in others.iter().zip(&c.force_ids[1..]).zip(&row.e_n) {
-            let e_n = difference(e_n, &c.force_ids[0], id);
             forces.push(ForceComparison {
                 configuration: row.n_links.map_or_else(String::new, |k| format!("k = {k}")),
                 component: row.component.clone(),
@@ -634,7 +616,7 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
                 first: side(&c.force_ids[0], first),
                 second: side(id, other),
                 e_n: e_n.as_ref().ok().copied(),
-                note: e_n.err().unwrap_or_default(),
+                note: e_n.as_ref().err().cloned().unwrap_or_default(),
             });
         }
     }
@@ -653,33 +635,10 @@ fn comparison_section(c: &Comparison, sources: &[SourceResult], file: &EstimateF
     })
 }
 
-/// Fingerprint of the table that each estimate of this campaign was fitted to, by its id.
-fn tables_behind<'a>(sources: &'a [SourceResult], file: &'a EstimateFile) -> BTreeMap<&'a str, &'a str> {
-    let mut out = BTreeMap::new();
-    for source in sources {
-        let Some(table) = source.files.first() else { continue };
-        let Some(data) = file.data.iter().find(|d| table.ends_with(&d.path)) else { continue };
-        for estimate in &source.estimates {
-            out.entry(estimate.id.as_str()).or_insert(data.sha256.as_str());
-        }
-    }
-    out
-}
-
-/// The same by a label in the comparison: where a published record has an estimate of the same id, the record stands behind it.
-fn table_behind<'a>(label: &str, tables: &BTreeMap<&str, &'a str>) -> Option<&'a str> {
-    let id = label.strip_suffix(" (this campaign)").unwrap_or(label);
-    tables.get(label).or_else(|| tables.get(id)).copied()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use froude_identify::compare::{compare, named};
     use froude_identify::source::identify_source;
-    use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA};
-    use froude_records::hash::sha256_of_file;
-    use indexmap::IndexMap;
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;
 
@@ -805,42 +764,5 @@ mod tests {
         let drift = figures.iter().find(|f| f.title.ends_with("f_y against angle")).unwrap();
         assert!(!drift.caption.contains("not drawn"), "{}", drift.caption);
         assert!(drift.svg.contains("other speeds"), "the points at 1.7 m/s");
-    }
-
-    /// Two sources of a campaign read one table: the records do not tell, the campaign does.
-    #[test]
-    fn sources_that_read_one_table_are_not_independent() {
-        let table = power_law_table(SEED, |_| 0.02);
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("drag.csv");
-        std::fs::write(&path, &table).unwrap();
-        let mut campaign = Campaign::of_table(&path, None);
-        campaign.identify.models = vec!["quadratic".to_owned()];
-        let mut sources = Vec::new();
-        for (name, slowest) in [("all", 0.0), ("fast", 0.5)] {
-            let mut source = campaign.sources[0].clone();
-            source.name = name.to_owned();
-            let mut result = identify_source(&campaign, &source, &|_| {}).unwrap();
-            // Another selection: other values behind the same table.
-            result.estimates[0].coefficients[0].value = result.estimates[0].coefficients[0].value.map(|v| v + slowest);
-            sources.push(result);
-        }
-        let record = |data| EstimateFile {
-            schema: ESTIMATE_SCHEMA.to_owned(),
-            data,
-            versions: IndexMap::new(),
-            estimates: sources.iter().flat_map(|s| s.estimates.clone()).collect(),
-            findings: Vec::new(),
-        };
-        let all = [("this campaign".to_owned(), record(Vec::new()))];
-        let comparison = compare(&named(&all));
-        assert!(comparison.coefficients[0].e_n.is_ok(), "the records alone do not tell");
-        let file = record(vec![DataFile { path: "drag.csv".to_owned(), sha256: sha256_of_file(&path).unwrap() }]);
-        let section = comparison_section(&comparison, &sources, &file).unwrap();
-        assert_eq!((section.coefficients[0].e_n, section.coefficients[0].note.as_str()), (None, SAME_DATA));
-        assert_eq!(section.joint[0].chi_squared, None);
-        assert_eq!(section.joint[0].note, "same data: not independent, χ² not meaningful");
-        assert!(section.forces.iter().all(|f| f.e_n.is_none() && f.note == SAME_DATA));
-        assert!(section.forces.iter().all(|f| f.configuration.is_empty()), "a body without links");
     }
 }

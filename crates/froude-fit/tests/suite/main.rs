@@ -11,6 +11,8 @@ mod covariance;
 mod coverage;
 mod errors;
 mod nist;
+mod nonlinear;
+mod nonlinear_nist;
 mod odr;
 mod priors;
 mod propagation;

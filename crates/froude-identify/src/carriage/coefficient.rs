@@ -71,12 +71,6 @@ impl Method {
         }
     }
 
-    /// The model in records.
-    #[must_use]
-    pub fn model(self) -> String {
-        format!("drag_{}", self.name())
-    }
-
     /// In words.
     #[must_use]
     pub const fn words(self) -> &'static str {
@@ -252,7 +246,7 @@ pub fn coefficient(
     let mut errors = shared_errors(method, &points, measured, setup);
     errors.extend(more);
     let data = observations(&points, setup);
-    let law = ForceLaw::formulas(&method.model(), &IndexMap::from([(LOAD.to_owned(), LAW.to_owned())]), &data)?;
+    let law = ForceLaw::formulas(LAW, &IndexMap::from([(setup.load().to_owned(), formula(setup))]), &data)?;
     let model = regress(
         &law,
         &data,
@@ -261,6 +255,7 @@ pub fn coefficient(
             kind: SourceKind::Towing,
             identify: &Identify::default(),
             budget: &[],
+            campaign: "",
             shared_errors: &errors,
             scatter: given.as_ref(),
             looks: setup.looks,
@@ -293,10 +288,18 @@ pub fn coefficient(
     }))
 }
 
-/// The load along the travel.
-pub(super) const LOAD: &str = "f_x";
-/// Its law.
-pub(super) const LAW: &str = "-D_d*v_x*abs(v_x)";
+/// The law: that of a table's `quadratic` along one axis.
+const LAW: &str = "quadratic";
+
+/// Its coefficient, which the paper calls D_d.
+pub(super) fn name(setup: &DragSetup) -> String {
+    format!("D_{}_II", setup.axis())
+}
+
+fn formula(setup: &DragSetup) -> String {
+    let axis = setup.axis();
+    format!("-{}*v_{axis}*abs(v_{axis})", name(setup))
+}
 
 /// The points as observations, the drag of the strut taken off: loads of the fluid on the body, against the motion.
 fn observations(points: &[Point], setup: &DragSetup) -> Dataset {
@@ -313,9 +316,9 @@ fn observations(points: &[Point], setup: &DragSetup) -> Dataset {
         line: (1..=points.len()).collect(),
         ..Dataset::default()
     };
-    data.put("v_x", speed, Dimension::SPEED);
+    data.put(setup.velocity(), speed, Dimension::SPEED);
     data.put("density", vec![setup.density_kg_m3; points.len()], Dimension::DENSITY);
-    data.put(LOAD, load, Dimension::FORCE);
+    data.put(setup.load(), load, Dimension::FORCE);
     data
 }
 
@@ -335,7 +338,7 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
     let by = |of: &dyn Fn(&Point) -> f64| points.iter().map(|p| -of(p)).collect::<Vec<f64>>();
     let of_force = by(&|p| p.force_n);
     let of = |name: &str, direction: &[f64], standard: f64, dof: f64| {
-        SharedError::of_load(name, LOAD, direction, standard, dof)
+        SharedError::of_load(name, setup.load(), direction, standard, dof)
     };
     let never = f64::INFINITY;
     let mut out = Vec::new();
@@ -343,42 +346,49 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
         match (setup.calibration, setup.efficiency) {
             (Some(c), _) => {
                 let f = c.force_per_volt_n;
-                out.push(of("newtons a volt, calibrated", &of_force, f.relative(), f.dof));
+                let error = of("newtons a volt, calibrated", &of_force, f.relative(), f.dof);
+                out.push(error.known_as(setup.keys.calibration.clone(), "force_per_volt"));
             }
             (None, efficiency) => {
-                out.push(of("K_T and amplifier gain, declared", &of_force, setup.torque_constant_relative, never));
+                let error = of("K_T and amplifier gain, declared", &of_force, setup.torque_constant_relative, never);
+                out.push(error.known_as(setup.keys.of_rig("torque_constant"), "torque_constant"));
                 out.push(match efficiency {
-                    Efficiency::Declared(e) => of("gear efficiency, declared", &of_force, e.relative(), e.dof),
+                    Efficiency::Declared(e) => of("gear efficiency, declared", &of_force, e.relative(), e.dof)
+                        .known_as(setup.keys.of_rig("efficiency"), "efficiency"),
                     Efficiency::Undeclared => {
                         let limits = UNDECLARED_EFFICIENCY.map(|e| e - 1.0);
-                        SharedError::between("gear efficiency, not declared", LOAD, &of_force, limits)
+                        SharedError::between("gear efficiency, not declared", setup.load(), &of_force, limits)
                     }
                 });
             }
         }
         let drift = by(&|p| setup.torque_constant_drift_relative * measured * p.speed_m_s.powi(2));
-        out.push(SharedError::of_each_row("drift of K_T from run to run, on the drag", LOAD, &drift));
+        out.push(SharedError::of_each_row("drift of K_T from run to run, on the drag", setup.load(), &drift));
         if let Ballast::Unballasted { unloaded_n, rolling } = setup.ballast {
             let of_load = by(&|p| unloaded_n * p.speed_m_s.signum());
             out.push(match rolling {
                 Some(r) => of("rolling friction that buoyancy takes off", &of_load, r.standard, r.dof),
                 None => {
                     let name = "rolling friction that buoyancy takes off, not declared";
-                    SharedError::between(name, LOAD, &of_load, UNDECLARED_ROLLING)
+                    SharedError::between(name, setup.load(), &of_load, UNDECLARED_ROLLING)
                 }
             });
         }
     } else {
-        out.push(of("gain of the sensor", &of_force, setup.sensor.gain_relative, never));
+        let error = of("gain of the sensor", &of_force, setup.sensor.gain_relative, never);
+        out.push(error.known_as(setup.keys.of_rig("sensor_gain"), "sensor_gain"));
         let zero = by(&|p| p.standard_n);
-        out.push(SharedError::of_each_row("noise, zero of the sensor and its drift", LOAD, &zero));
+        out.push(SharedError::of_each_row("noise, zero of the sensor and its drift", setup.load(), &zero));
     }
     // v² takes the sprocket's radius twice; newtons that are not calibrated, (n/R) K_T K_amp, once more in the same direction.
     let times = if method.is_sensorless() && setup.calibration.is_none() { 3.0 } else { 2.0 };
-    out.push(of("length of an encoder count", &of_force, times * setup.speed_scale_relative, never));
+    let of_length = by(&|p| times * p.force_n);
+    let error = of("length of an encoder count", &of_length, setup.speed_scale_relative, never);
+    out.push(error.known_as(setup.keys.of_rig("sprocket_radius"), "sprocket_radius"));
     if let Some(strut) = setup.strut_n_s2_m2 {
         let of_strut = by(&|p| p.speed_m_s * p.speed_m_s.abs());
-        out.push(of("drag of the strut", &of_strut, strut.standard, strut.dof));
+        let key = setup.keys.rig.as_ref().map(|_| format!("strut/{:e} {:e}", strut.value, strut.standard));
+        out.push(of("drag of the strut", &of_strut, strut.standard, strut.dof).known_as(key, "strut_drag"));
     }
     out
 }

@@ -1,77 +1,121 @@
-//! D_d and C_D as an estimate record.
+//! D_d as an estimate record: `D_x_II` of the law `quadratic`, as a table has it; C_D is made from it.
 
-use froude_fit::budget::Kind;
+use std::f64::consts::FRAC_PI_2;
+
+use froude_records::campaign::BodyAxis;
 use froude_records::estimate::{
-    Coefficient as Recorded, Covariance, Diagnostics, Estimate, Law, Measured, Range, Status,
+    Attitude, Clusters, Derived, Diagnostics, Estimate, Frame, Interval, Measured, MethodUsed, Range, ReferencePoint,
+    Signs, Status,
 };
 use froude_records::text::counted;
 use indexmap::IndexMap;
 
-use super::coefficient::{Coefficient, LAW, LOAD, Method};
+use super::coefficient::{Coefficient, Method, name};
 use super::run::{DragRun, DragSetup, Efficiency};
+use crate::record;
 use crate::validity::{ALONG, OFF_AXIS};
 
-/// The axis of a carriage's drag: nobody has said which axis of the body lies along it.
-pub(crate) const FRAME: &str = "x along the chain; f_x of the fluid on the body";
+/// Name of the frame of a carriage where nobody has said which axis of the body lies along its travel.
+pub(crate) const CHAIN: &str = "chain";
+
+fn frame(setup: &DragSetup) -> Frame {
+    match setup.travel {
+        Some(_) => Frame::body(),
+        None => Frame {
+            name: CHAIN.to_owned(),
+            axes: Vec::new(),
+            words: "x along the chain; f_x of the fluid on the body".to_owned(),
+        },
+    }
+}
 
 /// The record of one method's result.
 pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>], recommended: bool) -> Estimate {
-    let mut coefficients = IndexMap::new();
-    let recorded = |scale: f64, unit: &str| Recorded {
-        value: Some(c.value * scale),
-        unit: unit.to_owned(),
+    let name = name(setup);
+    let recorded = froude_records::estimate::Coefficient {
+        label: Some("D_d".to_owned()),
+        value: Some(c.value),
+        unit: "kg/m".to_owned(),
         status: Status::Free,
-        standard_uncertainty: c.standard.map(|u| u * scale),
-        type_a: c.type_a.map(|u| u * scale),
-        type_b: Some(c.type_b * scale),
-        interval_95: c.interval_95.map(|[low, high]| [low * scale, high * scale]),
+        nuisance: false,
+        standard_uncertainty: c.standard,
+        type_a: c.type_a,
+        type_b: Some(c.type_b),
+        interval_95: c.interval_95,
         effective_dof: Some(c.dof).filter(|d| d.is_finite()),
     };
-    coefficients.insert("D_d".to_owned(), recorded(1.0, "N s^2/m^2"));
-    let mut geometry = IndexMap::new();
+    let mut refers_to =
+        IndexMap::from([("density".to_owned(), Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() })]);
+    let mut derived = IndexMap::new();
     if let Some(area) = setup.reference_area_m2 {
-        coefficients.insert("C_D".to_owned(), recorded(2.0 / (setup.density_kg_m3 * area), "1"));
-        geometry.insert("A".to_owned(), Measured { value: area, unit: "m^2".to_owned() });
+        refers_to.insert("area".to_owned(), Measured { value: area, unit: "m^2".to_owned() });
+        let scale = 2.0 / (setup.density_kg_m3 * area);
+        let drag = Derived {
+            formula: format!("2*{name}/(density*area)"),
+            value: Some(c.value * scale),
+            unit: "1".to_owned(),
+            standard_uncertainty: c.standard.map(|u| u * scale),
+            interval_95: c.interval_95.map(|[low, high]| [low * scale, high * scale]),
+        };
+        derived.insert("C_D".to_owned(), drag);
     }
     let mut constants = IndexMap::new();
     if c.method.is_sensorless() {
         let value = setup.force_per_volt_n();
         constants.insert("force_per_volt".to_owned(), Measured { value, unit: "N/V".to_owned() });
     }
-    let speeds = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s.abs()).collect::<Vec<_>>());
-    let mut validity = IndexMap::new();
-    let range = Range { low: speeds[0], high: speeds[1], unit: "m/s".to_owned() };
-    validity.insert("speed".to_owned(), range);
-    let ways = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s).collect::<Vec<_>>());
-    for (name, [low, high], unit) in [("angle", [0.0, 0.0], "rad"), (OFF_AXIS, [0.0, 0.0], "rad"), (ALONG, ways, "m/s")]
-    {
-        validity.insert(name.to_owned(), Range { low, high, unit: unit.to_owned() });
-    }
-    let formulas = IndexMap::from([(LOAD.to_owned(), LAW.to_owned())]);
-    let scatter = c.budget.iter().find(|p| p.kind == Kind::A);
+    // Without pairs or runs to leave out nothing tells the scatter, and the estimate states no covariance.
+    let is_stated = c.standard.is_some();
+    let type_a = record::type_a(&c.model).filter(|_| is_stated);
+    let (by, n) = if c.pairs >= 2 { ("pair", c.pairs) } else { ("run", c.points.len()) };
     Estimate {
         id: format!("{}/{}", setup.name, c.method.name()),
         source: setup.name.clone(),
         kind: "towing".to_owned(),
-        model: c.method.model(),
-        law: Law { version: 1, constants, formulas },
-        geometry,
-        density: Some(Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() }),
-        frame: FRAME.to_owned(),
-        reference_point: String::new(),
-        method: format!("{}; least squares over v|v| through the origin", c.method.words()),
-        covariance_kind: scatter.map_or("none stated", |p| &p.name).to_owned(),
-        dof: std::iter::once(("f_x".to_owned(), scatter.map(|p| p.dof[0]))).collect(),
-        sigma: IndexMap::new(),
+        method: MethodUsed {
+            name: c.method.name().to_owned(),
+            version: 1,
+            words: format!("{}; least squares over v|v| through the origin", c.method.words()),
+        },
+        frame: frame(setup),
+        point: ReferencePoint::default(),
+        signs: Signs::default(),
+        attitude: setup.travel.map(|axis| Attitude { travel: axis.name().to_owned() }),
+        law: record::law(&c.model, &c.data, constants),
+        refers_to,
+        data: Vec::new(),
         n_observations: c.points.len(),
-        coefficients,
-        covariance: c.standard.map(|u| Covariance { names: vec!["D_d".to_owned()], matrix: vec![vec![u * u]] }),
+        clusters: Some(Clusters { by: by.to_owned(), n }),
+        dof: IndexMap::from([(setup.load().to_owned(), type_a.as_ref().and_then(|a| a.dof[0]))]),
+        sigma: IndexMap::new(),
+        coefficients: IndexMap::from([(name, recorded)]),
+        derived,
+        type_a,
+        errors: if is_stated { record::errors(&c.model) } else { IndexMap::new() },
+        interval: Interval { looks: c.looks, ..Interval::default() },
         undetermined: Vec::new(),
-        validity,
+        validity: validity(c, setup),
         diagnostics: Diagnostics { notes: notes(c, setup, runs), ..Diagnostics::default() },
         recommended,
         reason: None,
     }
+}
+
+/// Speeds, and the angle to the flow that the attitude makes.
+fn validity(c: &Coefficient, setup: &DragSetup) -> IndexMap<String, Range> {
+    let speeds = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s.abs()).collect::<Vec<_>>());
+    let ways = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s).collect::<Vec<_>>());
+    let ranges: &[(&str, [f64; 2], &str)] = match setup.travel {
+        None | Some(BodyAxis::X) => &[("angle", [0.0; 2], "rad"), (OFF_AXIS, [0.0; 2], "rad"), (ALONG, ways, "m/s")],
+        Some(BodyAxis::Y) => {
+            &[("angle", [-FRAC_PI_2, FRAC_PI_2], "rad"), (OFF_AXIS, [FRAC_PI_2; 2], "rad"), (ALONG, [0.0; 2], "m/s")]
+        }
+        Some(BodyAxis::Z) => &[],
+    };
+    std::iter::once(&("speed", speeds, "m/s"))
+        .chain(ranges)
+        .map(|&(name, [low, high], unit)| (name.to_owned(), Range { low, high, unit: unit.to_owned() }))
+        .collect()
 }
 
 /// The budget and what the value rests on, in sentences.

@@ -6,9 +6,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
 use super::added_mass::{AddedMass, added_mass};
-use super::coefficient::{
-    Coefficient, LOAD, Method, Point, TypeA, coefficient, each_alone, pairs, scatter, slope, slope_of,
-};
+use super::coefficient::{Coefficient, Method, Point, TypeA, coefficient, each_alone, pairs, scatter, slope, slope_of};
 use super::detectability::{Agreement, Detectability, DryMean, agreement, floored, predict, zero_change};
 use super::error::DragError;
 use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
@@ -201,7 +199,7 @@ fn unseen_drift(
         ),
     ));
     let name = "drift of the sensor that no still window shows";
-    Some(SharedError::between(name, LOAD, &vec![1.0; points.len()], [-half_n, half_n]))
+    Some(SharedError::between(name, setup.load(), &vec![1.0; points.len()], [-half_n, half_n]))
 }
 
 /// Whom a run that the friction is identified from stands or falls with.
@@ -310,7 +308,7 @@ fn model_based(
     let left = phantom.map(|phantom| {
         let squares: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
         let name = "friction where it was not identified, left as it is";
-        SharedError::of_load(name, LOAD, &squares, phantom.abs(), f64::INFINITY)
+        SharedError::of_load(name, setup.load(), &squares, phantom.abs(), f64::INFINITY)
     });
     let out = or_told(method, coefficient(method, points, setup, named, left.into_iter().collect()), findings)?;
     if let Some(phantom) = phantom {

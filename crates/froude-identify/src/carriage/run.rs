@@ -1,6 +1,7 @@
 //! What the reduction of a carriage's runs takes: the columns of each run and what is declared about the rig.
 
 use froude_fit::budget::Uncertain;
+use froude_records::campaign::BodyAxis;
 
 use super::calibration::ForcePerVolt;
 use super::mbdp::Flexible;
@@ -132,6 +133,23 @@ pub struct SensorBudget {
     pub drift_half_width_n: f64,
 }
 
+/// Names of the errors that other campaigns may have too; `None` where nobody knows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ErrorKeys {
+    /// The calibration: of the runs that it was made from.
+    pub calibration: Option<String>,
+    /// The rig: of its declared constants.
+    pub rig: Option<String>,
+}
+
+impl ErrorKeys {
+    /// Key of a constant of the rig.
+    #[must_use]
+    pub fn of_rig(&self, constant: &str) -> Option<String> {
+        self.rig.as_ref().map(|rig| format!("{rig}/{constant}"))
+    }
+}
+
 /// What is declared about rig, body and water.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DragSetup {
@@ -166,6 +184,10 @@ pub struct DragSetup {
     pub looks: usize,
     /// How steady windows are chosen.
     pub steady: SteadySettings,
+    /// The body axis that lies along the travel; `None` where nobody declared it.
+    pub travel: Option<BodyAxis>,
+    /// Errors that other campaigns may have too.
+    pub keys: ErrorKeys,
 }
 
 impl DragSetup {
@@ -189,6 +211,31 @@ impl DragSetup {
             flexible: None,
             looks: 1,
             steady: SteadySettings::default(),
+            travel: None,
+            keys: ErrorKeys::default(),
+        }
+    }
+
+    /// Letter of the axis that the drag is along: the declared one of the body, else x, which is then along the chain.
+    pub(super) fn axis(&self) -> &'static str {
+        self.travel.map_or("x", BodyAxis::name)
+    }
+
+    /// The load along it.
+    pub(super) fn load(&self) -> &'static str {
+        match self.travel {
+            None | Some(BodyAxis::X) => "f_x",
+            Some(BodyAxis::Y) => "f_y",
+            Some(BodyAxis::Z) => "f_z",
+        }
+    }
+
+    /// The velocity along it.
+    pub(super) fn velocity(&self) -> &'static str {
+        match self.travel {
+            None | Some(BodyAxis::X) => "v_x",
+            Some(BodyAxis::Y) => "v_y",
+            Some(BodyAxis::Z) => "v_z",
         }
     }
 

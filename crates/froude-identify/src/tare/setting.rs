@@ -6,7 +6,7 @@ use froude_records::text::counted;
 
 use super::angles::SAME_ANGLE_RAD;
 use super::size;
-use crate::carriage::record::FRAME;
+use crate::carriage::record::CHAIN;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::lint::moving;
@@ -51,7 +51,7 @@ impl Use<'_> {
 
     /// Drag goes with the density: fresh water and the sea differ by 2.7 %. A law that reads the density has that of these rows.
     pub fn other_fluid(&self) -> Option<Finding> {
-        let own = self.estimate.density.as_ref()?.value;
+        let own = self.estimate.density()?.value;
         let here = self.data.values("density")?;
         let rows: Vec<usize> = (0..self.data.rows).collect();
         let part = |r: usize, i: usize| if self.law.has_density(r) { 0.0 } else { here[i] / own - 1.0 };
@@ -70,7 +70,7 @@ impl Use<'_> {
 
     /// The drag of a carriage is along its chain, and taken off along x.
     pub fn along_the_chain(&self) -> Option<Finding> {
-        (self.estimate.frame == FRAME).then(|| {
+        (self.estimate.frame.name == CHAIN).then(|| {
             let text = format!(
                 "the tare {} is along the chain of its carriage and is taken off f_x: that is right where x was along the travel",
                 self.estimate.id

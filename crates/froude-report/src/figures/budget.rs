@@ -17,7 +17,7 @@ use crate::tables::counted;
 /// model, else of the first model in the budget.
 pub(crate) fn budget_rows(section: &SourceSection) -> Vec<&BudgetRow> {
     let model = recommended(section)
-        .map(|e| e.model.as_str())
+        .map(|e| e.law.name.as_str())
         .filter(|m| section.budget.iter().any(|r| r.model == *m))
         .or_else(|| section.budget.first().map(|r| r.model.as_str()));
     section.budget.iter().filter(|r| Some(r.model.as_str()) == model).collect()

@@ -32,8 +32,8 @@ fn all_estimates(report: &Report) -> Vec<(String, bool, &Estimate)> {
 pub(super) fn forest_drawings(report: &Report) -> Vec<Drawing> {
     let all = all_estimates(report);
     let mut drawings = Vec::new();
-    for model in distinct(all.iter().map(|(_, _, e)| e.model.as_str())) {
-        let rows: Vec<&(String, bool, &Estimate)> = all.iter().filter(|(_, _, e)| e.model == model).collect();
+    for model in distinct(all.iter().map(|(_, _, e)| e.law.name.as_str())) {
+        let rows: Vec<&(String, bool, &Estimate)> = all.iter().filter(|(_, _, e)| e.law.name == model).collect();
         // One source alone is beside nothing: its coefficients stand in its own section.
         if distinct(rows.iter().map(|(source, _, _)| source.as_str())).len() < 2 {
             continue;

@@ -247,7 +247,7 @@ fn component_drawings(
     let unit =
         points.first().map(|p| p.unit.as_str()).or_else(|| curves.first().map(|c| c.unit.as_str())).unwrap_or("");
     let best = recommended(section)
-        .map(|e| e.model.as_str())
+        .map(|e| e.law.name.as_str())
         .filter(|m| curves.iter().any(|c| c.model == *m))
         .or_else(|| curves.first().map(|c| c.model.as_str()));
     let look = Look { section, component, unit, abscissa, levels: &levels, best };

@@ -1,7 +1,8 @@
 //! A whole report with invented forces around published coefficients.
 
 use froude_records::estimate::{
-    Coefficient, Covariance, Diagnostics, Estimate, Law, Measured, NamedCorrelation, Range, Status,
+    Coefficient, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Range, ReferencePoint,
+    Status, TypeA,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_report::{
@@ -80,6 +81,8 @@ fn force(c: &[f64; 12], k: f64, speed: f64, angle: f64) -> [f64; 2] {
 fn coefficient(value: f64, relative: f64, name: &str) -> Coefficient {
     if value == 0.0 {
         return Coefficient {
+            label: None,
+            nuisance: false,
             value: Some(0.0),
             unit: unit_of(name).to_owned(),
             status: Status::AtBound,
@@ -92,6 +95,8 @@ fn coefficient(value: f64, relative: f64, name: &str) -> Coefficient {
     }
     let u = (value.abs() * relative).max(0.0008);
     Coefficient {
+        label: None,
+        nuisance: false,
         value: Some(value),
         unit: unit_of(name).to_owned(),
         status: Status::Free,
@@ -132,23 +137,25 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                 id: format!("{source}/{model}"),
                 source: source.to_owned(),
                 kind: kind.to_owned(),
-                model: (*model).to_owned(),
                 law: Law {
+                    name: (*model).to_owned(),
                     version: 1,
                     constants: [("v_ref".to_owned(), measured(1.0, "m/s"))].into(),
-                    formulas: IndexMap::new(),
+                    ..Law::default()
                 },
-                geometry: [
+                refers_to: [
+                    ("density".to_owned(), measured(998.2, "kg/m^3")),
                     ("major_semi_axis".to_owned(), measured(0.0588, "m")),
                     ("minor_semi_axis".to_owned(), measured(0.0394, "m")),
                     ("half_length".to_owned(), measured(0.09, "m")),
                 ]
                 .into(),
-                density: Some(measured(998.2, "kg/m^3")),
-                frame: "body axes: x forward, y to starboard, z down; forces of the fluid on the body".to_owned(),
-                reference_point: "centre of the body".to_owned(),
-                method: "least squares, bounded below by zero, per load component".to_owned(),
-                covariance_kind: if kind == "cfd" { "CR3 by configuration" } else { "classical" }.to_owned(),
+                frame: Frame::body(),
+                point: ReferencePoint { words: "centre of the body".to_owned(), stated: true },
+                method: MethodUsed {
+                    words: "least squares, bounded below by zero, per load component".to_owned(),
+                    ..MethodUsed::default()
+                },
                 dof: [("f_x".to_owned(), Some(284.0 - names.len() as f64)), ("f_y".to_owned(), Some(286.0))].into(),
                 sigma: [
                     ("f_x".to_owned(), measured(0.0213 * quality, "N")),
@@ -156,9 +163,13 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                 ]
                 .into(),
                 n_observations: 268,
-                covariance: Some(Covariance { matrix: vec![vec![0.0; names.len()]; names.len()], names }),
+                type_a: Some(TypeA {
+                    matrix: vec![vec![0.0; names.len()]; names.len()],
+                    dof: vec![None; names.len()],
+                    names,
+                    kind: if kind == "cfd" { "CR3 by configuration" } else { "classical" }.to_owned(),
+                }),
                 coefficients,
-                undetermined: Vec::new(),
                 validity: [
                     ("speed".to_owned(), Range { low: 0.1, high: 1.0, unit: "m/s".to_owned() }),
                     ("angle".to_owned(), Range { low: 0.0, high: 39f64.to_radians(), unit: "rad".to_owned() }),
@@ -181,7 +192,7 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                     ..Diagnostics::default()
                 },
                 recommended: *model == best,
-                reason: None,
+                ..Estimate::default()
             }
         })
         .collect()
@@ -390,8 +401,7 @@ pub fn report() -> Report {
                 e.validity.clear();
                 e.n_observations = 0;
                 e.diagnostics = Diagnostics::default();
-                e.covariance = None;
-                "none stated".clone_into(&mut e.covariance_kind);
+                e.type_a = None;
                 e
             })
             .collect()

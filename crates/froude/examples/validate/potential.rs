@@ -111,7 +111,7 @@ fn necked(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Box<dyn Er
         independent(claims, TABLE, c, sway, axial);
     }
     let coefficient = |model: &str, name: &str| {
-        let fit = done.fits.iter().find(|e| e.model == model);
+        let fit = done.fits.iter().find(|e| e.law.name == model);
         fit.and_then(|e| e.coefficients.get(name)?.value).ok_or_else(|| format!("no {model}/{name}"))
     };
     claims.near(

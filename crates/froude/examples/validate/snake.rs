@@ -102,7 +102,7 @@ pub fn published(
     data: &Dataset,
 ) -> Result<(ForceLaw, Vec<f64>), Box<dyn Error>> {
     let file = read_estimates(&root.join(format!("examples/mamba/published/{source}.json")))?;
-    let estimate = file.estimates.iter().find(|e| e.model == model).ok_or(format!("{source} has no {model}"))?;
+    let estimate = file.estimates.iter().find(|e| e.law.name == model).ok_or(format!("{source} has no {model}"))?;
     let law = ForceLaw::of_estimate(estimate, data)?;
     let values = law
         .coefficients
@@ -138,7 +138,7 @@ pub fn added_mass(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>
         done.file
             .estimates
             .iter()
-            .find(|e| e.model == model)
+            .find(|e| e.law.name == model)
             .and_then(|e| e.coefficients.get(name))
             .and_then(|c| c.value)
             .unwrap_or(f64::NAN)
@@ -275,6 +275,7 @@ fn settings(campaign: &Campaign) -> Settings<'_> {
         kind: SourceKind::Tank,
         identify: &campaign.identify,
         budget: &[],
+        campaign: "",
         shared_errors: &[],
         scatter: None,
         looks: 1,

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 use froude_mesh::measure::Measure;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::problem::Frame;
-use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
-use froude_records::hash::sha256_of_file;
+use froude_records::estimate::{ESTIMATE_SCHEMA, EstimateFile, keyed};
 use froude_report::document::TextTable;
 use froude_report::number;
 use indexmap::IndexMap;
@@ -17,10 +16,10 @@ use super::facets::geometry;
 use super::family::Family;
 use super::frame::{Axes, Orientation, Point, inertia_m5, sentence};
 use super::limits;
-use super::links::{default_out, file_name, no_density, not_within};
+use super::links::{default_out, no_density, not_within};
 use super::load::{Loaded, load};
 use super::page;
-use super::record::{About, estimate, replaces_another_frame};
+use super::record::{About, estimate, mesh_file, of_the_mesh, replaces_another_frame};
 use super::refine::{Forecast, Refined, Wanted, plan, refine};
 use super::spectral;
 use super::surroundings::surroundings;
@@ -187,9 +186,9 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     });
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
-        data: vec![DataFile { path: file_name(&job.input), sha256: sha256_of_file(&job.input)? }],
+        data: keyed(vec![mesh_file(&job.input)?]),
         versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: estimates.collect(),
+        estimates: estimates.map(of_the_mesh).collect(),
         findings,
     };
     let depth_m = job.surface_m.map(|surface_m| surface_m - mesh.up().coordinate(measure.centroid_m));

@@ -7,9 +7,8 @@ use std::path::{Path, PathBuf};
 
 use froude_panel::problem::Frame;
 use froude_records::body::{Shape, read_body};
-use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, Estimate, EstimateFile};
+use froude_records::estimate::{ESTIMATE_SCHEMA, Estimate, EstimateFile, keyed};
 use froude_records::finding::{Finding, Severity};
-use froude_records::hash::sha256_of_file;
 use froude_records::json::write_estimates;
 use froude_records::write::write_atomically;
 use indexmap::IndexMap;
@@ -18,7 +17,7 @@ use super::family::{Family, robot};
 use super::frame::{Axes, Orientation, sentence};
 use super::load::is_body_file;
 use super::page;
-use super::record::{About, estimate, replaces_another_frame};
+use super::record::{About, estimate, mesh_file, of_the_mesh, replaces_another_frame};
 use super::refine::{Refined, Wanted, refine};
 use crate::Error;
 use crate::pipeline::{Job, identify};
@@ -165,9 +164,9 @@ fn written(
     });
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
-        data: vec![DataFile { path: file_name(&job.body), sha256: sha256_of_file(&job.body)? }],
+        data: keyed(vec![mesh_file(&job.body)?]),
         versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: fits.iter().cloned().chain(matrices).collect(),
+        estimates: fits.iter().cloned().chain(matrices).map(of_the_mesh).collect(),
         findings,
     };
     let place = sentence(job.axes.own_words(), MIDDLE);

@@ -227,7 +227,7 @@ pub fn fits_table(fits: &[Estimate]) -> TextTable {
         .flat_map(|e| {
             e.coefficients.iter().map(|(name, c)| {
                 vec![
-                    e.model.clone(),
+                    e.law.name.clone(),
                     name.clone(),
                     c.unit.clone(),
                     number::coefficient(c),

@@ -2,11 +2,16 @@
 
 use std::path::Path;
 
-use froude_records::estimate::{Coefficient, Covariance, Diagnostics, Estimate, EstimateFile, Law, Measured, Status};
+use froude_records::estimate::{
+    Coefficient, DataFile, Diagnostics, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed,
+    ReferencePoint, Signs, Status, TypeA,
+};
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
 
+use super::links::file_name;
 use super::refine::Refined;
+use crate::Error;
 
 /// Coverage factor of a numerical uncertainty: it is stated as an interval of 95 %.
 const COVERAGE: f64 = 2.0;
@@ -36,7 +41,7 @@ pub struct About {
     pub density_kg_m3: f64,
     /// Axes in words.
     pub frame: String,
-    /// Point in words.
+    /// ReferencePoint in words.
     pub reference_point: String,
     /// From end to end along x, m.
     pub length_m: f64,
@@ -44,9 +49,19 @@ pub struct About {
     pub surroundings: String,
 }
 
+/// The one file that the matrices of a record come from.
+pub(super) fn mesh_file(path: &Path) -> Result<DataFile, Error> {
+    Ok(DataFile { role: Some("mesh".to_owned()), ..DataFile::of(path, &file_name(path))? })
+}
+
+/// An estimate that came from it, and from what was made of it on the way.
+pub(super) fn of_the_mesh(estimate: Estimate) -> Estimate {
+    Estimate { data: vec!["d1".to_owned()], ..estimate }
+}
+
 /// The frame of a record that lies in a folder already, in words.
 fn place_of(file: &EstimateFile) -> Option<String> {
-    file.estimates.last().map(|e| format!("{}; moments about {}", e.frame, e.reference_point))
+    file.estimates.last().map(|e| format!("{}; moments about {}", e.frame.words, e.point.words))
 }
 
 /// A sentence where a folder holds a record in another frame than a new one, which takes its place: the two look alike, and the entries of
@@ -73,7 +88,7 @@ fn entry_name((i, j): (usize, usize)) -> String {
 
 /// Covariance of the entries: on its diagonal the squares of their standard uncertainties, beside it what they have in common. `None` where
 /// there is one mesh only.
-fn covariance(refined: &Refined, rho: f64) -> Option<Covariance> {
+fn covariance(refined: &Refined, rho: f64) -> Option<TypeA> {
     let common = |(i, j): (usize, usize), (k, l): (usize, usize)| -> f64 {
         refined.shared.iter().map(|s| rho * s[i][j] * rho * s[k][l]).sum()
     };
@@ -83,7 +98,12 @@ fn covariance(refined: &Refined, rho: f64) -> Option<Covariance> {
     };
     let matrix: Vec<Vec<f64>> = entries().map(|a| entries().map(|b| element(a, b)).collect()).collect();
     let is_known = matrix.iter().flatten().all(|c| c.is_finite());
-    is_known.then(|| Covariance { names: entries().map(entry_name).collect(), matrix })
+    is_known.then(|| TypeA {
+        names: entries().map(entry_name).collect(),
+        dof: vec![None; matrix.len()],
+        matrix,
+        kind: COVARIANCE.to_owned(),
+    })
 }
 
 /// The estimate of model `added_mass_6x6`: entries A11 to A66 on and above the diagonal; the matrix is symmetric.
@@ -97,6 +117,8 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
         coefficients.insert(
             entry_name((i, j)),
             Coefficient {
+                label: None,
+                nuisance: false,
                 value: Some(value),
                 unit: unit(i, j).to_owned(),
                 status: Status::Free,
@@ -115,26 +137,35 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
         id: format!("{}/added_mass_6x6", about.source),
         source: about.source.clone(),
         kind: "potential".to_owned(),
-        model: "added_mass_6x6".to_owned(),
-        law: Law { version: 1, ..Law::default() },
-        geometry: IndexMap::from([
+        law: Law { name: "added_mass_6x6".to_owned(), version: 1, ..Law::default() },
+        refers_to: IndexMap::from([
+            ("density".to_owned(), measured(rho, "kg/m^3")),
             ("volume".to_owned(), measured(refined.volume_m3, "m^3")),
             ("length".to_owned(), measured(about.length_m, "m")),
         ]),
-        density: Some(measured(rho, "kg/m^3")),
-        frame: about.frame.clone(),
-        reference_point: about.reference_point.clone(),
-        method: format!(
-            "potential flow, constant panels, direct formulation, {}; meshes of {steps} panels{}",
-            about.surroundings,
-            if refined.steps.len() > 1 { ", extrapolated" } else { "" }
-        ),
-        covariance_kind: if covariance.is_some() { COVARIANCE } else { "none stated" }.to_owned(),
+        frame: Frame { words: about.frame.clone(), ..Frame::default() },
+        point: ReferencePoint { words: about.reference_point.clone(), stated: true },
+        signs: Signs("loads of the fluid on the body are minus the matrix times the accelerations".to_owned()),
+        attitude: None,
+        data: Vec::new(),
+        clusters: None,
+        derived: IndexMap::new(),
+        errors: IndexMap::new(),
+        interval: Interval { of: "mesh".to_owned(), ..Interval::default() },
+        method: MethodUsed {
+            name: "panels".to_owned(),
+            version: 1,
+            words: format!(
+                "potential flow, constant panels, direct formulation, {}; meshes of {steps} panels{}",
+                about.surroundings,
+                if refined.steps.len() > 1 { ", extrapolated" } else { "" }
+            ),
+        },
         dof: IndexMap::new(),
         sigma: IndexMap::new(),
         n_observations: refined.steps.len(),
         coefficients,
-        covariance,
+        type_a: covariance,
         undetermined: Vec::new(),
         validity: IndexMap::new(),
         diagnostics: Diagnostics {

@@ -19,9 +19,11 @@ use froude_panel::solve;
 use froude_panel::study::{Size, study};
 use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
-use froude_records::estimate::{Coefficient, DataFile, ESTIMATE_SCHEMA, Estimate, EstimateFile, Law, Measured, Status};
+use froude_records::estimate::{
+    Coefficient, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Signs,
+    Status, keyed,
+};
 use froude_records::finding::{Finding, Severity};
-use froude_records::hash::sha256_of_file;
 use froude_report::document::{Document, DocumentSection, TextTable};
 use froude_report::number;
 use indexmap::IndexMap;
@@ -30,9 +32,9 @@ use super::body::BodyJob;
 use super::exports::{G_M_S2, of_parts_for_program, words_of_parts};
 use super::family::{Family, robot};
 use super::frame::{Axes, sentence};
-use super::links::{default_out, file_name, no_density};
+use super::links::{default_out, no_density};
 use super::load::{is_body_file, load, of_a_mesh_only};
-use super::record::{MOTIONS, replaces_another_frame, unit};
+use super::record::{MOTIONS, mesh_file, of_the_mesh, replaces_another_frame, unit};
 use super::refine::{LOOSE, ZERO};
 use crate::Error;
 
@@ -185,9 +187,18 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     };
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
-        data: vec![DataFile { path: file_name(&job.input), sha256: sha256_of_file(&job.input)? }],
+        data: keyed(vec![mesh_file(&job.input)?]),
         versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: vec![record(&name, &loaded.parts, &value, &uncertainty, density_kg_m3, meshes, &frame, &notes)],
+        estimates: vec![of_the_mesh(record(
+            &name,
+            &loaded.parts,
+            &value,
+            &uncertainty,
+            density_kg_m3,
+            meshes,
+            &frame,
+            &notes,
+        ))],
         findings,
     };
     let place = sentence(&frame, "each part's own point");
@@ -455,6 +466,8 @@ fn record(
             coefficients.insert(
                 format!("A{}_{}", i + 1, j + 1),
                 Coefficient {
+                    label: None,
+                    nuisance: false,
                     value: Some(a),
                     unit: unit(i % 6, j % 6).to_owned(),
                     status: Status::Free,
@@ -471,22 +484,37 @@ fn record(
         id: format!("{name}/added_mass_parts"),
         source: name.to_owned(),
         kind: "potential".to_owned(),
-        model: "added_mass_parts".to_owned(),
-        law: Law { version: 1, ..Law::default() },
-        geometry: IndexMap::new(),
-        density: Some(Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() }),
-        frame: frame.to_owned(),
-        reference_point: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
-        method: format!(
-            "potential flow, constant panels, direct formulation, unbounded water; {meshes} similar meshes{}",
-            if meshes > 1 { ", extrapolated" } else { "" }
-        ),
-        covariance_kind: "numerical uncertainty of each entry alone, 95 %".to_owned(),
+        law: Law { name: "added_mass_parts".to_owned(), version: 1, ..Law::default() },
+        refers_to: IndexMap::from([(
+            "density".to_owned(),
+            Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() },
+        )]),
+        frame: froude_records::estimate::Frame { words: frame.to_owned(), ..Default::default() },
+        point: ReferencePoint {
+            words: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
+            stated: true,
+        },
+        signs: Signs("loads of the fluid on the body are minus the matrix times the accelerations".to_owned()),
+        attitude: None,
+        data: Vec::new(),
+        clusters: None,
+        derived: IndexMap::new(),
+        errors: IndexMap::new(),
+        interval: Interval { of: "mesh".to_owned(), ..Interval::default() },
+        method: MethodUsed {
+            name: "panels".to_owned(),
+            version: 1,
+            words: format!(
+                "potential flow, constant panels, direct formulation, unbounded water; {meshes} similar meshes{}; numerical uncertainty of \
+                 each entry alone, 95 %",
+                if meshes > 1 { ", extrapolated" } else { "" }
+            ),
+        },
         dof: IndexMap::new(),
         sigma: IndexMap::new(),
         n_observations: meshes,
         coefficients,
-        covariance: None,
+        type_a: None,
         undetermined: Vec::new(),
         validity: IndexMap::new(),
         diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },

@@ -7,13 +7,15 @@ use froude_fit::budget::Uncertain;
 use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
 use froude_identify::carriage::coefficient::{Coefficient, Method};
 use froude_identify::carriage::report::{DragReport, drag_report};
-use froude_identify::carriage::run::{self as drag_run, Ballast, DragRun, DragSetup, Efficiency, SensorBudget};
+use froude_identify::carriage::run::{
+    self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget,
+};
 use froude_records::campaign::Campaign;
-use froude_records::estimate::{DataFile, ESTIMATE_SCHEMA, EstimateFile};
+use froude_records::estimate::{ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
-use froude_records::hash::sha256_of_file;
+use froude_records::hash::{sha256_of_file, short_key};
 use froude_records::json::read_estimates;
-use froude_records::run::{AxisConstants, RunKind};
+use froude_records::run::{AxisConstants, RunKind, RunLog};
 use froude_records::text::counted;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
@@ -23,7 +25,10 @@ use indexmap::IndexMap;
 use super::drive::STOPPED_EARLY;
 use super::runs::{Runs, density_kg_m3, for_drag, read};
 use super::servo::two_masses;
+use super::source::{Carriage, files_of};
 use crate::Error;
+use crate::data_files::DataFiles;
+use crate::method::Method as _;
 
 /// What to reduce.
 #[derive(Debug, Clone)]
@@ -87,6 +92,7 @@ pub(super) fn reduce(runs: Runs) -> Result<Reduction, Error> {
     setup.flexible = two_masses.map(|report| report.flexible());
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
     setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
+    setup.keys = ErrorKeys { calibration: calibrated_by(&runs)?, rig: constants.map(rig_key) };
     let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
     let stopped = stopped_early(&runs, &reduced);
     setup.looks = stopped.map_or(1, |s| s.planned);
@@ -118,10 +124,15 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     if runs.beside > 0 {
         replaces_no_more(&out, &runs, job.out.is_some())?;
     }
-    let Reduction { runs, setup, calibration, report } = reduce(runs)?;
+    let Reduction { runs, setup, calibration, mut report } = reduce(runs)?;
+    let named_as = |path: &Path| path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let mut files = DataFiles::new(&named_as);
+    for estimate in &mut report.estimates {
+        estimate.data = files.keys_of(&files_of(&runs), |role| Carriage.observes(&estimate.method.name, role))?;
+    }
     let file = EstimateFile {
         schema: ESTIMATE_SCHEMA.to_owned(),
-        data: data_of(&runs)?,
+        data: files.into_map(),
         versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
         estimates: report.estimates.clone(),
         findings: report.findings.clone(),
@@ -135,7 +146,7 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
 fn replaces_no_more(out: &Path, runs: &Runs, is_chosen: bool) -> Result<(), Error> {
     let Ok(old) = read_estimates(&out.join("estimate.json")) else { return Ok(()) };
     let named: BTreeSet<_> = runs.logs.iter().filter_map(|log| log.path.file_name()).collect();
-    let mut others = old.data.iter().filter(|file| !named.contains(std::ffi::OsStr::new(&file.path)));
+    let mut others = old.data.values().filter(|file| !named.contains(std::ffi::OsStr::new(&file.path)));
     let Some(first) = others.next() else { return Ok(()) };
     if is_chosen && old.data.len() <= named.len() {
         return Ok(());
@@ -253,6 +264,7 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> Dr
     if let Some(campaign) = campaign {
         setup.name.clone_from(&campaign.name);
         setup.reference_area_m2 = campaign.body.as_ref().and_then(|b| b.reference_area_m2);
+        setup.travel = campaign.body.as_ref().and_then(|b| b.travel);
     }
     let spec = carriage.map(|c| &c.rig.y);
     if let Some(c) = spec.map(|s| &s.constants).or(axis) {
@@ -338,14 +350,17 @@ pub(crate) fn calibration_from(
     }
 }
 
-pub(crate) fn data_of(runs: &Runs) -> Result<Vec<DataFile>, Error> {
-    runs.logs
-        .iter()
-        .map(|log| {
-            let path = log.path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-            Ok(DataFile { path, sha256: sha256_of_file(&log.path)? })
-        })
-        .collect()
+/// Key of a calibration: of the runs that it was made from. Whoever calibrates with the same runs has the same error.
+fn calibrated_by(runs: &Runs) -> Result<Option<String>, Error> {
+    let of = |log: &&RunLog| log.meta.kind == RunKind::Calibration;
+    let mut sums = runs.logs.iter().filter(of).map(|log| sha256_of_file(&log.path)).collect::<Result<Vec<_>, _>>()?;
+    sums.sort_unstable();
+    Ok((!sums.is_empty()).then(|| format!("force_per_volt/{}", short_key(sums.join(" ").as_bytes()))))
+}
+
+/// Key of a rig: of the constants that its runs declare. Campaigns that declare the same ones drove the same rig.
+fn rig_key(constants: &AxisConstants) -> String {
+    format!("rig/{}", short_key(format!("{constants:?}").as_bytes()))
 }
 
 /// The page: the paper's Table IV with what it lacked.

@@ -2,34 +2,78 @@
 
 use std::path::Path;
 
-use froude_identify::IdentifyError;
-use froude_identify::carriage::coefficient::{Coefficient, Method};
+use froude_identify::carriage::coefficient::{Coefficient, Method as CarriageMethod};
 use froude_identify::carriage::report::recommended;
 use froude_identify::selection::{Recommendation, leave_one_out};
-use froude_identify::source::SourceResult;
-use froude_records::campaign::Source;
+use froude_identify::source::{ReadFile, SourceResult};
+use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
-use froude_records::nearest::meant;
 
 use super::drag::{KINDS, Reduction, reduce};
-use super::runs::read;
+use super::runs::{Runs, read};
 use crate::Error;
+use crate::method::Method;
 
-/// Reduces the runs of a source by its methods: a result for each, in the order asked for.
-///
-/// # Errors
-///
-/// A method that there is not, runs that cannot be read, or none that any of the methods can use.
-pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) -> Result<Vec<SourceResult>, Error> {
-    let methods = methods(source)?;
+/// The five methods of the towing carriage: one reduction, one setup.
+pub(crate) struct Carriage;
+
+/// Their names, those of [`CarriageMethod::ALL`].
+const NAMES: [&str; 5] = ["fsm", "mcd", "mbdp_constant", "mbdp_mapped", "mbdp_flexible"];
+
+fn named(name: &str) -> Option<CarriageMethod> {
+    CarriageMethod::ALL.into_iter().find(|method| method.name() == name)
+}
+
+impl Method for Carriage {
+    fn names(&self) -> &'static [&'static str] {
+        &NAMES
+    }
+
+    fn words(&self, name: &str) -> &'static str {
+        named(name).map_or("", CarriageMethod::words)
+    }
+
+    fn observes(&self, name: &str, role: &str) -> bool {
+        named(name).is_some_and(|method| is_read_by(method, role))
+    }
+
+    fn identify(
+        &self,
+        _: &Campaign,
+        source: &Source,
+        asked: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Vec<SourceResult>, Error> {
+        let methods: Vec<CarriageMethod> = asked.iter().filter_map(|name| named(name)).collect();
+        identify(source, source.input.path(), &methods, progress)
+    }
+}
+
+/// Whether a method takes its observations from runs of a kind; the calibration is an error under its own key.
+pub(super) fn is_read_by(method: CarriageMethod, role: &str) -> bool {
+    match method {
+        CarriageMethod::Fsm => role == "wet",
+        CarriageMethod::Mcd => matches!(role, "wet" | "dry"),
+        CarriageMethod::MbdpConstant | CarriageMethod::MbdpMapped => matches!(role, "wet" | "dry" | "friction"),
+        CarriageMethod::MbdpFlexible => matches!(role, "wet" | "dry" | "friction" | "excitation"),
+    }
+}
+
+/// Reduces the runs of a source: a result for each method, in the order asked for.
+fn identify(
+    source: &Source,
+    folder: &Path,
+    methods: &[CarriageMethod],
+    progress: &dyn Fn(&str),
+) -> Result<Vec<SourceResult>, Error> {
     progress("reading the runs");
     let Reduction { runs, mut report, .. } = reduce(read(&[folder.to_owned()], &KINDS, None)?)?;
-    let files: Vec<_> = runs.logs.iter().map(|log| log.path.clone()).collect();
+    let files = files_of(&runs);
     // What is said of a method that nobody asked for is none of this source's.
     let is_asked = |finding: &Finding| {
-        let others = Method::ALL.into_iter().filter(|method| !methods.contains(method));
-        others.map(Method::name).all(|name| !finding.message.starts_with(&format!("{name}: ")))
+        let others = CarriageMethod::ALL.into_iter().filter(|method| !methods.contains(method));
+        others.map(CarriageMethod::name).all(|name| !finding.message.starts_with(&format!("{name}: ")))
     };
     report.findings.retain(is_asked);
     let mut out = Vec::new();
@@ -37,7 +81,7 @@ pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) 
     let mut fitted: Vec<(Coefficient, Estimate)> = fitted.collect();
     // One of the methods that were asked for.
     let chosen = recommended(fitted.iter().map(|(coefficient, _)| coefficient).filter(|c| methods.contains(&c.method)));
-    for &method in &methods {
+    for &method in methods {
         let Some(i) = fitted.iter().position(|(coefficient, _)| coefficient.method == method) else {
             // Whoever names no method gets those that the runs allow.
             if !source.methods.is_empty() {
@@ -48,7 +92,7 @@ pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) 
         };
         let (coefficient, estimate) = fitted.swap_remove(i);
         let estimate = Estimate { recommended: chosen == Some(method), ..estimate };
-        out.push(result(source, coefficient, estimate, runs.logs.len()));
+        out.push(SourceResult { files: files.clone(), ..result(source, coefficient, estimate, runs.logs.len()) });
     }
     if runs.campaign.is_none() {
         report.findings.push(Finding::new(
@@ -68,32 +112,12 @@ pub(crate) fn identify(source: &Source, folder: &Path, progress: &dyn Fn(&str)) 
         )));
     };
     first.findings = report.findings.into_iter().map(|finding| finding.of_source(&source.name)).collect();
-    first.files = files;
     Ok(out)
 }
 
-/// The methods that a source asks for; all of them where it asks for none.
-fn methods(source: &Source) -> Result<Vec<Method>, Error> {
-    if source.methods.is_empty() {
-        return Ok(Method::ALL.to_vec());
-    }
-    let of = |(i, name): (usize, &String)| {
-        Method::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
-            let known = Method::ALL.map(Method::name);
-            let advice = meant(name, known).unwrap_or_else(|| format!("there are {}", known.join(", ")));
-            let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);
-            Error::Identify(IdentifyError::Campaign { place, what: format!("method {name:?} is not known; {advice}") })
-        })
-    };
-    let methods: Vec<Method> = source.methods.iter().enumerate().map(of).collect::<Result<_, Error>>()?;
-    match (1..methods.len()).find(|&i| methods[..i].contains(&methods[i])) {
-        None => Ok(methods),
-        Some(i) => {
-            let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);
-            let what = format!("method {:?} is named twice", methods[i].name());
-            Err(Error::Identify(IdentifyError::Campaign { place, what }))
-        }
-    }
+/// The logs of runs, each in the role of its kind.
+pub(super) fn files_of(runs: &Runs) -> Vec<ReadFile> {
+    runs.logs.iter().map(|log| ReadFile::new(log.path.clone(), log.meta.kind.name())).collect()
 }
 
 fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read: usize) -> SourceResult {

@@ -1,0 +1,61 @@
+//! The files that a record names, each once, with its fingerprint and a short key.
+
+use std::path::{Path, PathBuf};
+
+use froude_identify::source::ReadFile;
+use froude_records::estimate::DataFile;
+use indexmap::IndexMap;
+
+use crate::Error;
+
+/// Files in the order of their first naming.
+pub(crate) struct DataFiles<'a> {
+    /// How a path is written.
+    named: &'a dyn Fn(&Path) -> String,
+    files: Vec<(PathBuf, DataFile)>,
+}
+
+impl<'a> DataFiles<'a> {
+    /// None yet; `named` says how a path is written in the record.
+    pub fn new(named: &'a dyn Fn(&Path) -> String) -> Self {
+        Self { named, files: Vec::new() }
+    }
+
+    /// Takes a file in, if it is new; its key.
+    ///
+    /// # Errors
+    ///
+    /// It cannot be read.
+    pub fn key(&mut self, path: &Path, role: &str) -> Result<String, Error> {
+        let at = match self.files.iter().position(|(known, _)| known == path) {
+            Some(at) => at,
+            None => {
+                let file = DataFile { role: Some(role.to_owned()), ..DataFile::of(path, &(self.named)(path))? };
+                self.files.push((path.to_owned(), file));
+                self.files.len() - 1
+            }
+        };
+        Ok(format!("d{}", at + 1))
+    }
+
+    /// Takes files in; the keys of those that hold the observations of `method`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::key`].
+    pub fn keys_of(&mut self, files: &[ReadFile], observed: impl Fn(&str) -> bool) -> Result<Vec<String>, Error> {
+        let mut out = Vec::new();
+        for file in files {
+            let key = self.key(&file.path, &file.role)?;
+            if observed(&file.role) {
+                out.push(key);
+            }
+        }
+        Ok(out)
+    }
+
+    /// All of them by key.
+    pub fn into_map(self) -> IndexMap<String, DataFile> {
+        froude_records::estimate::keyed(self.files.into_iter().map(|(_, file)| file).collect())
+    }
+}

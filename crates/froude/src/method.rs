@@ -1,0 +1,111 @@
+//! The one seam: whatever makes estimates of a source is a [`Method`], and [`METHODS`] is the list of them.
+//!
+//! A source of a campaign names a table or runs, and for runs its methods. Each method reduces what it is given to observations, fits them by
+//! the common regression with the common budget, and gives a [`SourceResult`]: data, fits, estimates, findings, files. After it there is one
+//! comparison, one record, one page and one writer ([`crate::pipeline`]).
+
+use froude_identify::source::{SourceResult, identify_source};
+use froude_records::campaign::{Campaign, Input, Source};
+use froude_records::nearest::meant;
+
+use crate::Error;
+use crate::carriage::source::Carriage;
+
+/// A way from a source to estimates.
+pub(crate) trait Method: Sync {
+    /// Names that a campaign may ask for, in the order of their results; several where they share one reduction.
+    fn names(&self) -> &'static [&'static str];
+
+    /// What each of them does, in words.
+    fn words(&self, name: &str) -> &'static str;
+
+    /// Whether files of a role hold the observations of one of its names; what it reads besides is an error under its own key.
+    fn observes(&self, name: &str, role: &str) -> bool;
+
+    /// Reduces and fits a source by the names asked for.
+    ///
+    /// # Errors
+    ///
+    /// What cannot be read, or gives none of them.
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        asked: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Vec<SourceResult>, Error>;
+}
+
+/// All methods that read runs; the first is that of runs whose source names none.
+const METHODS: [&dyn Method; 1] = [&Carriage];
+
+/// The rows of a table, fitted with every law that the campaign asks for.
+struct Table;
+
+impl Method for Table {
+    fn names(&self) -> &'static [&'static str] {
+        &["table"]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "rows of a table"
+    }
+
+    fn observes(&self, _: &str, role: &str) -> bool {
+        role == "table"
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Vec<SourceResult>, Error> {
+        Ok(vec![identify_source(campaign, source, &|model| progress(&format!("fitting {model}")))?])
+    }
+}
+
+/// The method of a source with the names that it is asked for.
+///
+/// # Errors
+///
+/// A name that no method answers to, one twice, or names of two methods: these need runs of two kinds, and so two sources.
+pub(crate) fn of(source: &Source) -> Result<(&'static dyn Method, Vec<&'static str>), Error> {
+    if !matches!(source.input, Input::Runs(_)) {
+        return Ok((&Table, vec!["table"]));
+    }
+    let refuse = |i: usize, what: String| {
+        let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);
+        Err(Error::Identify(froude_identify::IdentifyError::Campaign { place, what }))
+    };
+    if source.methods.is_empty() {
+        return Ok((METHODS[0], METHODS[0].names().to_vec()));
+    }
+    let mut asked: Vec<(&'static dyn Method, &'static str)> = Vec::new();
+    for (i, name) in source.methods.iter().enumerate() {
+        let known = || METHODS.iter().flat_map(|method| method.names().iter().map(move |name| (*method, *name)));
+        let Some((method, name)) = known().find(|(_, known)| known == name) else {
+            let names = || known().map(|(_, name)| name);
+            let all = names().collect::<Vec<_>>().join(", ");
+            let advice = meant(name, names()).unwrap_or_else(|| format!("there are {all}"));
+            return refuse(i, format!("method {name:?} is not known; {advice}"));
+        };
+        if asked.iter().any(|(_, other)| *other == name) {
+            return refuse(i, format!("method {name:?} is named twice"));
+        }
+        if let Some((first, other)) = asked.first().filter(|(first, _)| first.names() != method.names()) {
+            let kinds = [first.words(other), method.words(name)];
+            return refuse(
+                i,
+                format!(
+                    "{other:?} ({}) and {name:?} ({}) read runs of two kinds; give each a [[source]] of its own",
+                    kinds[0], kinds[1]
+                ),
+            );
+        }
+        asked.push((method, name));
+    }
+    let method = asked[0].0;
+    Ok((method, asked.into_iter().map(|(_, name)| name).collect()))
+}
