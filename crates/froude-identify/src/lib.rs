@@ -17,6 +17,7 @@ pub mod columns;
 mod common;
 pub mod compare;
 pub mod dataset;
+pub mod decay;
 pub mod diagnosis;
 pub mod dissipation;
 pub mod eiv;

@@ -6,6 +6,7 @@
 //!
 //! Quantities are SI here; paths are joined to the campaign's folder.
 
+use crate::run::Declared;
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
@@ -156,10 +157,56 @@ pub struct Source {
     pub uncertainty: Vec<BudgetEntry>,
     /// A fitted tare that is subtracted.
     pub tare: Option<Tare>,
+    /// What swings in its releases, for the methods of free decay.
+    pub decay: Option<DecaySpec>,
     /// What is to be run.
     pub plan: Vec<PlanBlock>,
     /// Where it stands in the campaign.
     pub place: Place,
+}
+
+/// A body that is displaced and let go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DecaySpec {
+    /// What it does.
+    pub axis: Motion,
+    /// Dry inertia of all that moves, kg or kg m².
+    pub inertia: Declared,
+    /// Stiffness of springs or hydrostatics, N/m or N m/rad.
+    pub stiffness: Declared,
+    /// The time from which it is free, s of each log; from its first passage through rest where it is not declared.
+    pub free_from_s: Option<f64>,
+    /// Half cycles left out after that.
+    pub skip_half_cycles: usize,
+}
+
+/// A motion of a rigid body, in the order of a 6 × 6 matrix.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Motion {
+    /// Along x.
+    Surge,
+    /// Along y.
+    Sway,
+    /// Along z.
+    Heave,
+    /// About x.
+    Roll,
+    /// About y.
+    Pitch,
+    /// About z.
+    Yaw,
+}
+
+impl Motion {
+    /// Each of them.
+    pub const ALL: [Self; 6] = [Self::Surge, Self::Sway, Self::Heave, Self::Roll, Self::Pitch, Self::Yaw];
+    pub(crate) const NAMES: [&'static str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
+
+    /// Whether it turns the body.
+    #[must_use]
+    pub const fn is_rotation(self) -> bool {
+        matches!(self, Self::Roll | Self::Pitch | Self::Yaw)
+    }
 }
 
 /// Kind of a source.
@@ -479,6 +526,7 @@ impl Campaign {
                 group: None,
                 uncertainty: Vec::new(),
                 tare: None,
+                decay: None,
                 plan: Vec::new(),
                 place: Place::whole(table),
             }],

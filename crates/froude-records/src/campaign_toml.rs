@@ -8,10 +8,11 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use crate::campaign::{
-    AngleOffset, BodyAxis, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, LinkSpec,
-    PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
+    AngleOffset, BodyAxis, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, DecaySpec, Fluid, Identify, Input,
+    LinkSpec, Motion, PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare,
+    Truth, UserModel,
 };
-use crate::carriage_toml::carriage;
+use crate::carriage_toml::{INERTIA, carriage, positive_constant};
 use crate::error::RecordError;
 use crate::hash::short_key;
 use crate::keep::parse_keep;
@@ -25,6 +26,9 @@ use crate::units::Dimension;
 const MOST_STEPS: f64 = 100_000.0;
 /// A stop this part of a step beyond the last one is on it: the rounding of a step with a few digits.
 const ON_A_STEP: f64 = 1e-6;
+
+/// N/m.
+const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
 
 /// Kinds of covariance that can be asked for.
 const COVARIANCES: [&str; 3] = ["classical", "HC3", "cluster"];
@@ -144,7 +148,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 16] = [
+const SOURCE_KEYS: [&str; 17] = [
     "name",
     "kind",
     "table",
@@ -160,6 +164,7 @@ const SOURCE_KEYS: [&str; 16] = [
     "group",
     "uncertainty",
     "tare",
+    "decay",
     "plan",
 ];
 
@@ -206,7 +211,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         })
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
-    let (methods, method_places) = s.placed_texts("method")?.into_iter().unzip();
+    let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
     if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs(_))) {
         return Err(s.wrong("method", value, "says how runs are reduced, but the source names no runs"));
     }
@@ -217,6 +222,12 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         let problem =
             "belongs to the rows of a table; the budget of runs follows from the campaign that they were driven by";
         return Err(s.wrong(key, value, problem));
+    }
+    let is_decay = methods.iter().any(|method| method.starts_with("decay"));
+    if let (Some(value), false) = (s.get("decay"), is_decay) {
+        let problem =
+            "says what swings, but no method of the source is one of free decay: write method = \"decay_output_error\"";
+        return Err(s.wrong("decay", value, problem));
     }
     Ok(Source {
         name,
@@ -230,12 +241,34 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         group: s.text("group")?.map(str::to_owned),
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
+        decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         plan: s.sections("plan")?.iter().map(plan_block).collect::<Result<_, _>>()?,
         place: INPUTS
             .into_iter()
             .find_map(|key| s.get(key))
             .map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
         input,
+    })
+}
+
+/// `[source.decay]`: what is displaced and let go.
+fn decay(s: &Section<'_>) -> Result<DecaySpec, RecordError> {
+    s.only(&["axis", "inertia", "stiffness", "free_from", "skip_half_cycles"])?;
+    let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
+        .ok_or_else(|| s.missing("axis", "say what it does: axis = \"heave\", say"))?;
+    let (inertia, stiffness) =
+        if axis.is_rotation() { (INERTIA, Dimension::MOMENT) } else { (Dimension::MASS, STIFFNESS) };
+    let need = |key: &'static str, dimension, like: &str| {
+        positive_constant(s, key, dimension)?
+            .ok_or_else(|| s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}")))
+    };
+    let like = if axis.is_rotation() { ["0.4 kg m^2", "12 N m"] } else { ["12 kg", "180 N/m"] };
+    Ok(DecaySpec {
+        axis,
+        inertia: need("inertia", inertia, like[0])?,
+        stiffness: need("stiffness", stiffness, like[1])?,
+        free_from_s: s.quantity("free_from", Dimension::TIME)?,
+        skip_half_cycles: s.integer("skip_half_cycles")?.map_or(0, |n| n as usize),
     })
 }
 

@@ -19,7 +19,7 @@ const VOLT_SECOND: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
 /// V/s, of the integral gain.
 const VOLT_PER_SECOND: Dimension = Dimension { m: 2, kg: 1, s: -4, k: 0, a: -1 };
 /// kg m².
-const INERTIA: Dimension = Dimension::new(2, 1, 0);
+pub(crate) const INERTIA: Dimension = Dimension::new(2, 1, 0);
 /// N m s.
 const VISCOUS: Dimension = Dimension::new(2, 1, -1);
 /// N s²/m² = kg/m.
@@ -168,7 +168,7 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
 }
 
 /// A declared constant that is larger than zero.
-fn positive_constant(
+pub(crate) fn positive_constant(
     s: &Section<'_>,
     key: &'static str,
     dimension: Dimension,

@@ -13,6 +13,7 @@
 //! | [`closed_loop`], [`defaults`] | the controller on the twin, and its configuration for this rig |
 //! | [`injection`], [`catalogue`] | what can be broken, and what the controller must say then |
 //! | [`planar`] | motion in the plane with rotation |
+//! | [`decay`] | a body on springs, let go |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock; all chance comes from one seed.
 //!
@@ -43,6 +44,7 @@ pub mod amplifier;
 pub mod campaign;
 pub mod catalogue;
 pub mod closed_loop;
+pub mod decay;
 pub mod defaults;
 pub mod drive;
 pub mod encoder;

@@ -24,6 +24,7 @@ pub use froude_rig as rig;
 pub mod added_mass;
 pub mod carriage;
 mod data_files;
+mod decay;
 pub mod demo;
 mod error;
 pub mod inspect;

@@ -10,6 +10,7 @@ use froude_records::nearest::meant;
 
 use crate::Error;
 use crate::carriage::source::Carriage;
+use crate::decay::FreeDecay;
 
 /// A way from a source to estimates.
 pub(crate) trait Method: Sync {
@@ -37,7 +38,7 @@ pub(crate) trait Method: Sync {
 }
 
 /// All methods that read runs; the first is that of runs whose source names none.
-const METHODS: [&dyn Method; 1] = [&Carriage];
+const METHODS: [&dyn Method; 2] = [&Carriage, &FreeDecay];
 
 /// The rows of a table, fitted with every law that the campaign asks for.
 struct Table;

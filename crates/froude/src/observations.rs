@@ -62,7 +62,7 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
     if let Some(values) = validity::drag_coefficient(data, campaign) {
         columns.push(number("C_D", &values, Unit::one()));
     }
-    if let Some(model) = source.recommendation.as_ref().map(|r| &source.models[r.index]) {
+    if let Some(model) = source.recommendation.as_ref().and_then(|r| source.models.get(r.index)) {
         let fitted = model.law.predict(data, model.law_coefficients())?;
         for (r, load) in model.law.responses.iter().enumerate() {
             let rows = r * data.rows..(r + 1) * data.rows;

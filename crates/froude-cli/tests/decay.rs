@@ -1,0 +1,144 @@
+//! Free decay at the verb: a folder of releases from the twin, a campaign, one record.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bench;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use bench::{findings_of, json, refusal, text};
+use froude::rig::decay::{DecayRig, DecaySensor, Release};
+use serde_json::Value;
+
+/// A heaving body on springs.
+const HEAVE: DecayRig =
+    DecayRig { inertia: 12.0, added: 8.0, linear: 4.0, quadratic: 40.0, stiffness: 180.0, coulomb: 0.0, rest: 0.31 };
+
+const DECLARED: &str = "[source.decay]\naxis = \"heave\"\ninertia = { value = \"12 kg\", standard = \"0.5 %\" }\nstiffness = { value = \
+                        \"180 N/m\", standard = \"0.3 %\" }\n";
+
+/// Releases as logs in a folder; what heads the position.
+fn releases(folder: &Path, rig: DecayRig, n: u64, head: &str) {
+    std::fs::create_dir_all(folder).unwrap();
+    let sensor = DecaySensor { rate_hz: 50.0, noise: 0.2e-3, step: 0.1e-3, drift_per_s: 0.0 };
+    for seed in 1..=n {
+        let release = Release { displacement: 0.1 + 0.005 * seed as f64, held_s: 0.5, free_s: 14.0 };
+        let trace = rig.release(sensor, release, seed);
+        let mut out = format!("time [s],{head}\n");
+        for (t, q) in trace.time_s.iter().zip(&trace.position) {
+            writeln!(out, "{t},{q}").unwrap();
+        }
+        std::fs::write(folder.join(format!("release-{seed}.csv")), out).unwrap();
+    }
+}
+
+fn campaign(folder: &Path, method: &str, declared: &str) -> std::path::PathBuf {
+    let path = folder.join("decay.toml");
+    let source = "[[source]]\nname = \"heave\"\nkind = \"tank\"\nruns = \"releases\"\n";
+    let text = format!(
+        "schema = 1\nname = \"springs\"\n[fluid]\ndensity = \"998 kg/m^3\"\n{source}method = {method}\n{declared}"
+    );
+    std::fs::write(&path, text).unwrap();
+    path
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// Both methods hold the twin's truth in intervals that are worth something, and leave one record and one page like every other source.
+#[test]
+fn releases_of_a_body_on_springs_give_its_added_mass_and_damping() {
+    let folder = tempfile::tempdir().unwrap();
+    releases(&folder.path().join("releases"), HEAVE, 5, "position [m]");
+    let campaign = campaign(folder.path(), "[\"decay_envelope\", \"decay_output_error\"]", DECLARED);
+    let out = json(&["identify", text(&campaign), "--json"]);
+    let estimates = out["estimates"].as_array().unwrap();
+    let ids: Vec<&str> = estimates.iter().map(|e| e["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["heave/decay_envelope", "heave/decay_output_error"]);
+    for estimate in estimates {
+        // Five releases and the declared springs: a twentieth of each coefficient is far more than their intervals should need.
+        for (name, truth) in [("A33", 8.0), ("D_z_I", 4.0), ("D_z_II", 40.0)] {
+            let c = &estimate["coefficients"][name];
+            let [low, high] = [0, 1].map(|k| number(&c["interval_95"][k]));
+            let half = 0.5 * (high - low);
+            assert!(low - half < truth && truth < high + half && half < 0.05 * truth, "{name}: {c}");
+        }
+        assert_eq!(estimate["law"]["outputs"]["f_z"]["formula"], "-A33*v_z_dot - D_z_I*v_z - D_z_II*v_z*abs(v_z)");
+        assert_eq!(estimate["data"].as_array().unwrap().len(), 5);
+        assert_eq!(estimate["clusters"], serde_json::json!({ "by": "run", "n": 5 }));
+        let errors: Vec<&str> =
+            estimate["errors"].as_object().unwrap().values().map(|e| e["name"].as_str().unwrap()).collect();
+        assert_eq!(errors, ["dry inertia", "stiffness"]);
+    }
+    assert_eq!(estimates[1]["recommended"], true);
+    let page = std::fs::read_to_string(folder.path().join("decay-results/report.html")).unwrap();
+    assert!(page.contains("heave, decay_output_error") && page.contains("A33"));
+    let mut tables = std::fs::read_dir(folder.path().join("decay-results")).unwrap().map(|e| e.unwrap().path());
+    let of_envelope = tables.find(|p| text(p).ends_with("envelope.csv")).unwrap();
+    let rows = std::fs::read_to_string(of_envelope).unwrap();
+    assert!(rows.lines().next().unwrap().contains("v_z [m/s]") && rows.lines().count() > 30, "{rows}");
+    // Two readings of the same releases are no evidence for each other.
+    let record = folder.path().join("decay-results/estimate.json");
+    let compared = json(&["compare", text(&record), text(&record), "--json"]);
+    assert!(compared["coefficients"].as_array().unwrap().iter().all(|row| row["e_n"].is_null()), "same data");
+    let inspected = json(&["inspect", text(&record), "--json"]);
+    assert!(inspected.to_string().contains("heave/decay_output_error"), "{inspected}");
+}
+
+/// A wrong declaration shows in A alone: C 2 % too large is 2 % of M + A.
+#[test]
+fn the_springs_are_the_scale_of_everything() {
+    let folder = tempfile::tempdir().unwrap();
+    releases(&folder.path().join("releases"), HEAVE, 3, "position [m]");
+    let of = |declared: &str| {
+        let out = json(&["identify", text(&campaign(folder.path(), "\"decay_output_error\"", declared)), "--json"]);
+        ["A33", "D_z_I", "D_z_II"].map(|name| number(&out["estimates"][0]["coefficients"][name]["value"]))
+    };
+    let (own, stiffer) = (of(DECLARED), of(&DECLARED.replace("180 N/m", "183.6 N/m")));
+    assert!(((12.0 + stiffer[0]) / (12.0 + own[0]) - 1.02).abs() < 1e-6, "{own:?} {stiffer:?}");
+    assert!((1..3).all(|j| (stiffer[j] / own[j] - 1.02).abs() < 1e-6), "{own:?} {stiffer:?}");
+}
+
+/// Friction in the guides is said, and an angle is read for a rotation.
+#[test]
+fn friction_is_said_and_a_rotation_reads_an_angle() {
+    let folder = tempfile::tempdir().unwrap();
+    releases(&folder.path().join("releases"), DecayRig { coulomb: 0.4, ..HEAVE }, 5, "position [m]");
+    let out = json(&["identify", text(&campaign(folder.path(), "\"decay_output_error\"", DECLARED)), "--json"]);
+    assert!(!findings_of(&out, "coulomb-friction").is_empty(), "{}", out["findings"]);
+
+    let roll =
+        DecayRig { inertia: 0.4, added: 0.1, linear: 0.02, quadratic: 0.1, stiffness: 12.0, coulomb: 0.0, rest: 0.0 };
+    let folder = tempfile::tempdir().unwrap();
+    let sensor_in_degrees = "angle [rad]";
+    releases(&folder.path().join("releases"), roll, 5, sensor_in_degrees);
+    let declared = "[source.decay]\naxis = \"roll\"\ninertia = { value = \"0.4 kg m^2\", standard = \"0.5 %\" }\nstiffness = { value = \"12 N m\", \
+                    standard = \"0.3 %\" }\n";
+    let out = json(&["identify", text(&campaign(folder.path(), "\"decay_output_error\"", declared)), "--json"]);
+    let a = &out["estimates"][0]["coefficients"]["A44"];
+    assert!((number(&a["value"]) - 0.1).abs() < 0.01 && a["unit"] == "kg*m^2", "{a}");
+}
+
+/// What is not declared, not there or not a method of these runs is named with its place.
+#[test]
+fn what_is_missing_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = folder.path().join("releases");
+    let told = |method: &str, declared: &str| refusal(&["identify", text(&campaign(folder.path(), method, declared))]);
+    std::fs::create_dir(&runs).unwrap();
+    assert!(told("\"decay_envelope\"", DECLARED).contains("no releases: put one log each there"));
+    releases(&runs, HEAVE, 3, "height [m]");
+    let said = told("\"decay_envelope\"", DECLARED);
+    assert!(said.contains("release-1.csv: a release needs `position [m]`; it has height"), "{said}");
+    let said = told("\"decay_envelope\"", "");
+    assert!(said.contains("decay.toml:8") && said.contains("write [source.decay]"), "{said}");
+    let said = told("\"mcd\"", DECLARED);
+    assert!(said.contains("no method of the source is one of free decay"), "{said}");
+    let said = told("[\"decay_envelope\", \"mcd\"]", DECLARED);
+    assert!(said.contains("read runs of two kinds; give each a [[source]] of its own"), "{said}");
+    let said = told("\"decay_envelop\"", DECLARED);
+    assert!(said.contains("method \"decay_envelop\" is not known; did you mean `decay_envelope`?"), "{said}");
+    let said = told("\"decay_envelope\"", &DECLARED.replace("12 kg", "12 N"));
+    assert!(said.contains("is \"12 N\": expected a mass (kg), found a force (N)"), "{said}");
+}

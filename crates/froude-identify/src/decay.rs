@@ -1,0 +1,40 @@
+//! Free decay: added mass and damping of one axis from releases.
+//!
+//! (M + A) q̈ + D_I q̇ + D_II q̇|q̇| + C (q − q₀) = 0: a body on springs or on its own hydrostatic stiffness is displaced, let go, and swings out.
+//! M and C are declared with their uncertainties; A, D_I and D_II are found, q₀ and the start of each release with them.
+//!
+//! **Setting.** One axis moves, water at rest before each release, far from walls and waves of its own making.
+//! **Frame.** Position along or about the axis; its zero and sign are free.
+//! **Units.** SI; angles in radians.
+//!
+//! | module           | what                                                             | source                       |
+//! |------------------|------------------------------------------------------------------|------------------------------|
+//! | [`run`]          | a release, what is declared                                      | –                            |
+//! | [`envelope`]     | period and decrement of each half cycle                          | Froude 1874, Himeno 1981     |
+//! | [`output_error`] | the equation of motion fitted to the whole                       | Ljung 1999                   |
+//! | [`motion`]       | the motion itself, with its derivatives                          | Hairer et al. 1993           |
+//! | [`fit`]          | coefficients, scatter, what M and C do to them                   | Efron & Stein 1981, GUM      |
+//! | [`record`]        | estimate, rows and line for the page                             | –                            |
+//! | [`simulate`]     | releases as a rig would log them                                 | –                            |
+//!
+//! Not here: the mass of springs (a third of it moves with the body: add it to M), two axes that swing together, waves that come back from the
+//! walls, memory of the free surface (A and D_I are those of the one frequency), the Keulegan–Carpenter number.
+
+mod envelope;
+mod error;
+mod findings;
+pub mod fit;
+mod local;
+pub mod motion;
+mod output_error;
+mod pool;
+pub mod record;
+pub mod run;
+pub mod simulate;
+mod swings;
+
+pub use envelope::{FEWEST_RUNS, envelope};
+pub use error::DecayError;
+pub use fit::{DecayFit, HalfCycle, Method, Range, RunSummary, Scatter};
+pub use output_error::output_error;
+pub use run::{Axis, DecayRun, DecaySetup, DecayWindow};

@@ -1,0 +1,291 @@
+//! What is doubtful about a decay test, with the numbers it rests on.
+
+use std::f64::consts::TAU;
+
+use froude_fit::Report;
+use froude_fit::budget::jackknife_of_one;
+use froude_fit::distribution::coverage_factor;
+use froude_records::finding::{Finding, Severity};
+use froude_records::text::counted;
+
+use super::envelope::{FEWEST_RUNS, Reduced, all_but};
+use super::fit::{DecayFit, HalfCycle};
+use super::pool::{EIGHT_OVER_3_PI, inverse_2};
+use super::run::DecaySetup;
+use super::swings::Swings;
+
+/// Below this ratio of largest to smallest speed, u and u² are correlated by 0.986 and more.
+const TOLD_APART: f64 = 2.0;
+/// A doubt is voiced beyond this many standard deviations of what chance does.
+const BEYOND_CHANCE: f64 = 4.0;
+/// Friction counts as seen at this confidence.
+const SEEN: f64 = 0.99;
+/// A first half cycle is doubted where it is off by this part of its force, and beyond chance.
+const FIRST_OFF: f64 = 0.03;
+/// What takes less than this part of the force is not worth a doubt.
+const WORTH: f64 = 0.01;
+/// Residuals this many times the sensor's noise have something else in them.
+const BEYOND_NOISE: f64 = 1.5;
+/// A second mode has at least this part of the residuals' power in one line.
+const LINE: f64 = 0.3;
+
+fn warning(code: &str, message: String) -> Finding {
+    Finding::new(Severity::Warning, code, message)
+}
+
+/// What the half cycles show, whichever method.
+pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Vec<Finding> {
+    let mut out: Vec<Finding> =
+        reduced.left_out.iter().map(|why| warning("run-left-out", format!("left out: {why}"))).collect();
+    let n = reduced.runs.len();
+    if n < FEWEST_RUNS {
+        out.push(warning(
+            "few-runs",
+            format!(
+                "{}: what changes from release to release is not in the intervals; {FEWEST_RUNS} releases show it, five show it well",
+                counted(n, "release", "releases")
+            ),
+        ));
+    }
+    let [low, high] = fit.range.speed;
+    if high < TOLD_APART * low {
+        out.push(warning(
+            "damping-not-split",
+            format!(
+                "speed amplitudes reach from {low:.3} to {high:.3} only, {TOLD_APART} times is needed: {} and {} are not told \
+                 apart, their sum at these speeds is; release from further out or let it swing longer",
+                fit.names[1], fit.names[2]
+            ),
+        ));
+    }
+    out.extend((1..3).filter_map(|j| negative(fit, j)));
+    out.extend(coulomb(reduced, fit, setup));
+    out.extend(first_half_cycles(fit));
+    for (run, swings) in &reduced.runs {
+        out.extend((swings.unread > 0).then(|| {
+            warning(
+                "swings-unread",
+                format!(
+                    "run {:?}: {} after half cycle {} not used, there is no turning point near its middle: look for a second mode or a wave",
+                    run.id,
+                    counted(swings.unread, "passage is", "passages are"),
+                    swings.half_cycles()
+                ),
+            )
+        }));
+        out.extend(growing(reduced, swings, run.id, setup));
+        out.extend(drifting(swings, run.id, setup));
+    }
+    out
+}
+
+fn negative(fit: &DecayFit, j: usize) -> Option<Finding> {
+    let (name, value) = (&fit.names[j], fit.values[j]);
+    let mean = |of: &dyn Fn(&HalfCycle) -> f64| fit.rows.iter().map(of).sum::<f64>() / fit.rows.len() as f64;
+    let u = mean(&|r| r.speed_amplitude);
+    let force = if j == 1 { value * u } else { EIGHT_OVER_3_PI * value * u * u };
+    if force > -WORTH * mean(&|r| r.force_amplitude.abs()) {
+        return None;
+    }
+    Some(match fit.interval_95(j) {
+        Some([_, high]) if high >= 0.0 => Finding::new(
+            Severity::Note,
+            "negative-damping",
+            format!("{name} is {value:.4}, and its interval reaches to {high:.4}: these releases do not show it"),
+        ),
+        _ => warning(
+            "negative-damping",
+            format!(
+                "{name} is {value:.4}, below zero: water takes energy; look for friction, drift, or too narrow a range"
+            ),
+        ),
+    })
+}
+
+/// A part of the decrement that does not depend on the amplitude.
+fn coulomb(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Option<Finding> {
+    let [force, classical, classical_dof] = all_but(&reduced.sums, None).coulomb(&reduced.pooled)?;
+    let n = reduced.sums.len();
+    let (standard, dof) = if n >= FEWEST_RUNS {
+        jackknife_of_one(n, |g| all_but(&reduced.sums, Some(g)).coulomb(&reduced.pooled).map(|c| c[0]))?
+    } else {
+        (classical, classical_dof)
+    };
+    let unit = if setup.axis.is_rotation() { "N m" } else { "N" };
+    let mean = fit.rows.iter().map(|r| r.force_amplitude).sum::<f64>() / fit.rows.len() as f64;
+    (force > WORTH * mean && standard > 0.0 && force > coverage_factor(SEEN, dof) * standard).then(|| {
+        warning(
+            "coulomb-friction",
+            format!(
+                "each half cycle loses the same whatever its amplitude, as {force:.3e} ± {standard:.1e} {unit} of Coulomb friction \
+                 would take: the damping has friction of the rig in it; free the guides or hang the body"
+            ),
+        )
+    })
+}
+
+/// The first half cycle of each release beside what the law of the others makes of it.
+fn first_half_cycles(fit: &DecayFit) -> Option<Finding> {
+    let x = |r: &HalfCycle| [r.speed_amplitude, EIGHT_OVER_3_PI * r.speed_amplitude * r.speed_amplitude];
+    let (first, others): (Vec<&HalfCycle>, Vec<&HalfCycle>) = fit.rows.iter().partition(|r| r.half_cycle == 0);
+    let (mut normal, mut right, mut square) = ([[0.0; 2]; 2], [0.0; 2], 0.0);
+    for r in &others {
+        let x = x(r);
+        for i in 0..2 {
+            right[i] += x[i] * r.force_amplitude;
+            (0..2).for_each(|j| normal[i][j] += x[i] * x[j]);
+        }
+        square += r.force_amplitude * r.force_amplitude;
+    }
+    let inverse = inverse_2(normal)?;
+    let law: [f64; 2] = std::array::from_fn(|i| inverse[i][0] * right[0] + inverse[i][1] * right[1]);
+    // Each release has a rest position of its own.
+    let dof = others.len() as f64 - 2.0 - first.len() as f64;
+    let n = first.len() as f64;
+    let mean = |of: &dyn Fn(&HalfCycle) -> f64| first.iter().map(|r| of(r)).sum::<f64>() / n;
+    let at = [mean(&|r| x(r)[0]), mean(&|r| x(r)[1])];
+    let force = law[0] * at[0] + law[1] * at[1];
+    let off = mean(&|r| r.force_amplitude) - force;
+    let reach: f64 = (0..2).map(|i| at[i] * (inverse[i][0] * at[0] + inverse[i][1] * at[1])).sum();
+    let variance = (square - law[0] * right[0] - law[1] * right[1]).max(0.0) / dof;
+    let chance = (variance * (1.0 / n + reach)).sqrt();
+    (dof > 0.0 && off.abs() > BEYOND_CHANCE * chance && off.abs() > FIRST_OFF * force.abs()).then(|| {
+        warning(
+            "start-not-free",
+            format!(
+                "the first half cycles lose {:+.1} % against the law of the others ({:.1} times what chance does): the release or the \
+                 water's start is in them; skip half cycles",
+                100.0 * off / force,
+                off.abs() / chance
+            ),
+        )
+    })
+}
+
+/// A swing that is larger than the one before.
+fn growing(reduced: &Reduced<'_>, swings: &Swings, id: &str, setup: &DecaySetup) -> Option<Finding> {
+    let rest = reduced.pooled.rest(swings, setup.stiffness.value);
+    let amplitude = |k: usize| swings.side_of(k) * (swings.turns[k].position - rest);
+    let chance = |k: usize| swings.noise * (swings.turns[k].variance + swings.turns[k + 1].variance).sqrt();
+    let grown = (0..swings.half_cycles())
+        .find(|&k| amplitude(k + 1) - amplitude(k) > BEYOND_CHANCE * chance(k).max(1e-9 * amplitude(k).abs()))?;
+    Some(warning(
+        "swing-grows",
+        format!(
+            "run {id:?}: turn {} is {:.3e} from rest, the one before {:.3e}: another mode or a wave gives energy; let the water \
+             calm down, or use the runs up to there",
+            grown + 1,
+            amplitude(grown + 1),
+            amplitude(grown)
+        ),
+    ))
+}
+
+/// A rest position that moves while the body swings.
+fn drifting(swings: &Swings, id: &str, setup: &DecaySetup) -> Option<Finding> {
+    let t = &swings.turns;
+    let rests: Vec<[f64; 2]> = (1..t.len() - 1)
+        .map(|k| [t[k].time_s, 0.25 * (t[k - 1].position + 2.0 * t[k].position + t[k + 1].position)])
+        .collect();
+    let n = rests.len() as f64;
+    if rests.len() < 4 {
+        return None;
+    }
+    let mean = |of: usize| rests.iter().map(|r| r[of]).sum::<f64>() / n;
+    let (time, rest) = (mean(0), mean(1));
+    let (mut xx, mut xy, mut yy) = (0.0, 0.0, 0.0);
+    for [x, y] in &rests {
+        xx += (x - time).powi(2);
+        xy += (x - time) * (y - rest);
+        yy += (y - rest).powi(2);
+    }
+    let slope = xy / xx;
+    let left = ((yy - slope * xy).max(0.0) / (n - 2.0)).sqrt();
+    let noise = swings.noise * t[0].variance.sqrt();
+    let chance = left.max(noise) / xx.sqrt();
+    let over = slope * (t[t.len() - 1].time_s - t[0].time_s);
+    (slope.abs() > BEYOND_CHANCE * chance && over.abs() > swings.noise).then(|| {
+        warning(
+            "rest-drifts",
+            format!(
+                "run {id:?}: the rest position moves by {over:+.3e} {} while the body swings; both methods take it as fixed",
+                setup.axis.position_unit()
+            ),
+        )
+    })
+}
+
+/// What the fitted motion leaves.
+pub(super) fn of_residuals(fit: &DecayFit, residuals: &[Vec<f64>], reduced: &Reduced<'_>) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for ((run, left), (record, _)) in fit.runs.iter().zip(residuals).zip(&reduced.runs) {
+        let noise = run.noise.max(1e-9 * fit.range.amplitude[1]);
+        if run.residual_rms <= BEYOND_NOISE * noise {
+            continue;
+        }
+        let rate = 1.0 / (left.len() as f64 * record.step_s());
+        let natural = 1.0 / fit.range.period_s;
+        match line(left, record.step_s()) {
+            Some((frequency, amplitude, part)) if part > LINE && is_apart(frequency, natural, rate) => {
+                out.push(warning(
+                    "second-mode",
+                    format!(
+                        "run {:?}: {:.0} % of what the fit leaves swings at {frequency:.3} Hz with {amplitude:.2e} {}, beside {natural:.3} Hz of the \
+                         decay: a second mode; restrain it, or choose the axes of the modes",
+                        run.id,
+                        100.0 * part,
+                        fit.axis.position_unit()
+                    ),
+                ));
+            }
+            _ => out.push(warning(
+                "residuals-beyond-noise",
+                format!(
+                    "run {:?}: the fit leaves {:.2e} {} rms where a sample's noise is {:.2e}: the law of damping is not the whole motion",
+                    run.id,
+                    run.residual_rms,
+                    fit.axis.position_unit(),
+                    run.noise
+                ),
+            )),
+        }
+    }
+    out
+}
+
+/// A frequency that neither the decay itself nor its third harmonic leaves.
+fn is_apart(frequency: f64, natural: f64, resolution: f64) -> bool {
+    [1.0, 3.0].iter().all(|k| (frequency - k * natural).abs() > 1.5 * resolution)
+}
+
+/// Strongest line of a series: frequency, amplitude, its part of the power.
+fn line(series: &[f64], step_s: f64) -> Option<(f64, f64, f64)> {
+    let n = series.len() as f64;
+    let power: f64 = series.iter().map(|x| x * x).sum();
+    let at = |f: f64| {
+        let (mut c, mut s) = (0.0, 0.0);
+        for (i, x) in series.iter().enumerate() {
+            let phase = TAU * f * step_s * i as f64;
+            c += x * phase.cos();
+            s += x * phase.sin();
+        }
+        2.0 / n * c.hypot(s)
+    };
+    // Twice as fine as the record resolves, up to half the rate; long records up to their 500th line.
+    let lines = series.len().min(1000);
+    let best =
+        (1..lines).map(|k| 0.5 * k as f64 / (n * step_s)).map(|f| (f, at(f))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (power > 0.0).then(|| (best.0, best.1, 0.5 * n * best.1 * best.1 / power))
+}
+
+/// The search ended early.
+pub(super) fn not_converged(report: Report) -> Finding {
+    warning(
+        "not-converged",
+        format!(
+            "the fit of the motion stopped after {} without meeting its rule ({:?}); its numbers are the best found",
+            counted(report.iterations, "step", "steps"),
+            report.end
+        ),
+    )
+}

@@ -1,0 +1,191 @@
+//! What either method gives: three coefficients, their scatter, and what the declared numbers do to them.
+
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, Uncertain, combine};
+use froude_fit::faer::Mat;
+use froude_records::finding::Finding;
+
+use super::run::{Axis, DecaySetup};
+
+/// How the coefficients were got.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Turning points and passages.
+    Envelope,
+    /// The whole motion.
+    OutputError,
+}
+
+impl Method {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Envelope, Self::OutputError];
+
+    /// As it stands in records and tables.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Envelope => "decay_envelope",
+            Self::OutputError => "decay_output_error",
+        }
+    }
+
+    /// In words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Envelope => "decrement of each half cycle against its speed amplitude, period from the passages",
+            Self::OutputError => "equation of motion fitted to the whole of each release",
+        }
+    }
+}
+
+/// A half cycle as one row of the common regression F = D_I u + (8/3π) D_II u|u|.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HalfCycle {
+    /// Name of the run.
+    pub run: String,
+    /// Its number in the run, from 0.
+    pub half_cycle: usize,
+    /// Amplitude, mean of the two turning points, m or rad.
+    pub amplitude: f64,
+    /// u: amplitude of the speed, m/s or rad/s.
+    pub speed_amplitude: f64,
+    /// F: amplitude of the damping force of an equivalent linear damper, less its third order in the damping, N or N m.
+    pub force_amplitude: f64,
+    /// What the fit leaves of F, N or N m.
+    pub residual: f64,
+}
+
+impl HalfCycle {
+    /// b_eq = F/u, N s/m or N m s.
+    #[must_use]
+    pub fn equivalent_damping(&self) -> f64 {
+        self.force_amplitude / self.speed_amplitude
+    }
+}
+
+/// A release as it was used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunSummary {
+    /// Its name.
+    pub id: String,
+    /// Samples used.
+    pub samples: usize,
+    /// Half cycles used.
+    pub half_cycles: usize,
+    /// Time of the first sample used, s.
+    pub from_s: f64,
+    /// Position and speed there: fitted by the output error, read by the envelope.
+    pub start: [f64; 2],
+    /// Rest position q₀, m or rad.
+    pub rest: f64,
+    /// Standard deviation of a sample's noise, from fourth differences, m or rad.
+    pub noise: f64,
+    /// Root mean square of what the fit leaves: of positions (output error) or of force amplitudes (envelope).
+    pub residual_rms: f64,
+}
+
+/// Where the coefficients are supported by data.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Amplitudes of speed, m/s or rad/s.
+    pub speed: [f64; 2],
+    /// Amplitudes, m or rad; the Keulegan–Carpenter number 2πa/L is left to who knows the length.
+    pub amplitude: [f64; 2],
+    /// Undamped period 2π/ω_n, s.
+    pub period_s: f64,
+}
+
+/// Type A: how far the coefficients scatter.
+#[derive(Debug, Clone)]
+pub struct Scatter {
+    /// Covariance of the three.
+    pub covariance: Mat<f64>,
+    /// Degrees of freedom of each standard uncertainty.
+    pub dof: [f64; 3],
+    /// In words, e.g. `jackknife over 5 runs`.
+    pub kind: String,
+    /// Who shares the error: `run` or `sample`.
+    pub shared: &'static str,
+}
+
+/// Added mass and damping of one axis.
+#[derive(Debug, Clone)]
+pub struct DecayFit {
+    /// How.
+    pub method: Method,
+    /// Which axis.
+    pub axis: Axis,
+    /// Names of the three, e.g. `A33`, `D_z_I`, `D_z_II`.
+    pub names: [String; 3],
+    /// Added mass, linear and quadratic damping; units in [`Axis::units`].
+    pub values: [f64; 3],
+    /// Type A; `None` where nothing shows it.
+    pub type_a: Option<Scatter>,
+    /// M as declared.
+    pub inertia: Uncertain,
+    /// C as declared.
+    pub stiffness: Uncertain,
+    /// ∂values/∂M.
+    pub by_inertia: [f64; 3],
+    /// ∂values/∂C, exact: the motion knows only ratios to C.
+    pub by_stiffness: [f64; 3],
+    /// Where the coefficients hold.
+    pub range: Range,
+    /// Half cycles as rows.
+    pub rows: Vec<HalfCycle>,
+    /// The releases, in the order given, those left out missing (each with a finding).
+    pub runs: Vec<RunSummary>,
+    /// What is doubtful.
+    pub findings: Vec<Finding>,
+}
+
+impl DecayFit {
+    /// (∂values/∂M, ∂values/∂C): A = C/ω² − M, and damping is C times what the motion shows.
+    pub(super) fn by_declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3]) -> [[f64; 3]; 2] {
+        let c = setup.stiffness.value;
+        [[-1.0, 0.0, 0.0], [(setup.inertia.value + added) / c, linear / c, quadratic / c]]
+    }
+
+    /// The budget: scatter (where known), dry inertia, stiffness.
+    #[must_use]
+    pub fn budget(&self) -> Vec<Part> {
+        let scatter = self.type_a.iter().map(|a| Part {
+            name: a.kind.clone(),
+            shared: a.shared,
+            kind: Kind::A,
+            covariance: a.covariance.clone(),
+            dof: a.dof.to_vec(),
+            shape: Shape::Normal,
+            in_scatter: false,
+            origin: None,
+        });
+        let declared = |name: &str, by: [f64; 3], u: Uncertain| Part {
+            name: name.to_owned(),
+            shared: "campaign",
+            kind: Kind::B,
+            covariance: Mat::from_fn(3, 3, |i, j| by[i] * by[j] * u.standard * u.standard),
+            dof: vec![u.dof; 3],
+            shape: Shape::Normal,
+            in_scatter: false,
+            origin: None,
+        };
+        scatter
+            .chain([
+                declared("dry inertia", self.by_inertia, self.inertia),
+                declared("stiffness", self.by_stiffness, self.stiffness),
+            ])
+            .collect()
+    }
+
+    /// Uncertainty of coefficient `j` (0 added mass, 1 linear, 2 quadratic); `None` without a type A or such a coefficient.
+    #[must_use]
+    pub fn combined(&self, j: usize) -> Option<Combined> {
+        (self.type_a.is_some() && j < 3).then(|| combine(&self.budget(), j, OUTSIDE_95))
+    }
+
+    /// 95 % interval of coefficient `j`.
+    #[must_use]
+    pub fn interval_95(&self, j: usize) -> Option<[f64; 2]> {
+        self.combined(j).map(|c| c.interval(self.values[j]))
+    }
+}

@@ -1,0 +1,225 @@
+//! A decay test as the record, the rows and the findings that every source gives.
+
+use std::f64::consts::PI;
+
+use froude_fit::budget::{Kind, Part};
+use froude_records::campaign::{BoundsSpec, Campaign, Identify, Source};
+use froude_records::estimate::{
+    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output,
+    Range as Stated, ReferencePoint, SharedError, Signs, Status, TypeA,
+};
+use froude_records::units::{Dimension, Unit};
+use indexmap::IndexMap;
+
+use super::fit::{DecayFit, HalfCycle};
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+use crate::regression::{ModelFit, Settings, regress};
+use crate::selection::{Recommendation, leave_one_out};
+use crate::source::SourceResult;
+
+/// The law of the record.
+const LAW: &str = "added_mass_linear_quadratic";
+
+/// Load and velocity along or about the axis, by its letters.
+fn channels(fit: &DecayFit) -> (String, String) {
+    let letters = fit.axis.letters();
+    match letters.strip_prefix('r') {
+        Some(axis) => (format!("m_{axis}"), format!("w_{axis}")),
+        None => (format!("f_{letters}"), format!("v_{letters}")),
+    }
+}
+
+/// Everything about a source that one method found.
+///
+/// # Errors
+///
+/// Numbers that leave what a computer holds.
+pub fn result(
+    fit: &DecayFit,
+    campaign: &Campaign,
+    source: &Source,
+    is_recommended: bool,
+) -> Result<SourceResult, IdentifyError> {
+    let data = rows(fit);
+    let model = drawn(fit, &data, source)?;
+    let estimate = estimate(fit, campaign, source, is_recommended);
+    Ok(SourceResult {
+        name: format!("{}, {}", source.name, fit.method.name()),
+        kind: source.kind,
+        n_read: fit.runs.iter().map(|run| run.samples).sum(),
+        not_fitted: Vec::new(),
+        tests: Vec::new(),
+        scores: vec![leave_one_out(&model, &data)],
+        blocks: Vec::new(),
+        recommendation: Some(Recommendation { index: 0, reason: fit.method.words().to_owned() }),
+        validity: estimate.validity.clone(),
+        findings: fit.findings.clone(),
+        files: Vec::new(),
+        models: vec![model],
+        estimates: vec![estimate],
+        data,
+    })
+}
+
+/// Half cycles as observations: amplitude of the damping force over that of the speed.
+fn rows(fit: &DecayFit) -> Dataset {
+    let (load, velocity) = channels(fit);
+    let of = |value: &dyn Fn(&HalfCycle) -> f64| fit.rows.iter().map(value).collect::<Vec<f64>>();
+    let n = fit.rows.len();
+    let mut data = Dataset {
+        rows: n,
+        configuration: vec![String::new(); n],
+        setup: vec![String::new(); n],
+        run: fit.rows.iter().map(|row| row.run.clone()).collect(),
+        line: (1..=n).collect(),
+        ..Dataset::default()
+    };
+    let is_rotation = fit.axis.is_rotation();
+    let [position, speed, force] = if is_rotation {
+        [Dimension::ANGLE, Dimension::ANGULAR_SPEED, Dimension::MOMENT]
+    } else {
+        [Dimension::LENGTH, Dimension::SPEED, Dimension::FORCE]
+    };
+    data.put("amplitude", of(&|row| row.amplitude), position);
+    data.put(&velocity, of(&|row| row.speed_amplitude), speed);
+    data.put(&load, of(&|row| -row.force_amplitude), force);
+    data
+}
+
+/// The law of amplitudes, F = D_I u + (8/3π) D_II u|u|, with the coefficients held at those found: for points, line and residuals of the page.
+fn drawn(fit: &DecayFit, data: &Dataset, source: &Source) -> Result<ModelFit, IdentifyError> {
+    let (load, velocity) = channels(fit);
+    let [_, linear, quadratic] = &fit.names;
+    let text = format!("-{linear}*{velocity} - {}*{quadratic}*{velocity}*abs({velocity})", 8.0 / (3.0 * PI));
+    let law = ForceLaw::formulas("damping of amplitudes", &IndexMap::from([(load, text)]), data)?;
+    let fixed = [(linear.clone(), fit.values[1]), (quadratic.clone(), fit.values[2])].into_iter().collect();
+    let identify = Identify { fixed, bounds: BoundsSpec::default(), ..Identify::default() };
+    regress(
+        &law,
+        data,
+        Settings {
+            source_name: &source.name,
+            kind: source.kind,
+            identify: &identify,
+            budget: &[],
+            campaign: "",
+            shared_errors: &[],
+            scatter: None,
+            looks: 1,
+        },
+    )
+}
+
+fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: bool) -> Estimate {
+    let (load, velocity) = channels(fit);
+    let [added, linear, quadratic] = &fit.names;
+    let units = fit.axis.units();
+    let coefficients = (0..3).map(|j| {
+        let combined = fit.combined(j);
+        let value = fit.values[j];
+        let coefficient = Coefficient {
+            label: None,
+            value: Some(value),
+            unit: units[j].to_owned(),
+            status: Status::Free,
+            nuisance: false,
+            standard_uncertainty: combined.map(|c| c.standard),
+            type_a: combined.map(|c| c.type_a),
+            type_b: combined.map(|c| c.type_b),
+            interval_95: combined.map(|c| c.interval(value)),
+            effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
+        };
+        (fit.names[j].clone(), coefficient)
+    });
+    let [force, speed, acceleration] = if fit.axis.is_rotation() {
+        [Dimension::MOMENT, Dimension::ANGULAR_SPEED, Dimension::ANGULAR_ACCELERATION]
+    } else {
+        [Dimension::FORCE, Dimension::SPEED, Dimension::ACCELERATION]
+    }
+    .map(|dimension| Unit::si(dimension).text);
+    let formula = format!("-{added}*{velocity}_dot - {linear}*{velocity} - {quadratic}*{velocity}*abs({velocity})");
+    let budget = fit.budget();
+    let refers_to =
+        campaign.fluid.density_kg_m3.map(|value| ("density".to_owned(), Measured { value, unit: "kg/m^3".to_owned() }));
+    let range = |[low, high]: [f64; 2], unit: &str| Stated { low, high, unit: unit.to_owned() };
+    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
+    Estimate {
+        id: format!("{}/{}", source.name, fit.method.name()),
+        source: source.name.clone(),
+        kind: source.kind.name().to_owned(),
+        method: MethodUsed { name: fit.method.name().to_owned(), version: 1, words: fit.method.words().to_owned() },
+        frame: Frame::body(),
+        point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
+        signs: Signs::default(),
+        attitude: None,
+        law: Law {
+            name: LAW.to_owned(),
+            version: 1,
+            inputs: IndexMap::from([(velocity.clone(), speed), (format!("{velocity}_dot"), acceleration)]),
+            outputs: IndexMap::from([(load.clone(), Output { unit: force, formula: Some(formula) })]),
+            constants: IndexMap::new(),
+        },
+        refers_to: refers_to.into_iter().collect(),
+        data: Vec::new(),
+        n_observations: fit.rows.len(),
+        clusters: Some(Clusters { by: "run".to_owned(), n: fit.runs.len() }),
+        dof: fit.type_a.iter().map(|a| (load.clone(), Some(a.dof[1]).filter(|d| d.is_finite()))).collect(),
+        sigma: IndexMap::new(),
+        coefficients: coefficients.collect(),
+        derived: IndexMap::new(),
+        type_a: fit.type_a.as_ref().map(|a| TypeA {
+            names: fit.names.to_vec(),
+            matrix: (0..3).map(|i| (0..3).map(|j| a.covariance[(i, j)]).collect()).collect(),
+            dof: a.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
+            kind: a.kind.clone(),
+        }),
+        errors: if fit.type_a.is_some() { errors(fit, campaign) } else { IndexMap::new() },
+        interval: Interval::default(),
+        undetermined: Vec::new(),
+        validity: IndexMap::from([
+            ("speed".to_owned(), range(fit.range.speed, if fit.axis.is_rotation() { "rad/s" } else { "m/s" })),
+            ("amplitude".to_owned(), range(fit.range.amplitude, fit.axis.position_unit())),
+            ("period".to_owned(), range([fit.range.period_s; 2], "s")),
+        ]),
+        diagnostics: Diagnostics { notes: notes(fit, &budget), ..Diagnostics::default() },
+        recommended,
+        reason: recommended.then(|| fit.method.words().to_owned()),
+    }
+}
+
+/// Inertia and stiffness as declared: sources of the campaign that declare them alike have them in common.
+fn errors(fit: &DecayFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
+    let of = |name: &str, declared: froude_fit::budget::Uncertain, by: [f64; 3]| {
+        let key = format!("{}/{name} {:e} {:e}", campaign.key, declared.value, declared.standard);
+        let error = SharedError {
+            name: name.to_owned(),
+            quantity: name.to_owned(),
+            kind: ErrorKind::B,
+            covariance: vec![vec![declared.standard * declared.standard]],
+            dof: Some(declared.dof).filter(|d| d.is_finite()),
+            limits: None,
+            sensitivity: by.iter().map(|d| vec![*d]).collect(),
+        };
+        (declared.standard > 0.0).then_some((key, error))
+    };
+    [of("dry inertia", fit.inertia, fit.by_inertia), of("stiffness", fit.stiffness, fit.by_stiffness)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+/// The budget of each coefficient, in sentences.
+fn notes(fit: &DecayFit, budget: &[Part]) -> Vec<String> {
+    let units = fit.axis.units();
+    budget
+        .iter()
+        .filter(|part| (0..3).any(|j| part.standard(j) > 0.0))
+        .map(|part| {
+            let each = (0..3).map(|j| format!("{} {:.3e} {}", fit.names[j], part.standard(j), units[j]));
+            let kind = if part.kind == Kind::A { "A" } else { "B" };
+            format!("{} (type {kind}): {}", part.name, each.collect::<Vec<_>>().join(", "))
+        })
+        .collect()
+}

@@ -1,0 +1,232 @@
+//! Turning points and passages of one release.
+//!
+//! A swing begins where the position leaves a band about rest to one side and ends where it leaves it to the other; the band
+//! is as wide as the smallest swing that counts, so that noise about a passage makes none. Guesses from there are
+//! refined by [`super::local`]. The swing before the first passage has the release in it and is used only where the
+//! setup says that the motion is free by then.
+
+use std::f64::consts::PI;
+
+use super::error::DecayError;
+use super::local::{self, FEWEST, REACH_RAD, Spot};
+use super::run::{DecayRun, DecayWindow};
+
+/// Half cycles that a run must have.
+pub const FEWEST_HALF_CYCLES: usize = 3;
+/// Where there is no noise, swings count down to this part of the largest.
+const NOISELESS: f64 = 1e-3;
+
+/// What one release shows.
+#[derive(Debug, Clone)]
+pub struct Swings {
+    /// Turning points, one after the other, to alternate sides.
+    pub turns: Vec<Spot>,
+    /// Passages through the rest position; `passages[k]` comes before `turns[k]`.
+    pub passages: Vec<Spot>,
+    /// Rest position as first guessed, m or rad.
+    pub rest: f64,
+    /// +1 where the first turn is on the positive side.
+    pub side: f64,
+    /// Standard deviation of a sample's noise, m or rad.
+    pub noise: f64,
+    /// Passages after the last one used: a half cycle there has no turning point near its middle.
+    pub unread: usize,
+    /// First sample that is used, and the one after the last.
+    pub samples: [usize; 2],
+}
+
+impl Swings {
+    /// The used part of a run.
+    pub fn of(run: &DecayRun<'_>, window: DecayWindow) -> Result<Self, DecayError> {
+        run.check()?;
+        let id = || run.id.to_owned();
+        let first = window.free_from_s.map_or(0, |t| run.time_s.partition_point(|s| *s < t));
+        let (time_s, q) = (&run.time_s[first..], &run.position[first..]);
+        let noise = local::noise_of(q);
+        let mut rest = midrange(&q[q.len() / 2..]);
+        let range = q.iter().fold(0.0_f64, |m, x| m.max((x - rest).abs()));
+        if range.is_nan() || range <= 2.0 * window.smallest_over_noise * noise {
+            return Err(DecayError::NoMotion { run: id(), range, noise });
+        }
+        let band = (window.smallest_over_noise * noise).max(NOISELESS * range);
+        // The rest of the record's second half is crude; that of the swings themselves is not.
+        for _ in 0..2 {
+            rest = rest_between(&rough_turns(q, rest, band)).unwrap_or(rest);
+        }
+        let crossed = crossings(time_s, q, rest, band);
+        let needed = FEWEST_HALF_CYCLES + 1;
+        if crossed.len() < 2 {
+            let tail = &q[q.len() - q.len() / 10 - 1..];
+            let is_back = tail.iter().all(|x| (x - rest).abs() <= band);
+            return Err(if is_back && crossed.is_empty() {
+                DecayError::OverDamped { run: id() }
+            } else {
+                DecayError::TooFewHalfCycles { run: id(), found: 0, needed: FEWEST_HALF_CYCLES }
+            });
+        }
+        let mut gaps: Vec<f64> = crossed.windows(2).map(|w| w[1].0 - w[0].0).collect();
+        let middle = gaps.len() / 2;
+        let half_period_s = *gaps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let reach_s = REACH_RAD * half_period_s / PI;
+        let in_half_cycle = half_period_s / run.step_s();
+        if 2.0 * reach_s / run.step_s() < FEWEST as f64 {
+            let needed = (FEWEST as f64 * PI / (2.0 * REACH_RAD)).ceil() as usize;
+            return Err(DecayError::TooCoarse { run: id(), found: in_half_cycle, needed });
+        }
+        let (mut passages, mut turns) = (Vec::new(), Vec::new());
+        let (mut side, mut unread) = (0.0, 0);
+        for k in window.skip_half_cycles..crossed.len() {
+            let (guess_s, towards) = crossed[k];
+            let next_s = crossed.get(k + 1).map_or(guess_s + half_period_s, |c| c.0);
+            let passage = local::passage(time_s, q, guess_s, reach_s, rest);
+            let turn = local::turn(time_s, q, 0.5 * (guess_s + next_s), reach_s, noise);
+            let (Some(passage), Some(turn)) = (passage, turn) else {
+                // Too near the record's start the first passage has no window: the next one is the first.
+                if turns.is_empty() {
+                    continue;
+                }
+                unread = crossed.len() - 1 - k;
+                break;
+            };
+            if turns.is_empty() {
+                side = towards;
+            }
+            passages.push(passage);
+            turns.push(turn);
+        }
+        if turns.len() < needed && unread > 0 {
+            return Err(DecayError::Irregular { run: id(), half_cycle: turns.len() });
+        }
+        if turns.len() < needed {
+            let found = turns.len().saturating_sub(1);
+            return Err(DecayError::TooFewHalfCycles { run: id(), found, needed: FEWEST_HALF_CYCLES });
+        }
+        let begins = match window.free_from_s {
+            Some(_) if window.skip_half_cycles == 0 => first,
+            _ => first + time_s.partition_point(|t| *t < passages[0].time_s),
+        };
+        let last_s = turns[turns.len() - 1].time_s;
+        let end = first + time_s.partition_point(|t| *t <= last_s);
+        Ok(Self { turns, passages, rest, side, noise, unread, samples: [begins, end] })
+    }
+
+    /// +1 or −1: the side of turn `k`.
+    pub fn side_of(&self, k: usize) -> f64 {
+        if k.is_multiple_of(2) { self.side } else { -self.side }
+    }
+
+    /// Mean amplitude of the half cycle from turn `k` to the next, m or rad; the rest position cancels.
+    pub fn amplitude(&self, k: usize) -> f64 {
+        0.5 * self.side_of(k) * (self.turns[k].position - self.turns[k + 1].position)
+    }
+
+    /// Half cycles.
+    pub fn half_cycles(&self) -> usize {
+        self.turns.len() - 1
+    }
+}
+
+fn midrange(q: &[f64]) -> f64 {
+    let [low, high] = q.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &x| [a.min(x), b.max(x)]);
+    0.5 * (low + high)
+}
+
+/// Furthest sample of each whole swing.
+fn rough_turns(q: &[f64], rest: f64, band: f64) -> Vec<f64> {
+    let mut out = Vec::new();
+    let (mut side, mut furthest) = (0.0, 0.0_f64);
+    for x in q {
+        let off = x - rest;
+        if off.abs() > band && off.signum() != side {
+            if side != 0.0 {
+                out.push(rest + furthest);
+            }
+            (side, furthest) = (off.signum(), 0.0);
+        }
+        if off * side > furthest * side {
+            furthest = off;
+        }
+    }
+    if out.is_empty() { out } else { out.split_off(1) }
+}
+
+/// Rest between turning points to alternate sides: (x₀ + 2 x₁ + x₂)/4, in which a steady decrement cancels. The median of all: what the change
+/// of the decrement leaves has alternate signs and is least in small swings.
+fn rest_between(turns: &[f64]) -> Option<f64> {
+    let mut rests: Vec<f64> = turns.windows(3).map(|w| 0.25 * (w[0] + 2.0 * w[1] + w[2])).collect();
+    rests.sort_by(f64::total_cmp);
+    let n = rests.len();
+    (n > 0).then(|| 0.5 * (rests[(n - 1) / 2] + rests[n / 2]))
+}
+
+/// Guessed times of passages, with the side that the body goes to, beyond the band.
+fn crossings(time_s: &[f64], q: &[f64], rest: f64, band: f64) -> Vec<(f64, f64)> {
+    let mut out = Vec::new();
+    let mut last: Option<usize> = None;
+    for (i, x) in q.iter().enumerate() {
+        let off = x - rest;
+        if off.abs() <= band {
+            continue;
+        }
+        if let Some(before) = last.filter(|&j| (q[j] - rest) * off < 0.0) {
+            // The straight line between where it left the band and where it left it again.
+            let part = (rest - q[before]) / (x - q[before]);
+            out.push((time_s[before] + part * (time_s[i] - time_s[before]), off.signum()));
+        }
+        last = Some(i);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn record(f: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let time_s: Vec<f64> = (0..1000).map(|i| 0.02 * f64::from(i)).collect();
+        let q = time_s.iter().map(|t| f(*t)).collect();
+        (time_s, q)
+    }
+
+    fn swings(time_s: &[f64], position: &[f64]) -> Result<Swings, DecayError> {
+        Swings::of(&DecayRun { id: "r", time_s, position }, DecayWindow::default())
+    }
+
+    #[test]
+    fn a_held_body_that_is_let_go_is_used_from_its_first_passage() {
+        // Held 3 s at 0.1 beyond a rest of 0.5, then a damped cosine of period 2 s.
+        let (t, q) = record(|t| {
+            let s = (t - 3.0).max(0.0);
+            0.5 + 0.1 * (-0.1 * s).exp() * (PI * s).cos()
+        });
+        let found = swings(&t, &q).unwrap();
+        assert!((found.passages[0].time_s - 3.5).abs() < 2e-4 && found.side == -1.0, "{:?}", found.passages[0]);
+        assert!((found.rest - 0.5).abs() < 1e-4, "{}", found.rest);
+        // The speed is zero at tan φ = −γ/ω_d, a little before the cosine is −1.
+        let early = (0.1 / PI).atan();
+        let expected = 0.1 * (-0.1 * (1.0 - early / PI)).exp() * early.cos();
+        assert!((0.5 - found.turns[0].position - expected).abs() < 2e-4 * expected);
+    }
+
+    #[test]
+    fn what_does_not_swing_is_refused_with_its_reason() {
+        let (t, q) = record(|t| 0.1 * (-t).exp());
+        assert!(matches!(swings(&t, &q), Err(DecayError::OverDamped { .. })), "{:?}", swings(&t, &q));
+        let (t, q) = record(|t| if t < 3.0 { t.cos() } else { 0.0 });
+        assert!(swings(&t, &q).is_err());
+        let (t, q) = record(|_| 0.25);
+        assert!(matches!(swings(&t, &q), Err(DecayError::NoMotion { .. })));
+        let (t, mut q) = record(f64::cos);
+        q[7] = f64::NAN;
+        assert!(matches!(swings(&t, &q), Err(DecayError::NotFinite { index: 7, .. })));
+        let (mut t, q) = record(f64::cos);
+        t[500] += 0.01;
+        let said = swings(&t, &q).unwrap_err().to_string();
+        assert_eq!(
+            said,
+            "run \"r\": sample 500 is 1.000e-2 s off an even step of 2.000e-2 s; put the log on an even clock first"
+        );
+        assert!(matches!(swings(&t[..10], &q), Err(DecayError::Length { .. })));
+        assert!(swings(&[], &[]).is_err() && swings(&[0.0], &[0.0]).is_err());
+    }
+}

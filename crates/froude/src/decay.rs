@@ -1,0 +1,157 @@
+//! Free decay as a source of a campaign: a folder of logs, one release each.
+
+use std::path::{Path, PathBuf};
+
+use froude_identify::decay::{Axis, DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod};
+use froude_identify::decay::{envelope, output_error, record};
+use froude_identify::source::{ReadFile, SourceResult};
+use froude_records::campaign::{Campaign, DecaySpec, Source};
+use froude_records::finding::{Finding, Severity};
+use froude_records::run::{ImportedRun, import_run};
+use froude_records::units::Dimension;
+
+use crate::Error;
+use crate::method::Method;
+
+/// Envelope and output error of releases.
+pub(crate) struct FreeDecay;
+
+/// Their names, those of [`DecayMethod::ALL`].
+const NAMES: [&str; 2] = ["decay_envelope", "decay_output_error"];
+
+/// Role of a log with a release.
+const RELEASE: &str = "release";
+
+fn named(name: &str) -> Option<DecayMethod> {
+    DecayMethod::ALL.into_iter().find(|method| method.name() == name)
+}
+
+impl Method for FreeDecay {
+    fn names(&self) -> &'static [&'static str] {
+        &NAMES
+    }
+
+    fn words(&self, name: &str) -> &'static str {
+        named(name).map_or("", DecayMethod::words)
+    }
+
+    fn observes(&self, _: &str, role: &str) -> bool {
+        role == RELEASE
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        asked: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Vec<SourceResult>, Error> {
+        let Some(spec) = &source.decay else {
+            return Err(Error::Nothing(format!(
+                "{}: nothing is declared of what swings: write [source.decay] with axis = \"heave\", inertia and stiffness, each as {{ value = \
+                 \"12 kg\", standard = \"0.5 %\" }}",
+                source.place
+            )));
+        };
+        let setup = setup_of(spec);
+        progress("reading the releases");
+        let Releases { logs, files, mut findings } = read(source.input.path())?;
+        let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
+        let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
+        let best = methods.iter().copied().max_by_key(|method| *method == DecayMethod::OutputError);
+        let mut out = Vec::new();
+        for &method in &methods {
+            progress(method.words());
+            let fit: DecayFit = match method {
+                DecayMethod::Envelope => envelope(&runs, &setup),
+                DecayMethod::OutputError => output_error(&runs, &setup),
+            }
+            .map_err(|error| {
+                Error::Nothing(format!("{}: {}: {error}", source.input.path().display(), method.name()))
+            })?;
+            let mut result = record::result(&fit, campaign, source, best == Some(method))?;
+            result.files.clone_from(&files);
+            findings.append(&mut result.findings);
+            out.push(result);
+        }
+        if let Some(first) = out.first_mut() {
+            // What both say of a release is said once.
+            let mut said: Vec<Finding> = Vec::new();
+            for finding in findings.into_iter().map(|finding| finding.of_source(&source.name)) {
+                if !said.contains(&finding) {
+                    said.push(finding);
+                }
+            }
+            first.findings = said;
+        }
+        Ok(out)
+    }
+}
+
+fn setup_of(spec: &DecaySpec) -> DecaySetup {
+    let uncertain =
+        |d: froude_records::run::Declared| froude_fit::budget::Uncertain::new(d.value, d.standard_uncertainty);
+    let window = DecayWindow {
+        free_from_s: spec.free_from_s,
+        skip_half_cycles: spec.skip_half_cycles,
+        ..DecayWindow::default()
+    };
+    let axis = Axis::ALL[spec.axis as usize];
+    DecaySetup { window, ..DecaySetup::new(axis, uncertain(spec.inertia), uncertain(spec.stiffness)) }
+}
+
+struct Releases {
+    logs: Vec<ImportedRun>,
+    files: Vec<ReadFile>,
+    findings: Vec<Finding>,
+}
+
+/// Every log in a folder, in the order of the names, with its sidecar where it has one.
+fn read(folder: &Path) -> Result<Releases, Error> {
+    let entries = std::fs::read_dir(folder).map_err(|source| Error::Output { path: folder.to_owned(), source })?;
+    let is_log = |path: &PathBuf| {
+        path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)))
+    };
+    let mut paths: Vec<PathBuf> = entries.filter_map(Result::ok).map(|e| e.path()).filter(is_log).collect();
+    paths.sort();
+    if paths.is_empty() {
+        return Err(Error::Nothing(format!(
+            "{}: no releases: put one log each there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)",
+            folder.display()
+        )));
+    }
+    let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
+    for path in paths {
+        let log = import_run(&path, None)?;
+        // Steps that are not even are refused by the methods; that they are is no news.
+        out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
+        let sidecar = path.with_extension("toml");
+        out.files.push(ReadFile::new(path, RELEASE));
+        if sidecar.exists() {
+            out.files.push(ReadFile::new(sidecar, "sidecar"));
+        }
+        out.logs.push(log);
+    }
+    Ok(out)
+}
+
+/// A log as a release: its time and the channel that moves.
+fn release(log: &ImportedRun, axis: Axis) -> Result<DecayRun<'_>, Error> {
+    let (names, unit): (&[&str], Dimension) = if axis.is_rotation() {
+        (&["angle"], Dimension::ANGLE)
+    } else {
+        (&["y/position", "position"], Dimension::LENGTH)
+    };
+    let channels = &log.log.channels;
+    let found = names.iter().find_map(|name| channels.get(*name).filter(|c| c.unit == unit.to_string()));
+    let Some(position) = found else {
+        let head = if axis.is_rotation() { "angle [deg]" } else { "position [m]" };
+        let there: Vec<&str> = channels.keys().map(|name| name.trim_start_matches("y/")).collect();
+        return Err(Error::Nothing(format!(
+            "{}: a release needs `{head}`; it has {}: head the column so, or map it with a sidecar",
+            log.log.path.display(),
+            if there.is_empty() { "nothing beside the time".to_owned() } else { there.join(", ") }
+        )));
+    };
+    Ok(DecayRun { id: &log.log.meta.id, time_s: &log.log.time_s, position: &position.values })
+}
