@@ -1,8 +1,8 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, dynamic, potential,
-//! coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, dynamic,
+//! potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
 
@@ -15,6 +15,7 @@ mod claims;
 #[path = "../../../froude-panel/examples/coverage/count.rs"]
 mod count;
 mod coverage;
+mod decay;
 mod dynamic;
 mod eiv;
 mod emps;
@@ -72,6 +73,9 @@ fn main() -> ExitCode {
         }
         if wants("carriage") {
             carriage::all(claims, if full { 400 } else { 60 });
+        }
+        if wants("decay") {
+            decay::all(claims, if full { 2_000 } else { 200 });
         }
         if wants("dynamic") {
             dynamic::all(claims, &root, if full { 60 } else { 8 })?;
