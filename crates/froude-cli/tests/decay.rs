@@ -128,9 +128,9 @@ fn what_is_missing_is_named() {
     let told = |method: &str, declared: &str| refusal(&["identify", text(&campaign(folder.path(), method, declared))]);
     std::fs::create_dir(&runs).unwrap();
     assert!(told("\"decay_envelope\"", DECLARED).contains("no releases: put one log each there"));
-    releases(&runs, HEAVE, 3, "height [m]");
+    releases(&runs, HEAVE, 3, "force [N]");
     let said = told("\"decay_envelope\"", DECLARED);
-    assert!(said.contains("release-1.csv: a release needs `position [m]`; it has height"), "{said}");
+    assert!(said.contains("release-1.csv: a release needs `position [m]`; it has force"), "{said}");
     let said = told("\"decay_envelope\"", "");
     assert!(said.contains("decay.toml:8") && said.contains("write [source.decay]"), "{said}");
     let said = told("\"mcd\"", DECLARED);
@@ -141,4 +141,25 @@ fn what_is_missing_is_named() {
     assert!(said.contains("method \"decay_envelop\" is not known; did you mean `decay_envelope`?"), "{said}");
     let said = told("\"decay_envelope\"", &DECLARED.replace("12 kg", "12 N"));
     assert!(said.contains("is \"12 N\": expected a mass (kg), found a force (N)"), "{said}");
+}
+
+/// A start that is not free, methods that disagree, and springs that nobody weighed: each is said, and any column of lengths is the position.
+#[test]
+fn what_is_declared_wrongly_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    releases(&folder.path().join("releases"), HEAVE, 5, "height [m]");
+    let both = "[\"decay_envelope\", \"decay_output_error\"]";
+    let of = |declared: &str| json(&["identify", text(&campaign(folder.path(), both, declared)), "--json"]);
+    let sound = of(DECLARED);
+    assert_eq!(sound["findings"].as_array().unwrap().len(), 0, "{}", sound["findings"]);
+    // The body is held to 0.5 s: 0.42 s is too early by little, 0.1 s by much.
+    let early = of(&format!("{DECLARED}free_from = \"0.42 s\"\n"));
+    assert!(!findings_of(&early, "start-not-free").is_empty(), "{}", early["findings"]);
+    let earlier = of(&format!("{DECLARED}free_from = \"0.1 s\"\n"));
+    assert!(!findings_of(&earlier, "methods-disagree").is_empty(), "{}", earlier["findings"]);
+    let exact = of(&DECLARED.replace(", standard = \"0.3 %\"", ""));
+    let said = findings_of(&exact, "declared-as-exact");
+    assert!(said.len() == 1 && said[0].1.contains("the stiffness is declared without"), "{said:?}");
+    let page = std::fs::read_to_string(folder.path().join("decay-results/report.html")).unwrap();
+    assert!(page.contains("jackknife over 5 runs") && page.contains("dry inertia"), "the budget");
 }

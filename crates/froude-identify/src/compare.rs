@@ -217,8 +217,8 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
             if is_same_data && !is_one_source(a, b) && told.insert(pair) {
                 out.findings.push(same_data_finding(a, b));
             }
-            // Nobody takes two methods of one source for independent.
-            if a.estimate.law.name != b.estimate.law.name || is_one_source(a, b) {
+            // Nobody takes two methods of one source for independent, and each is set beside its like where there is one.
+            if a.estimate.law.name != b.estimate.law.name || is_one_source(a, b) || has_likes(all, a, b) {
                 continue;
             }
             let is_one_method = a.estimate.method.name == b.estimate.method.name;
@@ -328,6 +328,19 @@ fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
 /// True for two models of one source in one record, which nobody takes for independent.
 fn is_one_source(a: &Named<'_>, b: &Named<'_>) -> bool {
     std::ptr::eq(a.record, b.record) && a.estimate.source == b.estimate.source
+}
+
+/// True for two methods, of two sources that each have an estimate of the same law by the other's method too.
+fn has_likes(all: &[Named<'_>], a: &Named<'_>, b: &Named<'_>) -> bool {
+    let has = |source: &Named<'_>, method: &str| {
+        all.iter().any(|n| {
+            is_one_source(n, source)
+                && n.estimate.law.name == source.estimate.law.name
+                && n.estimate.method.name == method
+        })
+    };
+    let [of_a, of_b] = [a, b].map(|n| n.estimate.method.name.as_str());
+    of_a != of_b && has(a, of_b) && has(b, of_a)
 }
 
 /// True where both records name their tables and none of them is the same.

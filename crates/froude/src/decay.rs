@@ -7,7 +7,7 @@ use froude_identify::decay::{envelope, output_error, record};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, DecaySpec, Source};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{ImportedRun, import_run};
+use froude_records::run::{Channel, ImportedRun, import_run};
 use froude_records::units::Dimension;
 
 use crate::Error;
@@ -74,6 +74,7 @@ impl Method for FreeDecay {
             findings.append(&mut result.findings);
             out.push(result);
         }
+        findings.extend(disagreement(&out));
         if let Some(first) = out.first_mut() {
             // What both say of a release is said once.
             let mut said: Vec<Finding> = Vec::new();
@@ -86,6 +87,31 @@ impl Method for FreeDecay {
         }
         Ok(out)
     }
+}
+
+/// Envelope and output error read one motion: where they differ by more than the intervals of both, its law or its start is not the declared one.
+fn disagreement(results: &[SourceResult]) -> Option<Finding> {
+    let [a, b] = results else { return None };
+    let (a, b) = (a.estimates.first()?, b.estimates.first()?);
+    let apart: Vec<String> = a
+        .coefficients
+        .iter()
+        .filter_map(|(name, x)| {
+            let y = b.coefficients.get(name)?;
+            let ((p, [p_low, p_high]), (q, [q_low, q_high])) = ((x.value?, x.interval_95?), (y.value?, y.interval_95?));
+            let is_apart = p_high < q_low || q_high < p_low;
+            is_apart.then(|| format!("{name} {p:.4} and {q:.4} {}", x.unit))
+        })
+        .collect();
+    (!apart.is_empty()).then(|| {
+        let text = format!(
+            "{} and {} differ by more than both intervals allow: {}; look where the body is free (free_from), and at friction, drift and a second mode",
+            a.method.name,
+            b.method.name,
+            apart.join(", ")
+        );
+        Finding::new(Severity::Warning, "methods-disagree", text)
+    })
 }
 
 fn setup_of(spec: &DecaySpec) -> DecaySetup {
@@ -108,7 +134,14 @@ struct Releases {
 
 /// Every log in a folder, in the order of the names, with its sidecar where it has one.
 fn read(folder: &Path) -> Result<Releases, Error> {
-    let entries = std::fs::read_dir(folder).map_err(|source| Error::Output { path: folder.to_owned(), source })?;
+    if folder.is_file() {
+        return Err(Error::Nothing(format!(
+            "{}: `runs` is a folder with one log a release; put the logs that are meant into a folder of their own",
+            folder.display()
+        )));
+    }
+    let entries = std::fs::read_dir(folder)
+        .map_err(|source| Error::Nothing(format!("{}: the folder cannot be read: {source}", folder.display())))?;
     let is_log = |path: &PathBuf| {
         path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)))
     };
@@ -143,7 +176,11 @@ fn release(log: &ImportedRun, axis: Axis) -> Result<DecayRun<'_>, Error> {
         (&["y/position", "position"], Dimension::LENGTH)
     };
     let channels = &log.log.channels;
-    let found = names.iter().find_map(|name| channels.get(*name).filter(|c| c.unit == unit.to_string()));
+    let is_meant = |c: &&Channel| c.unit == unit.to_string();
+    let alike: Vec<&Channel> = channels.values().filter(is_meant).collect();
+    // Any name will do where only one column can be meant.
+    let only = alike.first().copied().filter(|_| alike.len() == 1 && !axis.is_rotation());
+    let found = names.iter().find_map(|name| channels.get(*name).filter(is_meant)).or(only);
     let Some(position) = found else {
         let head = if axis.is_rotation() { "angle [deg]" } else { "position [m]" };
         let there: Vec<&str> = channels.keys().map(|name| name.trim_start_matches("y/")).collect();

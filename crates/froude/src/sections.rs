@@ -224,7 +224,10 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
     };
     if let Some(model) = chosen.and_then(|i| source.models.get(i)) {
         out.points = points(model, &source.data)?;
-        out.budget = budget(model);
+        // Where the fit was made elsewhere, the estimate knows what goes into it.
+        let is_fitted = model.combined.iter().any(Option::is_some);
+        out.budget =
+            if is_fitted { budget(model) } else { source.estimates.first().map(budget_of).unwrap_or_default() };
         out.curves = curves(model, &source.data)?;
     }
     Ok(out)
@@ -238,8 +241,8 @@ fn facts(source: &SourceResult) -> Vec<(String, String)> {
             if names.iter().all(String::is_empty) { "one, not named".to_owned() } else { names.join(", ") }
         }),
     ];
-    if let Some(model) = source.models.first() {
-        out.push(("Covariance".to_owned(), model.covariance_kind.clone()));
+    if let Some(estimate) = source.estimates.first() {
+        out.push(("Covariance".to_owned(), estimate.covariance_kind().to_owned()));
     }
     for estimate in source.estimates.iter().filter(|e| e.recommended) {
         for note in &estimate.diagnostics.notes {
@@ -337,7 +340,35 @@ fn budget(model: &ModelFit) -> Vec<BudgetRow> {
     out
 }
 
+/// The same from an estimate: its scatter and every error that it names.
+fn budget_of(estimate: &Estimate) -> Vec<BudgetRow> {
+    let Some(scatter) = &estimate.type_a else { return Vec::new() };
+    let mut out = Vec::new();
+    for (j, name) in scatter.names.iter().enumerate() {
+        let errors =
+            estimate.errors.values().map(|e| (e.name.clone(), e.between(&e.sensitivity[j], &e.sensitivity[j])));
+        let parts: Vec<(String, f64)> =
+            std::iter::once((scatter.kind.clone(), scatter.matrix[j][j])).chain(errors).collect();
+        let total: f64 = parts.iter().map(|part| part.1).sum();
+        let unit = estimate.coefficients.get(name).map_or_else(String::new, |c| c.unit.clone());
+        out.extend(parts.into_iter().map(|(input, variance)| BudgetRow {
+            model: estimate.law.name.clone(),
+            coefficient: name.clone(),
+            shared: String::new(),
+            input,
+            contribution: variance.max(0.0).sqrt(),
+            unit: unit.clone(),
+            share: if total > 0.0 { variance / total } else { 0.0 },
+        }));
+    }
+    out
+}
+
 fn selection(source: &SourceResult) -> Vec<SelectionRow> {
+    // One fit has nothing to be chosen from.
+    if source.models.iter().all(|model| model.combined.iter().all(Option::is_none)) {
+        return Vec::new();
+    }
     let behind = |model: &ModelFit, load: &str| {
         let best = source.models.iter().filter_map(|m| aicc_of(m, &source.data, load)).fold(f64::INFINITY, f64::min);
         aicc_of(model, &source.data, load)

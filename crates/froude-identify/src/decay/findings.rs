@@ -26,6 +26,12 @@ const FIRST_OFF: f64 = 0.03;
 const WORTH: f64 = 0.01;
 /// Residuals this many times the sensor's noise have something else in them.
 const BEYOND_NOISE: f64 = 1.5;
+/// Part of a period that a release is judged by …
+const FIRST_PART: f64 = 0.08;
+/// … from so many samples on …
+const FEWEST_FIRST: usize = 4;
+/// … and doubted where what the fit leaves there is so many times that of the whole: of noise alone, four samples have 2 times in one of 3,000.
+const FIRST_BEYOND: f64 = 2.2;
 /// A second mode has at least this part of the residuals' power in one line.
 const LINE: f64 = 0.3;
 
@@ -220,6 +226,23 @@ pub(super) fn of_residuals(fit: &DecayFit, residuals: &[Vec<f64>], reduced: &Red
     let mut out = Vec::new();
     for ((run, left), (record, _)) in fit.runs.iter().zip(residuals).zip(&reduced.runs) {
         let noise = run.noise.max(1e-9 * fit.range.amplitude[1]);
+        // A hand that still holds is in the first samples, and hardly in the mean over all of them.
+        let first = ((FIRST_PART * fit.range.period_s / record.step_s()) as usize).min(left.len());
+        let rms = (left[..first].iter().map(|r| r * r).sum::<f64>() / first.max(1) as f64).sqrt();
+        if first >= FEWEST_FIRST && rms > FIRST_BEYOND * run.residual_rms.max(noise) {
+            out.push(warning(
+                "start-not-free",
+                format!(
+                    "run {:?}: over the first {:.2} s from {:.2} s on the fit leaves {rms:.2e} {}, {:.1} times what it leaves over all: the body was not \
+                     free yet; leave free_from out, or let it begin after the release",
+                    run.id,
+                    FIRST_PART * fit.range.period_s,
+                    run.from_s,
+                    fit.axis.position_unit(),
+                    rms / run.residual_rms
+                ),
+            ));
+        }
         if run.residual_rms <= BEYOND_NOISE * noise {
             continue;
         }

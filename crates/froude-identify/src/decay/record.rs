@@ -8,6 +8,7 @@ use froude_records::estimate::{
     Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output,
     Range as Stated, ReferencePoint, SharedError, Signs, Status, TypeA,
 };
+use froude_records::finding::{Finding, Severity};
 use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
@@ -48,19 +49,32 @@ pub fn result(
     Ok(SourceResult {
         name: format!("{}, {}", source.name, fit.method.name()),
         kind: source.kind,
-        n_read: fit.runs.iter().map(|run| run.samples).sum(),
+        n_read: fit.rows.len(),
         not_fitted: Vec::new(),
         tests: Vec::new(),
         scores: vec![leave_one_out(&model, &data)],
         blocks: Vec::new(),
         recommendation: Some(Recommendation { index: 0, reason: fit.method.words().to_owned() }),
         validity: estimate.validity.clone(),
-        findings: fit.findings.clone(),
+        findings: fit.findings.iter().cloned().chain(as_exact(fit)).collect(),
         files: Vec::new(),
         models: vec![model],
         estimates: vec![estimate],
         data,
     })
+}
+
+/// What nobody declared an uncertainty of counts as exact.
+fn as_exact(fit: &DecayFit) -> Vec<Finding> {
+    let declared = [("inertia", fit.inertia), ("stiffness", fit.stiffness)];
+    let exact = declared.into_iter().filter(|(_, number)| number.standard == 0.0);
+    let said = |(name, _)| {
+        let text = format!(
+            "the {name} is declared without a standard uncertainty and counts as exact: write {name} = {{ value = …, standard = \"0.5 %\" }}"
+        );
+        Finding::new(Severity::Warning, "declared-as-exact", text)
+    };
+    exact.map(said).collect()
 }
 
 /// Half cycles as observations: amplitude of the damping force over that of the speed.

@@ -153,11 +153,17 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     out.findings.extend(set);
     out.findings.extend(summed_up(&doubts));
     let singles: Vec<PathBuf> = files.iter().filter(|log| !paths.contains(&folder_of(log))).cloned().collect();
-    out.beside = beside(&singles, kinds)?.len();
+    // A calibration from another folder, beside whole folders of runs, is no part of a campaign: it is asked for its newtons a volt alone.
+    let is_borrowed = |log: &PathBuf| {
+        let kind = out.logs.iter().find(|known| &known.path == log).map(|known| known.meta.kind);
+        kind == Some(RunKind::Calibration) && paths.iter().any(|path| path.is_dir())
+    };
+    let parts: Vec<PathBuf> = singles.iter().filter(|log| !is_borrowed(log)).cloned().collect();
+    out.beside = beside(&parts, kinds)?.len();
     let mut folders: Vec<PathBuf> = paths.iter().filter(|path| path.is_dir()).cloned().collect();
     if out.beside == 0 {
         // All that lies there was named, one by one.
-        folders.extend(singles.iter().map(|log| folder_of(log)).collect::<BTreeSet<_>>());
+        folders.extend(parts.iter().map(|log| folder_of(log)).collect::<BTreeSet<_>>());
     }
     for folder in &folders {
         // That a campaign stopped early is said by whoever pays for it.
