@@ -55,6 +55,16 @@ pub struct DragReport {
 /// [`DragError`] for columns of unequal length, samples that are not finite, impossible declarations, no wet run. A run
 /// without a usable window is no error: it is left out and told.
 pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport, DragError> {
+    drag_by(runs, setup, &Method::ALL)
+}
+
+/// The same by some of the methods; nothing is said of the others.
+///
+/// # Errors
+///
+/// As [`drag_report`].
+pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> Result<DragReport, DragError> {
+    let is_asked = |method: Method| methods.contains(&method);
     check(runs, setup)?;
     let wet: Vec<&DragRun<'_>> = tows(runs, BodyState::Wet);
     let dry: Vec<&DragRun<'_>> = tows(runs, BodyState::Dry);
@@ -64,7 +74,7 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     let mut rejected = Vec::new();
     let mut findings = Vec::new();
     let mut coefficients = Vec::new();
-    if wet.iter().any(|r| r.force_n.is_some()) {
+    if is_asked(Method::Fsm) && wet.iter().any(|r| r.force_n.is_some()) {
         let all = wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
         let points = keep(all, Method::Fsm, &mut rejected);
         let type_a = sensed_scatter(&points);
@@ -81,7 +91,7 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     });
     let means: Vec<DryMean> = dry.iter().filter_map(|r| DryMean::of(r, setup)).collect();
     let (mut detectability, mut agrees) = (None, None);
-    if !dry.is_empty() {
+    if is_asked(Method::Mcd) && !dry.is_empty() {
         let points = keep(differences, Method::Mcd, &mut rejected);
         let of_pairs = predict(&means, differences_per_speed(&points), pairs(&points).len(), setup);
         agrees = of_pairs.as_ref().and_then(|d| agreement(&points, d, setup));
@@ -91,11 +101,14 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     }
     let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
     let for_constant = if sweeps.is_empty() { &dry } else { &sweeps };
-    let constant = Method::MbdpConstant;
-    coefficients.extend(model_based(constant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings));
+    if is_asked(Method::MbdpConstant) {
+        let constant = Method::MbdpConstant;
+        coefficients.extend(model_based(constant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings));
+    }
     let everywhere: Vec<&DragRun<'_>> = dry.iter().chain(&sweeps).copied().collect();
     let mapped = [Method::MbdpMapped, Method::MbdpFlexible];
-    for method in mapped.into_iter().filter(|m| *m == Method::MbdpMapped || setup.flexible.is_some()) {
+    let is_possible = |m: &Method| is_asked(*m) && (*m == Method::MbdpMapped || setup.flexible.is_some());
+    for method in mapped.into_iter().filter(is_possible) {
         coefficients.extend(model_based(method, &wet, &everywhere, &dry, setup, &mut rejected, &mut findings));
     }
     let by = |method: Method| coefficients.iter().find(|c| c.method == method);
@@ -387,7 +400,7 @@ fn differences_per_speed(points: &[Point]) -> usize {
 /// The narrowest interval among the methods that need no model of the friction, or the first method's; a number without an interval is
 /// recommended to nobody.
 #[must_use]
-pub fn recommended<'a>(all: impl IntoIterator<Item = &'a Coefficient> + Clone) -> Option<Method> {
+fn recommended<'a>(all: impl IntoIterator<Item = &'a Coefficient> + Clone) -> Option<Method> {
     all.clone()
         .into_iter()
         .filter(|c| matches!(c.method, Method::Fsm | Method::Mcd))

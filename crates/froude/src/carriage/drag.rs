@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use froude_fit::budget::Uncertain;
 use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
 use froude_identify::carriage::coefficient::{Coefficient, Method};
-use froude_identify::carriage::report::{DragReport, drag_report};
+use froude_identify::carriage::report::{DragReport, drag_by};
 use froude_identify::carriage::run::{
     self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget,
 };
@@ -82,8 +82,8 @@ pub(super) struct Reduction {
     pub report: DragReport,
 }
 
-/// Calibrates where known weights were hung, and reduces by every method.
-pub(super) fn reduce(runs: Runs) -> Result<Reduction, Error> {
+/// Calibrates where known weights were hung, and reduces by these methods.
+pub(super) fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, Error> {
     let reduced: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
@@ -100,7 +100,7 @@ pub(super) fn reduce(runs: Runs) -> Result<Reduction, Error> {
     if let Some(part) = &part {
         setup.name = format!("{}, {}", setup.name, part.of);
     }
-    let mut report = drag_report(&reduced, &setup)?;
+    let mut report = drag_by(&reduced, &setup, methods)?;
     report.findings.extend(undeclared);
     report.findings.extend(part.map(|part| part.finding));
     report.findings.extend(stopped.map(|stop| stop.finding(runs.beside > 0)));
@@ -124,7 +124,7 @@ pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
     if runs.beside > 0 {
         replaces_no_more(&out, &runs, job.out.is_some())?;
     }
-    let Reduction { runs, setup, calibration, mut report } = reduce(runs)?;
+    let Reduction { runs, setup, calibration, mut report } = reduce(runs, &Method::ALL)?;
     let named_as = |path: &Path| path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let mut files = DataFiles::new(&named_as);
     for estimate in &mut report.estimates {

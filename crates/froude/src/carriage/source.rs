@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use froude_identify::carriage::coefficient::{Coefficient, Method as CarriageMethod};
-use froude_identify::carriage::report::recommended;
 use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, Source};
@@ -68,19 +67,11 @@ fn identify(
     progress: &dyn Fn(&str),
 ) -> Result<Vec<SourceResult>, Error> {
     progress("reading the runs");
-    let Reduction { runs, mut report, .. } = reduce(read(&[folder.to_owned()], &KINDS, None)?)?;
+    let Reduction { runs, mut report, .. } = reduce(read(&[folder.to_owned()], &KINDS, None)?, methods)?;
     let files = files_of(&runs);
-    // What is said of a method that nobody asked for is none of this source's.
-    let is_asked = |finding: &Finding| {
-        let others = CarriageMethod::ALL.into_iter().filter(|method| !methods.contains(method));
-        others.map(CarriageMethod::name).all(|name| !finding.message.starts_with(&format!("{name}: ")))
-    };
-    report.findings.retain(is_asked);
     let mut out = Vec::new();
     let fitted = std::mem::take(&mut report.coefficients).into_iter().zip(std::mem::take(&mut report.estimates));
     let mut fitted: Vec<(Coefficient, Estimate)> = fitted.collect();
-    // One of the methods that were asked for.
-    let chosen = recommended(fitted.iter().map(|(coefficient, _)| coefficient).filter(|c| methods.contains(&c.method)));
     for &method in methods {
         let Some(i) = fitted.iter().position(|(coefficient, _)| coefficient.method == method) else {
             // Whoever names no method gets those that the runs allow.
@@ -91,7 +82,6 @@ fn identify(
             continue;
         };
         let (coefficient, estimate) = fitted.swap_remove(i);
-        let estimate = Estimate { recommended: chosen == Some(method), ..estimate };
         out.push(SourceResult { files: files.clone(), ..result(source, coefficient, estimate, runs.logs.len()) });
     }
     if runs.campaign.is_none() {
