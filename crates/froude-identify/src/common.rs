@@ -158,6 +158,21 @@ impl<'a> Common<'a> {
         Self { sources: [&a.source, &b.source], errors, names, contradicted }
     }
 
+    /// Whether there is nothing that both know.
+    pub fn is_empty(&self) -> bool {
+        self.errors.is_empty()
+    }
+
+    /// Fewest effective degrees of freedom that one of the coefficients has in what is its own.
+    pub fn least_dof(&self, estimates: [&Estimate; 2], names: &[&String]) -> f64 {
+        let alone = |key: &str| !self.is_common(key);
+        let dof = |(estimate, name): (&Estimate, &String)| {
+            combine(&Side::of_coefficient(estimate, name).parts(&alone), 0, OUTSIDE_95).dof
+        };
+        let all = estimates.into_iter().flat_map(|estimate| names.iter().map(move |name| (estimate, *name)));
+        all.map(dof).fold(f64::INFINITY, f64::min)
+    }
+
     fn is_common(&self, key: &str) -> bool {
         self.errors.iter().any(|(k, _)| *k == key)
     }

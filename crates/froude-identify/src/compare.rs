@@ -4,7 +4,7 @@
 //! C_f of f1 and C_f of f6 share a name and nothing else. A published value
 //! without uncertainty is shown as such; it never counts as exact.
 //!
-//! E_n = (a − b)/√(U_a² + U_b²) with U the expanded (95 %) uncertainties
+//! E_n = (a − b)/√(U_a² + U_b²) with U the expanded (95 %) uncertainties, where they have no error in common
 //! (ISO 13528:2022, 9.7): |E_n| ≤ 1 says that the two agree within them.
 //! U = k·u with k from Student's t of the effective degrees of freedom; 1.96
 //! where the record states none, and [`Comparison::coverage_notes`] says so.
@@ -221,14 +221,19 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
             if a.estimate.law.name != b.estimate.law.name || is_one_source(a, b) || has_likes(all, a, b) {
                 continue;
             }
-            let is_one_method = a.estimate.method.name == b.estimate.method.name;
+            let methods = [a, b].map(|n| n.estimate.method.name.as_str());
+            // An old record does not say its method.
+            let is_one_method = methods[0] == methods[1] || methods.contains(&"");
             if a.estimate.source == b.estimate.source && is_one_method && !have_other_tables([&origins[i], &origins[j]])
             {
                 out.findings.extend(contradiction(a, b));
             }
             let common = Common::of(a.estimate, b.estimate);
             out.coefficients.extend(coefficient_rows(a, b, &common, is_same_data));
-            out.joint.push(joint(a, b, &common, is_same_data));
+            let has_common = a.estimate.coefficients.keys().any(|name| b.estimate.coefficients.contains_key(name));
+            if has_common {
+                out.joint.push(joint(a, b, &common, is_same_data));
+            }
             if !is_same_data {
                 let of_pair = shared.entry(pair).or_default();
                 if of_pair.is_empty() {
@@ -494,7 +499,12 @@ fn joint(a: &Named<'_>, b: &Named<'_>, common: &Common<'_>, is_same_data: bool) 
         if !chi2.is_finite() {
             return Err("a covariance is not finite".to_owned());
         }
-        Ok((chi2, m, probability(chi2, m, least_dof([a, b], &names))))
+        let dof = if common.is_empty() {
+            least_dof([a, b], &names)
+        } else {
+            common.least_dof([a.estimate, b.estimate], &names)
+        };
+        Ok((chi2, m, probability(chi2, m, dof)))
     })();
     JointRow { model: a.estimate.law.name.clone(), first, second, result }
 }
@@ -637,10 +647,21 @@ fn differing_constants(all: &[Named<'_>]) -> Vec<Finding> {
     out
 }
 
+/// Whether an estimate's law gives forces along the body or across it from the motion that is set side by side; others have no part in its range.
+fn gives_forces(estimate: &Estimate) -> bool {
+    let one = Range { low: 1.0, high: 1.0, unit: String::new() };
+    let data = operating_points(&one, &one, &[1.0], 1000.0);
+    ForceLaw::of_estimate(estimate, &data).is_ok_and(|law| {
+        law.responses.iter().any(|r| r == "f_x" || r == "f_y")
+            && law.channels().iter().all(|c| data.values(c).is_some())
+    })
+}
+
 /// Forces by the recommended estimates over the common range of speed and angle.
 fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
-    let recommended: Vec<&Named<'_>> = all.iter().filter(|n| n.estimate.recommended).collect();
-    let chosen: Vec<&Named<'_>> = if recommended.len() >= 2 { recommended } else { all.iter().collect() };
+    let all: Vec<&Named<'_>> = all.iter().filter(|n| gives_forces(n.estimate)).collect();
+    let recommended: Vec<&Named<'_>> = all.iter().copied().filter(|n| n.estimate.recommended).collect();
+    let chosen: Vec<&Named<'_>> = if recommended.len() >= 2 { recommended } else { all };
     let range = |name: &str| -> Option<Range> {
         let stated: Vec<&Range> = chosen.iter().filter_map(|n| n.estimate.validity.get(name)).collect();
         let first = stated.first()?;

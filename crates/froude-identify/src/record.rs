@@ -236,7 +236,7 @@ pub(crate) fn errors(model: &ModelFit) -> IndexMap<String, SharedError> {
             if !out.contains_key(&unique) {
                 break;
             }
-            unique = format!("{key}, {k}");
+            unique = format!("{OWN}{}, {k}", key.trim_start_matches(OWN));
         }
         out.insert(unique, error);
     }

@@ -149,14 +149,13 @@ pub fn contributions(
     Ok(out)
 }
 
-/// An entry that all sources of a campaign share, as one error of unit size.
+/// An entry that all sources of a campaign share, as one error of unit size: those that give it one name mean one instrument.
 fn origin(entry: &BudgetEntry, campaign: &str, moved: &Mat<f64>) -> Option<Origin> {
     let is_common = entry.shared == Shared::Campaign && !campaign.is_empty() && moved.ncols() == 1;
-    is_common.then(|| {
-        let name = entry.name.as_ref().map_or_else(String::new, |name| format!(" ({name})"));
+    entry.name.as_ref().filter(|_| is_common).map(|name| {
         let relative = if entry.relative { " relative" } else { "" };
         Origin {
-            key: format!("{campaign}/{}{name}{relative} {:e}", entry.quantity, entry.standard),
+            key: format!("{campaign}/{name}/{}{relative} {:e}", entry.quantity, entry.standard),
             quantity: entry.quantity.clone(),
             covariance: Mat::identity(1, 1),
             sensitivity: moved.clone(),

@@ -256,7 +256,7 @@ fn releases_need_not_be_alike() {
 
 /// Campaigns of the coverage test; `FROUDE_DECAY_CAMPAIGNS` asks for more.
 fn campaigns() -> u64 {
-    std::env::var("FROUDE_DECAY_CAMPAIGNS").ok().and_then(|n| n.parse().ok()).unwrap_or(200)
+    std::env::var("FROUDE_DECAY_CAMPAIGNS").ok().and_then(|n| n.parse().ok()).unwrap_or(100)
 }
 
 /// Five releases a campaign: how often the 95 % interval of each coefficient holds the truth, from the scatter alone, and with M and C known to

@@ -262,7 +262,10 @@ fn a_record_of_version_1_is_lifted() {
     let e = &file.estimates[0];
     assert_eq!((e.law.name.as_str(), e.law.formulas()["f_y"].as_str(), e.n_observations), ("sway", "Y_v*v", 12));
     assert_eq!((e.frame.words.as_str(), e.point.words.as_str(), e.point.stated), ("body axes", "centre", false));
-    assert_eq!((e.density().unwrap().value, e.refers_to["a"].value, e.covariance_kind()), (1025.0, 0.0588, "HC3"));
+    assert_eq!(
+        (e.density().unwrap().value, e.refers_to["a"].value, e.covariance_kind()),
+        (1025.0, 0.0588, "HC3; type A and B together")
+    );
     assert_eq!(e.covariance().unwrap().matrix, [[0.01]]);
     assert_eq!((e.type_a.as_ref().unwrap().dof.as_slice(), e.errors.len(), e.data.len()), (&[Some(7.5)][..], 0, 0));
     // What was lifted is a whole record of today.

@@ -628,8 +628,8 @@ impl Tables {
         let shown = (!with.is_empty()).then(|| {
             let caption = self.caption(
                 "Coefficients of the same model from two sources, with standard uncertainties in brackets and the normalised difference \
-                 Eₙ = (first − second)/√(U₁² + U₂²), U the expanded (95 %) uncertainty. |Eₙ| ≤ 1: they agree within their stated \
-                 uncertainties.",
+                 Eₙ = (first − second)/U, U the expanded (95 %) uncertainty of the difference: √(U₁² + U₂²) where the two have no error in \
+                 common. |Eₙ| ≤ 1: they agree within their stated uncertainties.",
             );
             pair_table(&with, &caption)
         });

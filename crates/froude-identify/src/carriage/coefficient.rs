@@ -354,10 +354,14 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
                 out.push(error.known_as(setup.keys.of_rig("torque_constant"), "torque_constant"));
                 out.push(match efficiency {
                     Efficiency::Declared(e) => of("gear efficiency, declared", &of_force, e.relative(), e.dof)
-                        .known_as(setup.keys.of_rig("efficiency"), "efficiency"),
+                        .known_as(
+                            setup.keys.of_rig(&format!("efficiency {:e} {:e}", e.value, e.standard)),
+                            "efficiency",
+                        ),
                     Efficiency::Undeclared => {
                         let limits = UNDECLARED_EFFICIENCY.map(|e| e - 1.0);
                         SharedError::between("gear efficiency, not declared", setup.load(), &of_force, limits)
+                            .known_as(setup.keys.of_rig("efficiency, not declared"), "efficiency")
                     }
                 });
             }
@@ -376,17 +380,19 @@ fn shared_errors(method: Method, points: &[Point], measured: f64, setup: &DragSe
         }
     } else {
         let error = of("gain of the sensor", &of_force, setup.sensor.gain_relative, never);
-        out.push(error.known_as(setup.keys.of_rig("sensor_gain"), "sensor_gain"));
+        out.push(error.known_as(setup.keys.sensor.clone(), "sensor_gain"));
         let zero = by(&|p| p.standard_n);
         out.push(SharedError::of_each_row("noise, zero of the sensor and its drift", setup.load(), &zero));
     }
     // v² takes the sprocket's radius twice; newtons that are not calibrated, (n/R) K_T K_amp, once more in the same direction.
     let times = if method.is_sensorless() && setup.calibration.is_none() { 3.0 } else { 2.0 };
-    let of_length = by(&|p| times * p.force_n);
+    // A radius that is taken too large makes the speed too large, and the drag too small.
+    let of_length: Vec<f64> = points.iter().map(|p| times * p.force_n).collect();
     let error = of("length of an encoder count", &of_length, setup.speed_scale_relative, never);
     out.push(error.known_as(setup.keys.of_rig("sprocket_radius"), "sprocket_radius"));
     if let Some(strut) = setup.strut_n_s2_m2 {
-        let of_strut = by(&|p| p.speed_m_s * p.speed_m_s.abs());
+        // What is taken off too much is missing in the drag.
+        let of_strut: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
         let key = setup.keys.rig.as_ref().map(|_| format!("strut/{:e} {:e}", strut.value, strut.standard));
         out.push(of("drag of the strut", &of_strut, strut.standard, strut.dof).known_as(key, "strut_drag"));
     }

@@ -108,7 +108,9 @@ fn validity(c: &Coefficient, setup: &DragSetup) -> IndexMap<String, Range> {
     let ranges: &[(&str, [f64; 2], &str)] = match setup.travel {
         None | Some(BodyAxis::X) => &[("angle", [0.0; 2], "rad"), (OFF_AXIS, [0.0; 2], "rad"), (ALONG, ways, "m/s")],
         Some(BodyAxis::Y) => {
-            &[("angle", [-FRAC_PI_2, FRAC_PI_2], "rad"), (OFF_AXIS, [FRAC_PI_2; 2], "rad"), (ALONG, [0.0; 2], "m/s")]
+            // Towards starboard where it went there at all: the law is odd, and between the two ways nothing was towed.
+            let angle = if ways[1] > 0.0 { -FRAC_PI_2 } else { FRAC_PI_2 };
+            &[("angle", [angle; 2], "rad"), (OFF_AXIS, [FRAC_PI_2; 2], "rad"), (ALONG, [0.0; 2], "m/s")]
         }
         Some(BodyAxis::Z) => &[],
     };
@@ -140,6 +142,9 @@ fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) -> Vec<String
     }
     if c.method == Method::Fsm {
         out.push("the sensor also carries what hangs below it beside the body".to_owned());
+    }
+    if setup.strut_n_s2_m2.is_none() {
+        out.push("of body and strut together: no drag of the strut is declared".to_owned());
     }
     out.push(format!(
         "{} given, {} used, {}",

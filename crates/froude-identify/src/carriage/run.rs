@@ -138,8 +138,10 @@ pub struct SensorBudget {
 pub struct ErrorKeys {
     /// The calibration: of the runs that it was made from.
     pub calibration: Option<String>,
-    /// The rig: of its declared constants.
+    /// The rig: of its declared constants but for the efficiency, which says nothing of who it is.
     pub rig: Option<String>,
+    /// The force sensor, where somebody declared it.
+    pub sensor: Option<String>,
 }
 
 impl ErrorKeys {

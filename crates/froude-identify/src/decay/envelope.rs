@@ -9,11 +9,11 @@
 //! half cycles go into one least squares with one weight, as the noise of a turning point does not depend on the amplitude.
 //! A = C/ω_n² − M, where for linear damping ω_n² = ω_d² + (D_I/2(M+A))².
 //!
-//! Taken as it stands this is right to first order of the damping and wrong in the second: by (1 − π²/12) ζ² of b_eq for linear damping,
+//! Taken as it stands this is right to first order of the damping and wrong in the second: by (½ − π²/12) γ² of b_eq for linear damping, γ = D_I ω_n/2C,
 //! −(4/15)(εa)² for quadratic with ε = D_II/(M+A), and b_eq in the place of D_I shifts the period by half of what quadratic damping does. These orders are known
 //! and taken off (formulas in `pool.rs`), so that F stands for what a small damping of the same coefficients would take.
 //!
-//! **Source.** W. Froude (1874), Trans. INA 15 (extinction); Himeno (1981), Univ. of Michigan report 239, ch. 4 (equivalent damping);
+//! **Source.** W. Froude (1874), Naval Science 3, 107 (extinction); Himeno (1981), Univ. of Michigan report 239, ch. 4 (equivalent damping);
 //! ITTC 7.5-02-07-04.5 (analysis of roll decay). Second order: ours.
 
 use froude_fit::budget::jackknife;

@@ -112,7 +112,7 @@ impl Quartic {
         let x = self.root(1, 0.0)?;
         let [_, _, curvature] = self.at(x);
         let spot = self.spot(x);
-        Some(Spot { position: spot.position - 0.5 * noise * noise * self.slope_variance / curvature, ..spot })
+        Some(Spot { position: spot.position + 0.5 * noise * noise * self.slope_variance / curvature, ..spot })
     }
 }
 
@@ -171,22 +171,22 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;
 
-    /// 50 samples in ± 1 rad, noise of 1 % of the amplitude: the largest sample lies more than 1 % out, the top of
-    /// the quartic does not. 4000 peaks: the mean is known to σ √(225/64/50)/√4000 = 0.004 %.
+    /// 50 samples in ± 1 rad, noise of 5 % of the amplitude: the largest sample lies more than 5 % out. The slope's noise pushes the quartic's top out
+    /// by 0.047 %, its second fit about its own top as much again; the correction takes off the first. 40,000 peaks: the mean is known to σ √(225/64/50)/√40,000 = 0.007 %.
     #[test]
     fn noise_pushes_the_largest_sample_outwards_and_not_the_fitted_turn() {
         let mut rng = Pcg64::seed_from_u64(3);
         let time_s: Vec<f64> = (0..121).map(|i| f64::from(i - 60) / 25.0).collect();
         let (mut largest, mut fitted) = (0.0, 0.0);
-        for _ in 0..4000 {
+        for _ in 0..40_000 {
             let mut noise =
-                || -> f64 { 0.01 * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng) };
+                || -> f64 { 0.05 * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng) };
             let q: Vec<f64> = time_s.iter().map(|t| t.cos() + noise()).collect();
-            largest += (q.iter().fold(f64::MIN, |m, x| m.max(*x)) - 1.0) / 4000.0;
-            fitted += (turn(&time_s, &q, 0.1, REACH_RAD, noise_of(&q)).unwrap().position - 1.0) / 4000.0;
+            largest += (q.iter().fold(f64::MIN, |m, x| m.max(*x)) - 1.0) / 40_000.0;
+            fitted += (turn(&time_s, &q, 0.1, REACH_RAD, noise_of(&q)).unwrap().position - 1.0) / 40_000.0;
         }
-        assert!(largest > 0.01, "{largest}");
-        assert!((fitted + 3e-5).abs() < 4.0 * 4e-5, "{fitted}");
+        assert!(largest > 0.05, "{largest}");
+        assert!((fitted - 4.7e-4).abs() < 4.0 * 7e-5, "{fitted}");
     }
 
     #[test]

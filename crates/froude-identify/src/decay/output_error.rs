@@ -1,9 +1,10 @@
 //! The equation of motion fitted to the whole of each release.
 //!
-//! Unknown are A, D_I and D_II of each release, its position and speed at the first sample used and its rest position; the answer is the mean over
-//! the releases. One fit to all of them would be out of phase with each where A is not quite the same in all (3 % of it from release to release made
-//! D_I 3 % too large and its interval cover 83 %). With one release or two there is one fit, and the scatter is that of the samples. The sum of squares of
-//! position less simulated position is made least (Gauss and Newton with derivatives along the motion; start from the envelope). No
+//! Unknown are D_I and D_II of all releases, and for each its own A, its position and speed at the first sample used, and its rest position; the
+//! answer has the mean of A. (With one A for all, a release that swings a little faster is out of phase with the fit, and that looks like damping:
+//! 3 % of A from release to release made D_I 3 % too large and its interval cover 83 %.) With one release or two A is one, and the scatter is that
+//! of the samples. The sum of squares of position less simulated position is made least (Gauss and Newton with derivatives along the motion; start
+//! from the envelope). No
 //! linearisation, no small damping: what is left is noise where the law holds.
 //!
 //! **Source.** Ljung (1999), System Identification, 4.3 and 7.2 (output error).
@@ -24,32 +25,58 @@ use super::pool::EIGHT_OVER_3_PI;
 use super::run::{DecayRun, DecaySetup};
 use super::swings::Swings;
 
-/// Shared parameters: A, D_I, D_II.
-const SHARED: usize = 3;
-/// Those of a release: position and speed at its first sample, rest position.
-const OWN: usize = 3;
+/// A, D_I, D_II.
+const SOUGHT: usize = 3;
+/// Of a release: position and speed at its first sample, rest position.
+const START: usize = 3;
 /// A natural step of a parameter, as part of what it is compared with.
 const NATURAL: f64 = 0.01;
 
-/// The releases as the solver sees them.
+/// The releases as the solver sees them. θ is A where it is shared, D_I, D_II, then of each release its A where that is its own, and its start.
 #[derive(Clone, Copy)]
 struct Releases<'a> {
     runs: &'a [(DecayRun<'a>, Swings)],
     inertia: f64,
     stiffness: f64,
+    /// Whether each release has an added mass of its own.
+    has_own: bool,
 }
 
 impl Releases<'_> {
+    /// How many parameters all releases share.
+    fn shared(&self) -> usize {
+        SOUGHT - usize::from(self.has_own)
+    }
+
+    /// Where the added mass of a run stands, where D_I does (D_II follows), and where the run's start does.
+    fn places(&self, run: usize) -> [usize; 3] {
+        let own = self.shared() + (START + usize::from(self.has_own)) * run;
+        if self.has_own { [own, 0, own + 1] } else { [0, 1, own] }
+    }
+
+    /// A (the mean over the releases), D_I and D_II.
+    fn sought(&self, theta: &[f64]) -> [f64; SOUGHT] {
+        let n = self.runs.len();
+        let added = (0..n).map(|run| theta[self.places(run)[0]]).sum::<f64>() / n as f64;
+        let damping = self.places(0)[1];
+        [added, theta[damping], theta[damping + 1]]
+    }
+
+    /// Position and speed of a run at its first sample, and its rest position.
+    fn start(&self, run: usize, theta: &[f64]) -> [f64; START] {
+        std::array::from_fn(|k| theta[self.places(run)[2] + k])
+    }
+
     /// Motion and start of a run; `None` without inertia.
     fn motion(&self, run: usize, theta: &[f64]) -> Option<(Motion, [f64; 2])> {
-        let [added, linear, quadratic] = [theta[0], theta[1], theta[2]];
-        let moving = self.inertia + added;
-        let [q, v, rest] = std::array::from_fn(|k| theta[SHARED + OWN * run + k]);
+        let [added, damping, _] = self.places(run);
+        let moving = self.inertia + theta[added];
+        let [q, v, rest] = self.start(run, theta);
         (moving > 0.0).then(|| {
             let motion = Motion {
                 omega2: self.stiffness / moving,
-                linear: linear / moving,
-                quadratic: quadratic / moving,
+                linear: theta[damping] / moving,
+                quadratic: theta[damping + 1] / moving,
                 coulomb: 0.0,
                 rest,
             };
@@ -81,15 +108,16 @@ impl Model for Releases<'_> {
         let (motion, start) = self.motion(run, theta)?;
         let (measured, step_s) = self.measured(run);
         let path = motion.path_and_derivatives(start, step_s, measured.len())?;
-        let moving = self.inertia + theta[0];
+        let [added, damping, own] = self.places(run);
+        let moving = self.inertia + theta[added];
         let column = |of: &dyn Fn(&[f64; 6]) -> f64| path.iter().map(|(_, by)| -of(by)).collect::<Vec<f64>>();
         let Motion { omega2, linear, quadratic, .. } = motion;
         let mut out = vec![Vec::new(); theta.len()];
-        out[0] = column(&|by| -(omega2 * by[0] + linear * by[1] + quadratic * by[2]) / moving);
-        out[1] = column(&|by| by[1] / moving);
-        out[2] = column(&|by| by[2] / moving);
+        out[added] = column(&|by| -(omega2 * by[0] + linear * by[1] + quadratic * by[2]) / moving);
+        out[damping] = column(&|by| by[1] / moving);
+        out[damping + 1] = column(&|by| by[2] / moving);
         for (k, which) in [4, 5, 3].into_iter().enumerate() {
-            out[SHARED + OWN * run + k] = column(&|by| by[which]);
+            out[own + k] = column(&|by| by[which]);
         }
         Some(out)
     }
@@ -105,17 +133,20 @@ impl Model for Releases<'_> {
 pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, DecayError> {
     let reduced = Reduced::of(runs, setup)?;
     let n = reduced.runs.len();
-    // Each release by itself: with one added mass for all, a release that swings a little faster would be out of phase, and that looks like damping.
-    let groups: Vec<[usize; 2]> = if n >= FEWEST_RUNS { (0..n).map(|i| [i, i + 1]).collect() } else { vec![[0, n]] };
-    let found = groups.iter().map(|group| solve(&reduced, setup, *group)).collect::<Result<Vec<Solution>, _>>()?;
-    let values = std::array::from_fn(|j| found.iter().map(|s| s.values[j]).sum::<f64>() / found.len() as f64);
+    let model = Releases {
+        runs: &reduced.runs,
+        inertia: setup.inertia.value,
+        stiffness: setup.stiffness.value,
+        has_own: n >= FEWEST_RUNS,
+    };
+    let parameters = start(&reduced, setup, &model);
+    let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::Fit(e.to_string()))?;
+    let values = model.sought(&found.values);
     let [by_inertia, by_stiffness] = DecayFit::by_declared(setup, values);
-    let residuals: Vec<Vec<f64>> = found.iter().flat_map(|s| s.residuals.iter().cloned()).collect();
-    let own: Vec<f64> = found.iter().flat_map(|s| s.values[SHARED..].iter().copied()).collect();
     let summary = |(i, (run, swings)): (usize, &(DecayRun<'_>, Swings))| {
         let [first, end] = swings.samples;
-        let [q, v, rest] = std::array::from_fn(|k| own[OWN * i + k]);
-        let residuals = &residuals[i];
+        let [q, v, rest] = model.start(i, &found.values);
+        let residuals = &found.residuals[i];
         RunSummary {
             id: run.id.to_owned(),
             samples: end - first,
@@ -134,7 +165,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         axis: setup.axis,
         names: setup.axis.names(),
         values,
-        type_a: scatter(&found, n),
+        type_a: scatter(&model, &parameters, &found),
         inertia: setup.inertia,
         stiffness: setup.stiffness,
         by_inertia,
@@ -145,33 +176,28 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         findings: Vec::new(),
     };
     fit.findings = findings::common(&reduced, &fit, setup);
-    fit.findings.extend(findings::of_residuals(&fit, &residuals, &reduced));
-    let unsettled = found.iter().map(|s| s.report).find(|report| report.end != End::Converged);
-    fit.findings.extend(unsettled.map(findings::not_converged));
+    fit.findings.extend(findings::of_residuals(&fit, &found.residuals, &reduced));
+    if found.report.end != End::Converged {
+        fit.findings.push(findings::not_converged(found.report));
+    }
     Ok(fit)
 }
 
-/// Some releases fitted together.
-fn solve(reduced: &Reduced<'_>, setup: &DecaySetup, [from, to]: [usize; 2]) -> Result<Solution, DecayError> {
-    let runs = &reduced.runs[from..to];
-    let model = Releases { runs, inertia: setup.inertia.value, stiffness: setup.stiffness.value };
-    let parameters = start(reduced, setup, runs);
-    minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::Fit(e.to_string()))
-}
-
 /// Where the search starts: the envelope's coefficients, and each release as its first samples show it.
-fn start(reduced: &Reduced<'_>, setup: &DecaySetup, runs: &[(DecayRun<'_>, Swings)]) -> Vec<Parameter> {
+fn start(reduced: &Reduced<'_>, setup: &DecaySetup, model: &Releases<'_>) -> Vec<Parameter> {
     let [added, linear, quadratic] = reduced.pooled.values;
     let omega = reduced.pooled.omega_n;
     let moving = setup.stiffness.value / (omega * omega);
     let speed = reduced.range().speed[1];
     let [name_a, name_i, name_ii] = setup.axis.names();
     let mut out = vec![
-        Parameter::new(name_a, added, NATURAL * moving),
         Parameter::new(name_i, linear, NATURAL * moving * omega),
         Parameter::new(name_ii, quadratic, NATURAL * moving * omega / (EIGHT_OVER_3_PI * speed)),
     ];
-    for (i, (run, swings)) in runs.iter().enumerate() {
+    if !model.has_own {
+        out.insert(0, Parameter::new(name_a.as_str(), added, NATURAL * moving));
+    }
+    for (i, (run, swings)) in model.runs.iter().enumerate() {
         let [first, end] = swings.samples;
         let from_s = run.time_s[first];
         let half_s = 0.75 / omega;
@@ -179,6 +205,9 @@ fn start(reduced: &Reduced<'_>, setup: &DecaySetup, runs: &[(DecayRun<'_>, Swing
         let [q, v] = Quartic::about(time_s, position, from_s + half_s, half_s)
             .map_or([swings.passages[0].position, swings.passages[0].slope], |near| near.value_and_slope(from_s));
         let reach = NATURAL * swings.amplitude(0);
+        if model.has_own {
+            out.push(Parameter::new(format!("{name_a} of release {}", i + 1), added, NATURAL * moving).of_run(i));
+        }
         out.push(Parameter::new(format!("position of release {}", i + 1), q, reach).of_run(i));
         out.push(Parameter::new(format!("speed of release {}", i + 1), v, reach * omega).of_run(i));
         out.push(Parameter::new(format!("rest of release {}", i + 1), swings.rest, reach).of_run(i));
@@ -186,24 +215,35 @@ fn start(reduced: &Reduced<'_>, setup: &DecaySetup, runs: &[(DecayRun<'_>, Swing
     out
 }
 
-/// Type A: over releases where there are enough, else over the samples with their correlation.
-fn scatter(found: &[Solution], n: usize) -> Option<Scatter> {
-    if n >= FEWEST_RUNS {
-        let mean = |j: usize, g: usize| {
-            let others = found.iter().enumerate().filter(|(i, _)| *i != g).map(|(_, s)| s.values[j]);
-            others.sum::<f64>() / (n - 1) as f64
-        };
-        let (covariance, dof) = jackknife(n, |g| Some((0..SHARED).map(|j| mean(j, g)).collect()))?;
+/// Type A: over releases where there are enough, each left out in truth; else over the samples with their correlation.
+fn scatter(model: &Releases<'_>, parameters: &[Parameter], found: &Solution) -> Option<Scatter> {
+    let n = model.runs.len();
+    if model.has_own {
+        let (covariance, dof) = jackknife(n, |g| without(model, parameters, found, g))?;
         return Some(Scatter { covariance, dof: [dof; 3], kind: format!("jackknife over {n} runs"), shared: "run" });
     }
-    let covariance = found.first()?.covariance(Noise::Serial { lag: None }).ok()?;
-    let mut matrix = Mat::zeros(SHARED, SHARED);
-    for i in 0..SHARED {
-        for j in 0..SHARED {
+    let covariance = found.covariance(Noise::Serial { lag: None }).ok()?;
+    let mut matrix = Mat::zeros(SOUGHT, SOUGHT);
+    for i in 0..SOUGHT {
+        for j in 0..SOUGHT {
             matrix[(i, j)] = covariance.covariance(i, j)?;
         }
     }
     let lag = covariance.lag.unwrap_or(0);
     let kind = format!("samples of {}, correlated over {lag} of them", counted(n, "run", "runs"));
     Some(Scatter { covariance: matrix, dof: [covariance.dof; 3], kind, shared: "sample" })
+}
+
+/// What is sought without a release.
+fn without(model: &Releases<'_>, parameters: &[Parameter], found: &Solution, left_out: usize) -> Option<Vec<f64>> {
+    let kept: Vec<usize> = (0..model.runs.len()).filter(|i| *i != left_out).collect();
+    let runs: Vec<_> = kept.iter().map(|&i| model.runs[i].clone()).collect();
+    let started = |index: usize| Parameter { start: found.values[index], ..parameters[index].clone() };
+    let mut of_rest: Vec<Parameter> = (0..model.shared()).map(started).collect();
+    let own = START + usize::from(model.has_own);
+    for (i, old) in kept.into_iter().enumerate() {
+        of_rest.extend((0..own).map(|k| started(model.shared() + own * old + k).of_run(i)));
+    }
+    let rest = Releases { runs: &runs, ..*model };
+    minimise(&rest, &of_rest, &Settings::default()).ok().map(|s| rest.sought(&s.values).to_vec())
 }

@@ -158,14 +158,23 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
     let refers_to =
         campaign.fluid.density_kg_m3.map(|value| ("density".to_owned(), Measured { value, unit: "kg/m^3".to_owned() }));
     let range = |[low, high]: [f64; 2], unit: &str| Stated { low, high, unit: unit.to_owned() };
-    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
+    // A rotation is about its own axis, wherever the body's reference point is.
+    let is_rotation = fit.axis.is_rotation();
+    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone()).filter(|_| !is_rotation);
+    let point = if is_rotation {
+        ReferencePoint { words: "the axis that it turned about".to_owned(), stated: false }
+    } else {
+        ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() }
+    };
+    let [inertia, stiffness] = if is_rotation { ["kg*m^2", "N*m"] } else { ["kg", "N/m"] };
+    let constant = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
     Estimate {
         id: format!("{}/{}", source.name, fit.method.name()),
         source: source.name.clone(),
         kind: source.kind.name().to_owned(),
         method: MethodUsed { name: fit.method.name().to_owned(), version: 1, words: fit.method.words().to_owned() },
         frame: Frame::body(),
-        point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
+        point,
         signs: Signs::default(),
         attitude: None,
         law: Law {
@@ -173,7 +182,10 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
             version: 1,
             inputs: IndexMap::from([(velocity.clone(), speed), (format!("{velocity}_dot"), acceleration)]),
             outputs: IndexMap::from([(load.clone(), Output { unit: force, formula: Some(formula) })]),
-            constants: IndexMap::new(),
+            constants: IndexMap::from([
+                ("inertia".to_owned(), constant(fit.inertia.value, inertia)),
+                ("stiffness".to_owned(), constant(fit.stiffness.value, stiffness)),
+            ]),
         },
         refers_to: refers_to.into_iter().collect(),
         data: Vec::new(),

@@ -103,7 +103,8 @@ impl From<EstimateV1> for Estimate {
         let of = |names: &[String]| {
             names.iter().map(|name| e.coefficients.get(name).and_then(|c| c.effective_dof)).collect::<Vec<_>>()
         };
-        let kind = if e.covariance_kind.is_empty() { TOGETHER.to_owned() } else { e.covariance_kind.clone() };
+        let stated = [e.covariance_kind.as_str(), TOGETHER].into_iter().filter(|text| !text.is_empty());
+        let kind = stated.collect::<Vec<_>>().join("; ");
         let type_a = e.covariance.map(|c| TypeA { dof: of(&c.names), names: c.names, matrix: c.matrix, kind });
         let density = e.density.map(|density| ("density".to_owned(), density));
         let outputs = e.law.formulas.into_iter();

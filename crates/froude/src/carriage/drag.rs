@@ -92,7 +92,7 @@ pub(super) fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, Error>
     setup.flexible = two_masses.map(|report| report.flexible());
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
     setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
-    setup.keys = ErrorKeys { calibration: calibrated_by(&runs)?, rig: constants.map(rig_key) };
+    setup.keys = keys(&runs, constants)?;
     let undeclared = undeclared(runs.campaign.as_ref(), &reduced)?;
     let stopped = stopped_early(&runs, &reduced);
     setup.looks = stopped.map_or(1, |s| s.planned);
@@ -358,9 +358,28 @@ fn calibrated_by(runs: &Runs) -> Result<Option<String>, Error> {
     Ok((!sums.is_empty()).then(|| format!("force_per_volt/{}", short_key(sums.join(" ").as_bytes()))))
 }
 
-/// Key of a rig: of the constants that its runs declare. Campaigns that declare the same ones drove the same rig.
-fn rig_key(constants: &AxisConstants) -> String {
-    format!("rig/{}", short_key(format!("{constants:?}").as_bytes()))
+/// Keys of the errors that other campaigns may have too. Campaigns that declare the same constants drove the same rig, with the same sensor.
+fn keys(runs: &Runs, axis: Option<&AxisConstants>) -> Result<ErrorKeys, Error> {
+    let carriage = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref());
+    let used = carriage.map(|c| &c.rig.y.constants).or(axis);
+    let sensor = carriage.and_then(|c| c.rig.force_sensor.as_ref()).filter(|sensor| sensor.gain_standard.is_some());
+    let key = |what: &str, text: String| format!("{what}/{}", short_key(text.as_bytes()));
+    Ok(ErrorKeys {
+        calibration: calibrated_by(runs)?,
+        rig: used.map(|c| {
+            let AxisConstants {
+                torque_constant_n_m_a,
+                amplifier_a_v,
+                gear_ratio,
+                sprocket_radius_m,
+                counts_per_revolution,
+                ..
+            } = c;
+            let all = [torque_constant_n_m_a, amplifier_a_v, gear_ratio, sprocket_radius_m];
+            key("rig", format!("{all:?} {counts_per_revolution}"))
+        }),
+        sensor: sensor.map(|sensor| key("sensor", format!("{sensor:?}"))),
+    })
 }
 
 /// The page: the paper's Table IV with what it lacked.
