@@ -12,7 +12,7 @@
 //! An interval that reaches to one side, or pays for looks, has the arm that points to the other value as its U.
 //!
 //! Errors that two records know by one key are one error: u²(a − b) = u_a² + u_b² − 2 cov(a, b) (GUM 5.2.2), and the part that is
-//! common is taken out of E_n and χ² exactly ([`crate::common`]). Scatter from the same observations cannot be: two fits to the same
+//! common is taken out of E_n and χ² exactly. Scatter from the same observations cannot be: two fits to the same
 //! table or the same runs get [`SAME_DATA`] and no number.
 
 use std::collections::{BTreeMap, BTreeSet};
