@@ -969,6 +969,42 @@ mod tests {
         assert!((c.coefficients[0].e_n.clone().unwrap() - expected).abs() < 1e-12, "{:?}", c.coefficients[0]);
     }
 
+    /// Scatter of 0.2 with four degrees of freedom beside a common calibration of 0.4: what stays has four, not the hundred of both together.
+    #[test]
+    fn what_stays_of_two_records_has_its_own_degrees_of_freedom() {
+        let of = |source: &str, d: f64| {
+            let mut file = calibrated(source, d, "cal/1");
+            let estimate = &mut file.estimates[0];
+            let scatter = estimate.type_a.as_mut().unwrap();
+            (scatter.matrix[0][0], scatter.dof[0]) = (0.04, Some(4.0));
+            let d = &mut estimate.coefficients["D"];
+            (d.standard_uncertainty, d.effective_dof) = (Some(0.2_f64.hypot(0.4)), Some(100.0));
+            file
+        };
+        let difference = 2.776_445 * 0.08_f64.sqrt();
+        let c = compared(of("a", 40.0 + difference), of("b", 40.0));
+        // Two-sided probability of t = 2.776 with four degrees of freedom.
+        assert!((c.joint[0].result.clone().unwrap().2 - 0.05).abs() < 1e-6, "{:?}", c.joint[0]);
+    }
+
+    /// A heave decay beside two tables: its range of speeds is no range of theirs, and the forces stay.
+    #[test]
+    fn a_law_that_gives_no_force_along_or_across_has_no_part_in_the_range() {
+        let mut decay = record("springs", "t3", 40.0, 1.0, None);
+        let law = &mut decay.estimates[0].law;
+        law.name = "added_mass_linear_quadratic".to_owned();
+        law.outputs = serde_json::from_value(serde_json::json!({
+            "f_z": { "unit": "N", "formula": "-A33*v_z_dot - D*v_z*abs(v_z)" }
+        }))
+        .unwrap();
+        decay.estimates[0].validity["speed"] = Range { low: 0.01, high: 0.05, unit: "m/s".to_owned() };
+        let files = [record("a", "t1", 10.0, 1.0, None), record("b", "t2", 11.0, 1.0, None), decay]
+            .map(|file| (file.estimates[0].source.clone(), file));
+        let c = compare(&named(&files));
+        assert_eq!(c.force_ids, ["a/quadratic", "b/quadratic"]);
+        assert!(!c.forces.is_empty() && codes(&c).is_empty(), "{:?}", c.findings);
+    }
+
     /// One calibration, declared with two uncertainties: nobody can say which is right.
     #[test]
     fn one_error_with_two_uncertainties_is_said_and_not_taken_out() {
