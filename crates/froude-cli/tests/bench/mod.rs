@@ -49,6 +49,11 @@ pub fn froude(args: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_froude")).args(args).output().unwrap()
 }
 
+/// Whether a file's own name has a word in it.
+pub fn is_called(path: &Path, word: &str) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().contains(word))
+}
+
 pub fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }
@@ -122,10 +127,11 @@ impl Bench {
     }
 
     /// Logs of the kind, in order.
+    /// Logs whose name has a word in it; a temporary folder may have it too, by chance.
     pub fn logs(&self, kind: &str) -> Vec<PathBuf> {
         let all = std::fs::read_dir(&self.runs).unwrap().map(|e| e.unwrap().path());
         let mut logs: Vec<PathBuf> =
-            all.filter(|p| p.extension().is_some_and(|e| e == "mcap") && text(p).contains(kind)).collect();
+            all.filter(|p| p.extension().is_some_and(|e| e == "mcap") && is_called(p, kind)).collect();
         logs.sort();
         logs
     }
