@@ -345,6 +345,7 @@ fn has_likes(all: &[Named<'_>], a: &Named<'_>, b: &Named<'_>) -> bool {
         })
     };
     let [of_a, of_b] = [a, b].map(|n| n.estimate.method.name.as_str());
+    // In this order: most pairs are of one method, and nothing is searched for them.
     of_a != of_b && has(a, of_b) && has(b, of_a)
 }
 

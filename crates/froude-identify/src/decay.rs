@@ -37,4 +37,4 @@ pub use envelope::{FEWEST_RUNS, envelope};
 pub use error::DecayError;
 pub use fit::{DecayFit, HalfCycle, Method, Range, RunSummary, Scatter};
 pub use output_error::output_error;
-pub use run::{Axis, DecayRun, DecaySetup, DecayWindow};
+pub use run::{DecayRun, DecaySetup, DecayWindow};

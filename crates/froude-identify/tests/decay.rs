@@ -4,9 +4,8 @@
 use froude_fit::budget::{OUTSIDE_95, Uncertain, combine};
 use froude_fit::coverage::{Count, z_limit};
 use froude_identify::decay::simulate::{Logged, Scenario};
-use froude_identify::decay::{
-    Axis, DecayError, DecayFit, DecayRun, DecaySetup, DecayWindow, Method, envelope, output_error,
-};
+use froude_identify::decay::{DecayError, DecayFit, DecayRun, DecaySetup, DecayWindow, Method, envelope, output_error};
+use froude_records::campaign::Motion;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -15,7 +14,7 @@ use rand_pcg::Pcg64;
 const TRUTH: [f64; 3] = [8.0, 4.0, 40.0];
 
 fn declared(inertia: f64, stiffness: f64) -> DecaySetup {
-    DecaySetup::new(Axis::Heave, Uncertain::new(inertia, 0.0), Uncertain::new(stiffness, 0.0))
+    DecaySetup::new(Motion::Heave, Uncertain::new(inertia, 0.0), Uncertain::new(stiffness, 0.0))
 }
 
 fn setup() -> DecaySetup {
@@ -307,7 +306,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
                 println!(
                     "| {what} | {} | {} | {:.1} % | {:.4} | {:+.5} | {:.5} |",
                     method.name(),
-                    setup().axis.names()[j],
+                    setup().axis.decay_names()[j],
                     100.0 * count.rate(),
                     widths[b][m][j],
                     means[m][j],

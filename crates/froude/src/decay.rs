@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::decay::{Axis, DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod};
+use froude_identify::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod};
 use froude_identify::decay::{envelope, output_error, record};
 use froude_identify::source::{ReadFile, SourceResult};
-use froude_records::campaign::{Campaign, DecaySpec, Source};
+use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Channel, ImportedRun, import_run};
 use froude_records::units::Dimension;
@@ -16,8 +16,8 @@ use crate::method::Method;
 /// Envelope and output error of releases.
 pub(crate) struct FreeDecay;
 
-/// Their names, those of [`DecayMethod::ALL`].
-const NAMES: [&str; 2] = ["decay_envelope", "decay_output_error"];
+/// Their names.
+const NAMES: [&str; 2] = [DecayMethod::ALL[0].name(), DecayMethod::ALL[1].name()];
 
 /// Role of a log with a release.
 const RELEASE: &str = "release";
@@ -59,7 +59,7 @@ impl Method for FreeDecay {
         let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
         let methods: Vec<DecayMethod> = asked.iter().filter_map(|name| named(name)).collect();
         let best = methods.iter().copied().max_by_key(|method| *method == DecayMethod::OutputError);
-        let mut out = Vec::new();
+        let (mut out, mut fits) = (Vec::new(), Vec::new());
         for &method in &methods {
             progress(method.words());
             let fit: DecayFit = match method {
@@ -73,8 +73,9 @@ impl Method for FreeDecay {
             result.files.clone_from(&files);
             findings.append(&mut result.findings);
             out.push(result);
+            fits.push(fit);
         }
-        findings.extend(disagreement(&out));
+        findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
         if let Some(first) = out.first_mut() {
             // What both say of a release is said once.
             let mut said: Vec<Finding> = Vec::new();
@@ -89,31 +90,6 @@ impl Method for FreeDecay {
     }
 }
 
-/// Envelope and output error read one motion: where they differ by more than the intervals of both, its law or its start is not the declared one.
-fn disagreement(results: &[SourceResult]) -> Option<Finding> {
-    let [a, b] = results else { return None };
-    let (a, b) = (a.estimates.first()?, b.estimates.first()?);
-    let apart: Vec<String> = a
-        .coefficients
-        .iter()
-        .filter_map(|(name, x)| {
-            let y = b.coefficients.get(name)?;
-            let ((p, [p_low, p_high]), (q, [q_low, q_high])) = ((x.value?, x.interval_95?), (y.value?, y.interval_95?));
-            let is_apart = p_high < q_low || q_high < p_low;
-            is_apart.then(|| format!("{name} {p:.4} and {q:.4} {}", x.unit))
-        })
-        .collect();
-    (!apart.is_empty()).then(|| {
-        let text = format!(
-            "{} and {} differ by more than both intervals allow: {}; look where the body is free (free_from), and at friction, drift and a second mode",
-            a.method.name,
-            b.method.name,
-            apart.join(", ")
-        );
-        Finding::new(Severity::Warning, "methods-disagree", text)
-    })
-}
-
 fn setup_of(spec: &DecaySpec) -> DecaySetup {
     let uncertain =
         |d: froude_records::run::Declared| froude_fit::budget::Uncertain::new(d.value, d.standard_uncertainty);
@@ -122,8 +98,7 @@ fn setup_of(spec: &DecaySpec) -> DecaySetup {
         skip_half_cycles: spec.skip_half_cycles,
         ..DecayWindow::default()
     };
-    let axis = Axis::ALL[spec.axis as usize];
-    DecaySetup { window, ..DecaySetup::new(axis, uncertain(spec.inertia), uncertain(spec.stiffness)) }
+    DecaySetup { window, ..DecaySetup::new(spec.axis, uncertain(spec.inertia), uncertain(spec.stiffness)) }
 }
 
 struct Releases {
@@ -169,7 +144,7 @@ fn read(folder: &Path) -> Result<Releases, Error> {
 }
 
 /// A log as a release: its time and the channel that moves.
-fn release(log: &ImportedRun, axis: Axis) -> Result<DecayRun<'_>, Error> {
+fn release(log: &ImportedRun, axis: Motion) -> Result<DecayRun<'_>, Error> {
     let (names, unit): (&[&str], Dimension) = if axis.is_rotation() {
         (&["angle"], Dimension::ANGLE)
     } else {

@@ -211,7 +211,7 @@ fn andrews_lag(scores: &[Vec<Vec<f64>>], rank: usize) -> usize {
     let n: usize = scores.iter().map(Vec::len).sum();
     let of = |k: usize| {
         let moment = |distance: usize| -> f64 {
-            scores.iter().flat_map(|run| run.iter().skip(distance).zip(run)).map(|(a, b)| a[k] * b[k]).sum()
+            scores.iter().flat_map(|run| run.windows(distance + 1)).map(|w| w[distance][k] * w[0][k]).sum()
         };
         let rho = (moment(1) / moment(0)).clamp(-0.99, 0.99);
         let alpha = 4.0 * rho * rho / ((1.0 - rho).powi(2) * (1.0 + rho).powi(2));

@@ -1,6 +1,6 @@
 //! D_d as an estimate record: `D_x_II` of the law `quadratic`, as a table has it; C_D is made from it.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use froude_records::campaign::BodyAxis;
 use froude_records::estimate::{
@@ -105,8 +105,10 @@ pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>],
 fn validity(c: &Coefficient, setup: &DragSetup) -> IndexMap<String, Range> {
     let speeds = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s.abs()).collect::<Vec<_>>());
     let ways = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s).collect::<Vec<_>>());
+    // Astern is the other way round, where it went nowhere else.
+    let along = if ways[1] > 0.0 { 0.0 } else { PI };
     let ranges: &[(&str, [f64; 2], &str)] = match setup.travel {
-        None | Some(BodyAxis::X) => &[("angle", [0.0; 2], "rad"), (OFF_AXIS, [0.0; 2], "rad"), (ALONG, ways, "m/s")],
+        None | Some(BodyAxis::X) => &[("angle", [along; 2], "rad"), (OFF_AXIS, [0.0; 2], "rad"), (ALONG, ways, "m/s")],
         Some(BodyAxis::Y) => {
             // Towards starboard where it went there at all: the law is odd, and between the two ways nothing was towed.
             let angle = if ways[1] > 0.0 { -FRAC_PI_2 } else { FRAC_PI_2 };

@@ -13,7 +13,7 @@
 //! −(4/15)(εa)² for quadratic with ε = D_II/(M+A), and b_eq in the place of D_I shifts the period by half of what quadratic damping does. These orders are known
 //! and taken off (formulas in `pool.rs`), so that F stands for what a small damping of the same coefficients would take.
 //!
-//! **Source.** W. Froude (1874), Naval Science 3, 107 (extinction); Himeno (1981), Univ. of Michigan report 239, ch. 4 (equivalent damping);
+//! **Source.** W. Froude (1874), Naval Science 3 (extinction); Himeno (1981), Univ. of Michigan report 239, ch. 4 (equivalent damping);
 //! ITTC 7.5-02-07-04.5 (analysis of roll decay). Second order: ours.
 
 use froude_fit::budget::jackknife;
@@ -161,7 +161,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
     let mut fit = DecayFit {
         method: Method::Envelope,
         axis: setup.axis,
-        names: setup.axis.names(),
+        names: setup.axis.decay_names(),
         values,
         type_a: reduced.scatter(setup),
         inertia: setup.inertia,

@@ -30,8 +30,9 @@ const BEYOND_NOISE: f64 = 1.5;
 const FIRST_PART: f64 = 0.08;
 /// … from so many samples on …
 const FEWEST_FIRST: usize = 4;
-/// … and doubted where what the fit leaves there is so many times that of the whole: of noise alone, four samples have 2 times in one of 3,000.
-const FIRST_BEYOND: f64 = 2.2;
+/// … and doubted where what the fit leaves there is so many times that of the whole: of noise alone, four samples have that in one release of
+/// 50,000 (χ² with four degrees of freedom beyond 27).
+const FIRST_BEYOND: f64 = 2.6;
 /// A second mode has at least this part of the residuals' power in one line.
 const LINE: f64 = 0.3;
 

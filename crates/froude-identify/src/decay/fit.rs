@@ -2,9 +2,10 @@
 
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, Uncertain, combine};
 use froude_fit::faer::Mat;
-use froude_records::finding::Finding;
+use froude_records::campaign::Motion;
+use froude_records::finding::{Finding, Severity};
 
-use super::run::{Axis, DecaySetup};
+use super::run::DecaySetup;
 
 /// How the coefficients were got.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -114,10 +115,10 @@ pub struct DecayFit {
     /// How.
     pub method: Method,
     /// Which axis.
-    pub axis: Axis,
+    pub axis: Motion,
     /// Names of the three, e.g. `A33`, `D_z_I`, `D_z_II`.
     pub names: [String; 3],
-    /// Added mass, linear and quadratic damping; units in [`Axis::units`].
+    /// Added mass, linear and quadratic damping; units in [`Motion::decay_units`].
     pub values: [f64; 3],
     /// Type A; `None` where nothing shows it.
     pub type_a: Option<Scatter>,
@@ -181,6 +182,27 @@ impl DecayFit {
     #[must_use]
     pub fn combined(&self, j: usize) -> Option<Combined> {
         (self.type_a.is_some() && j < 3).then(|| combine(&self.budget(), j, OUTSIDE_95))
+    }
+
+    /// Two methods read one motion: where they differ by more than the intervals of both, its law or its start is not the declared one.
+    #[must_use]
+    pub fn disagrees_with(&self, other: &Self) -> Option<Finding> {
+        let apart = |j: usize| {
+            let ([low, high], [other_low, other_high]) = (self.interval_95(j)?, other.interval_95(j)?);
+            let text = || format!("{} {:.4} and {:.4}", self.names[j], self.values[j], other.values[j]);
+            (high < other_low || other_high < low).then(text)
+        };
+        let apart: Vec<String> = (0..3).filter_map(apart).collect();
+        (!apart.is_empty()).then(|| {
+            let text = format!(
+                "{} and {} differ by more than both intervals allow: {}; look where the body is free (free_from), and at friction, drift and \
+                 a second mode",
+                self.method.name(),
+                other.method.name(),
+                apart.join(", ")
+            );
+            Finding::new(Severity::Warning, "methods-disagree", text)
+        })
     }
 
     /// 95 % interval of coefficient `j`.

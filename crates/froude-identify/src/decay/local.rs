@@ -171,22 +171,27 @@ mod tests {
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;
 
-    /// 50 samples in ± 1 rad, noise of 5 % of the amplitude: the largest sample lies more than 5 % out. The slope's noise pushes the quartic's top out
-    /// by 0.047 %, its second fit about its own top as much again; the correction takes off the first. 40,000 peaks: the mean is known to σ √(225/64/50)/√40,000 = 0.007 %.
+    /// 50 samples in ± 1 rad, noise σ of 5 % of the amplitude: the largest sample lies more than 5 % out. The slope's noise, of variance
+    /// σ² 75/4/50, pushes the quartic's top out by half of that over the curvature 1, and that is taken off; what the choice of the window about the
+    /// first top adds stays. The samples' number and the sine's shape change the push by some per cent.
     #[test]
-    fn noise_pushes_the_largest_sample_outwards_and_not_the_fitted_turn() {
+    fn noise_pushes_the_largest_sample_outwards_and_less_the_fitted_turn() {
         let mut rng = Pcg64::seed_from_u64(3);
         let time_s: Vec<f64> = (0..121).map(|i| f64::from(i - 60) / 25.0).collect();
-        let (mut largest, mut fitted) = (0.0, 0.0);
-        for _ in 0..40_000 {
+        let (mut largest, mut fitted, mut as_it_is) = (0.0, 0.0, 0.0);
+        for _ in 0..10_000 {
             let mut noise =
                 || -> f64 { 0.05 * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng) };
             let q: Vec<f64> = time_s.iter().map(|t| t.cos() + noise()).collect();
-            largest += (q.iter().fold(f64::MIN, |m, x| m.max(*x)) - 1.0) / 40_000.0;
-            fitted += (turn(&time_s, &q, 0.1, REACH_RAD, noise_of(&q)).unwrap().position - 1.0) / 40_000.0;
+            let top = |noise| turn(&time_s, &q, 0.1, REACH_RAD, noise).unwrap().position - 1.0;
+            largest += (q.iter().fold(f64::MIN, |m, x| m.max(*x)) - 1.0) / 10_000.0;
+            fitted += top(0.05) / 10_000.0;
+            as_it_is += top(0.0) / 10_000.0;
         }
         assert!(largest > 0.05, "{largest}");
-        assert!((fitted - 4.7e-4).abs() < 4.0 * 7e-5, "{fitted}");
+        let push = 0.5 * 0.05 * 0.05 * 75.0 / 4.0 / 50.0;
+        assert!(((as_it_is - fitted) / push - 1.0).abs() < 0.1, "{as_it_is} {fitted} {push}");
+        assert!(fitted.abs() < as_it_is.abs(), "{as_it_is} {fitted}");
     }
 
     #[test]

@@ -163,7 +163,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
     let mut fit = DecayFit {
         method: Method::OutputError,
         axis: setup.axis,
-        names: setup.axis.names(),
+        names: setup.axis.decay_names(),
         values,
         type_a: scatter(&model, &parameters, &found),
         inertia: setup.inertia,
@@ -189,7 +189,7 @@ fn start(reduced: &Reduced<'_>, setup: &DecaySetup, model: &Releases<'_>) -> Vec
     let omega = reduced.pooled.omega_n;
     let moving = setup.stiffness.value / (omega * omega);
     let speed = reduced.range().speed[1];
-    let [name_a, name_i, name_ii] = setup.axis.names();
+    let [name_a, name_i, name_ii] = setup.axis.decay_names();
     let mut out = vec![
         Parameter::new(name_i, linear, NATURAL * moving * omega),
         Parameter::new(name_ii, quadratic, NATURAL * moving * omega / (EIGHT_OVER_3_PI * speed)),

@@ -129,7 +129,7 @@ fn drawn(fit: &DecayFit, data: &Dataset, source: &Source) -> Result<ModelFit, Id
 fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: bool) -> Estimate {
     let (load, velocity) = channels(fit);
     let [added, linear, quadratic] = &fit.names;
-    let units = fit.axis.units();
+    let units = fit.axis.decay_units();
     let coefficients = (0..3).map(|j| {
         let combined = fit.combined(j);
         let value = fit.values[j];
@@ -238,7 +238,7 @@ fn errors(fit: &DecayFit, campaign: &Campaign) -> IndexMap<String, SharedError> 
 
 /// The budget of each coefficient, in sentences.
 fn notes(fit: &DecayFit, budget: &[Part]) -> Vec<String> {
-    let units = fit.axis.units();
+    let units = fit.axis.decay_units();
     budget
         .iter()
         .filter(|part| (0..3).any(|j| part.standard(j) > 0.0))

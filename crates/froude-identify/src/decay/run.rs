@@ -1,69 +1,9 @@
 //! What a decay test gives: releases over time, and what is declared about body and springs.
 
 use froude_fit::budget::Uncertain;
+use froude_records::campaign::Motion;
 
 use super::error::DecayError;
-
-/// The one degree of freedom that moves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Axis {
-    /// x, m.
-    Surge,
-    /// y, m.
-    Sway,
-    /// z, m.
-    Heave,
-    /// About x, rad.
-    Roll,
-    /// About y, rad.
-    Pitch,
-    /// About z, rad.
-    Yaw,
-}
-
-impl Axis {
-    /// All six, in the order of a 6 × 6 matrix.
-    pub const ALL: [Self; 6] = [Self::Surge, Self::Sway, Self::Heave, Self::Roll, Self::Pitch, Self::Yaw];
-
-    /// As it stands in the names of coefficients: `x` … `rz`.
-    #[must_use]
-    pub const fn letters(self) -> &'static str {
-        match self {
-            Self::Surge => "x",
-            Self::Sway => "y",
-            Self::Heave => "z",
-            Self::Roll => "rx",
-            Self::Pitch => "ry",
-            Self::Yaw => "rz",
-        }
-    }
-
-    /// Whether the position is an angle.
-    #[must_use]
-    pub const fn is_rotation(self) -> bool {
-        matches!(self, Self::Roll | Self::Pitch | Self::Yaw)
-    }
-
-    /// Names of added mass, linear and quadratic damping: `A11`, `D_x_I`, `D_x_II`.
-    #[must_use]
-    pub fn names(self) -> [String; 3] {
-        let number = self as usize + 1;
-        let letters = self.letters();
-        [format!("A{number}{number}"), format!("D_{letters}_I"), format!("D_{letters}_II")]
-    }
-
-    /// Units of the three: kg, N s/m, N s²/m², or those of a rotation.
-    #[must_use]
-    pub const fn units(self) -> [&'static str; 3] {
-        if self.is_rotation() { ["kg*m^2", "N*m*s", "N*m*s^2"] } else { ["kg", "kg/s", "kg/m"] }
-    }
-
-    /// Unit of the position.
-    #[must_use]
-    pub const fn position_unit(self) -> &'static str {
-        if self.is_rotation() { "rad" } else { "m" }
-    }
-}
 
 /// One release: columns of one length, time in even steps.
 #[derive(Debug, Clone, Copy)]
@@ -132,7 +72,7 @@ impl Default for DecayWindow {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecaySetup {
     /// The axis that moves.
-    pub axis: Axis,
+    pub axis: Motion,
     /// M: dry inertia of all that moves, kg or kg m².
     pub inertia: Uncertain,
     /// C: springs or hydrostatics, N/m or N m/rad.
@@ -144,7 +84,7 @@ pub struct DecaySetup {
 impl DecaySetup {
     /// The whole of each release from its first passage through rest.
     #[must_use]
-    pub fn new(axis: Axis, inertia: Uncertain, stiffness: Uncertain) -> Self {
+    pub fn new(axis: Motion, inertia: Uncertain, stiffness: Uncertain) -> Self {
         Self { axis, inertia, stiffness, window: DecayWindow::default() }
     }
 

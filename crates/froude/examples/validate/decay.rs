@@ -1,7 +1,8 @@
 //! Free decay from the twin of its rig: coverage of the intervals that a user sees, with releases that are alike and with releases that are not.
 
 use froude::fit::budget::Uncertain;
-use froude::identify::decay::{Axis, DecayFit, DecayRun, DecaySetup, Method, envelope, output_error};
+use froude::identify::decay::{DecayFit, DecayRun, DecaySetup, Method, envelope, output_error};
+use froude::records::campaign::Motion;
 use froude::rig::decay::{DecayRig, DecaySensor, Release};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -70,6 +71,6 @@ fn campaign(seed: u64, scatter: f64) -> Option<[DecayFit; 2]> {
         .collect();
     let runs: Vec<DecayRun<'_>> =
         traces.iter().map(|trace| DecayRun { id: "", time_s: &trace.time_s, position: &trace.position }).collect();
-    let setup = DecaySetup::new(Axis::Heave, declared[0], declared[1]);
+    let setup = DecaySetup::new(Motion::Heave, declared[0], declared[1]);
     Some([envelope(&runs, &setup).ok()?, output_error(&runs, &setup).ok()?])
 }

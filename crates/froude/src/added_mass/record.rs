@@ -54,6 +54,11 @@ pub(super) fn mesh_file(path: &Path) -> Result<DataFile, Error> {
     Ok(DataFile { role: Some("mesh".to_owned()), ..DataFile::of(path, &file_name(path))? })
 }
 
+/// What the signs of a matrix mean.
+pub(super) fn signs() -> Signs {
+    Signs("loads of the fluid on the body are minus the matrix times the accelerations".to_owned())
+}
+
 /// An estimate that came from it, and from what was made of it on the way.
 pub(super) fn of_the_mesh(estimate: Estimate) -> Estimate {
     Estimate { data: vec!["d1".to_owned()], ..estimate }
@@ -145,12 +150,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
         ]),
         frame: Frame { words: about.frame.clone(), ..Frame::default() },
         point: ReferencePoint { words: about.reference_point.clone(), stated: true },
-        signs: Signs("loads of the fluid on the body are minus the matrix times the accelerations".to_owned()),
-        attitude: None,
-        data: Vec::new(),
-        clusters: None,
-        derived: IndexMap::new(),
-        errors: IndexMap::new(),
+        signs: signs(),
         interval: Interval { of: "mesh".to_owned(), ..Interval::default() },
         method: MethodUsed {
             name: "panels".to_owned(),
@@ -161,13 +161,9 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
                 if refined.steps.len() > 1 { ", extrapolated" } else { "" }
             ),
         },
-        dof: IndexMap::new(),
-        sigma: IndexMap::new(),
         n_observations: refined.steps.len(),
         coefficients,
         type_a: covariance,
-        undetermined: Vec::new(),
-        validity: IndexMap::new(),
         diagnostics: Diagnostics {
             notes: vec![format!(
                 "raw asymmetry of the finest mesh {:.1e}; the symmetric part is given",
@@ -177,5 +173,6 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
         },
         recommended: true,
         reason: Some("the only model of its source".to_owned()),
+        ..Estimate::default()
     }
 }

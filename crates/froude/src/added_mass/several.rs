@@ -20,8 +20,8 @@ use froude_panel::study::{Size, study};
 use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{
-    Coefficient, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Signs,
-    Status, keyed,
+    Coefficient, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Status,
+    keyed,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_report::document::{Document, DocumentSection, TextTable};
@@ -34,7 +34,7 @@ use super::family::{Family, robot};
 use super::frame::{Axes, sentence};
 use super::links::{default_out, no_density};
 use super::load::{is_body_file, load, of_a_mesh_only};
-use super::record::{MOTIONS, mesh_file, of_the_mesh, replaces_another_frame, unit};
+use super::record::{MOTIONS, mesh_file, of_the_mesh, replaces_another_frame, signs, unit};
 use super::refine::{LOOSE, ZERO};
 use crate::Error;
 
@@ -494,12 +494,7 @@ fn record(
             words: format!("each part's own point; rows and columns six a part: {}", parts.join(", ")),
             stated: true,
         },
-        signs: Signs("loads of the fluid on the body are minus the matrix times the accelerations".to_owned()),
-        attitude: None,
-        data: Vec::new(),
-        clusters: None,
-        derived: IndexMap::new(),
-        errors: IndexMap::new(),
+        signs: signs(),
         interval: Interval { of: "mesh".to_owned(), ..Interval::default() },
         method: MethodUsed {
             name: "panels".to_owned(),
@@ -510,16 +505,12 @@ fn record(
                 if meshes > 1 { ", extrapolated" } else { "" }
             ),
         },
-        dof: IndexMap::new(),
-        sigma: IndexMap::new(),
         n_observations: meshes,
         coefficients,
-        type_a: None,
-        undetermined: Vec::new(),
-        validity: IndexMap::new(),
         diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },
         recommended: true,
         reason: Some("the only model of its source".to_owned()),
+        ..Estimate::default()
     }
 }
 

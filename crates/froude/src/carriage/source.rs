@@ -17,8 +17,11 @@ use crate::method::Method;
 /// The five methods of the towing carriage: one reduction, one setup.
 pub(crate) struct Carriage;
 
-/// Their names, those of [`CarriageMethod::ALL`].
-const NAMES: [&str; 5] = ["fsm", "mcd", "mbdp_constant", "mbdp_mapped", "mbdp_flexible"];
+/// Their names.
+const NAMES: [&str; 5] = {
+    let [a, b, c, d, e] = CarriageMethod::ALL;
+    [a.name(), b.name(), c.name(), d.name(), e.name()]
+};
 
 fn named(name: &str) -> Option<CarriageMethod> {
     CarriageMethod::ALL.into_iter().find(|method| method.name() == name)
