@@ -50,6 +50,9 @@ pub enum Verb {
         /// Print every pair of coefficients, not only those of the recommended models.
         #[arg(long)]
         all: bool,
+        /// Folder for record and report; without it nothing is written.
+        #[arg(long)]
+        out: Option<PathBuf>,
     },
     /// Say what is in a table, campaign, record, run (.mcap) or folder of runs, with units, ranges and every finding.
     Inspect {

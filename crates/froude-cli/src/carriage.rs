@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use froude::Error;
-use froude::carriage::drag::{DragJob, drag, methods_table, setup_of, summary};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
 use froude::carriage::tune::{
@@ -12,6 +11,7 @@ use froude::carriage::tune::{
 use froude::carriage::{calibrate, runs};
 use froude::fit::budget::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
+use froude::pipeline::{Input, Job};
 use froude::records::run::RunKind;
 use froude::records::text::counted;
 use froude::records::units::{Dimension, parse_quantity};
@@ -248,7 +248,8 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
             servo(input.clone(), sidecar, out, is_json).map_err(|error| mistaken::SERVO.explain(error, &input))
         }
         CarriageJob::Drag { runs, campaign, out } => {
-            drag_verb(runs.clone(), campaign, out, is_json).map_err(|error| mistaken::DRAG.explain(error, &runs))
+            let job = Job { out, ..Job::of(Input::Runs { paths: runs.clone(), campaign }) };
+            crate::identify(job, is_json, false).map_err(|error| mistaken::DRAG.explain(error, &runs))
         }
         CarriageJob::Calibrate { runs, campaign, measured, measured_standard, counted } => {
             let explain = |error| mistaken::CALIBRATE.explain(error, &runs);
@@ -317,27 +318,6 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
     }
     print::findings(&outcome.findings);
     say!("\nReport: {}", outcome.page.display());
-    Ok(())
-}
-
-fn drag_verb(runs: Vec<PathBuf>, campaign: Option<PathBuf>, out: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
-    let bar = crate::spinner();
-    bar.set_message("reducing the runs");
-    let job = DragJob { runs, campaign: campaign.clone(), out, date: Some(crate::today()) };
-    let outcome = drag(&job)?;
-    bar.finish_and_clear();
-    if is_json {
-        return print::json(&outcome.file);
-    }
-    print::text_table(&methods_table(&outcome.report));
-    let mut setup = setup_of(None, None);
-    setup.calibration = outcome.calibration.as_ref().map(|c| c.force_per_volt);
-    say!("");
-    for sentence in summary(&outcome.report, &setup) {
-        say!("{sentence}");
-    }
-    print::findings(&outcome.report.findings);
-    say!("\nRecord: {}\nReport: {}", outcome.estimate.display(), outcome.page.display());
     Ok(())
 }
 

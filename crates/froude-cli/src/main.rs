@@ -12,12 +12,13 @@ mod last_word;
 mod mistaken;
 mod out;
 mod print;
+mod side_by_side;
 mod stage;
 
 use std::process::ExitCode;
 
 use clap::Parser;
-use froude::pipeline::{self, Job};
+use froude::pipeline::{self, Input, Job};
 use froude::records::text::counted;
 use froude::{Error, demo, inspect, twin};
 
@@ -49,27 +50,16 @@ fn run(cli: Cli) -> Result<(), Error> {
                 return print::json(&outcomes.iter().map(|o| &o.file).collect::<Vec<_>>());
             }
             for outcome in &outcomes {
-                print::outcome(outcome);
+                print::outcome(outcome, false);
             }
         }
         Verb::Identify { input, out, sidecar, models } => {
-            let bar = spinner();
-            let job = Job { input, out, sidecar, models, date: Some(today()) };
-            let outcome = pipeline::identify(&job, &|step| bar.set_message(step.to_owned()))
-                .map_err(|error| mistaken::IDENTIFY.explain(error, &[job.input]))?;
-            bar.finish_and_clear();
-            if cli.json {
-                return print::json(&outcome.file);
-            }
-            print::outcome(&outcome);
+            let job = Job { out, sidecar, models, ..Job::new(&input) };
+            identify(job, cli.json, false).map_err(|error| mistaken::IDENTIFY.explain(error, &[input]))?;
         }
-        Verb::Compare { estimates, all } => {
-            let comparison =
-                froude::compare_files(&estimates).map_err(|error| mistaken::COMPARE.explain(error, &estimates))?;
-            if cli.json {
-                return print::json(&print::comparison_json(&comparison));
-            }
-            print::comparison(&comparison, all);
+        Verb::Compare { estimates, all, out } => {
+            let job = Job { out, ..Job::of(Input::Records(estimates.clone())) };
+            identify(job, cli.json, all).map_err(|error| mistaken::COMPARE.explain(error, &estimates))?;
         }
         Verb::Inspect { file, sidecar } => {
             let inspection = inspect::inspect(&file, sidecar.as_deref())
@@ -101,6 +91,18 @@ fn run(cli: Cli) -> Result<(), Error> {
         }
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
+    Ok(())
+}
+
+/// `identify`, `compare` and `carriage drag`: one job, one way through it, one outcome, printed or as its record.
+fn identify(job: Job, is_json: bool, all: bool) -> Result<(), Error> {
+    let bar = spinner();
+    let outcome = pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?;
+    bar.finish_and_clear();
+    if is_json {
+        return print::json(&outcome.file);
+    }
+    print::outcome(&outcome, all);
     Ok(())
 }
 

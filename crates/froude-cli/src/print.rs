@@ -2,15 +2,18 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::Error;
-use froude::identify::compare::{CoefficientRow, Comparison, ForceRow, JointRow, Stated, coverage_note};
+use froude::identify::source::SourceResult;
 use froude::inspect::{ColumnFacts, Inspection, SourceFacts};
-use froude::pipeline::Outcome;
+use froude::pipeline::{Outcome, Summary};
 use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
 use froude::records::text::{counted, visible_json};
+use froude::report::document::{DocumentSection, TextTable};
 use froude::report::number;
+use froude::results::Written;
 
 use crate::out::say;
+use crate::side_by_side::comparison;
 
 /// One JSON document on standard output.
 pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Error> {
@@ -24,7 +27,7 @@ pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Error> {
 /// Widest line of a table: what a printed page and most terminals hold.
 const WIDEST: u16 = 120;
 
-fn table(header: &[&str]) -> Table {
+pub fn table(header: &[&str]) -> Table {
     let mut table = Table::new();
     table
         .load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY)
@@ -38,7 +41,7 @@ fn table(header: &[&str]) -> Table {
 const LONGEST_CELL: usize = 1000;
 
 /// A cell; of a text that no table can show, its beginning.
-fn cell(text: impl ToString) -> Cell {
+pub fn cell(text: impl ToString) -> Cell {
     let text = text.to_string();
     match text.char_indices().nth(LONGEST_CELL) {
         Some((end, _)) => Cell::new(format!("{}…", &text[..end])),
@@ -46,44 +49,69 @@ fn cell(text: impl ToString) -> Cell {
     }
 }
 
-fn right(text: String) -> Cell {
+pub fn right(text: String) -> Cell {
     cell(text).set_alignment(CellAlignment::Right)
 }
 
-/// The coefficient tables, the findings, and where the report lies.
-pub fn outcome(outcome: &Outcome) {
-    for source in &outcome.sources {
-        say!("\n{} ({})", source.name, observations(source.data.rows));
-        if let Some(r) = &source.recommendation {
-            let is_recommended = source.estimates[r.index].recommended;
-            say!("  {}: {}", if is_recommended { "recommended" } else { "method" }, r.reason);
-            if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
-                say!("  cross-validation: {why}");
-            }
-        }
-        // Of several models the recommended one; of a method's only one, that.
-        let (shown, others): (Vec<&Estimate>, Vec<&Estimate>) =
-            source.estimates.iter().partition(|e| e.recommended || source.estimates.len() == 1);
-        for estimate in shown {
-            say!("{}", coefficients(estimate));
-            for combination in &estimate.undetermined {
-                say!("  determined only together: {combination}");
-            }
-        }
-        let others: Vec<&str> = others.into_iter().map(|e| e.law.name.as_str()).collect();
-        if !others.is_empty() {
-            say!("  also fitted: {} (see the report)", others.join(", "));
-        }
-        for n in &source.not_fitted {
-            say!("  not fitted: {}: {}", n.model, n.why);
+/// The coefficient tables or the summaries, records side by side, the findings, and where the report lies.
+pub fn outcome(outcome: &Outcome, all: bool) {
+    for (i, result) in outcome.sources.iter().enumerate() {
+        match outcome.summaries.iter().find(|summary| summary.sources.contains(&i)) {
+            Some(Summary { sources, section }) if sources.start == i => summary(section),
+            Some(_) => {}
+            None => source(result),
         }
     }
-    if !outcome.comparison.coefficients.is_empty() {
-        say!("\nThe sources are compared in the report (E_n, χ², predicted forces).");
+    match &outcome.file.comparison {
+        Some(c) if outcome.sources.is_empty() => comparison(c, all),
+        Some(c) if !c.coefficients.is_empty() => {
+            say!("\nThe sources are compared in the report (E_n, χ², predicted forces).");
+        }
+        _ => {}
     }
     findings(&outcome.file.findings);
-    say!("\nestimates {}", outcome.estimate.display());
-    say!("report    {}", outcome.report.display());
+    if let Some(Written { estimate, report, .. }) = &outcome.written {
+        say!("\nestimates {}", estimate.display());
+        say!("report    {}", report.display());
+    }
+}
+
+/// What a method says of all its results: its tables, then its sentences.
+fn summary(section: &DocumentSection) {
+    for table in &section.tables {
+        text_table(table);
+    }
+    say!("");
+    for sentence in &section.paragraphs {
+        say!("{sentence}");
+    }
+}
+
+fn source(source: &SourceResult) {
+    say!("\n{} ({})", source.name, observations(source.data.rows));
+    if let Some(r) = &source.recommendation {
+        let is_recommended = source.estimates[r.index].recommended;
+        say!("  {}: {}", if is_recommended { "recommended" } else { "method" }, r.reason);
+        if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
+            say!("  cross-validation: {why}");
+        }
+    }
+    // Of several models the recommended one; of a method's only one, that.
+    let (shown, others): (Vec<&Estimate>, Vec<&Estimate>) =
+        source.estimates.iter().partition(|e| e.recommended || source.estimates.len() == 1);
+    for estimate in shown {
+        say!("{}", coefficients(estimate));
+        for combination in &estimate.undetermined {
+            say!("  determined only together: {combination}");
+        }
+    }
+    let others: Vec<&str> = others.into_iter().map(|e| e.law.name.as_str()).collect();
+    if !others.is_empty() {
+        say!("  also fitted: {} (see the report)", others.join(", "));
+    }
+    for n in &source.not_fitted {
+        say!("  not fitted: {}: {}", n.model, n.why);
+    }
 }
 
 fn observations(n: usize) -> String {
@@ -292,234 +320,12 @@ fn diagnostics(d: &Diagnostics) -> Vec<(&'static str, String)> {
     out
 }
 
-/// Widest table; a wider one is wrapped or told in blocks.
-const MOST_CHARACTERS: u16 = 118;
-/// Widest head of a force column; a longer name is wrapped.
-const MOST_OF_A_HEAD: usize = 28;
-
-/// A table of a comparison, never wider than [`MOST_CHARACTERS`] or the terminal.
-fn narrow(header: &[String]) -> Table {
-    let header: Vec<&str> = header.iter().map(String::as_str).collect();
-    let mut out = table(&header);
-    out.load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
-    out.set_width(out.width().map_or(MOST_CHARACTERS, |w| w.min(MOST_CHARACTERS)));
-    out
-}
-
-/// Value and expanded uncertainty, digits after the uncertainty; the value alone where none is stated.
-fn value_and_uncertainty(s: &Stated) -> String {
-    match (s.value, s.expanded()) {
-        (Some(value), Some(u)) => number::plus_minus(value, u),
-        (Some(value), None) => number::plain(value, 5),
-        (None, _) => number::MISSING.to_owned(),
-    }
-}
-
-fn normalised(e_n: &Result<f64, String>) -> String {
-    e_n.as_ref().map_or_else(|_| number::MISSING.to_owned(), |e| number::fixed(*e, 2))
-}
-
-/// Reasons in the order of appearance, each once.
-fn reasons<'a>(results: impl Iterator<Item = &'a Result<f64, String>>) -> Vec<&'a str> {
-    let mut out: Vec<&str> = Vec::new();
-    for reason in results.filter_map(|r| r.as_ref().err()) {
-        if !out.contains(&reason.as_str()) {
-            out.push(reason);
-        }
-    }
-    out
-}
-
-/// Sources side by side.
-pub fn comparison(c: &Comparison, all: bool) {
-    let recommended = |id: &str| c.force_ids.iter().any(|f| f == id);
-    let is_shown =
-        |r: &CoefficientRow| all || c.coefficients.len() <= 40 || (recommended(&r.first) && recommended(&r.second));
-    let (shown, hidden): (Vec<_>, Vec<_>) = c.coefficients.iter().partition(|r| is_shown(r));
-    for pair in shown.chunk_by(|a, b| a.first == b.first && a.second == b.second) {
-        coefficient_pair(pair);
-        let own = |j: &&JointRow| pair.iter().any(|r| r.first == j.first && r.second == j.second);
-        for j in c.joint.iter().filter(own) {
-            match &j.result {
-                Ok((chi2, dof, p)) => say!(
-                    "  jointly: χ² = {} with {}, p {}{}",
-                    number::significant(*chi2, 3),
-                    number::degrees_of_freedom(*dof as f64),
-                    if *p < 0.001 { "" } else { "= " },
-                    number::p_value(*p)
-                ),
-                // A missing uncertainty has been named with the missing E_n.
-                Err(why) if reasons(pair.iter().map(|r| &r.e_n)).contains(&why.as_str()) => {}
-                Err(why) => say!("  no joint χ²: {why}"),
-            }
-        }
-    }
-    if !hidden.is_empty() {
-        let further = counted(hidden.len(), "further pair of coefficients", "further pairs of coefficients");
-        say!("\n{further}; --all prints {}", if hidden.len() == 1 { "it" } else { "them" });
-    }
-    if !c.forces.is_empty() {
-        forces(c);
-    }
-    findings(&c.findings);
-}
-
-/// The coefficients that two estimates share, a column each.
-fn coefficient_pair(rows: &[&CoefficientRow]) {
-    let Some(one) = rows.first() else { return };
-    let has_e_n = rows.iter().any(|r| r.e_n.is_ok());
-    say!("\nModel {}", one.model);
-    let (first, second) = if one.first == one.second {
-        (format!("1: {}", one.first), format!("2: {}", one.second))
-    } else {
-        (one.first.clone(), one.second.clone())
-    };
-    let is_stated = rows.iter().any(|r| r.by_first.standard.is_some() || r.by_second.standard.is_some());
-    let head = |id: String| if is_stated { format!("{id}, ± U") } else { id };
-    let mut header = vec!["coefficient".to_owned(), "unit".to_owned(), head(first), head(second)];
-    if has_e_n {
-        header.push("E_n".to_owned());
-    }
-    let mut out = narrow(&header);
-    for r in rows {
-        let mut row = vec![
-            cell(&r.coefficient),
-            cell(&r.unit),
-            right(value_and_uncertainty(&r.by_first)),
-            right(value_and_uncertainty(&r.by_second)),
-        ];
-        if has_e_n {
-            row.push(right(normalised(&r.e_n)));
-        }
-        out.add_row(row);
-    }
-    say!("{out}");
-    if is_stated {
-        say!("  ± U: expanded uncertainty, 95 %, U = k·u");
-        say!("    {}", coverage_note(&one.first, rows.iter().map(|r| &r.by_first)));
-        if one.first != one.second {
-            say!("    {}", coverage_note(&one.second, rows.iter().map(|r| &r.by_second)));
-        }
-    }
-    for why in reasons(rows.iter().map(|r| &r.e_n)) {
-        say!("  no E_n: {why}");
-    }
-}
-
-/// Predicted forces: a column per estimate, in blocks that fit beside each other.
-fn forces(c: &Comparison) {
-    say!("\nPredicted force over the common range");
-    let has_links = c.forces.iter().any(|r| r.n_links.is_some());
-    let mut place = vec!["load".to_owned()];
-    if has_links {
-        place.push("links".to_owned());
-    }
-    place.extend(["speed [m/s]".to_owned(), "angle [deg]".to_owned()]);
-    let at = |r: &ForceRow| {
-        let mut row = vec![cell(&r.component)];
-        if has_links {
-            row.push(right(r.n_links.map_or_else(String::new, |k| format!("{k}"))));
-        }
-        row.push(right(format!("{:.3}", r.speed_m_s)));
-        row.push(right(format!("{:.1}", r.angle_rad.to_degrees())));
-        row
-    };
-    let columns: Vec<Vec<(String, Vec<String>)>> =
-        c.force_ids.iter().enumerate().map(|(i, id)| force_columns(c, i, id)).collect();
-    let width = |(head, cells): &(String, Vec<String>)| {
-        let cell = cells.iter().map(|t| t.chars().count()).max().unwrap_or(0);
-        cell.max(head.chars().count().min(MOST_OF_A_HEAD)) + 2
-    };
-    let room = usize::from(MOST_CHARACTERS) - place.iter().map(|p| p.len() + 2).sum::<usize>();
-    let mut blocks: Vec<Vec<&(String, Vec<String>)>> = Vec::new();
-    let mut left = 0;
-    for own in &columns {
-        let wanted: usize = own.iter().map(width).sum();
-        if blocks.is_empty() || wanted > left {
-            blocks.push(Vec::new());
-            left = room;
-        }
-        left = left.saturating_sub(wanted);
-        if let Some(block) = blocks.last_mut() {
-            block.extend(own);
-        }
-    }
-    for block in blocks {
-        let mut header = place.clone();
-        header.extend(block.iter().map(|(head, _)| head.clone()));
-        let mut out = narrow(&header);
-        for (i, r) in c.forces.iter().enumerate() {
-            let mut row = at(r);
-            row.extend(block.iter().map(|(_, cells)| right(cells[i].clone())));
-            out.add_row(row);
-        }
-        say!("{out}");
-    }
-    if c.forces.iter().flat_map(|r| &r.forces).any(|f| f.standard.is_some()) {
-        say!("  ± U: expanded uncertainty, 95 %, U = k·u");
-    }
-    for note in c.coverage_notes() {
-        say!("    {note}");
-    }
-    for (j, id) in c.force_ids.iter().enumerate().skip(1) {
-        // A missing uncertainty has just been named.
-        let others = reasons(c.forces.iter().map(|r| &r.e_n[j - 1]));
-        for why in others.into_iter().filter(|why| !why.starts_with("no uncertainty stated")) {
-            say!("  no E_n of {id} against {}: {why}", c.force_ids[0]);
-        }
-    }
-}
-
-/// Head and cells of an estimate's forces, and of its E_n against the first estimate where there is one.
-fn force_columns(c: &Comparison, i: usize, id: &str) -> Vec<(String, Vec<String>)> {
-    let is_stated = c.forces.iter().any(|r| r.forces[i].standard.is_some());
-    let head = if is_stated { format!("{id} ± U [N]") } else { format!("{id} [N]") };
-    let cells = c.forces.iter().map(|r| match r.forces[i].value {
-        Some(force) if r.forces[i].standard.is_none() => number::fixed(force, 4),
-        _ => value_and_uncertainty(&r.forces[i]),
-    });
-    let mut out = vec![(head, cells.collect())];
-    if i > 0 && c.forces.iter().any(|r| r.e_n[i - 1].is_ok()) {
-        out.push(("E_n".to_owned(), c.forces.iter().map(|r| normalised(&r.e_n[i - 1])).collect()));
-    }
-    out
-}
-
-/// The comparison as JSON; where there is no E_n or χ², `note` says why.
-pub fn comparison_json(c: &Comparison) -> serde_json::Value {
-    serde_json::json!({
-        "coefficients": c.coefficients.iter().map(|r| serde_json::json!({
-            "model": r.model, "coefficient": r.coefficient, "unit": r.unit, "first": r.first, "second": r.second,
-            "value_first": r.by_first.value, "value_second": r.by_second.value,
-            "expanded_uncertainty_first": r.by_first.expanded(), "expanded_uncertainty_second": r.by_second.expanded(),
-            "coverage_factor_first": r.by_first.coverage(), "coverage_factor_second": r.by_second.coverage(),
-            "e_n": r.e_n.as_ref().ok(), "note": r.e_n.as_ref().err(),
-        })).collect::<Vec<_>>(),
-        "joint": c.joint.iter().map(|r| serde_json::json!({
-            "model": r.model, "first": r.first, "second": r.second,
-            "chi_squared": r.result.as_ref().ok().map(|x| x.0), "dof": r.result.as_ref().ok().map(|x| x.1),
-            "p": r.result.as_ref().ok().map(|x| x.2), "note": r.result.as_ref().err(),
-        })).collect::<Vec<_>>(),
-        "forces": c.forces.iter().map(|r| serde_json::json!({
-            "component": r.component, "n_links": r.n_links, "speed_m_s": r.speed_m_s, "angle_rad": r.angle_rad,
-            "by": c.force_ids.iter().zip(&r.forces).map(|(id, f)| serde_json::json!({
-                "id": id, "force_n": f.value, "standard_uncertainty_n": f.standard,
-                "expanded_uncertainty_n": f.expanded(), "coverage_factor": f.coverage(), "effective_dof": f.dof,
-            })).collect::<Vec<_>>(),
-            "e_n": c.force_ids.iter().skip(1).zip(&r.e_n).map(|(id, e)| serde_json::json!({
-                "first": c.force_ids[0], "second": id, "e_n": e.as_ref().ok(), "note": e.as_ref().err(),
-            })).collect::<Vec<_>>(),
-        })).collect::<Vec<_>>(),
-        "findings": c.findings,
-    })
-}
-
 /// A table whose cells are written already; numbers to the right. No word is broken: a table of long words is wider than [`WIDEST`].
-pub fn text_table(text: &froude::report::document::TextTable) {
+pub fn text_table(text: &TextTable) {
     say!("{}", laid_out(text, usize::from(WIDEST)));
 }
 
-fn laid_out(text: &froude::report::document::TextTable, widest: usize) -> Table {
+fn laid_out(text: &TextTable, widest: usize) -> Table {
     let widths = widths(text, widest);
     let wrapped = |row: &[String]| -> Vec<String> {
         row.iter().enumerate().map(|(i, cell)| wrap(cell, widths.get(i).copied().unwrap_or(usize::MAX))).collect()
@@ -540,7 +346,7 @@ fn laid_out(text: &froude::report::document::TextTable, widest: usize) -> Table 
 const LONGEST_NAME: usize = 24;
 
 /// A width for each column: that of its longest word, and what is left of the line to the columns that would be wrapped most.
-fn widths(text: &froude::report::document::TextTable, widest: usize) -> Vec<usize> {
+fn widths(text: &TextTable, widest: usize) -> Vec<usize> {
     let columns = || 0..text.head.len();
     let cells = |i: usize| std::iter::once(&text.head).chain(&text.rows).filter_map(move |row| row.get(i));
     let length = |t: &str| t.chars().count();
@@ -603,8 +409,6 @@ fn wrap(text: &str, width: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use froude::report::document::TextTable;
-
     use super::*;
 
     fn preflight() -> TextTable {

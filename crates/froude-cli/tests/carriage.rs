@@ -350,8 +350,8 @@ fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
     json(&["identify", text(&folder.join("tow.csv")), "--models", "quadratic", "--json"]);
     let records = [folder.join("campaign-runs-drag/estimate.json"), folder.join("tow-results/estimate.json")];
     let compared = json(&["compare", text(&records[0]), text(&records[1]), "--json"]);
-    let forces = compared["forces"].as_array().unwrap();
-    assert!(!forces.is_empty() && forces.iter().all(|row| row["e_n"][0]["e_n"].is_number()), "{compared}");
+    let loads = compared["comparison"]["loads"].as_array().unwrap();
+    assert!(!loads.is_empty() && loads.iter().all(|row| row["e_n"].is_number()), "{compared}");
 
     assert_eq!(findings_of(&compared, "axes-not-tied").len(), 1, "{}", compared["findings"]);
     assert!(findings_of(&compared, "density-differs").is_empty(), "no water is stated for the table");
@@ -404,12 +404,12 @@ fn campaigns_that_share_a_calibration_are_compared_without_its_error() {
     let variance = |other: &Path| {
         let compared = json(&["compare", text(&monday), text(other), "--json"]);
         let of_mcd = |list: &str| {
-            let is_mcd = |row: &&Value| ["first", "second"].iter().all(|k| row[*k].as_str().unwrap().contains("/mcd"));
-            compared[list].as_array().unwrap().iter().find(is_mcd).cloned().unwrap()
+            let is_mcd = |row: &&Value| ["first", "second"].iter().all(|k| row[*k].to_string().contains("/mcd"));
+            compared["comparison"][list].as_array().unwrap().iter().find(is_mcd).cloned().unwrap()
         };
         let (row, joint) = (of_mcd("coefficients"), of_mcd("joint"));
         assert!(row["e_n"].is_number(), "{row}");
-        let difference = row["value_first"].as_f64().unwrap() - row["value_second"].as_f64().unwrap();
+        let difference = row["first"]["value"].as_f64().unwrap() - row["second"]["value"].as_f64().unwrap();
         let said = findings_of(&compared, "errors-in-common");
         assert_eq!(said.len(), 1, "{said:?}");
         (difference * difference / joint["chi_squared"].as_f64().unwrap(), said[0].1.clone())

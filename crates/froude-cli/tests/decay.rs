@@ -81,7 +81,10 @@ fn releases_of_a_body_on_springs_give_its_added_mass_and_damping() {
     // Two readings of the same releases are no evidence for each other.
     let record = folder.path().join("decay-results/estimate.json");
     let compared = json(&["compare", text(&record), text(&record), "--json"]);
-    assert!(compared["coefficients"].as_array().unwrap().iter().all(|row| row["e_n"].is_null()), "same data");
+    assert!(
+        compared["comparison"]["coefficients"].as_array().unwrap().iter().all(|row| row["e_n"].is_null()),
+        "same data"
+    );
     let inspected = json(&["inspect", text(&record), "--json"]);
     assert!(inspected.to_string().contains("heave/decay_output_error"), "{inspected}");
 }

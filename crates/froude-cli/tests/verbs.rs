@@ -114,11 +114,11 @@ fn published_sets_are_compared_without_inventing_uncertainty() {
             &path("table11_as_printed.json"),
         ],
     ));
-    for row in out["coefficients"].as_array().unwrap() {
+    for row in out["comparison"]["coefficients"].as_array().unwrap() {
         assert!(row["e_n"].is_null(), "{row}");
         assert!(row["note"].as_str().unwrap().starts_with("no uncertainty stated by "), "{row}");
         let model = |id: &serde_json::Value| {
-            id.as_str().unwrap().split(' ').next().unwrap().rsplit('/').next().unwrap().to_owned()
+            id["source"].as_str().unwrap().split(' ').next().unwrap().rsplit('/').next().unwrap().to_owned()
         };
         assert_eq!(model(&row["first"]), model(&row["second"]), "only equal models are compared");
     }
@@ -205,21 +205,45 @@ fn a_record_compared_with_itself_is_no_evidence() {
     assert!(said.contains("same data: not independent, E_n not meaningful"), "{said}");
     assert!(said.contains("[same-data]"), "{said}");
     let out = json(&froude(folder.path(), &["--json", "compare", &record, "copy.json"]));
-    for row in out["coefficients"].as_array().unwrap() {
+    for row in out["comparison"]["coefficients"].as_array().unwrap() {
         assert!(row["e_n"].is_null(), "{row}");
         assert_eq!(row["note"], "same data: not independent, E_n not meaningful");
     }
-    for row in out["joint"].as_array().unwrap() {
+    for row in out["comparison"]["joint"].as_array().unwrap() {
         assert!(row["chi_squared"].is_null() && row["note"].as_str().unwrap().starts_with("same data"), "{row}");
     }
-    for row in out["forces"].as_array().unwrap() {
-        assert!(row["n_links"].is_null() && row["e_n"][0]["e_n"].is_null(), "{row}");
-        assert!(row["by"][0]["coverage_factor"].as_f64().unwrap() > 1.96, "{row}");
+    for row in out["comparison"]["loads"].as_array().unwrap() {
+        assert!(row["n_links"].is_null() && row["e_n"].is_null(), "{row}");
+        assert!(row["first"]["coverage_factor"].as_f64().unwrap() > 1.96, "{row}");
     }
     // A repeat of the test on another day is independent.
     let other = tare_record(folder.path(), "tuesday", 1.02);
     let out = json(&froude(folder.path(), &["--json", "compare", &record, &other]));
-    assert!(out["coefficients"][0]["e_n"].is_number() && out["joint"][0]["chi_squared"].is_number(), "{out}");
+    let c = &out["comparison"];
+    assert!(c["coefficients"][0]["e_n"].is_number() && c["joint"][0]["chi_squared"].is_number(), "{out}");
+}
+
+#[test]
+fn a_comparison_is_a_record_and_a_report_where_a_folder_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let records = [tare_record(folder.path(), "monday", 1.0), tare_record(folder.path(), "tuesday", 1.02)];
+    let out = json(&froude(folder.path(), &["--json", "compare", &records[0], &records[1], "--out", "both"]));
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("both").join(name)).unwrap();
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&read("estimate.json")).unwrap(), out);
+    assert!(out["estimates"].as_array().unwrap().is_empty() && out["data"]["d2"]["role"] == "record", "{out}");
+    let e_n = out["comparison"]["coefficients"][0]["e_n"].as_f64().unwrap();
+    let page = read("report.html");
+    assert!(
+        page.contains("Normalised differences") && page.contains(" estimates side by side"),
+        "{}",
+        &page[page.find("<h1").unwrap()..][..300]
+    );
+    assert!(page.contains(&froude::report::number::fixed(e_n, 2)), "{e_n}");
+    assert!(inspect(folder.path(), "both/estimate.json").0.starts_with("estimate"));
+    // Without a folder nothing is written.
+    let before = std::fs::read_dir(folder.path()).unwrap().count();
+    froude(folder.path(), &["compare", &records[0], &records[1]]);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), before);
 }
 
 /// What `inspect` prints, and the same as JSON.
@@ -336,8 +360,8 @@ fn the_record_that_the_book_shows_can_be_compared() {
     std::fs::write(folder.path().join("t.csv"), table).unwrap();
     assert_eq!(froude(folder.path(), &["identify", "t.csv"]).status.code(), Some(0));
     let out = json(&froude(folder.path(), &["--json", "compare", "t-results/estimate.json", "handbook.json"]));
-    assert!(out["coefficients"][0]["e_n"].is_number(), "{out}");
-    assert!(!out["forces"].as_array().unwrap().is_empty(), "{out}");
+    assert!(out["comparison"]["coefficients"][0]["e_n"].is_number(), "{out}");
+    assert!(!out["comparison"]["loads"].as_array().unwrap().is_empty(), "{out}");
 }
 
 #[cfg(unix)]

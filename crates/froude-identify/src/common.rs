@@ -20,7 +20,7 @@ const DIFFERS: f64 = 1e-9;
 
 /// A number that an estimate states or predicts.
 #[derive(Debug, Clone)]
-pub(crate) struct Side<'a> {
+pub(crate) struct Number<'a> {
     estimate: &'a Estimate,
     /// ∂number/∂β, in the order of the covariance; empty where the number has an uncertainty without one.
     slopes: Vec<f64>,
@@ -28,7 +28,7 @@ pub(crate) struct Side<'a> {
     pub stated: Stated,
 }
 
-impl<'a> Side<'a> {
+impl<'a> Number<'a> {
     /// A coefficient, with the uncertainty that the record states.
     pub fn of_coefficient(estimate: &'a Estimate, name: &str) -> Self {
         let Coefficient { value, standard_uncertainty, effective_dof, .. } = &estimate.coefficients[name];
@@ -167,7 +167,7 @@ impl<'a> Common<'a> {
     pub fn least_dof(&self, estimates: [&Estimate; 2], names: &[&String]) -> f64 {
         let alone = |key: &str| !self.is_common(key);
         let dof = |(estimate, name): (&Estimate, &String)| {
-            combine(&Side::of_coefficient(estimate, name).parts(&alone), 0, OUTSIDE_95).dof
+            combine(&Number::of_coefficient(estimate, name).parts(&alone), 0, OUTSIDE_95).dof
         };
         let all = estimates.into_iter().flat_map(|estimate| names.iter().map(move |name| (estimate, *name)));
         all.map(dof).fold(f64::INFINITY, f64::min)
@@ -178,7 +178,7 @@ impl<'a> Common<'a> {
     }
 
     /// Expanded (95 %) uncertainty of a difference, towards zero.
-    pub fn expanded_difference(&self, [a, b]: [&Side<'_>; 2], difference: f64) -> f64 {
+    pub fn expanded_difference(&self, [a, b]: [&Number<'_>; 2], difference: f64) -> f64 {
         // The first is larger: its lower arm and the other's upper one point to each other.
         let [of_a, of_b] = if difference > 0.0 { [0, 1] } else { [1, 0] };
         let alone = |key: &str| !self.is_common(key);

@@ -136,7 +136,7 @@ fn digits(x: f64) -> f64 {
 
 fn not_a_table(source: &Source, input: &Input) -> IdentifyError {
     let what = match input {
-        Input::Runs(_) => "`runs` are reduced by the methods of their rig",
+        Input::Runs { .. } => "`runs` are reduced by the methods of their rig",
         Input::Cases(_) => "`cases` are computed by CFD; collect them into a table first",
         Input::Mesh(_) => "`mesh` gives added mass; give its result as `record`",
         Input::Record { .. } | Input::Table(_) => "a published record is compared, not fitted",

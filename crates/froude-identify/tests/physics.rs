@@ -132,13 +132,7 @@ fn an_angle_offset_is_found_from_pairs_of_opposite_angle_and_taken_out_of_the_cr
 fn a_fitted_tare_is_subtracted_with_its_covariance_as_a_shared_error() {
     let folder = tempfile::tempdir().unwrap();
     let first = identify(folder.path(), &quadratic_table(), QUADRATIC);
-    let record = froude_records::estimate::EstimateFile {
-        schema: froude_records::estimate::ESTIMATE_SCHEMA.to_owned(),
-        data: indexmap::IndexMap::new(),
-        versions: indexmap::IndexMap::new(),
-        estimates: first.estimates.clone(),
-        findings: Vec::new(),
-    };
+    let record = froude_records::estimate::EstimateFile::of(first.estimates.clone());
     froude_records::json::write_estimates(&folder.path().join("tare.json"), &record).unwrap();
     let mut table = "speed [m/s],f_x [N]\n".to_owned();
     for k in 1..=10 {

@@ -279,8 +279,13 @@ pub enum Input {
         /// `source/model` in it, where it holds several.
         select: Option<String>,
     },
-    /// A folder of runs.
-    Runs(PathBuf),
+    /// Runs.
+    Runs {
+        /// Folders of runs, or runs; a campaign names one folder.
+        paths: Vec<PathBuf>,
+        /// A campaign other than the copy that lies with them.
+        campaign: Option<PathBuf>,
+    },
     /// A folder of CFD cases.
     Cases(PathBuf),
     /// A surface mesh.
@@ -288,13 +293,12 @@ pub enum Input {
 }
 
 impl Input {
-    /// The file or folder.
+    /// The file or folder; of several the first.
     #[must_use]
     pub fn path(&self) -> &Path {
         match self {
-            Self::Table(path) | Self::Runs(path) | Self::Cases(path) | Self::Mesh(path) | Self::Record { path, .. } => {
-                path
-            }
+            Self::Table(path) | Self::Cases(path) | Self::Mesh(path) | Self::Record { path, .. } => path,
+            Self::Runs { paths, .. } => paths.first().map_or(Path::new(""), PathBuf::as_path),
         }
     }
 }
@@ -538,31 +542,35 @@ impl Campaign {
     #[must_use]
     pub fn of_table(table: &Path, sidecar: Option<PathBuf>) -> Self {
         let name = table.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let source = Source { sidecar, ..Source::bare(name.clone(), Input::Table(table.to_owned())) };
+        Self { path: table.to_owned(), name, ..Self::bare(vec![source]) }
+    }
+
+    /// The campaign that named runs stand for: one source, called as the runs call theirs.
+    #[must_use]
+    pub fn of_runs(paths: Vec<PathBuf>, campaign: Option<PathBuf>) -> Self {
+        Self::bare(vec![Source::bare(String::new(), Input::Runs { paths, campaign })])
+    }
+
+    /// The campaign that records stand for, which are set side by side.
+    #[must_use]
+    pub fn of_records(paths: &[PathBuf]) -> Self {
+        let name = |path: &PathBuf| path.display().to_string();
+        let of = |path: &PathBuf| Source::bare(name(path), Input::Record { path: path.clone(), select: None });
+        let names: Vec<String> = paths.iter().map(name).collect();
+        Self { name: names.join(", "), ..Self::bare(paths.iter().map(of).collect()) }
+    }
+
+    fn bare(sources: Vec<Source>) -> Self {
         Self {
-            path: table.to_owned(),
+            path: PathBuf::new(),
             key: String::new(),
-            name: name.clone(),
+            name: String::new(),
             cite: Vec::new(),
             fluid: Fluid::default(),
             body: None,
             tank: None,
-            sources: vec![Source {
-                name,
-                kind: SourceKind::Towing,
-                input: Input::Table(table.to_owned()),
-                sidecar,
-                models: Vec::new(),
-                model_places: Vec::new(),
-                methods: Vec::new(),
-                method_places: Vec::new(),
-                keep: None,
-                group: None,
-                uncertainty: Vec::new(),
-                tare: None,
-                decay: None,
-                plan: Vec::new(),
-                place: Place::whole(table),
-            }],
+            sources,
             identify: Identify::default(),
             simulate: None,
             carriage: None,
@@ -576,7 +584,7 @@ impl Campaign {
                 Input::Table(_) if !source.plan.is_empty() => continue,
                 Input::Table(_) => "table",
                 Input::Record { .. } => "record",
-                Input::Runs(_) => "runs",
+                Input::Runs { .. } => "runs",
                 Input::Cases(_) => "cases",
                 Input::Mesh(_) => "mesh",
             };
@@ -592,6 +600,29 @@ impl Campaign {
             must_exist(&Place::whole(&self.path), "simulate.record", path)?;
         }
         Ok(())
+    }
+}
+
+impl Source {
+    /// A source of which nothing but its input is known.
+    fn bare(name: String, input: Input) -> Self {
+        Self {
+            name,
+            kind: SourceKind::Towing,
+            place: Place::whole(input.path()),
+            input,
+            sidecar: None,
+            models: Vec::new(),
+            model_places: Vec::new(),
+            methods: Vec::new(),
+            method_places: Vec::new(),
+            keep: None,
+            group: None,
+            uncertainty: Vec::new(),
+            tare: None,
+            decay: None,
+            plan: Vec::new(),
+        }
     }
 }
 

@@ -181,7 +181,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     let given = [
         path("table")?.map(Input::Table),
         path("record")?.map(|path| Input::Record { path, select: select.clone() }),
-        path("runs")?.map(Input::Runs),
+        path("runs")?.map(|path| Input::Runs { paths: vec![path], campaign: None }),
         path("cases")?.map(Input::Cases),
         path("mesh")?.map(Input::Mesh),
     ];
@@ -212,13 +212,13 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
     let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
-    if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs(_))) {
+    if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs { .. })) {
         return Err(s.wrong("method", value, "says how runs are reduced, but the source names no runs"));
     }
     // What belongs to the rows of a table would be passed over.
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
     let of_table = of_tables.into_iter().find_map(|key| s.get(key).map(|value| (key, value)));
-    if let (Some((key, value)), Input::Runs(_)) = (of_table, &input) {
+    if let (Some((key, value)), Input::Runs { .. }) = (of_table, &input) {
         let problem =
             "belongs to the rows of a table; the budget of runs follows from the campaign that they were driven by";
         return Err(s.wrong(key, value, problem));

@@ -11,6 +11,7 @@
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 
+use crate::comparison::Comparison;
 use crate::finding::Finding;
 
 pub mod v1;
@@ -36,6 +37,9 @@ pub struct EstimateFile {
     pub versions: IndexMap<String, String>,
     /// One entry per source and model or method.
     pub estimates: Vec<Estimate>,
+    /// Estimates side by side, where there was more than one source.
+    #[serde(default)]
+    pub comparison: Option<Comparison>,
     /// What the lints found.
     #[serde(default)]
     pub findings: Vec<Finding>,
@@ -496,6 +500,19 @@ impl SharedError {
 }
 
 impl EstimateFile {
+    /// A record of this version, without files and findings yet.
+    #[must_use]
+    pub fn of(estimates: Vec<Estimate>) -> Self {
+        Self {
+            schema: ESTIMATE_SCHEMA.to_owned(),
+            data: IndexMap::new(),
+            versions: IndexMap::new(),
+            estimates,
+            comparison: None,
+            findings: Vec::new(),
+        }
+    }
+
     /// The files that an estimate's observations came from.
     pub fn data_of<'a>(&'a self, estimate: &'a Estimate) -> impl Iterator<Item = &'a DataFile> {
         estimate.data.iter().filter_map(|key| self.data.get(key))

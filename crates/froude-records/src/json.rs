@@ -14,6 +14,7 @@ use serde::ser::{Error as _, Serializer};
 use serde::{Deserialize, Serialize};
 
 use crate::checksum;
+use crate::comparison::Comparison;
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::estimate::{
     Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law,
@@ -113,13 +114,16 @@ struct Summed<'a> {
     data: &'a IndexMap<String, DataFile>,
     versions: &'a IndexMap<String, String>,
     estimates: &'a [Estimate],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    comparison: Option<&'a Comparison>,
     findings: &'a [Finding],
 }
 
 impl Serialize for EstimateFile {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Self { schema, data, versions, estimates, findings } = self;
-        let mut record = Summed { schema, checksum: None, data, versions, estimates, findings };
+        let Self { schema, data, versions, estimates, comparison, findings } = self;
+        let comparison = comparison.as_ref();
+        let mut record = Summed { schema, checksum: None, data, versions, estimates, comparison, findings };
         let content = serde_json::to_value(&record).map_err(S::Error::custom)?;
         record.checksum = Some(checksum::of_json(&content));
         record.serialize(serializer)

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use froude_records::comparison::{CoefficientComparison, Comparison, JointComparison, LoadComparison, Side};
 use froude_records::estimate::{
     Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, ErrorKind, Estimate,
     EstimateFile, Frame, Interval, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
@@ -104,15 +105,52 @@ fn sample() -> EstimateFile {
         reason: Some("smallest AICc".to_owned()),
     };
     EstimateFile {
-        schema: ESTIMATE_SCHEMA.to_owned(),
         data: keyed(vec![DataFile {
             path: "tank.csv".to_owned(),
             sha256: "0".repeat(64),
             role: Some("table".to_owned()),
         }]),
         versions: [("froude".to_owned(), "0.1.0".to_owned())].into(),
-        estimates: vec![estimate],
+        comparison: Some(comparison()),
         findings: vec![Finding::new(Severity::Warning, "one-sided", "only one sign of angle was run".to_owned())],
+        ..EstimateFile::of(vec![estimate])
+    }
+}
+
+/// One row of each kind, with a number and with a note.
+fn comparison() -> Comparison {
+    let side = |source: &str| Side {
+        source: source.to_owned(),
+        value: Some(1.4),
+        standard_uncertainty: Some(0.1),
+        effective_dof: Some(4.0),
+        coverage_factor: Some(2.776),
+        expanded_uncertainty: Some(0.2776),
+    };
+    let text = str::to_owned;
+    Comparison {
+        coefficients: vec![CoefficientComparison {
+            model: text("f4"),
+            coefficient: text("C_d_II"),
+            unit: text("1"),
+            first: side("tank/f4"),
+            second: side("CFD/f4"),
+            e_n: Some(0.0),
+            note: String::new(),
+        }],
+        joint: vec![JointComparison { note: text("no covariance matrix"), ..JointComparison::default() }],
+        loads: vec![LoadComparison {
+            component: text("f_x"),
+            unit: text("N"),
+            n_links: Some(1.0),
+            speed_m_s: 0.4,
+            first: side("tank/f4"),
+            second: Side { source: text("CFD/f4"), ..Side::default() },
+            note: text("CFD/f4 gives no f_x"),
+            ..LoadComparison::default()
+        }],
+        coverage: vec![text("tank/f4: k = 2.78")],
+        findings: Vec::new(),
     }
 }
 

@@ -90,6 +90,12 @@ impl Chart {
     ///
     /// [`ReportError::Figure`] when the drawing library refuses it.
     pub fn svg(&self) -> Result<String, ReportError> {
+        self.canvas()
+            .svg(&crate::figures::slug(&self.name), &self.title, &self.caption)
+            .map_err(|reason| ReportError::Figure { figure: self.title.clone(), reason })
+    }
+
+    pub(crate) fn canvas(&self) -> Canvas {
         let names = self.names();
         let legend: Vec<Entry> = names
             .iter()
@@ -134,8 +140,6 @@ impl Chart {
             }
         }
         canvas
-            .svg(&crate::figures::slug(&self.name), &self.title, &self.caption)
-            .map_err(|reason| ReportError::Figure { figure: self.title.clone(), reason })
     }
 
     fn names(&self) -> Vec<(&str, Mark)> {

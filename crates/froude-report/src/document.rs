@@ -9,7 +9,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart::Chart;
 use crate::input::ReportError;
-use crate::page::findings_by_severity;
+use crate::page::{POLICY, STYLE, findings_by_severity};
 use crate::tables::Tables;
 
 /// A page.
@@ -67,46 +67,52 @@ impl Document {
             body.push(section_markup(i, section, &mut tables, &mut figure)?);
         }
         let findings = findings_by_severity(&self.findings, &mut tables);
-        let page = html! {
-            (DOCTYPE)
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta http-equiv="Content-Security-Policy" content=(crate::page::POLICY);
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    meta name="generator" content="Froude";
-                    title { (self.title) }
-                    style { (PreEscaped(crate::page::STYLE)) }
+        let contents = html! {
+            ol {
+                @for (i, section) in self.sections.iter().enumerate() {
+                    li { a href={ "#section-" (i + 1) } { span { (i + 1) } (section.title) } }
                 }
-                body {
-                    div class="sheet" {
-                        nav aria-label="Sections" {
-                            p { "Contents" }
-                            ol {
-                                @for (i, section) in self.sections.iter().enumerate() {
-                                    li { a href={ "#section-" (i + 1) } { span { (i + 1) } (section.title) } }
-                                }
-                                @if !self.findings.is_empty() { li { a href="#findings" { span {} "Findings" } } }
-                            }
-                        }
-                        main {
-                            header class="title" {
-                                p class="sort" { (self.sort) }
-                                h1 { (self.title) }
-                                @if !self.subtitle.is_empty() { p class="subtitle" { (self.subtitle) } }
-                                @if let Some(date) = &self.date { p class="meta" { span { (date) } } }
-                            }
-                            @for part in &body { (part) }
-                            @if !self.findings.is_empty() {
-                                section { h2 id="findings" { "Findings" } (findings) }
-                            }
-                        }
-                    }
-                }
+                @if !self.findings.is_empty() { li { a href="#findings" { span {} "Findings" } } }
             }
         };
-        Ok(visible(&page.into_string()).into_owned())
+        let main = html! {
+            header class="title" {
+                p class="sort" { (self.sort) }
+                h1 { (self.title) }
+                @if !self.subtitle.is_empty() { p class="subtitle" { (self.subtitle) } }
+                @if let Some(date) = &self.date { p class="meta" { span { (date) } } }
+            }
+            @for part in &body { (part) }
+            @if !self.findings.is_empty() {
+                section { h2 id="findings" { "Findings" } (findings) }
+            }
+        };
+        Ok(sheet(&self.title, &contents, &main))
     }
+}
+
+/// A page around its contents: everything stands in it.
+pub(crate) fn sheet(title: &str, contents: &Markup, main: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="generator" content="Froude";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                div class="sheet" {
+                    nav aria-label="Sections" { p { "Contents" } (contents) }
+                    main { (main) }
+                }
+            }
+        }
+    };
+    visible(&page.into_string()).into_owned()
 }
 
 fn section_markup(
@@ -119,8 +125,7 @@ fn section_markup(
     Ok(html! {
         section {
             h2 id={ "section-" (i + 1) } { span class="n" { (i + 1) } (section.title) }
-            @for paragraph in &section.paragraphs { p { (paragraph) } }
-            @for t in &section.tables { (table_markup(t, tables)) }
+            (section.text(tables))
             @for (chart, svg) in section.charts.iter().zip(&pictures) {
                 figure {
                     (PreEscaped(svg))
@@ -129,6 +134,16 @@ fn section_markup(
             }
         }
     })
+}
+
+impl DocumentSection {
+    /// Paragraphs and tables.
+    pub(crate) fn text(&self, tables: &mut Tables) -> Markup {
+        html! {
+            @for paragraph in &self.paragraphs { p { (paragraph) } }
+            @for t in &self.tables { (table_markup(t, tables)) }
+        }
+    }
 }
 
 fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {

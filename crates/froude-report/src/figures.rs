@@ -12,6 +12,7 @@ mod residuals;
 use froude_records::estimate::Estimate;
 
 use crate::canvas::Canvas;
+use crate::chart::Chart;
 use crate::input::{Report, ReportError, SourceSection};
 
 use budget::budget_drawing;
@@ -45,6 +46,7 @@ pub struct Figure {
 /// Where in the report a figure stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Place {
+    Block(usize),
     Loads(usize),
     Residuals(usize),
     Budget(usize),
@@ -71,6 +73,15 @@ pub fn figures(report: &Report) -> Result<Vec<Figure>, ReportError> {
 /// All figures with their places, numbered through.
 pub(crate) fn placed_figures(report: &Report) -> Result<Vec<(Place, Figure)>, ReportError> {
     let mut drawings: Vec<(Place, Drawing)> = Vec::new();
+    for (i, block) in report.blocks.iter().enumerate() {
+        let drawing = |chart: &Chart| Drawing {
+            slug: chart.name.clone(),
+            title: chart.title.clone(),
+            caption: chart.caption.clone(),
+            canvas: chart.canvas(),
+        };
+        drawings.extend(block.charts.iter().map(|chart| (Place::Block(i), drawing(chart))));
+    }
     for (i, section) in report.sources.iter().enumerate() {
         drawings.extend(load_drawings(section).into_iter().map(|d| (Place::Loads(i), d)));
         drawings.extend(residual_drawings(section).into_iter().map(|d| (Place::Residuals(i), d)));

@@ -9,6 +9,8 @@
 //! **Missing numbers.** `None` is printed as "—". A NaN or an infinity is
 //! treated like `None`; it is never printed as a number.
 
+use crate::document::DocumentSection;
+use froude_records::comparison::Comparison;
 use froude_records::estimate::{DataFile, Estimate};
 use froude_records::finding::Finding;
 use indexmap::IndexMap;
@@ -24,6 +26,8 @@ pub struct Report {
     pub date: Option<String>,
     /// Paragraphs of the method section.
     pub method: Vec<String>,
+    /// What methods say of the runs that they reduced together, before the sections of their results.
+    pub blocks: Vec<DocumentSection>,
     /// One section per source that was fitted.
     pub sources: Vec<SourceSection>,
     /// Published estimates shown beside the fitted ones; their `kind` is `published`.
@@ -36,8 +40,8 @@ pub struct Report {
     pub versions: IndexMap<String, String>,
     /// What to cite, one entry per work.
     pub citations: Vec<String>,
-    /// Sources side by side, when there is more than one.
-    pub comparison: Option<ComparisonSection>,
+    /// Sources side by side, when there is more than one; its findings are said below its tables.
+    pub comparison: Option<Comparison>,
 }
 
 /// A file, its fingerprint, and what was taken from it.
@@ -249,98 +253,6 @@ pub struct NestedTest {
     pub dof: [f64; 2],
     /// Chance of a larger statistic if the simple model is true.
     pub p: f64,
-}
-
-/// Sources side by side.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ComparisonSection {
-    /// Paragraphs above the tables.
-    pub intro: Vec<String>,
-    /// Coefficient by coefficient, same model and same name only.
-    pub coefficients: Vec<CoefficientComparison>,
-    /// Whole coefficient vectors with their covariances.
-    pub joint: Vec<JointComparison>,
-    /// Predicted loads over the common range.
-    pub forces: Vec<ForceComparison>,
-    /// Which coverage factor the expanded uncertainties of the loads have, a sentence per source.
-    pub coverage: Vec<String>,
-    /// Sentences below the tables: what could not be compared, and why.
-    pub notes: Vec<String>,
-}
-
-/// A coefficient in two sources.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CoefficientComparison {
-    /// The model that both values belong to.
-    pub model: String,
-    /// Name of the coefficient.
-    pub coefficient: String,
-    /// Its unit.
-    pub unit: String,
-    /// One side.
-    pub first: Side,
-    /// The other side.
-    pub second: Side,
-    /// Normalised difference (first − second)/√(U₁² + U₂²); null when one side states no uncertainty, or when both rest
-    /// on the same data.
-    pub e_n: Option<f64>,
-    /// A remark, e.g. "no uncertainty stated".
-    pub note: String,
-}
-
-/// One side of a comparison.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Side {
-    /// Name of the source, or `source/model`.
-    pub source: String,
-    /// Its value; null when undetermined or not predicted.
-    pub value: Option<f64>,
-    /// Its standard uncertainty; null when none is stated.
-    pub standard: Option<f64>,
-    /// Its expanded (95 %) uncertainty, with the coverage factor of its own degrees of freedom.
-    pub expanded: Option<f64>,
-}
-
-/// χ² of the difference of two coefficient vectors.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct JointComparison {
-    /// The model that both vectors belong to.
-    pub model: String,
-    /// One source.
-    pub first: String,
-    /// The other.
-    pub second: String,
-    /// The statistic; null when it cannot be formed.
-    pub chi_squared: Option<f64>,
-    /// Its degrees of freedom.
-    pub dof: f64,
-    /// Chance of a larger statistic if both measure the same.
-    pub p: Option<f64>,
-    /// A remark, e.g. why there is no statistic.
-    pub note: String,
-}
-
-/// A load predicted by two sources at one place of their common range.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ForceComparison {
-    /// Configuration.
-    pub configuration: String,
-    /// Load component.
-    pub component: String,
-    /// Unit of both predictions.
-    pub unit: String,
-    /// Speed.
-    pub speed_m_s: f64,
-    /// Angle.
-    pub angle_rad: f64,
-    /// One side.
-    pub first: Side,
-    /// The other side.
-    pub second: Side,
-    /// Normalised difference; null when one side states no uncertainty, or when both rest on the same data.
-    pub e_n: Option<f64>,
-    /// A remark, e.g. why there is no normalised difference.
-    pub note: String,
 }
 
 /// Why a report could not be written.

@@ -40,7 +40,6 @@ mod tables;
 
 pub use figures::{Figure, figures};
 pub use input::{
-    Abscissa, Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile,
-    JointComparison, NestedTest, Point, Report, ReportError, SelectionRow, Side, SourceSection,
+    Abscissa, Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, ReportError, SelectionRow, SourceSection,
 };
 pub use page::{file_stem, html};

@@ -3,11 +3,13 @@
 //! Everything stands in the file: style, figures, text. It loads nothing, runs
 //! no script, and prints on A4. All text from records is escaped.
 
+use std::collections::BTreeSet;
+
 use froude_records::estimate::{Estimate, Measured};
 use froude_records::finding::{Finding, Severity};
-use froude_records::text::visible;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 
+use crate::document::sheet;
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs, recommended, slug};
 use crate::input::{InputFile, Report, ReportError, SourceSection};
 use crate::number;
@@ -20,6 +22,11 @@ pub(crate) const STYLE: &str = include_str!("report.css");
 /// cell of somebody's file holds.
 pub(crate) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 
+/// What a reader of two sources needs to know first.
+const SIDE_BY_SIDE: &str = "Coefficients of the same model are set side by side; their normalised difference Eₙ is stated only where both sides state an \
+     uncertainty and rest on different data. Coefficients of one fit are collinear: the predicted forces over the common range are what a user of the \
+     coefficients needs.";
+
 /// The report as one self-contained HTML file.
 ///
 /// # Errors
@@ -30,6 +37,11 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
     let mut page = Page { report, figures, sections: Vec::new(), tables: Tables::default() };
     let summary = page.summary();
     let mut body = Vec::new();
+    for (i, block) in report.blocks.iter().enumerate() {
+        let heading = page.open(&format!("block-{}", i + 1), &block.title, "");
+        let text = block.text(&mut page.tables);
+        body.push(html! { section { (heading) (text) (page.figures_at(Place::Block(i))) } });
+    }
     body.push(page.method());
     body.push(page.data());
     body.push(page.findings());
@@ -41,40 +53,22 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
     body.push(page.citations());
     body.push(page.versions());
     let title = if report.title.trim().is_empty() { "Report" } else { report.title.trim() };
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="generator" content="Froude";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-            }
-            body {
-                div class="sheet" {
-                    (page.navigation())
-                    main {
-                        header class="title" {
-                            p class="sort" { "Test report · hydrodynamic coefficients" }
-                            h1 { (title) }
-                            @if !report.subtitle.is_empty() { p class="subtitle" { (report.subtitle) } }
-                            p class="meta" {
-                                @if let Some(date) = &report.date { span { (date) } }
-                                span { (counted(report.sources.len(), "source", "sources")) }
-                                span { (counted(report.data.len(), "data file", "data files")) }
-                                @for (name, version) in report.versions.iter().take(1) { span { (name) " " (version) } }
-                            }
-                        }
-                        (summary)
-                        @for part in &body { (part) }
-                    }
-                }
+    let main = html! {
+        header class="title" {
+            p class="sort" { "Test report · hydrodynamic coefficients" }
+            h1 { (title) }
+            @if !report.subtitle.is_empty() { p class="subtitle" { (report.subtitle) } }
+            p class="meta" {
+                @if let Some(date) = &report.date { span { (date) } }
+                span { (counted(page.source_names(), "source", "sources")) }
+                span { (counted(report.data.len(), "data file", "data files")) }
+                @for (name, version) in report.versions.iter().take(1) { span { (name) " " (version) } }
             }
         }
+        (summary)
+        @for part in &body { (part) }
     };
-    Ok(visible(&page.into_string()).into_owned())
+    Ok(sheet(title, &page.navigation(), &main))
 }
 
 /// An entry of the navigation.
@@ -93,6 +87,12 @@ struct Page<'a> {
 }
 
 impl Page<'_> {
+    /// How many sources there are; several results may come from one.
+    fn source_names(&self) -> usize {
+        let name = |s: &SourceSection| s.estimates.first().map_or_else(|| s.name.clone(), |e| e.source.clone());
+        self.report.sources.iter().map(name).collect::<BTreeSet<_>>().len()
+    }
+
     /// Opens a numbered section and gives its heading.
     fn open(&mut self, id: &str, title: &str, kind: &str) -> Markup {
         let number = (self.sections.len() + 1).to_string();
@@ -117,16 +117,13 @@ impl Page<'_> {
 
     fn navigation(&self) -> Markup {
         html! {
-            nav aria-label="Sections" {
-                p { "Contents" }
-                ol {
-                    li { a href="#summary" { span {} "Summary" } }
-                    @for section in &self.sections {
-                        li {
-                            a href={ "#" (section.id) } { span { (section.number) } (section.title) }
-                            @if section.parts.len() > 1 {
-                                ol { @for (id, title) in &section.parts { li { a href={ "#" (id) } { (title) } } } }
-                            }
+            ol {
+                li { a href="#summary" { span {} "Summary" } }
+                @for section in &self.sections {
+                    li {
+                        a href={ "#" (section.id) } { span { (section.number) } (section.title) }
+                        @if section.parts.len() > 1 {
+                            ol { @for (id, title) in &section.parts { li { a href={ "#" (id) } { (title) } } } }
                         }
                     }
                 }
@@ -163,8 +160,12 @@ impl Page<'_> {
                     @if self.report.findings.is_empty() { span { "no findings" } }
                     @else { span { a href="#findings" { "read the findings" } } }
                 }
-                @if self.report.sources.is_empty() { p { "No source was fitted." } }
-                @for (i, source) in self.report.sources.iter().enumerate() { (summary_of(i, source)) }
+                @if self.report.sources.is_empty() {
+                    p { @if self.report.published.is_empty() { "No source was fitted." } @else { "Records side by side; nothing was fitted." } }
+                }
+                @for (i, source) in self.report.sources.iter().enumerate().filter(|(_, s)| !self.is_beside_the_recommended(s)) {
+                    (summary_of(i, source))
+                }
                 @if !self.report.sources.is_empty() {
                     p class="legend" {
                         "± is the expanded uncertainty: half of the 95 % interval. Digits in brackets, as in 0.0133(12), are \
@@ -174,6 +175,13 @@ impl Page<'_> {
                 }
             }
         }
+    }
+
+    /// Whether another result of the same source is the recommended one: the method's own table has both.
+    fn is_beside_the_recommended(&self, section: &SourceSection) -> bool {
+        let of = |s: &SourceSection| s.estimates.first().map(|e| e.source.clone());
+        let is_other = |s: &SourceSection| s.name != section.name && of(s) == of(section) && recommended(s).is_some();
+        recommended(section).is_none() && of(section).is_some() && self.report.sources.iter().any(is_other)
     }
 
     fn method(&mut self) -> Markup {
@@ -301,7 +309,8 @@ impl Page<'_> {
         if report.published.is_empty() {
             return Markup::default();
         }
-        let heading = self.open("published", "Published coefficients", "");
+        let is_beside = !report.sources.is_empty();
+        let heading = self.open("published", if is_beside { "Published coefficients" } else { "Records" }, "");
         let mut sources: Vec<&str> = Vec::new();
         for estimate in &report.published {
             if !sources.contains(&estimate.source.as_str()) {
@@ -318,7 +327,7 @@ impl Page<'_> {
         html! {
             section {
                 (heading)
-                p { "As published. A value without an uncertainty is marked †: nothing is known about how far it can be trusted, \
+                p { "As " @if is_beside { "published" } @else { "the records state them" } ". A value without an uncertainty is marked †: nothing is known about how far it can be trusted, \
                      which is not the same as being exact." }
                 @for table in &tables { (table) }
             }
@@ -334,7 +343,7 @@ impl Page<'_> {
         let heading = self.open("comparison", "Sources side by side", "");
         let mut parts: Vec<Markup> = Vec::new();
         if let Some(comparison) = &report.comparison {
-            parts.push(html! { @for paragraph in &comparison.intro { p { (paragraph) } } });
+            parts.push(html! { @if !comparison.coefficients.is_empty() || !comparison.loads.is_empty() { p { (SIDE_BY_SIDE) } } });
         }
         if has_forest {
             parts.push(self.part("forest", "Coefficients by source"));
@@ -349,7 +358,7 @@ impl Page<'_> {
                 parts.push(self.part("joint", "Joint test"));
                 parts.push(self.tables.joint(comparison));
             }
-            if !comparison.forces.is_empty() {
+            if !comparison.loads.is_empty() {
                 parts.push(self.part("predictions", "Predicted loads"));
                 parts.push(self.tables.predictions(comparison));
                 if !comparison.coverage.is_empty() {
@@ -358,8 +367,9 @@ impl Page<'_> {
                     );
                 }
             }
-            if !comparison.notes.is_empty() {
-                parts.push(html! { ul class="plain" { @for note in &comparison.notes { li { (note) } } } });
+            if !comparison.findings.is_empty() {
+                let notes = comparison.findings.iter().map(|finding| &finding.message);
+                parts.push(html! { ul class="plain" { @for note in notes { li { (note) } } } });
             }
         }
         html! { section { (heading) @for part in &parts { (part) } } }
@@ -434,7 +444,7 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
             @if let Some(best) = best {
                 ul class="keys" {
                     @for (name, c) in &best.coefficients {
-                        li { (html_symbol(name)) span { (tables::expanded(c, best)) } }
+                        li { (tables::named(name, c)) span { (tables::expanded(c, best)) } }
                     }
                 }
             }

@@ -2,15 +2,13 @@
 
 use std::collections::BTreeSet;
 
+use froude_records::comparison::{CoefficientComparison, Comparison, JointComparison, LoadComparison, Side};
 use froude_records::estimate::{Coefficient, Estimate, Status};
 use indexmap::IndexMap;
 use maud::{Markup, html};
 
 use crate::figures::{budget_rows, ranked_inputs, share};
-use crate::input::{
-    BudgetRow, CoefficientComparison, ComparisonSection, ForceComparison, JointComparison, SelectionRow, Side,
-    SourceSection,
-};
+use crate::input::{BudgetRow, SelectionRow, SourceSection};
 use crate::number::{self, MISSING};
 use crate::symbol::{Rich, Style, symbol, unit_text};
 
@@ -76,6 +74,11 @@ pub(crate) fn html_symbol(name: &str) -> Markup {
             }
         }
     }
+}
+
+/// A coefficient's symbol, with what a paper calls it.
+pub(crate) fn named(name: &str, c: &Coefficient) -> Markup {
+    html! { (html_symbol(name)) @if let Some(label) = &c.label { " (" (html_symbol(label)) ")" } }
 }
 
 /// A unit behind a number; nothing for a pure number.
@@ -285,7 +288,10 @@ impl Tables {
                 html! {
                     tr {
                         th scope="row" {
-                            (html_symbol(name))
+                            @match group.iter().find_map(|e| e.coefficients.get(*name)) {
+                                Some(c) => (named(name, c)),
+                                None => (html_symbol(name)),
+                            }
                             @if is_one_unit { (head_unit(units.first().copied().filter(|u| !u.is_empty()).unwrap_or("1"))) }
                             " " code { (name) }
                         }
@@ -398,7 +404,7 @@ impl Tables {
                     tbody {
                         @for (name, c) in &e.coefficients {
                             tr {
-                                th scope="row" { (html_symbol(name)) }
+                                th scope="row" { (named(name, c)) }
                                 td class="num" { (number::coefficient(c)) }
                                 td class="num" { (u(c, c.type_a)) }
                                 td class="num" { (u(c, c.type_b)) }
@@ -618,7 +624,7 @@ impl Tables {
     }
 
     /// E_n of every coefficient that two sources share; pairs that have none are folded.
-    pub(crate) fn differences(&mut self, comparison: &ComparisonSection) -> Markup {
+    pub(crate) fn differences(&mut self, comparison: &Comparison) -> Markup {
         let mut pairs: IndexMap<[&str; 3], Vec<&CoefficientComparison>> = IndexMap::new();
         for c in &comparison.coefficients {
             pairs.entry([&c.model, &c.first.source, &c.second.source]).or_default().push(c);
@@ -648,7 +654,7 @@ impl Tables {
     }
 
     /// χ² of whole coefficient vectors; pairs that have none are folded.
-    pub(crate) fn joint(&mut self, comparison: &ComparisonSection) -> Markup {
+    pub(crate) fn joint(&mut self, comparison: &Comparison) -> Markup {
         let (with, without): (Vec<&JointComparison>, Vec<&JointComparison>) =
             comparison.joint.iter().partition(|j| number::finite(j.chi_squared).is_some());
         let shown = (!with.is_empty()).then(|| {
@@ -671,10 +677,10 @@ impl Tables {
     }
 
     /// Predicted loads over the common range: a row per place, a column per source.
-    pub(crate) fn predictions(&mut self, comparison: &ComparisonSection) -> Markup {
+    pub(crate) fn predictions(&mut self, comparison: &Comparison) -> Markup {
         let mut parts = Vec::new();
-        let mut by_sides: IndexMap<&str, IndexMap<&str, Vec<(usize, &ForceComparison)>>> = IndexMap::new();
-        for (i, f) in comparison.forces.iter().enumerate() {
+        let mut by_sides: IndexMap<&str, IndexMap<&str, Vec<(usize, &LoadComparison)>>> = IndexMap::new();
+        for (i, f) in comparison.loads.iter().enumerate() {
             by_sides.entry(&f.first.source).or_default().entry(&f.second.source).or_default().push((i, f));
         }
         for (first, others) in by_sides {
@@ -683,7 +689,7 @@ impl Tables {
             for (block, rows) in names.chunks(MOST_SIDES).zip(rows_of.chunks(MOST_SIDES)) {
                 let mut rows = rows.concat();
                 rows.sort_by_key(|(i, _)| *i);
-                let rows: Vec<&ForceComparison> = rows.into_iter().map(|(_, f)| f).collect();
+                let rows: Vec<&LoadComparison> = rows.into_iter().map(|(_, f)| f).collect();
                 let places = by_place(&rows);
                 let (shown, is_all) = corners(&places);
                 let caption = self.caption(&format!(
@@ -708,13 +714,14 @@ impl Tables {
 }
 
 /// One place of the common range with its predictions, one for each other source.
-type PredictedPlace<'a> = Vec<&'a ForceComparison>;
+type PredictedPlace<'a> = Vec<&'a LoadComparison>;
 
-/// Predictions gathered by configuration, load, speed and angle, in the order of appearance.
-fn by_place<'a>(rows: &[&'a ForceComparison]) -> Vec<PredictedPlace<'a>> {
-    let mut out: IndexMap<(&str, &str, u64, u64), PredictedPlace<'a>> = IndexMap::new();
+/// Predictions gathered by number of links, load, speed and angle, in the order of appearance.
+fn by_place<'a>(rows: &[&'a LoadComparison]) -> Vec<PredictedPlace<'a>> {
+    let mut out: IndexMap<(Option<u64>, &str, u64, u64), PredictedPlace<'a>> = IndexMap::new();
     for &r in rows {
-        let key = (r.configuration.as_str(), r.component.as_str(), r.speed_m_s.to_bits(), r.angle_rad.to_bits());
+        let links = r.n_links.map(f64::to_bits);
+        let key = (links, r.component.as_str(), r.speed_m_s.to_bits(), r.angle_rad.to_bits());
         out.entry(key).or_default().push(r);
     }
     out.into_values().collect()
@@ -725,7 +732,7 @@ fn corners<'a>(places: &[PredictedPlace<'a>]) -> (Vec<PredictedPlace<'a>>, bool)
     if places.len() <= MOST_PREDICTIONS {
         return (places.to_vec(), true);
     }
-    let three = |of: fn(&ForceComparison) -> f64| {
+    let three = |of: fn(&LoadComparison) -> f64| {
         let mut all: Vec<f64> = places.iter().map(|p| of(p[0])).collect();
         all.sort_by(f64::total_cmp);
         all.dedup();
@@ -740,7 +747,7 @@ fn corners<'a>(places: &[PredictedPlace<'a>]) -> (Vec<PredictedPlace<'a>>, bool)
 
 /// Why estimates that state their uncertainties have no Eₙ: said outside the fold, each reason once with its pairs.
 fn why_not(pairs: &[Vec<&CoefficientComparison>]) -> Markup {
-    let states = |side: &Side| number::finite(side.expanded).is_some();
+    let states = |side: &Side| number::finite(side.expanded_uncertainty).is_some();
     let mut reasons: IndexMap<&str, Vec<String>> = IndexMap::new();
     for pair in pairs.iter().filter(|pair| pair.iter().any(|c| states(&c.first) && states(&c.second))) {
         if let Some(note) = common_note(pair.iter().map(|c| c.note.as_str())) {
@@ -807,7 +814,7 @@ fn joint_table(rows: &[&JointComparison], caption: &Markup) -> Markup {
                             td { (j.first) }
                             td { (j.second) }
                             td class="num" { (number::finite(j.chi_squared).map_or_else(|| MISSING.to_owned(), |x| number::significant(x, 3))) }
-                            td class="num" { (if j.chi_squared.is_some() { number::dof(j.dof) } else { MISSING.to_owned() }) }
+                            td class="num" { (if j.chi_squared.is_some() { number::dof(j.dof.map_or(f64::NAN, |m| m as f64)) } else { MISSING.to_owned() }) }
                             td class="num" {
                                 @match j.p {
                                     Some(p) if p < 0.05 => span class="bad" { (number::p_value(p)) },
@@ -848,13 +855,13 @@ fn unscored(rows: &[SelectionRow]) -> Markup {
 }
 
 fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str], caption: &Markup) -> Markup {
-    let has_configuration = places.iter().any(|p| !p[0].configuration.is_empty());
+    let has_configuration = places.iter().any(|p| p[0].n_links.is_some());
     let units = union(places.iter().map(|p| &p[0].unit));
     let is_one_unit = units.len() < 2;
     let unit = html! { @if is_one_unit { (head_unit(units.first().copied().unwrap_or(""))) } };
     let of = |other: &str| places.iter().flatten().copied().filter(|r| r.second.source == other).collect::<Vec<_>>();
     let has_e_n = |other: &str| of(other).iter().any(|r| number::finite(r.e_n).is_some());
-    let states = |side: &Side| number::finite(side.expanded).is_some();
+    let states = |side: &Side| number::finite(side.expanded_uncertainty).is_some();
     let first_states = places.iter().flatten().any(|r| states(&r.first));
     let other_states = |other: &str| of(other).iter().any(|r| states(&r.second));
     let head = |id: &str, is_stated: bool| html! { (id) @if is_stated { ", ± U" } (unit) };
@@ -890,7 +897,7 @@ fn prediction_table(places: &[PredictedPlace<'_>], first: &str, others: &[&str],
                     @for place in places {
                         @let r = place[0];
                         tr {
-                            @if has_configuration { td { (r.configuration) } }
+                            @if has_configuration { td { @if let Some(k) = r.n_links { "k = " (k) } } }
                             td class="num" { (number::plain(r.speed_m_s, 4)) }
                             td class="num" { (number::degrees(r.angle_rad)) }
                             td { (html_symbol(&r.component)) @if !is_one_unit { (head_unit(&r.unit)) } }
@@ -922,10 +929,10 @@ fn common_note<'a>(mut notes: impl Iterator<Item = &'a str>) -> Option<&'a str> 
 
 /// A predicted load: value ± U, † without an uncertainty.
 fn load(side: &Side) -> Markup {
-    match (number::finite(side.value), number::usable(side.expanded)) {
+    match (number::finite(side.value), number::usable(side.expanded_uncertainty)) {
         (Some(value), Some(u)) => html! { (number::plus_minus(value, u)) },
         // A load that is zero whatever the coefficients are.
-        (Some(value), None) if side.expanded == Some(0.0) => html! { (number::plain(value, 4)) },
+        (Some(value), None) if side.expanded_uncertainty == Some(0.0) => html! { (number::plain(value, 4)) },
         (Some(value), None) => html! { (number::plain(value, 4)) (dagger()) },
         (None, _) => html! { (MISSING) },
     }
@@ -933,7 +940,7 @@ fn load(side: &Side) -> Markup {
 
 /// One side of a comparison: value with uncertainty, † without one.
 fn side(side: &Side) -> Markup {
-    match (number::finite(side.value), number::usable(side.standard)) {
+    match (number::finite(side.value), number::usable(side.standard_uncertainty)) {
         (Some(value), Some(u)) => html! { (number::short_form(value, u)) },
         (Some(value), None) => html! { (number::plain(value, 4)) (dagger()) },
         (None, _) => html! { (MISSING) },

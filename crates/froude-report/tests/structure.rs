@@ -3,11 +3,14 @@
 
 mod sample;
 
+use froude_records::comparison::{CoefficientComparison, Comparison, JointComparison, LoadComparison, Side};
 use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
 use froude_records::finding::{Finding, Severity};
+use froude_report::chart::Chart;
+use froude_report::document::{DocumentSection, TextTable};
 use froude_report::{
-    Abscissa, Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile,
-    JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection, figures, html,
+    Abscissa, Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, SelectionRow, SourceSection, figures,
+    html,
 };
 use proptest::prelude::*;
 
@@ -241,12 +244,18 @@ fn hostile_names_are_escaped_everywhere() {
     e.refers_to.insert(h(), Measured { value: 1.0, unit: h() });
     e.sigma.insert(h(), Measured { value: 1.0, unit: h() });
     e.validity.insert(h(), Range { low: 0.0, high: 1.0, unit: h() });
-    let side = || Side { source: h(), value: Some(1.0), standard: None, expanded: None };
+    let side = || Side { source: h(), value: Some(1.0), ..Side::default() };
     let report = Report {
         title: h(),
         subtitle: h(),
         date: Some(h()),
         method: vec![h()],
+        blocks: vec![DocumentSection {
+            title: h(),
+            paragraphs: vec![h()],
+            tables: vec![TextTable { caption: h(), head: vec![h()], rows: vec![vec![h()]] }],
+            charts: vec![Chart { title: h(), caption: h(), ..Chart::default() }],
+        }],
         sources: vec![SourceSection {
             not_fitted: Vec::new(),
             name: h(),
@@ -288,8 +297,7 @@ fn hostile_names_are_escaped_everywhere() {
         data: vec![InputFile { path: h(), sha256: h(), n_rows: None, n_used: None, source: Some(h()) }],
         versions: [(h(), h())].into(),
         citations: vec![h()],
-        comparison: Some(ComparisonSection {
-            intro: vec![h()],
+        comparison: Some(Comparison {
             coefficients: vec![CoefficientComparison {
                 model: h(),
                 coefficient: h(),
@@ -306,17 +314,16 @@ fn hostile_names_are_escaped_everywhere() {
                 note: h(),
                 ..JointComparison::default()
             }],
-            forces: vec![ForceComparison {
-                configuration: h(),
+            loads: vec![LoadComparison {
                 component: h(),
                 unit: h(),
                 first: side(),
                 second: side(),
                 note: h(),
-                ..ForceComparison::default()
+                ..LoadComparison::default()
             }],
             coverage: vec![h()],
-            notes: vec![h()],
+            findings: vec![Finding::new(Severity::Note, HOSTILE, h())],
         }),
     };
     let page = html(&report).unwrap();
@@ -384,15 +391,20 @@ fn predicted_loads_say_what_their_uncertainty_is() {
 #[test]
 fn sources_of_the_same_data_get_words_and_no_normalised_difference() {
     const SAME: &str = "same data: not independent, E_n not meaningful";
-    let side =
-        |source: &str| Side { source: source.to_owned(), value: Some(-4.25), standard: Some(0.5), expanded: Some(1.0) };
+    let side = |source: &str| Side {
+        source: source.to_owned(),
+        value: Some(-4.25),
+        standard_uncertainty: Some(0.5),
+        expanded_uncertainty: Some(1.0),
+        ..Side::default()
+    };
     let coefficient =
         CoefficientComparison { first: side("a"), second: side("b"), note: SAME.to_owned(), ..Default::default() };
-    let force = ForceComparison { first: side("a"), second: side("b"), note: SAME.to_owned(), ..Default::default() };
-    let comparison = ComparisonSection {
+    let force = LoadComparison { first: side("a"), second: side("b"), note: SAME.to_owned(), ..Default::default() };
+    let comparison = Comparison {
         coefficients: vec![coefficient.clone(), coefficient],
-        forces: vec![force.clone(), force],
-        ..ComparisonSection::default()
+        loads: vec![force.clone(), force],
+        ..Comparison::default()
     };
     let text = words(&html(&Report { comparison: Some(comparison), ..Report::default() }).unwrap());
     assert_eq!(text.matches(SAME).count(), 3, "in the fold, outside it, and below the loads: {text}");
@@ -547,7 +559,7 @@ proptest! {
         e.refers_to.insert("density".to_owned(), Measured { value: values[7], unit: "kg/m^3".to_owned() });
         e.diagnostics.relative_residual.insert("f_x".to_owned(), values[3]);
         e.diagnostics.condition_number = Some(values[4]);
-        let side = Side { source: "s".to_owned(), value: Some(values[0]), standard: Some(values[1]), expanded: Some(values[2]) };
+        let side = Side { source: "s".to_owned(), value: Some(values[0]), standard_uncertainty: Some(values[1]), expanded_uncertainty: Some(values[2]), ..Side::default() };
         let section = SourceSection {
             name: "tank".to_owned(),
             estimates: vec![e.clone()],
@@ -587,11 +599,11 @@ proptest! {
         let report = Report {
             sources: vec![section],
             published: vec![e],
-            comparison: Some(ComparisonSection {
+            comparison: Some(Comparison {
                 coefficients: vec![CoefficientComparison { first: side.clone(), second: side.clone(), e_n: Some(values[2]), ..CoefficientComparison::default() }],
-                joint: vec![JointComparison { chi_squared: Some(values[3]), p: Some(values[4]), dof: values[5], ..JointComparison::default() }],
-                forces: vec![ForceComparison { first: side.clone(), second: side, speed_m_s: values[6], angle_rad: values[7], e_n: Some(values[0]), ..ForceComparison::default() }],
-                ..ComparisonSection::default()
+                joint: vec![JointComparison { chi_squared: Some(values[3]), p: Some(values[4]), dof: Some(7), ..JointComparison::default() }],
+                loads: vec![LoadComparison { first: side.clone(), second: side, speed_m_s: values[6], angle_rad: values[7], e_n: Some(values[0]), ..LoadComparison::default() }],
+                ..Comparison::default()
             }),
             ..Report::default()
         };
@@ -622,10 +634,7 @@ fn a_comparison_costs_as_much_as_it_has_pairs() {
                 ..CoefficientComparison::default()
             })
             .collect();
-        Report {
-            comparison: Some(ComparisonSection { coefficients, ..ComparisonSection::default() }),
-            ..Report::default()
-        }
+        Report { comparison: Some(Comparison { coefficients, ..Comparison::default() }), ..Report::default() }
     };
     let seconds = |report: &Report| {
         let once = || {

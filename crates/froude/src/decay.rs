@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod};
 use froude_identify::decay::{envelope, output_error, record};
-use froude_identify::source::{ReadFile, SourceResult};
+use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Channel, ImportedRun, import_run};
 use froude_records::units::Dimension;
 
 use crate::Error;
-use crate::method::Method;
+use crate::method::{Found, Method};
 
 /// Envelope and output error of releases.
 pub(crate) struct FreeDecay;
@@ -45,7 +45,7 @@ impl Method for FreeDecay {
         source: &Source,
         asked: &[&'static str],
         progress: &dyn Fn(&str),
-    ) -> Result<Vec<SourceResult>, Error> {
+    ) -> Result<Found, Error> {
         let Some(spec) = &source.decay else {
             return Err(Error::Nothing(format!(
                 "{}: nothing is declared of what swings: write [source.decay] with axis = \"heave\", inertia and stiffness, each as {{ value = \
@@ -76,17 +76,14 @@ impl Method for FreeDecay {
             fits.push(fit);
         }
         findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
-        if let Some(first) = out.first_mut() {
-            // What both say of a release is said once.
-            let mut said: Vec<Finding> = Vec::new();
-            for finding in findings.into_iter().map(|finding| finding.of_source(&source.name)) {
-                if !said.contains(&finding) {
-                    said.push(finding);
-                }
+        // What both say of a release is said once.
+        let mut said: Vec<Finding> = Vec::new();
+        for finding in findings {
+            if !said.contains(&finding) {
+                said.push(finding);
             }
-            first.findings = said;
         }
-        Ok(out)
+        Ok(Found { results: out, findings: said, ..Found::default() })
     }
 }
 

@@ -59,8 +59,9 @@ fn build(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result
 
 /// The same results, where they will lie.
 fn in_finished(mut outcome: Outcome, unfinished: &Path, finished: &Path) -> Outcome {
-    let paths = [&mut outcome.estimate, &mut outcome.report].into_iter();
-    for path in paths.chain(&mut outcome.figures).chain(&mut outcome.observations) {
+    let Some(written) = &mut outcome.written else { return outcome };
+    let paths = [&mut written.estimate, &mut written.report].into_iter();
+    for path in paths.chain(&mut written.figures).chain(&mut written.observations) {
         if let Ok(inside) = path.strip_prefix(unfinished) {
             *path = finished.join(inside);
         }

@@ -323,7 +323,7 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
     let input = match source.input {
         Input::Table(_) => "table",
         Input::Record { .. } => "record",
-        Input::Runs(_) => "runs",
+        Input::Runs { .. } => "runs",
         Input::Cases(_) => "cases",
         Input::Mesh(_) => "mesh",
     };
@@ -362,7 +362,7 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
             }
             out.models = record.estimates.iter().map(|e| e.id.clone()).collect();
         }
-        Input::Runs(_) | Input::Cases(_) | Input::Mesh(_) => {}
+        Input::Runs { .. } | Input::Cases(_) | Input::Mesh(_) => {}
     }
     Ok((out, findings))
 }

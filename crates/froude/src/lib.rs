@@ -6,7 +6,7 @@
 //! ```no_run
 //! use froude::pipeline::{Job, identify};
 //! let done = identify(&Job::new("campaign.toml"), &|_| {})?;
-//! println!("{}", done.report.display());
+//! println!("{}", done.file.estimates[0].id);
 //! # Ok::<(), froude::Error>(())
 //! ```
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
@@ -31,7 +31,7 @@ pub mod inspect;
 mod method;
 mod observations;
 pub mod pipeline;
-mod results;
+pub mod results;
 mod sections;
 pub mod twin;
 
@@ -39,26 +39,7 @@ pub use error::Error;
 
 /// What most programs need.
 pub mod prelude {
-    pub use crate::pipeline::{Job, Outcome, identify};
+    pub use crate::pipeline::{Input, Job, Outcome, identify};
     pub use crate::records::estimate::{Coefficient, Estimate, EstimateFile, Status};
     pub use crate::records::finding::{Finding, Severity};
-}
-
-/// Compares the estimates of several records.
-///
-/// # Errors
-///
-/// A record that cannot be read, more estimates than are compared.
-pub fn compare_files(paths: &[std::path::PathBuf]) -> Result<identify::compare::Comparison, Error> {
-    let files = paths
-        .iter()
-        .map(|path| Ok((path.display().to_string(), records::json::read_estimates(path)?)))
-        .collect::<Result<Vec<_>, Error>>()?;
-    let all = identify::compare::named(&files);
-    if all.len() > identify::compare::MOST_COMPARED {
-        return Err(Error::Nothing(identify::compare::too_many(all.len())));
-    }
-    let mut comparison = identify::compare::compare(&all);
-    comparison.findings.extend(identify::compare::nothing_compared(&all, &comparison));
-    Ok(comparison)
 }

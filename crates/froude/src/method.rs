@@ -1,12 +1,16 @@
 //! The one seam: whatever makes estimates of a source is a [`Method`], and [`METHODS`] is the list of them.
 //!
 //! A source of a campaign names a table or runs, and for runs its methods. Each method reduces what it is given to observations, fits them by
-//! the common regression with the common budget, and gives a [`SourceResult`]: data, fits, estimates, findings, files. After it there is one
-//! comparison, one record, one page and one writer ([`crate::pipeline`]).
+//! the common regression with the common budget, and gives [`Found`]: for each answer data, fits, estimates and files, and what it says of all
+//! of them. After it there is one comparison, one record, one page and one writer ([`crate::pipeline`]).
+
+use std::path::PathBuf;
 
 use froude_identify::source::{SourceResult, identify_source};
 use froude_records::campaign::{Campaign, Input, Source};
+use froude_records::finding::Finding;
 use froude_records::nearest::meant;
+use froude_report::document::DocumentSection;
 
 use crate::Error;
 use crate::carriage::source::Carriage;
@@ -34,7 +38,24 @@ pub(crate) trait Method: Sync {
         source: &Source,
         asked: &[&'static str],
         progress: &dyn Fn(&str),
-    ) -> Result<Vec<SourceResult>, Error>;
+    ) -> Result<Found, Error>;
+}
+
+/// What a method found in a source.
+#[derive(Default)]
+pub(crate) struct Found {
+    /// A result for each name that was asked for.
+    pub results: Vec<SourceResult>,
+    /// What it says of all of them together, on the terminal and at the head of the page; the results alone where there is nothing.
+    pub summary: Option<DocumentSection>,
+    /// What else belongs on the page.
+    pub blocks: Vec<DocumentSection>,
+    /// What is doubtful about the runs, or about the results together.
+    pub findings: Vec<Finding>,
+    /// Where results go that nobody named a folder for, of a source that no campaign names.
+    pub beside: Option<PathBuf>,
+    /// True where more lies there than was named: such a result takes the place of no other.
+    pub is_part: bool,
 }
 
 /// All methods that read runs; the first is that of runs whose source names none.
@@ -62,8 +83,10 @@ impl Method for Table {
         source: &Source,
         _: &[&'static str],
         progress: &dyn Fn(&str),
-    ) -> Result<Vec<SourceResult>, Error> {
-        Ok(vec![identify_source(campaign, source, &|model| progress(&format!("fitting {model}")))?])
+    ) -> Result<Found, Error> {
+        let mut result = identify_source(campaign, source, &|model| progress(&format!("fitting {model}")))?;
+        let findings = std::mem::take(&mut result.findings);
+        Ok(Found { results: vec![result], findings, ..Found::default() })
     }
 }
 
@@ -73,7 +96,7 @@ impl Method for Table {
 ///
 /// A name that no method answers to, one twice, or names of two methods: these need runs of two kinds, and so two sources.
 pub(crate) fn of(source: &Source) -> Result<(&'static dyn Method, Vec<&'static str>), Error> {
-    if !matches!(source.input, Input::Runs(_)) {
+    if !matches!(source.input, Input::Runs { .. }) {
         return Ok((&Table, vec!["table"]));
     }
     let refuse = |i: usize, what: String| {

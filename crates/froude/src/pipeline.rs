@@ -1,25 +1,47 @@
-//! From a campaign or a bare table to estimates and a report.
+//! From a campaign, a bare table, runs or records to estimates side by side and a report.
 
+use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use froude_identify::compare::{Comparison, compare, named};
+use froude_identify::compare::{MOST_COMPARED, compare, named, nothing_compared, too_many};
 use froude_identify::source::{SourceResult, asked_models};
-use froude_records::campaign::{Campaign, Input, Source, read_campaign};
-use froude_records::estimate::{ESTIMATE_SCHEMA, EstimateFile};
+use froude_records::campaign::{self, Campaign, Source, read_campaign};
+use froude_records::comparison::Comparison;
+use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
-use indexmap::IndexMap;
+use froude_records::text::counted;
+use froude_report::document::DocumentSection;
 
 use crate::Error;
 use crate::data_files::DataFiles;
-use crate::{method, observations, results, sections};
+use crate::method::{self, Found};
+use crate::results::Written;
+use crate::{observations, results, sections};
+
+/// What a job reads.
+#[derive(Debug, Clone)]
+pub enum Input {
+    /// A campaign (`.toml`) or a bare table (`.csv`, `.parquet`).
+    File(PathBuf),
+    /// Runs of a carriage, by all methods that they allow.
+    Runs {
+        /// Folders of runs, or runs.
+        paths: Vec<PathBuf>,
+        /// A campaign other than the copy that lies with them.
+        campaign: Option<PathBuf>,
+    },
+    /// Records, which are set side by side; nothing is fitted.
+    Records(Vec<PathBuf>),
+}
 
 /// What to identify and where the results go.
 #[derive(Debug, Clone)]
 pub struct Job {
-    /// A campaign (`.toml`) or a bare table (`.csv`, `.parquet`).
-    pub input: PathBuf,
-    /// Folder of the results; beside the input, named after it, unless said.
+    /// What is read.
+    pub input: Input,
+    /// Folder of the results. Unless said, beside the input and named after it; for records then nothing is written.
     pub out: Option<PathBuf>,
     /// A sidecar for a bare table that is not beside it.
     pub sidecar: Option<PathBuf>,
@@ -30,33 +52,42 @@ pub struct Job {
 }
 
 impl Job {
+    /// A job on a campaign or a bare table, with nothing but its input.
+    #[must_use]
+    pub fn new(file: impl Into<PathBuf>) -> Self {
+        Self::of(Input::File(file.into()))
+    }
+
     /// A job with nothing but its input.
     #[must_use]
-    pub fn new(input: impl Into<PathBuf>) -> Self {
-        Self { input: input.into(), out: None, sidecar: None, models: Vec::new(), date: None }
+    pub fn of(input: Input) -> Self {
+        Self { input, out: None, sidecar: None, models: Vec::new(), date: None }
     }
 }
 
 /// What came out.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// The record, as it stands in `estimate.json`.
+    /// The record, as it stands in `estimate.json`; sources side by side are in it.
     pub file: EstimateFile,
-    /// Where the record lies.
-    pub estimate: PathBuf,
-    /// Where the report lies.
-    pub report: PathBuf,
-    /// The figures beside it.
-    pub figures: Vec<PathBuf>,
-    /// The observations of every fitted source, row by row.
-    pub observations: Vec<PathBuf>,
+    /// Where it lies, with report, figures and observations; `None` where nobody asked for files.
+    pub written: Option<Written>,
     /// Everything that is known about each fitted source.
     pub sources: Vec<SourceResult>,
-    /// Sources side by side.
-    pub comparison: Comparison,
+    /// What methods say of several of them together.
+    pub summaries: Vec<Summary>,
 }
 
-/// Reads, fits, chooses, reports; `progress` is told each step.
+/// What a method says of all results that it has from one source.
+#[derive(Debug, Clone)]
+pub struct Summary {
+    /// Which of [`Outcome::sources`].
+    pub sources: Range<usize>,
+    /// The section of the page.
+    pub section: DocumentSection,
+}
+
+/// Reads, fits, chooses, compares, reports; `progress` is told each step.
 ///
 /// Nothing is written before everything is computed, and the results replace those of an earlier job as a whole, or not at all.
 ///
@@ -65,8 +96,13 @@ pub struct Outcome {
 /// See [`Error`].
 pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let mut campaign = campaign_of(job)?;
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
-    results::can_be_written(&out)?;
+    let out = match (&job.out, &job.input) {
+        (None, Input::File(path)) => Some(default_out(path)),
+        (out, _) => out.clone(),
+    };
+    if let Some(out) = &out {
+        results::can_be_written(out)?;
+    }
     if !job.models.is_empty() {
         campaign.identify.models.clone_from(&job.models);
         // No file names these.
@@ -76,92 +112,157 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         }
     }
     runs_once(&campaign)?;
-    let mut sources = Vec::new();
-    let mut published: Vec<(String, EstimateFile)> = Vec::new();
-    let named_as = |path: &Path| relative(path, &campaign.path);
+    let is_of_runs = matches!(job.input, Input::Runs { .. });
+    let named_as = |path: &Path| match path.file_name() {
+        Some(name) if is_of_runs => name.to_string_lossy().into_owned(),
+        _ => relative(path, &campaign.path),
+    };
     let mut files = DataFiles::new(&named_as);
-    if is_campaign(&job.input) {
+    if is_campaign(&campaign.path) {
         files.key(&campaign.path, "campaign")?;
     }
-    let mut findings: Vec<Finding> = Vec::new();
+    let mut gathered = Gathered::default();
     for source in &campaign.sources {
-        if let Input::Record { path, select } = &source.input {
-            progress(&format!("{}: reading the record", source.name));
+        gathered.take(source, &campaign, &mut files, matches!(job.input, Input::Records(_)), progress)?;
+    }
+    let Gathered { sources, summaries, blocks, published, mut findings, beside, is_part } = gathered;
+    findings.extend(laws_not_asked(&campaign));
+    if sources.is_empty() && published.is_empty() {
+        return Err(Error::Nothing(format!("{}: the campaign has no [[source]]", campaign.path.display())));
+    }
+    progress("comparing the sources");
+    let estimates: Vec<Estimate> = sources.iter().flat_map(|s| s.estimates.iter().cloned()).collect();
+    let fitted = EstimateFile { data: files.into_map(), ..EstimateFile::of(estimates) };
+    let mut all = vec![("this campaign".to_owned(), fitted)];
+    all.extend(published);
+    let comparison = side_by_side(&all, &job.input)?;
+    findings.extend(comparison.iter().flat_map(|c| c.findings.iter().cloned()));
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    let (_, fitted) = all.remove(0);
+    let file = EstimateFile { versions: results::versions(), comparison, findings, ..fitted };
+    let mut outcome = Outcome { file, written: None, sources, summaries };
+    let Some(out) = out.or(beside) else { return Ok(outcome) };
+    if is_part {
+        replaces_no_more(&out, &outcome.file, job.out.is_some())?;
+    }
+    progress("writing the report");
+    if campaign.name.is_empty() {
+        campaign.name = outcome.file.estimates.first().map_or_else(String::new, |e| e.source.clone());
+    }
+    let records: Vec<Estimate> = all.iter().flat_map(|(_, record)| record.estimates.iter().cloned()).collect();
+    let report = sections::report(&campaign, &outcome, records, blocks, job.date.clone())?;
+    let html = froude_report::html(&report)?;
+    let figures = froude_report::figures(&report)?;
+    let tables = observations::tables(&outcome.sources, &campaign)?;
+    outcome.written = Some(results::write(&out, &outcome.file, &tables, &figures, &html)?);
+    Ok(outcome)
+}
+
+/// What the sources gave.
+#[derive(Default)]
+struct Gathered {
+    sources: Vec<SourceResult>,
+    summaries: Vec<Summary>,
+    blocks: Vec<DocumentSection>,
+    /// Records beside them, as they are called.
+    published: Vec<(String, EstimateFile)>,
+    findings: Vec<Finding>,
+    beside: Option<PathBuf>,
+    is_part: bool,
+}
+
+impl Gathered {
+    /// Takes a source in: reads its record, or fits it by its method.
+    fn take(
+        &mut self,
+        source: &Source,
+        campaign: &Campaign,
+        files: &mut DataFiles<'_>,
+        is_all: bool,
+        progress: &dyn Fn(&str),
+    ) -> Result<(), Error> {
+        let step = |step: &str| match source.name.as_str() {
+            "" => progress(step),
+            name => progress(&format!("{name}: {step}")),
+        };
+        if let campaign::Input::Record { path, select } = &source.input {
+            step("reading the record");
             let mut record = read_estimates(path)?;
             if let Some(select) = select {
                 let one = froude_identify::select::one_estimate(&record, Some(select), path)?.clone();
                 record.estimates = vec![one];
             }
             files.key(path, "record")?;
-            findings.push(froude_identify::source::published_note(source));
-            published.push((relative(path, &campaign.path), record));
-            continue;
+            // Whoever asks for records and nothing else knows that they are.
+            self.findings.extend((!is_all).then(|| froude_identify::source::published_note(source)));
+            self.published.push((relative(path, &campaign.path), record));
+            return Ok(());
         }
         let (method, asked) = method::of(source)?;
-        let results = method.identify(&campaign, source, &asked, &|step| {
-            progress(&format!("{}: {step}", source.name));
-        })?;
-        for mut result in results {
+        let Found { mut results, summary, blocks, findings, beside, is_part } =
+            method.identify(campaign, source, &asked, &step)?;
+        for result in &mut results {
             for estimate in &mut result.estimates {
                 estimate.data = files.keys_of(&result.files, |role| method.observes(&estimate.method.name, role))?;
             }
-            findings.extend(result.findings.iter().cloned());
-            sources.push(result);
         }
+        let first = self.sources.len();
+        self.sources.append(&mut results);
+        if let Some(section) = summary {
+            self.summaries.push(Summary { sources: first..self.sources.len(), section });
+        }
+        self.blocks.extend(blocks);
+        let of_source = |f: Finding| if source.name.is_empty() { f } else { f.of_source(&source.name) };
+        self.findings.extend(findings.into_iter().map(of_source));
+        self.beside = self.beside.take().or(beside);
+        self.is_part |= is_part;
+        Ok(())
     }
-    findings.extend(laws_not_asked(&campaign));
-    if sources.is_empty() && published.is_empty() {
-        return Err(Error::Nothing(format!("{}: the campaign has no [[source]]", job.input.display())));
+}
+
+/// The estimates of this job and those of records beside it, side by side; `None` where there is but one source.
+fn side_by_side(all: &[(String, EstimateFile)], input: &Input) -> Result<Option<Comparison>, Error> {
+    let is_asked = matches!(input, Input::Records(_));
+    let estimates: usize = all.iter().map(|(_, record)| record.estimates.len()).sum();
+    if is_asked && estimates > MOST_COMPARED {
+        return Err(Error::Nothing(too_many(estimates)));
     }
-    progress("comparing the sources");
-    let data = files.into_map();
-    let fitted = EstimateFile {
-        schema: ESTIMATE_SCHEMA.to_owned(),
-        data: data.clone(),
-        versions: IndexMap::new(),
-        estimates: sources.iter().flat_map(|s| s.estimates.iter().cloned()).collect(),
-        findings: Vec::new(),
-    };
-    let mut all = vec![("this campaign".to_owned(), fitted)];
-    all.extend(published.iter().cloned());
-    let comparison =
-        if all.iter().map(|f| f.1.estimates.len()).sum::<usize>() > 1 && (sources.len() > 1 || !published.is_empty()) {
-            compare(&named(&all))
-        } else {
-            Comparison::default()
-        };
-    findings.extend(comparison.findings.iter().cloned());
-    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
-    let file = EstimateFile {
-        schema: ESTIMATE_SCHEMA.to_owned(),
-        data,
-        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: all[0].1.estimates.clone(),
-        findings,
-    };
-    progress("writing the report");
-    let records: Vec<_> = published.iter().flat_map(|(_, f)| f.estimates.iter().cloned()).collect();
-    let report = sections::report(&campaign, &sources, &records, &comparison, &file, job.date.clone())?;
-    let html = froude_report::html(&report)?;
-    let figures = froude_report::figures(&report)?;
-    let tables = observations::tables(&sources, &campaign)?;
-    let written = results::write(&out, &file, &tables, &figures, &html)?;
-    Ok(Outcome {
-        file,
-        estimate: written.estimate,
-        report: written.report,
-        figures: written.figures,
-        observations: written.observations,
-        sources,
-        comparison,
-    })
+    let all = named(all);
+    let sources: BTreeSet<_> = all.iter().map(|n| (n.file, &n.estimate.source)).collect();
+    if !is_asked && sources.len() < 2 {
+        return Ok(None);
+    }
+    let mut out = compare(&all);
+    out.findings.extend(is_asked.then(|| nothing_compared(&all, &out)).flatten());
+    Ok(Some(out))
+}
+
+/// Refuses to replace the result of more runs by that of a part of them, and, in a place that nobody chose, that of other runs.
+fn replaces_no_more(out: &Path, file: &EstimateFile, is_chosen: bool) -> Result<(), Error> {
+    let Ok(old) = read_estimates(&out.join("estimate.json")) else { return Ok(()) };
+    let named: BTreeSet<&str> = file.data.values().map(|data| data.path.as_str()).collect();
+    let mut others = old.data.values().filter(|data| !named.contains(data.path.as_str()));
+    let Some(first) = others.next() else { return Ok(()) };
+    if is_chosen && old.data.len() <= named.len() {
+        return Ok(());
+    }
+    Err(Error::Nothing(format!(
+        "{} holds the result of {}, of which {} not named now (the first is {}); it is not replaced by that of {}. Name another folder \
+         with --out",
+        out.display(),
+        counted(old.data.len(), "run", "runs"),
+        counted(1 + others.count(), "is", "are"),
+        first.path,
+        counted(named.len(), "run", "runs"),
+    )))
 }
 
 /// Refuses the same runs in two sources: readings of one current would be compared as if they were independent.
 fn runs_once(campaign: &Campaign) -> Result<(), Error> {
-    let folder = |source: &Source| match &source.input {
-        Input::Runs(path) => Some(std::fs::canonicalize(path).unwrap_or_else(|_| path.clone())),
-        _ => None,
+    let folder = |source: &Source| {
+        let path = source.input.path();
+        let is_runs = matches!(source.input, campaign::Input::Runs { .. });
+        is_runs.then(|| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()))
     };
     for (i, b) in campaign.sources.iter().enumerate() {
         if let Some(a) = campaign.sources[..i].iter().find(|a| folder(a).is_some() && folder(a) == folder(b)) {
@@ -176,7 +277,7 @@ fn runs_once(campaign: &Campaign) -> Result<(), Error> {
 
 /// Laws of a person that no source is fitted with: a source that names its models is fitted with these alone.
 fn laws_not_asked(campaign: &Campaign) -> Option<Finding> {
-    let tables: Vec<_> = campaign.sources.iter().filter(|s| matches!(s.input, Input::Table(_))).collect();
+    let tables: Vec<_> = campaign.sources.iter().filter(|s| matches!(s.input, campaign::Input::Table(_))).collect();
     let asked: Vec<String> =
         tables.iter().flat_map(|source| asked_models(campaign, source).unwrap_or_default()).collect();
     let own = campaign.identify.user_models.iter().map(|model| model.name.as_str());
@@ -191,16 +292,18 @@ fn laws_not_asked(campaign: &Campaign) -> Option<Finding> {
     })
 }
 
-/// A campaign as it is read, or the one that a bare table stands for.
+/// A campaign as it is read, or the one that a bare table, runs or records stand for.
 ///
 /// # Errors
 ///
 /// Whatever the campaign reader finds.
 pub fn campaign_of(job: &Job) -> Result<Campaign, Error> {
-    if is_campaign(&job.input) {
-        return Ok(read_campaign(&job.input)?);
-    }
-    Ok(Campaign::of_table(&job.input, job.sidecar.clone()))
+    Ok(match &job.input {
+        Input::File(path) if is_campaign(path) => read_campaign(path)?,
+        Input::File(table) => Campaign::of_table(table, job.sidecar.clone()),
+        Input::Runs { paths, campaign } => Campaign::of_runs(paths.clone(), campaign.clone()),
+        Input::Records(paths) => Campaign::of_records(paths),
+    })
 }
 
 fn is_campaign(path: &Path) -> bool {

@@ -13,8 +13,14 @@ use froude_records::manifest::{first_alien, write_manifest};
 use froude_records::table::Table;
 use froude_records::write::write_atomically;
 use froude_report::Figure;
+use indexmap::IndexMap;
 
 use crate::Error;
+
+/// The program that makes a record.
+pub(crate) fn versions() -> IndexMap<String, String> {
+    IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())])
+}
 
 /// Where the results lie.
 #[derive(Debug, Clone)]

@@ -1,8 +1,9 @@
 //! Identification results as the report wants them: points, curves with bands, budget, selection.
 
+use std::collections::BTreeSet;
+
 use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
-use froude_identify::compare::{Comparison, Stated};
 use froude_identify::dataset::{Dataset, unit_text};
 use froude_identify::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use froude_identify::regression::ModelFit;
@@ -10,13 +11,15 @@ use froude_identify::selection::aicc_of;
 use froude_identify::source::SourceResult;
 use froude_identify::uncertainty::{SCATTER, coverage_factor};
 use froude_records::campaign::Campaign;
-use froude_records::estimate::{Estimate, EstimateFile};
+use froude_records::estimate::Estimate;
 use froude_records::text::counted;
 use froude_records::units::Dimension;
+use froude_report::document::DocumentSection;
 use froude_report::{
-    Abscissa, Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile,
-    JointComparison, NestedTest, Point, Report, SelectionRow, Side, SourceSection, number,
+    Abscissa, Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, SelectionRow, SourceSection, number,
 };
+
+use crate::pipeline::Outcome;
 
 /// Places along a curve.
 const CURVE_POINTS: usize = 60;
@@ -32,12 +35,12 @@ const SAME_ANGLE_RAD: f64 = 0.0088;
 /// The whole report of a campaign.
 pub fn report(
     campaign: &Campaign,
-    sources: &[SourceResult],
-    published: &[Estimate],
-    comparison: &Comparison,
-    file: &EstimateFile,
+    outcome: &Outcome,
+    published: Vec<Estimate>,
+    blocks: Vec<DocumentSection>,
     date: Option<String>,
 ) -> Result<Report, IdentifyError> {
+    let Outcome { file, sources, summaries, .. } = outcome;
     // A line per file and source that reads it; a file that several name is one file.
     let mut data: Vec<InputFile> = Vec::new();
     for d in file.data.values() {
@@ -58,25 +61,31 @@ pub fn report(
     }
     Ok(Report {
         title: campaign.name.clone(),
-        subtitle: subtitle(sources, published),
+        subtitle: subtitle(sources, &published),
+        blocks: summaries.iter().map(|summary| summary.section.clone()).chain(blocks).collect(),
         date,
         method: method(campaign, sources),
         sources: sources.iter().map(section).collect::<Result<_, _>>()?,
-        published: published.to_vec(),
+        published,
         findings: file.findings.clone(),
         data,
         versions: file.versions.clone(),
         citations: campaign.cite.clone(),
-        comparison: comparison_section(comparison),
+        comparison: file.comparison.clone().filter(|c| !c.coefficients.is_empty() || !c.loads.is_empty()),
     })
 }
 
 fn subtitle(sources: &[SourceResult], published: &[Estimate]) -> String {
     let observations: usize = sources.iter().map(|s| s.data.rows).sum();
+    if sources.is_empty() {
+        return format!("{} side by side", counted(published.len(), "estimate", "estimates"));
+    }
+    let name = |s: &SourceResult| s.estimates.first().map_or_else(|| s.name.clone(), |e| e.source.clone());
+    let names: BTreeSet<String> = sources.iter().map(name).collect();
     let mut out = format!(
         "{} from {}",
         counted(observations, "observation", "observations"),
-        counted(sources.len(), "source", "sources")
+        counted(names.len(), "source", "sources")
     );
     if !published.is_empty() {
         out += &format!(", beside {}", counted(published.len(), "published estimate", "published estimates"));
@@ -89,12 +98,17 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
         "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
          A body towed at speed U under the angle θ has the velocity v = (U cos θ, −U sin θ) through the water."
             .to_owned(),
+    ];
+    if sources.is_empty() {
+        return out;
+    }
+    out.push(
         "Coefficients are estimated by least squares with orthogonal factorisation. Each load component has its own \
          residual standard deviation and degrees of freedom. Type A uncertainty comes from the scatter about the law; \
          type B from the declared budget, whose shared errors do not average down (GUM, JCGM 100:2008). Intervals are \
          95 %, from Student's t with effective degrees of freedom (Welch–Satterthwaite)."
             .to_owned(),
-    ];
+    );
     let bounded = sources.iter().flat_map(|s| &s.models).any(|m| m.options.bounds.iter().any(|b| b.lower == 0.0));
     if bounded {
         out.push(
@@ -592,78 +606,6 @@ fn frequent(held: &Settings, moving: &Settings, most: usize) -> Vec<f64> {
     let mut values: Vec<f64> = out.into_iter().take(most).map(|(_, mean)| mean).collect();
     values.sort_by(f64::total_cmp);
     values
-}
-
-/// The comparison as the report shows it.
-fn comparison_section(c: &Comparison) -> Option<ComparisonSection> {
-    if c.coefficients.is_empty() && c.forces.is_empty() {
-        return None;
-    }
-    let side = |source: &str, s: &Stated| Side {
-        source: source.to_owned(),
-        value: s.value,
-        standard: s.standard,
-        expanded: s.expanded(),
-    };
-    let coefficients = c
-        .coefficients
-        .iter()
-        .map(|r| CoefficientComparison {
-            model: r.model.clone(),
-            coefficient: r.coefficient.clone(),
-            unit: r.unit.clone(),
-            first: side(&r.first, &r.by_first),
-            second: side(&r.second, &r.by_second),
-            e_n: r.e_n.as_ref().ok().copied(),
-            note: r.e_n.clone().err().unwrap_or_default(),
-        })
-        .collect();
-    let joint = c
-        .joint
-        .iter()
-        .map(|r| {
-            let result = r.result.as_ref().ok();
-            JointComparison {
-                model: r.model.clone(),
-                first: r.first.clone(),
-                second: r.second.clone(),
-                chi_squared: result.map(|x| x.0),
-                dof: result.map_or(0.0, |x| x.1 as f64),
-                p: result.map(|x| x.2),
-                note: r.result.as_ref().err().cloned().unwrap_or_default(),
-            }
-        })
-        .collect();
-    let mut forces = Vec::new();
-    for row in &c.forces {
-        let Some((first, others)) = row.forces.split_first() else { continue };
-        for ((other, id), e_n) in others.iter().zip(&c.force_ids[1..]).zip(&row.e_n) {
-            forces.push(ForceComparison {
-                configuration: row.n_links.map_or_else(String::new, |k| format!("k = {k}")),
-                component: row.component.clone(),
-                unit: "N".to_owned(),
-                speed_m_s: row.speed_m_s,
-                angle_rad: row.angle_rad,
-                first: side(&c.force_ids[0], first),
-                second: side(id, other),
-                e_n: e_n.as_ref().ok().copied(),
-                note: e_n.as_ref().err().cloned().unwrap_or_default(),
-            });
-        }
-    }
-    Some(ComparisonSection {
-        intro: vec![
-            "Coefficients of the same model are set side by side; their normalised difference Eₙ is stated only where both \
-             sides state an uncertainty and rest on different data. Coefficients of one fit are collinear: the predicted \
-             forces over the common range are what a user of the coefficients needs."
-                .to_owned(),
-        ],
-        coefficients,
-        joint,
-        forces,
-        coverage: c.coverage_notes(),
-        notes: c.findings.iter().map(|f| f.message.clone()).collect(),
-    })
 }
 
 #[cfg(test)]

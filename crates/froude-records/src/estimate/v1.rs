@@ -93,6 +93,7 @@ impl From<FileV1> for EstimateFile {
             data: keyed(file.data),
             versions: file.versions,
             estimates: file.estimates.into_iter().map(Estimate::from).collect(),
+            comparison: None,
             findings: file.findings,
         }
     }

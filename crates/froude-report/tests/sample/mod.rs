@@ -1,14 +1,12 @@
 //! A whole report with invented forces around published coefficients.
 
+use froude_records::comparison::{CoefficientComparison, Comparison, JointComparison, LoadComparison, Side};
 use froude_records::estimate::{
     Coefficient, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Range, ReferencePoint,
     Status, TypeA,
 };
 use froude_records::finding::{Finding, Severity};
-use froude_report::{
-    Against, BudgetRow, CoefficientComparison, ComparisonSection, Curve, ForceComparison, InputFile, JointComparison,
-    NestedTest, Point, Report, SelectionRow, Side, SourceSection,
-};
+use froude_report::{Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, SelectionRow, SourceSection};
 use indexmap::IndexMap;
 
 /// Names of the coefficients of f1 … f6 in the order of the paper's tables.
@@ -437,10 +435,12 @@ pub fn report() -> Report {
     let side = |source: &str, value: f64, standard: Option<f64>| Side {
         source: source.to_owned(),
         value: Some(value),
-        standard,
-        expanded: standard.map(|u| 2.0 * u),
+        standard_uncertainty: standard,
+        expanded_uncertainty: standard.map(|u| 2.0 * u),
+        ..Side::default()
     };
     Report {
+        blocks: Vec::new(),
         title: "Mamba in the circulation tank".to_owned(),
         subtitle: "Drag coefficients of an underwater snake robot from tank, CFD and towing (invented sample)".to_owned(),
         date: Some("21 November 2026".to_owned()),
@@ -497,8 +497,7 @@ pub fn report() -> Report {
             "E. Kelasidi, G. Elgenes, H. Kilvær: Fluid parameter identification for underwater snake robots. Proc. OMAE, 2018.".to_owned(),
             "The Froude developers: Froude 0.1.0.".to_owned(),
         ],
-        comparison: Some(ComparisonSection {
-            intro: vec!["Coefficients of one model are collinear; what a user needs are forces. Both are compared.".to_owned()],
+        comparison: Some(Comparison {
             coefficients: vec![
                 CoefficientComparison {
                     model: "f4".to_owned(),
@@ -533,19 +532,19 @@ pub fn report() -> Report {
                 first: "circulation tank".to_owned(),
                 second: "CFD".to_owned(),
                 chi_squared: Some(412.7),
-                dof: 7.0,
+                dof: Some(7),
                 p: Some(1e-12),
                 note: "the two do not measure the same".to_owned(),
             }],
-            forces: [0.1, 0.2, 0.3, 0.4]
+            loads: [0.1, 0.2, 0.3, 0.4]
                 .into_iter()
                 .flat_map(|speed| {
                     [(0, "f_x"), (1, "f_y")].map(|(i, component)| {
                         let angle: f64 = 30f64.to_radians();
                         let (a, b) = (force(&TANK[3].1, 1.0, speed, angle)[i], force(&CFD[3].1, 1.0, speed, angle)[i]);
                         let (ua, ub) = (0.01 + 0.02 * a.abs(), 0.005 + 0.03 * b.abs());
-                        ForceComparison {
-                            configuration: "H1LT".to_owned(),
+                        LoadComparison {
+                            n_links: Some(1.0),
                             component: component.to_owned(),
                             unit: "N".to_owned(),
                             speed_m_s: speed,
@@ -562,7 +561,11 @@ pub fn report() -> Report {
                 "circulation tank: k = 2.00 (Student's t, effective degrees of freedom 57.3)".to_owned(),
                 "CFD: k = 2.00 (Student's t, effective degrees of freedom 57.3)".to_owned(),
             ],
-            notes: vec!["f3 of the towing rig is not determined and was not compared.".to_owned()],
+            findings: vec![Finding::new(
+                Severity::Note,
+                "not-compared",
+                "f3 of the towing rig is not determined and was not compared.".to_owned(),
+            )],
         }),
     }
 }

@@ -13,7 +13,6 @@ use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, drag
 use froude::identify::compare::{compare, named};
 use froude::identify::lint;
 use froude::records::estimate::{DataFile, EstimateFile, keyed};
-use indexmap::IndexMap;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 
@@ -278,13 +277,7 @@ fn pairs_of_one_calibration(claims: &mut Claims, pairs: usize) {
             estimate.source = format!("{seed}");
             estimate.data = vec!["d1".to_owned()];
         }
-        EstimateFile {
-            schema: String::new(),
-            data: keyed(data),
-            versions: IndexMap::new(),
-            estimates,
-            findings: Vec::new(),
-        }
+        EstimateFile { data: keyed(data), ..EstimateFile::of(estimates) }
     };
     let outside = |keys: [&str; 2]| {
         let of_pair = |pair: usize| {
@@ -292,7 +285,7 @@ fn pairs_of_one_calibration(claims: &mut Claims, pairs: usize) {
             let k = scenario.force_per_volt_n() * (1.0 + COMMON * normal(&mut rng));
             let seeds = [2 * pair as u64, 2 * pair as u64 + 1];
             let files = [0, 1].map(|i| (seeds[i].to_string(), record(seeds[i], k, keys[i])));
-            compare(&named(&files)).coefficients.first().and_then(|row| row.e_n.clone().ok())
+            compare(&named(&files)).coefficients.first().and_then(|row| row.e_n)
         };
         let e_n: Vec<f64> = (0..pairs).into_par_iter().filter_map(of_pair).collect();
         (e_n.iter().filter(|e| e.abs() <= 1.0).count() as u64, e_n.len() as u64)

@@ -11,7 +11,7 @@ use froude::identify::regression::{Settings, regress};
 use froude::identify::selection::{nested_tests, recommend};
 use froude::identify::source::laws;
 use froude::identify::{dissipation, simulate};
-use froude::pipeline::{Job, identify};
+use froude::pipeline::{Input, Job, identify};
 use froude::records::campaign::{Campaign, SourceKind, read_campaign};
 use froude::records::json::read_estimates;
 use froude::records::units::Dimension;
@@ -193,7 +193,10 @@ pub fn added_mass(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>
 pub fn contradictions(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
     let folder = root.join("examples/mamba/published");
     let path = |name: &str| folder.join(format!("{name}.json"));
-    let compare = |names: &[&str]| froude::compare_files(&names.iter().map(|n| path(n)).collect::<Vec<_>>());
+    let compare = |names: &[&str]| -> Result<_, froude::Error> {
+        let records = Input::Records(names.iter().map(|n| path(n)).collect());
+        Ok(identify(&Job::of(records), &|_| {})?.file)
+    };
     let ten = compare(&[
         "cfd",
         "towing_rig",

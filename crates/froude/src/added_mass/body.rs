@@ -5,10 +5,9 @@ use std::path::{Path, PathBuf};
 use froude_mesh::measure::Measure;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::problem::Frame;
-use froude_records::estimate::{ESTIMATE_SCHEMA, EstimateFile, keyed};
+use froude_records::estimate::{EstimateFile, keyed};
 use froude_report::document::TextTable;
 use froude_report::number;
-use indexmap::IndexMap;
 
 use super::cross_checks;
 use super::exports::{self, extras};
@@ -185,11 +184,10 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
         estimate(&case.refined, &about)
     });
     let file = EstimateFile {
-        schema: ESTIMATE_SCHEMA.to_owned(),
         data: keyed(vec![mesh_file(&job.input)?]),
-        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: estimates.map(of_the_mesh).collect(),
+        versions: crate::results::versions(),
         findings,
+        ..EstimateFile::of(estimates.map(of_the_mesh).collect())
     };
     let depth_m = job.surface_m.map(|surface_m| surface_m - mesh.up().coordinate(measure.centroid_m));
     notes.extend(limits::words(depth_m, job.tank_m));

@@ -7,11 +7,10 @@ use std::path::{Path, PathBuf};
 
 use froude_panel::problem::Frame;
 use froude_records::body::{Shape, read_body};
-use froude_records::estimate::{ESTIMATE_SCHEMA, Estimate, EstimateFile, keyed};
+use froude_records::estimate::{Estimate, EstimateFile, keyed};
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::write_estimates;
 use froude_records::write::write_atomically;
-use indexmap::IndexMap;
 
 use super::family::{Family, robot};
 use super::frame::{Axes, Orientation, sentence};
@@ -163,11 +162,10 @@ fn written(
         estimate(&c.refined, &about)
     });
     let file = EstimateFile {
-        schema: ESTIMATE_SCHEMA.to_owned(),
         data: keyed(vec![mesh_file(&job.body)?]),
-        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: fits.iter().cloned().chain(matrices).map(of_the_mesh).collect(),
+        versions: crate::results::versions(),
         findings,
+        ..EstimateFile::of(fits.iter().cloned().chain(matrices).map(of_the_mesh).collect())
     };
     let place = sentence(job.axes.own_words(), MIDDLE);
     let html = page::links(name, density_kg_m3, &place, &configurations, &fits, &file, job.date.clone()).html()?;

@@ -20,8 +20,7 @@ use froude_panel::study::{Size, study};
 use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
 use froude_records::estimate::{
-    Coefficient, ESTIMATE_SCHEMA, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Status,
-    keyed,
+    Coefficient, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Status, keyed,
 };
 use froude_records::finding::{Finding, Severity};
 use froude_report::document::{Document, DocumentSection, TextTable};
@@ -186,10 +185,10 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         Apart::Parts => job.axes.words(job.orientation.unwrap_or_default()),
     };
     let file = EstimateFile {
-        schema: ESTIMATE_SCHEMA.to_owned(),
         data: keyed(vec![mesh_file(&job.input)?]),
-        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: vec![of_the_mesh(record(
+        versions: crate::results::versions(),
+        findings,
+        ..EstimateFile::of(vec![of_the_mesh(record(
             &name,
             &loaded.parts,
             &value,
@@ -198,8 +197,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
             meshes,
             &frame,
             &notes,
-        ))],
-        findings,
+        ))])
     };
     let place = sentence(&frame, "each part's own point");
     let page = Document {

@@ -1,62 +1,28 @@
-//! `froude carriage drag`: D_d and C_D by force sensor, motor current and model, from the runs of a campaign.
+//! D_d and C_D by force sensor, motor current and model, from the runs of a campaign.
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use froude_fit::budget::Uncertain;
 use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
-use froude_identify::carriage::coefficient::{Coefficient, Method};
+use froude_identify::carriage::coefficient::Method;
 use froude_identify::carriage::report::{DragReport, drag_by};
 use froude_identify::carriage::run::{
     self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget,
 };
 use froude_records::campaign::Campaign;
-use froude_records::estimate::{ESTIMATE_SCHEMA, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};
-use froude_records::json::read_estimates;
 use froude_records::run::{AxisConstants, RunKind, RunLog};
 use froude_records::text::counted;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
-use froude_report::document::{Document, DocumentSection, TextTable};
+use froude_report::document::{DocumentSection, TextTable};
 use froude_report::number;
-use indexmap::IndexMap;
 
 use super::drive::STOPPED_EARLY;
-use super::runs::{Runs, density_kg_m3, for_drag, read};
+use super::runs::{Runs, density_kg_m3, for_drag};
 use super::servo::two_masses;
-use super::source::{Carriage, files_of};
 use crate::Error;
-use crate::data_files::DataFiles;
-use crate::method::Method as _;
-
-/// What to reduce.
-#[derive(Debug, Clone)]
-pub struct DragJob {
-    /// Folders of runs, or runs.
-    pub runs: Vec<PathBuf>,
-    /// A campaign other than the copy that lies with the runs.
-    pub campaign: Option<PathBuf>,
-    /// Folder of the results; beside the runs, unless said.
-    pub out: Option<PathBuf>,
-    /// Date for the report.
-    pub date: Option<String>,
-}
-
-/// What came out.
-#[derive(Debug, Clone)]
-pub struct DragOutcome {
-    /// All methods side by side.
-    pub report: DragReport,
-    /// Calibration with known weights, where the runs have one.
-    pub calibration: Option<Calibration>,
-    /// The record.
-    pub file: EstimateFile,
-    /// Where it lies.
-    pub estimate: PathBuf,
-    /// Where the page lies.
-    pub page: PathBuf,
-}
 
 /// Kinds of run that tell drag; pulses tell the two masses of the flexible model.
 pub(super) const KINDS: [RunKind; 5] =
@@ -110,56 +76,6 @@ pub(super) fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, Error>
     report.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     drop(reduced);
     Ok(Reduction { runs, setup, calibration, report })
-}
-
-/// Reads, calibrates where known weights were hung, reduces by every method, writes `estimate.json` and `report.html`.
-///
-/// # Errors
-///
-/// See [`Error`].
-pub fn drag(job: &DragJob) -> Result<DragOutcome, Error> {
-    let runs = read(&job.runs, &KINDS, job.campaign.as_deref())?;
-    let out = job.out.clone().unwrap_or_else(|| runs.results("drag"));
-    crate::results::can_be_written(&out)?;
-    if runs.beside > 0 {
-        replaces_no_more(&out, &runs, job.out.is_some())?;
-    }
-    let Reduction { runs, setup, calibration, mut report } = reduce(runs, &Method::ALL)?;
-    let named_as = |path: &Path| path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let mut files = DataFiles::new(&named_as);
-    for estimate in &mut report.estimates {
-        estimate.data = files.keys_of(&files_of(&runs), |role| Carriage.observes(&estimate.method.name, role))?;
-    }
-    let file = EstimateFile {
-        schema: ESTIMATE_SCHEMA.to_owned(),
-        data: files.into_map(),
-        versions: IndexMap::from([("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned())]),
-        estimates: report.estimates.clone(),
-        findings: report.findings.clone(),
-    };
-    let page = document(&report, &setup, calibration.as_ref(), &runs, job.date.clone()).html()?;
-    let written = crate::results::write(&out, &file, &[], &[], &page)?;
-    Ok(DragOutcome { report, calibration, file, estimate: written.estimate, page: written.report })
-}
-
-/// Refuses to replace the result of more runs by that of a part of them, and, in a place that nobody chose, that of other runs.
-fn replaces_no_more(out: &Path, runs: &Runs, is_chosen: bool) -> Result<(), Error> {
-    let Ok(old) = read_estimates(&out.join("estimate.json")) else { return Ok(()) };
-    let named: BTreeSet<_> = runs.logs.iter().filter_map(|log| log.path.file_name()).collect();
-    let mut others = old.data.values().filter(|file| !named.contains(std::ffi::OsStr::new(&file.path)));
-    let Some(first) = others.next() else { return Ok(()) };
-    if is_chosen && old.data.len() <= named.len() {
-        return Ok(());
-    }
-    Err(Error::Nothing(format!(
-        "{} holds the result of {}, of which {} not named now (the first is {}); it is not replaced by that of {}. Name another folder \
-         with --out",
-        out.display(),
-        counted(old.data.len(), "run", "runs"),
-        counted(1 + others.count(), "is", "are"),
-        first.path,
-        counted(named.len(), "run", "runs"),
-    )))
 }
 
 /// A result of some of the runs that lie in a folder.
@@ -256,7 +172,7 @@ fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Optio
 
 /// What is declared, from the campaign where there is one, else from what the runs say of their rig.
 #[must_use]
-pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
+pub(crate) fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
     let mut setup = DragSetup::of_the_paper();
     setup.efficiency = Efficiency::Undeclared;
     setup.density_kg_m3 = density_kg_m3(campaign);
@@ -382,29 +298,16 @@ fn keys(runs: &Runs, axis: Option<&AxisConstants>) -> Result<ErrorKeys, Error> {
     })
 }
 
-/// The page: the paper's Table IV with what it lacked.
-fn document(
-    report: &DragReport,
-    setup: &DragSetup,
-    calibration: Option<&Calibration>,
-    runs: &Runs,
-    date: Option<String>,
-) -> Document {
-    let mut sections = vec![DocumentSection {
-        title: "Drag".to_owned(),
+/// What belongs to all methods on the page: the paper's Table IV with its figure, which is the summary; calibration and runs.
+pub(super) fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentSection>) {
+    let Reduction { runs, setup, calibration, report } = reduction;
+    let drag = DocumentSection {
+        title: "Drag by every method".to_owned(),
         paragraphs: summary(report, setup),
         tables: vec![methods_table(report)],
         charts: vec![force_chart(report)],
-    }];
-    sections.push(DocumentSection {
-        title: "Uncertainty budget".to_owned(),
-        paragraphs: vec![
-            "Standard uncertainty of D_d from each input alone. Errors that all runs share do not average down."
-                .to_owned(),
-        ],
-        tables: report.coefficients.iter().map(budget_table).collect(),
-        charts: Vec::new(),
-    });
+    };
+    let mut more = Vec::new();
     if let Some(c) = calibration {
         let mut paragraphs = vec![format!(
             "{} N/V with its interval {} N/V, from {}; the gear's efficiency is {}.",
@@ -414,7 +317,7 @@ fn document(
             number::short_form(c.efficiency.value, c.efficiency.standard),
         )];
         paragraphs.extend(c.notes.iter().cloned());
-        sections.push(DocumentSection { title: "Calibration".to_owned(), paragraphs, ..DocumentSection::default() });
+        more.push(DocumentSection { title: "Calibration".to_owned(), paragraphs, ..DocumentSection::default() });
     }
     let rows = runs
         .logs
@@ -431,7 +334,7 @@ fn document(
             ]
         })
         .collect();
-    sections.push(DocumentSection {
+    more.push(DocumentSection {
         title: "Runs".to_owned(),
         tables: vec![TextTable {
             caption: "Complete runs that were read.".to_owned(),
@@ -440,19 +343,11 @@ fn document(
         }],
         ..DocumentSection::default()
     });
-    Document {
-        sort: "Carriage · drag from motor current".to_owned(),
-        title: setup.name.clone(),
-        subtitle: String::new(),
-        date,
-        sections,
-        findings: report.findings.clone(),
-    }
+    (drag, more)
 }
 
 /// What the runs say, in sentences.
-#[must_use]
-pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
+fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     let mut out = Vec::new();
     if let Some(c) = report.coefficients.iter().find(|c| Some(c.method) == report.recommended) {
         let half = c.interval_95.map(|[l, h]| 0.5 * (h - l));
@@ -527,8 +422,7 @@ pub fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
 }
 
 /// The methods side by side: the paper's Table IV.
-#[must_use]
-pub fn methods_table(report: &DragReport) -> TextTable {
+fn methods_table(report: &DragReport) -> TextTable {
     let rows = report
         .coefficients
         .iter()
@@ -555,26 +449,6 @@ pub fn methods_table(report: &DragReport) -> TextTable {
             .map(str::to_owned)
             .to_vec(),
         rows,
-    }
-}
-
-fn budget_table(c: &Coefficient) -> TextTable {
-    let total: f64 = c.budget.iter().filter(|p| !p.in_scatter).map(|p| p.covariance[(0, 0)]).sum();
-    TextTable {
-        caption: format!("{}.", c.method.words()),
-        head: ["input", "standard uncertainty [N s²/m²]", "of the variance"].map(str::to_owned).to_vec(),
-        rows: c
-            .budget
-            .iter()
-            .map(|p| {
-                let share = if p.in_scatter {
-                    "in the scatter".to_owned()
-                } else {
-                    number::percent(if total > 0.0 { p.covariance[(0, 0)] / total } else { 0.0 })
-                };
-                vec![p.name.to_string(), number::significant(p.standard(0), 2), share]
-            })
-            .collect(),
     }
 }
 

@@ -1,18 +1,16 @@
 //! Runs as a source of a campaign: each method that reduces them gives its observations, its fit and its estimate.
 
-use std::path::Path;
-
 use froude_identify::carriage::coefficient::{Coefficient, Method as CarriageMethod};
 use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::{ReadFile, SourceResult};
-use froude_records::campaign::{Campaign, Source};
+use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 
-use super::drag::{KINDS, Reduction, reduce};
+use super::drag::{KINDS, Reduction, reduce, sections};
 use super::runs::{Runs, read};
 use crate::Error;
-use crate::method::Method;
+use crate::method::{Found, Method};
 
 /// The five methods of the towing carriage: one reduction, one setup.
 pub(crate) struct Carriage;
@@ -46,9 +44,9 @@ impl Method for Carriage {
         source: &Source,
         asked: &[&'static str],
         progress: &dyn Fn(&str),
-    ) -> Result<Vec<SourceResult>, Error> {
+    ) -> Result<Found, Error> {
         let methods: Vec<CarriageMethod> = asked.iter().filter_map(|name| named(name)).collect();
-        identify(source, source.input.path(), &methods, progress)
+        identify(source, &methods, progress)
     }
 }
 
@@ -63,15 +61,15 @@ pub(super) fn is_read_by(method: CarriageMethod, role: &str) -> bool {
 }
 
 /// Reduces the runs of a source: a result for each method, in the order asked for.
-fn identify(
-    source: &Source,
-    folder: &Path,
-    methods: &[CarriageMethod],
-    progress: &dyn Fn(&str),
-) -> Result<Vec<SourceResult>, Error> {
+fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)) -> Result<Found, Error> {
+    let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
     progress("reading the runs");
-    let Reduction { runs, mut report, .. } = reduce(read(&[folder.to_owned()], &KINDS, None)?, methods)?;
-    let files = files_of(&runs);
+    let runs = read(paths, &KINDS, campaign.as_deref())?;
+    progress("reducing the runs");
+    let mut reduction = reduce(runs, methods)?;
+    let (summary, blocks) = sections(&reduction);
+    let Reduction { runs, report, .. } = &mut reduction;
+    let files = files_of(runs);
     let mut out = Vec::new();
     let fitted = std::mem::take(&mut report.coefficients).into_iter().zip(std::mem::take(&mut report.estimates));
     let mut fitted: Vec<(Coefficient, Estimate)> = fitted.collect();
@@ -87,25 +85,28 @@ fn identify(
         let (coefficient, estimate) = fitted.swap_remove(i);
         out.push(SourceResult { files: files.clone(), ..result(source, coefficient, estimate, runs.logs.len()) });
     }
+    let folder = source.input.path().display();
     if runs.campaign.is_none() {
         report.findings.push(Finding::new(
             Severity::Warning,
             "no-campaign-of-runs",
             format!(
-                "{}: no copy of their campaign lies with the runs: fresh water at 20 degC is taken, no area, and of the rig what the runs say",
-                folder.display()
+                "{folder}: no copy of their campaign lies with the runs: fresh water at 20 degC is taken, no area, and of the rig what the runs say"
             ),
         ));
     }
-    let Some(first) = out.first_mut() else {
+    if out.is_empty() {
         let why: String = report.findings.iter().map(|finding| format!("; {}", finding.message)).collect();
-        return Err(Error::Nothing(format!(
-            "{}: none of the methods asked for can use these runs{why}",
-            folder.display()
-        )));
-    };
-    first.findings = report.findings.into_iter().map(|finding| finding.of_source(&source.name)).collect();
-    Ok(out)
+        return Err(Error::Nothing(format!("{folder}: none of the methods asked for can use these runs{why}")));
+    }
+    Ok(Found {
+        results: out,
+        summary: Some(summary),
+        blocks,
+        findings: std::mem::take(&mut report.findings),
+        beside: Some(runs.results("drag")),
+        is_part: runs.beside > 0,
+    })
 }
 
 /// The logs of runs, each in the role of its kind.
@@ -115,14 +116,16 @@ pub(super) fn files_of(runs: &Runs) -> Vec<ReadFile> {
 
 fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read: usize) -> SourceResult {
     let Coefficient { method, model, data, .. } = coefficient;
+    // Runs that no campaign names are called as their own campaign calls them.
+    let name = if source.name.is_empty() { estimate.source.clone() } else { source.name.clone() };
     let estimate = Estimate {
-        id: format!("{}/{}", source.name, method.name()),
-        source: source.name.clone(),
+        id: format!("{name}/{}", method.name()),
+        source: name.clone(),
         kind: source.kind.name().to_owned(),
         ..estimate
     };
     SourceResult {
-        name: format!("{}, {}", source.name, method.name()),
+        name: format!("{name}, {}", method.name()),
         kind: source.kind,
         n_read,
         not_fitted: Vec::new(),

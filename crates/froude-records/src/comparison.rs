@@ -1,0 +1,164 @@
+//! Estimates side by side, as a record holds them and as pages and tables show them.
+//!
+//! Coefficients are set beside those of the same model; loads are predicted over the common range. E_n is the normalised difference
+//! (first − second)/U, U the expanded (95 %) uncertainty of the difference. Where there is none, a note says why.
+
+use serde::{Deserialize, Serialize};
+
+use crate::finding::Finding;
+
+/// Estimates side by side.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Comparison {
+    /// Coefficient by coefficient, pair by pair; same model and same name only.
+    #[serde(default)]
+    pub coefficients: Vec<CoefficientComparison>,
+    /// Whole coefficient vectors with their covariances, pair by pair.
+    #[serde(default)]
+    pub joint: Vec<JointComparison>,
+    /// Predicted loads over the common range: the first source beside each of the others.
+    #[serde(default)]
+    pub loads: Vec<LoadComparison>,
+    /// Which coverage factor the expanded uncertainties of the loads have, a sentence per source.
+    #[serde(default)]
+    pub coverage: Vec<String>,
+    /// What was found on the way: contradictions, missing ranges. It stands among the findings of the record.
+    #[serde(skip)]
+    pub findings: Vec<Finding>,
+}
+
+/// A number as one estimate states it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Side {
+    /// Id of the estimate.
+    pub source: String,
+    /// Its value; null when undetermined or not predicted.
+    pub value: Option<f64>,
+    /// Its standard uncertainty, in the unit of the value; null when none is stated.
+    pub standard_uncertainty: Option<f64>,
+    /// Effective degrees of freedom of it; null when the record states no finite ones.
+    pub effective_dof: Option<f64>,
+    /// Coverage factor k of the 95 % uncertainty U = k·u.
+    pub coverage_factor: Option<f64>,
+    /// Expanded (95 %) uncertainty U.
+    pub expanded_uncertainty: Option<f64>,
+}
+
+/// A coefficient in two estimates.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoefficientComparison {
+    /// The model that both values belong to.
+    pub model: String,
+    /// Name of the coefficient.
+    pub coefficient: String,
+    /// Its unit.
+    pub unit: String,
+    /// One side.
+    pub first: Side,
+    /// The other side.
+    pub second: Side,
+    /// Normalised difference; null where a side states no uncertainty, or both rest on the same data.
+    pub e_n: Option<f64>,
+    /// Why there is none; empty where there is.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+/// χ² of the difference of two coefficient vectors.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JointComparison {
+    /// The model that both vectors belong to.
+    pub model: String,
+    /// Id of the first estimate.
+    pub first: String,
+    /// Id of the second.
+    pub second: String,
+    /// The statistic; null when it cannot be formed.
+    pub chi_squared: Option<f64>,
+    /// Its degrees of freedom: coefficients that both estimate.
+    pub dof: Option<usize>,
+    /// Chance of a larger statistic if both measure the same.
+    pub p: Option<f64>,
+    /// Why there is no statistic; empty where there is.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+/// A load predicted by two estimates at one place of their common range.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LoadComparison {
+    /// Load component.
+    pub component: String,
+    /// Unit of both predictions.
+    pub unit: String,
+    /// Links of the configuration; null for a body without links.
+    pub n_links: Option<f64>,
+    /// Speed.
+    pub speed_m_s: f64,
+    /// Angle `atan2(−v_y, v_x)`.
+    pub angle_rad: f64,
+    /// One side.
+    pub first: Side,
+    /// The other side.
+    pub second: Side,
+    /// Normalised difference; null where a side states no uncertainty, or both rest on the same data.
+    pub e_n: Option<f64>,
+    /// Why there is none; empty where there is.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub note: String,
+}
+
+impl Comparison {
+    /// True where nothing could be set side by side.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.coefficients.is_empty() && self.joint.is_empty() && self.loads.is_empty()
+    }
+
+    /// Ids of the estimates whose loads are predicted, the one that all others are held against first.
+    #[must_use]
+    pub fn load_sources(&self) -> Vec<&str> {
+        let mut out: Vec<&str> = Vec::new();
+        for row in &self.loads {
+            for source in [&row.first.source, &row.second.source] {
+                if !out.contains(&source.as_str()) {
+                    out.push(source);
+                }
+            }
+        }
+        out
+    }
+}
+
+/// Which coverage factor the expanded uncertainties of one estimate have, in words.
+#[must_use]
+pub fn coverage_note<'a>(id: &str, stated: impl IntoIterator<Item = &'a Side>) -> String {
+    let own: Vec<&Side> =
+        stated.into_iter().filter(|s| s.value.is_some() && s.standard_uncertainty.is_some()).collect();
+    // A load that is zero for any coefficients has no uncertainty to cover.
+    let own = if own.iter().any(|s| s.standard_uncertainty > Some(0.0)) {
+        own.into_iter().filter(|s| s.standard_uncertainty > Some(0.0)).collect()
+    } else {
+        own
+    };
+    if own.is_empty() {
+        return format!("{id}: no uncertainty stated");
+    }
+    let range = |of: &dyn Fn(&Side) -> Option<f64>, places: usize| {
+        let span = |x: f64| format!("{x:.places$}");
+        let low = own.iter().filter_map(|s| of(s)).fold(f64::INFINITY, f64::min);
+        let high = own.iter().filter_map(|s| of(s)).fold(f64::NEG_INFINITY, f64::max);
+        if span(low) == span(high) { span(low) } else { format!("{} to {}", span(low), span(high)) }
+    };
+    let factor = range(&|s| s.coverage_factor, 2);
+    if own.iter().all(|s| s.effective_dof.is_none()) {
+        return format!("{id}: k = {factor} (normal), its record states no degrees of freedom");
+    }
+    let some = if own.iter().any(|s| s.effective_dof.is_none()) { ", where its record states them" } else { "" };
+    format!("{id}: k = {factor} (Student's t, effective degrees of freedom {}{some})", range(&|s| s.effective_dof, 1))
+}
