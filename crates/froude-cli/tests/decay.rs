@@ -74,6 +74,7 @@ fn releases_of_a_body_on_springs_give_its_added_mass_and_damping() {
     assert_eq!(estimates[1]["recommended"], true);
     let page = std::fs::read_to_string(folder.path().join("decay-results/report.html")).unwrap();
     assert!(page.contains("heave, decay_output_error") && page.contains("A33"));
+    assert!(page.contains("Releases") && page.contains("and the fitted motion where it was used"), "its own section");
     let mut tables = std::fs::read_dir(folder.path().join("decay-results")).unwrap().map(|e| e.unwrap().path());
     let of_envelope = tables.find(|p| text(p).ends_with("envelope.csv")).unwrap();
     let rows = std::fs::read_to_string(of_envelope).unwrap();

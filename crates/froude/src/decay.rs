@@ -2,13 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod};
+use froude_identify::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, RunSummary};
 use froude_identify::decay::{envelope, output_error, record};
 use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Channel, ImportedRun, import_run};
 use froude_records::units::Dimension;
+use froude_report::chart::{Chart, ChartPanel, Mark, Series};
+use froude_report::document::{DocumentSection, TextTable};
+use froude_report::number;
 
 use crate::Error;
 use crate::method::{Found, Method};
@@ -83,7 +86,8 @@ impl Method for FreeDecay {
                 said.push(finding);
             }
         }
-        Ok(Found { results: out, findings: said, ..Found::default() })
+        let blocks = fits.last().map(|fit| releases(fit, &runs)).into_iter().collect();
+        Ok(Found { results: out, blocks, findings: said, ..Found::default() })
     }
 }
 
@@ -96,6 +100,83 @@ fn setup_of(spec: &DecaySpec) -> DecaySetup {
         ..DecayWindow::default()
     };
     DecaySetup { window, ..DecaySetup::new(spec.axis, uncertain(spec.inertia), uncertain(spec.stiffness)) }
+}
+
+/// Releases whose motion is drawn; more would be a page of the same.
+const DRAWN: usize = 6;
+
+/// The releases on the page: what was used of each, and the motion with that of the fit.
+fn releases(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
+    let unit = if fit.axis.is_rotation() { "rad" } else { "m" };
+    let rows = fit.runs.iter().map(|r| {
+        let [position, speed] = r.start;
+        vec![
+            r.id.clone(),
+            r.half_cycles.to_string(),
+            number::plain(r.from_s, 4),
+            number::plain(position, 4),
+            number::plain(speed, 3),
+            number::plain(r.rest, 3),
+            number::significant(r.noise, 2),
+            number::significant(r.residual_rms, 2),
+        ]
+    });
+    let left = match fit.method {
+        DecayMethod::OutputError => format!("left of the position, rms [{unit}]"),
+        DecayMethod::Envelope => format!("left of the force, rms [{}]", if unit == "rad" { "N m" } else { "N" }),
+    };
+    let panel = |summary: &RunSummary| {
+        let run = runs.iter().find(|run| run.id == summary.id)?;
+        let first = run.time_s.partition_point(|t| *t < summary.from_s);
+        let time_s = run.time_s.get(first..first + summary.fitted.len())?.to_vec();
+        let measured = Series {
+            name: "measured".to_owned(),
+            mark: Mark::Points,
+            x: run.time_s.to_vec(),
+            y: run.position.to_vec(),
+            ..Series::default()
+        };
+        let fitted = Series {
+            name: "fitted".to_owned(),
+            mark: Mark::Line,
+            x: time_s,
+            y: summary.fitted.clone(),
+            ..Series::default()
+        };
+        let y_label = format!("{} [{unit}]", summary.id);
+        Some(ChartPanel { y_label, series: vec![measured, fitted], ..ChartPanel::default() })
+    };
+    let panels: Vec<ChartPanel> =
+        fit.runs.iter().filter(|run| !run.fitted.is_empty()).take(DRAWN).filter_map(panel).collect();
+    let of = if panels.len() < fit.runs.len() { format!("the first {} of ", panels.len()) } else { String::new() };
+    let chart = Chart {
+        name: "releases".to_owned(),
+        title: "Motion and fit".to_owned(),
+        caption: format!("Position of {of}the releases as measured, and the fitted motion where it was used."),
+        x_label: "time [s]".to_owned(),
+        panels,
+        ..Chart::default()
+    };
+    DocumentSection {
+        title: "Releases".to_owned(),
+        paragraphs: Vec::new(),
+        tables: vec![TextTable {
+            caption: format!("What was used of each release, by {}.", fit.method.name()),
+            head: ["release", "half cycles", "from [s]"]
+                .map(str::to_owned)
+                .into_iter()
+                .chain([
+                    format!("position there [{unit}]"),
+                    format!("speed there [{unit}/s]"),
+                    format!("rest [{unit}]"),
+                    format!("noise of a sample [{unit}]"),
+                    left,
+                ])
+                .collect(),
+            rows: rows.collect(),
+        }],
+        charts: if chart.panels.is_empty() { Vec::new() } else { vec![chart] },
+    }
 }
 
 struct Releases {

@@ -156,6 +156,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
             rest: reduced.pooled.rest(swings, setup.stiffness.value),
             noise: swings.noise,
             residual_rms: (own.iter().map(|r| r * r).sum::<f64>() / own.len() as f64).sqrt(),
+            fitted: Vec::new(),
         }
     };
     let mut fit = DecayFit {

@@ -83,6 +83,8 @@ pub struct RunSummary {
     pub noise: f64,
     /// Root mean square of what the fit leaves: of positions (output error) or of force amplitudes (envelope).
     pub residual_rms: f64,
+    /// Positions of the samples used, as the fit has them; none by the envelope, which fits no motion.
+    pub fitted: Vec<f64>,
 }
 
 /// Where the coefficients are supported by data.

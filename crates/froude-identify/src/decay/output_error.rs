@@ -156,6 +156,7 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
             rest,
             noise: swings.noise,
             residual_rms: (residuals.iter().map(|r| r * r).sum::<f64>() / residuals.len() as f64).sqrt(),
+            fitted: run.position[first..end].iter().zip(residuals).map(|(q, r)| q - r).collect(),
         }
     };
     let mut range = reduced.range();
