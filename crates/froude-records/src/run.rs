@@ -41,7 +41,10 @@ mod sync;
 pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
-pub use meta::{Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus};
+pub use meta::{
+    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, FREE_DECAY, Mounted, Role,
+    RunMeta, RunStatus, TOW,
+};
 pub use reader::{Block, RunReader, read_run};
 pub use recorder::{Packing, Recorder};
 pub use seal::{CampaignMark, Doubt, DoubtKind, Pair, check_names, check_pair};

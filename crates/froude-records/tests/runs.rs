@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use common::{RATE_HZ, START_NS, layout, meta, row};
 use froude_records::hash::fingerprint_of_file;
 use froude_records::run::{
-    Block, CampaignMark, DoubtKind, EventKind, GapCause, Packing, Pair, Recorder, RunLog, RunMeta, RunReader,
-    RunStatus, check_pair, parse_run_meta, read_run, read_run_meta, run_meta_text, write_run_meta,
+    Axis, Block, BodyState, CampaignMark, CarriageFacts, Direction, DoubtKind, EventKind, GapCause, Mounted, Packing,
+    Pair, Recorder, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, check_pair, parse_run_meta, read_run,
+    read_run_meta, run_meta_text, write_run_meta,
 };
 use froude_records::units::Dimension;
 
@@ -85,18 +86,78 @@ fn a_sidecar_is_for_people_and_reads_back() {
     let meta = meta("0007-wet");
     let text = run_meta_text(&meta);
     assert!(text.contains("target_speed = \"0.55 m/s\"\n"), "{text}");
-    assert!(text.contains("[rig.y]\ntorque_constant.value = \"0.0267 N m/A\"\n"), "{text}");
+    assert!(text.contains("[carriage.rig.y]\ntorque_constant.value = \"0.0267 N m/A\"\n"), "{text}");
     assert_eq!(parse_run_meta(Path::new("0007-wet.toml"), &text).unwrap(), meta);
 }
 
 #[test]
 fn a_misspelt_key_of_a_sidecar_is_told_with_its_line() {
-    let text = "schema = 1\nid = \"a\"\nkind = \"wet\"\nstatus = \"complete\"\ntarget_sped = \"0.5 m/s\"\n";
-    let error = parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
-    assert_eq!(error, "a.toml:5:1: unknown key `target_sped` in the file; did you mean `target_speed`?");
-    let text = "schema = 1\nid = \"a\"\nkind = \"wett\"\nstatus = \"complete\"\n";
-    let error = parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
-    assert_eq!(error, "a.toml:3:8: `kind` is \"wett\"; did you mean `wet`?");
+    let error = |text: &str| parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
+    let old = "schema = 1\nid = \"a\"\nkind = \"wet\"\nstatus = \"complete\"\n";
+    assert_eq!(
+        error(&(old.to_owned() + "target_sped = \"0.5 m/s\"\n")),
+        "a.toml:5:1: unknown key `target_sped` in the file; did you mean `target_speed`?"
+    );
+    assert_eq!(error(&old.replace("wet", "wett")), "a.toml:3:8: `kind` is \"wett\"; did you mean `wet`?");
+    let text = error(&(old.to_owned() + "travel = \"x\"\n"));
+    assert!(text.starts_with("a.toml:5:1: unknown key `travel` in the file; known: axis, "), "{text}");
+    let new = "schema = 2\nid = \"a\"\nmethod = \"tow\"\nrole = \"wet\"\nstatus = \"complete\"\n";
+    assert_eq!(error(&new.replace("wet", "wett")), "a.toml:4:8: `role` is \"wett\"; did you mean `wet`?");
+    assert_eq!(error(&new.replace("wet", "decoy")), "a.toml:4:8: `role` is \"decoy\"; did you mean `decay`?");
+    assert_eq!(
+        error(&(new.to_owned() + "[mounted]\nbody = \"wet\"\ntravel = \"up\"\n")),
+        "a.toml:8:10: `travel` is \"up\"; known: x, y, z"
+    );
+    let text = error(&(new.to_owned() + "body = \"wet\"\n"));
+    assert!(text.starts_with("a.toml:6:1: unknown key `body` in the file; known: campaign, "), "{text}");
+    assert_eq!(
+        error(&new.replace("schema = 2", "schema = 3")),
+        "a.toml:1:10: this is run schema 3; this program reads up to run schema 2: use a newer Froude"
+    );
+    // A method that this version does not know is kept: whoever cannot use the run says so.
+    let own = parse_run_meta(Path::new("a.toml"), &new.replace("tow", "planar_motion")).unwrap();
+    assert_eq!((own.method.as_str(), own.role), ("planar_motion", Role::Wet));
+    assert_eq!(parse_run_meta(Path::new("a.toml"), &run_meta_text(&own)).unwrap(), own);
+}
+
+/// Runs that the version before wrote: `tests/golden/runs-1`.
+#[test]
+fn runs_of_the_first_schema_are_read_as_what_the_newest_says_of_them() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/runs-1");
+    let facts = |set, pair, speed| CarriageFacts {
+        set,
+        pair,
+        repeat: pair,
+        axis: Axis::Y,
+        target_speed_m_s: speed,
+        direction: Some(Direction::Forward),
+        rig: [("y".to_owned(), meta("").carriage.rig["y"])].into_iter().collect(),
+        twin_seed: Some(7),
+    };
+    let bare = Mounted::default();
+    let hung = Mounted { body: BodyState::Dry, is_ballasted: true, hung_weight_n: Some(10.0), ..bare };
+    let wet = Mounted { body: BodyState::Wet, is_ballasted: true, ..bare };
+    let all = [
+        ("001-jog-forward", Role::Jog, bare, facts(None, None, None)),
+        ("005-calibration-10N-forward", Role::Calibration, hung, facts(None, None, Some(0.2))),
+        ("010-wet-p1-300mm_s-forward", Role::Wet, wet, facts(Some(2), Some(1), Some(0.3))),
+    ];
+    for (id, role, mounted, carriage) in all {
+        let path = folder.join(format!("{id}.mcap"));
+        let log = read_run(&path).unwrap();
+        assert_eq!((log.doubts.len(), log.lost.len()), (0, 0), "{:?} {:?}", log.doubts, log.lost);
+        assert_eq!((log.meta.method.as_str(), log.meta.role), (TOW, role));
+        // Which axis of the body lay along the travel, nobody wrote: none is guessed.
+        assert_eq!((&log.meta.mounted, &log.meta.carriage), (&mounted, &carriage));
+        // Written again it is the newest form, and says the same.
+        let text = run_meta_text(&log.meta);
+        assert!(text.contains("schema = 2\n") && text.contains("method = \"tow\"\n"), "{text}");
+        let sidecar = read_run_meta(&path.with_extension("toml")).unwrap();
+        assert_eq!(parse_run_meta(&path, &run_meta_text(&sidecar)).unwrap(), sidecar);
+        // The log alone says it too, but for its own hash.
+        let alone = RunReader::new(&path, std::io::Cursor::new(std::fs::read(&path).unwrap()), None).unwrap();
+        assert_eq!(alone.read_all().unwrap().meta, RunMeta { log: None, ..log.meta });
+    }
 }
 
 #[test]

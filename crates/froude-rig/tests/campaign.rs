@@ -8,7 +8,7 @@ use froude_control::request::Request;
 use froude_control::status::Phase;
 use froude_records::Place;
 use froude_records::carriage::{Calibration, CarriagePlan, Directions, Order, PulseTrain};
-use froude_records::run::{Axis, RunKind, RunStatus, read_run};
+use froude_records::run::{Axis, Role, RunStatus, read_run};
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
@@ -98,6 +98,7 @@ fn setting(folder: &Path) -> Setting {
         return_speed_m_s: 0.4,
         homing_s: [300.0; 2],
         is_shaped: true,
+        travel: None,
         constants: IndexMap::new(),
         load: Load::default(),
         twin_seed: Some(7),
@@ -180,7 +181,7 @@ fn the_first_press_stops_and_holds_and_the_campaign_goes_on_from_there() {
     // What was interrupted is kept beside the run that replaced it.
     assert!(folder.path().join(format!("{stopped}.interrupted-1.mcap")).exists());
     let log = read_run(&folder.path().join(format!("{stopped}.mcap"))).unwrap();
-    assert_eq!((log.meta.kind, log.meta.status), (RunKind::Dry, RunStatus::Complete));
+    assert_eq!((log.meta.role, log.meta.status), (Role::Dry, RunStatus::Complete));
 }
 
 #[test]

@@ -10,7 +10,7 @@ use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
-use froude_records::run::{Block, Doubt, DoubtKind, RunKind, RunMeta, RunReader, RunStatus, read_run, read_run_meta};
+use froude_records::run::{Block, Doubt, DoubtKind, Role, RunMeta, RunReader, RunStatus, read_run, read_run_meta};
 use froude_records::table::{ColumnData, Table, read_table};
 use froude_records::text::counted;
 
@@ -188,7 +188,7 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
     findings.extend(doubles(&members));
     findings.extend(strangers(&members)?);
     findings.extend(summed_up(&doubts));
-    findings.extend(complete.against_plan(path, &RunKind::ALL));
+    findings.extend(complete.against_plan(path, &Role::ALL));
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let each = |name: &dyn Fn(&RunMeta) -> String| {
         let mut counts: IndexMap<String, usize> = IndexMap::new();
@@ -202,7 +202,7 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
     let facts = vec![
         ("campaign".to_owned(), each(&|meta| format!("of {:?}", meta.campaign))),
         ("runs".to_owned(), each(&|meta| meta.status.name().to_owned()) + &aside),
-        ("kinds".to_owned(), each(&|meta| meta.kind.name().to_owned())),
+        ("kinds".to_owned(), each(&|meta| meta.role.name().to_owned())),
         (
             "next".to_owned(),
             format!("froude carriage drag {shown} reduces them together; froude inspect {} shows one", first.display()),
@@ -397,14 +397,17 @@ fn run(path: &Path) -> Result<Inspection, Error> {
     let mut facts: Vec<(String, String)> = Vec::new();
     let mut fact = |name: &str, value: String| facts.push((name.to_owned(), value));
     fact("run", format!("{} of campaign \"{}\"", meta.id, meta.campaign));
-    fact("kind", format!("{}, body {}, axis {}", meta.kind.name(), meta.body.name(), meta.axis.name()));
-    if let (Some(speed), Some(direction)) = (meta.target_speed_m_s, meta.direction) {
+    fact(
+        "kind",
+        format!("{}, body {}, axis {}", meta.role.name(), meta.mounted.body.name(), meta.carriage.axis.name()),
+    );
+    if let (Some(speed), Some(direction)) = (meta.carriage.target_speed_m_s, meta.carriage.direction) {
         fact("steady part", format!("{speed} m/s {}", direction.name()));
     }
-    if let Some(pair) = meta.pair {
+    if let Some(pair) = meta.carriage.pair {
         fact("pair", pair.to_string());
     }
-    if let Some(weight_n) = meta.hung_weight_n {
+    if let Some(weight_n) = meta.mounted.hung_weight_n {
         fact("weight over the pulley", format!("{weight_n} N"));
     }
     let note = if meta.note.is_empty() { String::new() } else { format!(": {}", meta.note) };

@@ -22,7 +22,7 @@ use crate::error::{Place, RecordError};
 use crate::estimate::Measured;
 use crate::finding::{Finding, Severity};
 use crate::run::log::{Channel, Gap, GapCause, RunLog};
-use crate::run::meta::{RunKind, RunMeta, RunStatus};
+use crate::run::meta::{Role, RunMeta, RunStatus};
 use crate::sidecar::{Sidecar, read_sidecar};
 use crate::table::{Column, ColumnData, Table, read_table};
 use crate::text::counted;
@@ -106,7 +106,7 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
     });
     let meta = RunMeta {
         id: table.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
-        kind: RunKind::Excitation,
+        role: Role::Excitation,
         status: RunStatus::Complete,
         constants: constants.collect(),
         log_rate_hz: 1.0 / steps.median_s,

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use froude_hydro::fluid::Water;
 use froude_identify::carriage::run as drag;
 use froude_records::RecordError;
-use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::campaign::{BodyAxis, Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
-    BodyState, Direction, DoubtKind, RunKind, RunLog, RunMeta, RunReader, RunStatus, read_run_meta,
+    BodyState, Direction, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, read_run_meta,
 };
 use froude_records::units::Dimension;
 
@@ -31,6 +31,8 @@ pub struct Runs {
     pub findings: Vec<Finding>,
     /// The campaign that lies with them.
     pub campaign: Option<Campaign>,
+    /// The axis of the body along the travel, as the runs declare it or else their campaign; `None` where neither does.
+    pub travel: Option<BodyAxis>,
     /// How many runs of the same kinds lie beside single runs that were named, and were not named; 0 where whole folders were read.
     pub beside: usize,
     /// What was named, as results are called after it.
@@ -70,7 +72,7 @@ impl Runs {
 ///
 /// A path without runs, a run that cannot be read; a run that is there twice, of another campaign than the runs beside it, or
 /// whose log and sidecar were exchanged.
-pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Result<Runs, Error> {
+pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Result<Runs, Error> {
     let mut out = Runs { folder: first_folder(paths), ..Runs::default() };
     let (mut members, mut doubts) = (Vec::new(), Vec::new());
     let mut complete = Complete::default();
@@ -83,7 +85,7 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
                 Err(_) if !file.exists() => continue,
                 meta => meta?,
             };
-            if !kinds.contains(&meta.kind) {
+            if !roles.contains(&meta.role) {
                 if meta.status == RunStatus::Complete && file.exists() && !is_put_aside(file, &meta) {
                     complete.add(file, &meta);
                 }
@@ -113,7 +115,7 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
         let wanted: Vec<String> =
             reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
         let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
-        if !kinds.contains(&log.meta.kind) {
+        if !roles.contains(&log.meta.role) {
             if log.meta.status == RunStatus::Complete {
                 complete.add(file, &log.meta);
             }
@@ -155,11 +157,11 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     let singles: Vec<PathBuf> = files.iter().filter(|log| !paths.contains(&folder_of(log))).cloned().collect();
     // A calibration from another folder, beside whole folders of runs, is no part of a campaign: it is asked for its newtons a volt alone.
     let is_borrowed = |log: &PathBuf| {
-        let kind = out.logs.iter().find(|known| &known.path == log).map(|known| known.meta.kind);
-        kind == Some(RunKind::Calibration) && paths.iter().any(|path| path.is_dir())
+        let role = out.logs.iter().find(|known| &known.path == log).map(|known| known.meta.role);
+        role == Some(Role::Calibration) && paths.iter().any(|path| path.is_dir())
     };
     let parts: Vec<PathBuf> = singles.iter().filter(|log| !is_borrowed(log)).cloned().collect();
-    out.beside = beside(&parts, kinds)?.len();
+    out.beside = beside(&parts, roles)?.len();
     let mut folders: Vec<PathBuf> = paths.iter().filter(|path| path.is_dir()).cloned().collect();
     if out.beside == 0 {
         // All that lies there was named, one by one.
@@ -167,7 +169,7 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     }
     for folder in &folders {
         // That a campaign stopped early is said by whoever pays for it.
-        let lacking = complete.against_plan(folder, kinds).filter(|finding| finding.severity > Severity::Note);
+        let lacking = complete.against_plan(folder, roles).filter(|finding| finding.severity > Severity::Note);
         out.findings.extend(lacking);
     }
     out.named = match folders.as_slice() {
@@ -181,8 +183,9 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     let copy = out.folder.join(CAMPAIGN_COPY);
     let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
     out.campaign = path.as_deref().map(read_campaign).transpose()?;
+    out.travel = attitude(&out.logs, path.as_deref().zip(out.campaign.as_ref()))?;
     if out.logs.is_empty() {
-        let names: Vec<&str> = kinds.iter().map(|k| k.name()).collect();
+        let names: Vec<&str> = roles.iter().map(|k| k.name()).collect();
         let left = match out.findings.first() {
             Some(first) => format!("; left out: {}", first.message),
             None => String::new(),
@@ -194,6 +197,28 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
         )));
     }
     Ok(out)
+}
+
+/// The axis of the body along the travel, on which the runs and their campaign must agree as far as they declare it.
+fn attitude(logs: &[RunLog], campaign: Option<(&Path, &Campaign)>) -> Result<Option<BodyAxis>, Error> {
+    let of_run = |log: &RunLog| {
+        let sidecar = log.path.with_extension("toml");
+        Some((if sidecar.exists() { sidecar } else { log.path.clone() }, "mounted", log.meta.mounted.travel?))
+    };
+    let of_campaign = |(path, campaign): (&Path, &Campaign)| {
+        Some((path.to_owned(), "body", campaign.body.as_ref().and_then(|body| body.travel)?))
+    };
+    let mut declared = logs.iter().filter_map(of_run).chain(campaign.and_then(of_campaign));
+    let Some((first, section, axis)) = declared.next() else { return Ok(None) };
+    let Some((path, own_section, other)) = declared.find(|(.., other)| *other != axis) else { return Ok(Some(axis)) };
+    Err(Error::Nothing(format!(
+        "{}: `travel` in [{own_section}] is {:?}; expected {:?}, as [{section}] of {} declares: a body lies one way along its travel. Correct \
+         the one that is wrong, or reduce the runs of each attitude by themselves",
+        path.display(),
+        other.name(),
+        axis.name(),
+        first.display()
+    )))
 }
 
 /// What made room for another drive of the same run.
@@ -323,14 +348,16 @@ pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&
 /// A channel that is missing or of another dimension.
 pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, Error> {
     let meta = &log.meta;
-    let kind = match meta.kind {
-        RunKind::Dry | RunKind::Wet => drag::RunKind::Tow,
-        RunKind::Friction => drag::RunKind::Friction,
-        RunKind::Calibration => drag::RunKind::Calibration,
+    let kind = match meta.role {
+        Role::Dry | Role::Wet => drag::RunKind::Tow,
+        Role::Friction => drag::RunKind::Friction,
+        Role::Calibration => drag::RunKind::Calibration,
         _ => return Ok(None),
     };
-    let (Some(target_speed_m_s), Some(direction)) = (meta.target_speed_m_s, meta.direction) else { return Ok(None) };
-    let axis = meta.axis.name();
+    let (Some(target_speed_m_s), Some(direction)) = (meta.carriage.target_speed_m_s, meta.carriage.direction) else {
+        return Ok(None);
+    };
+    let axis = meta.carriage.axis.name();
     let column = |name: &str, dimension| column(log, &format!("{axis}/{name}"), dimension);
     let force_n = if log.channels.contains_key("force") && axis == "y" {
         Some(self::column(log, "force", Dimension::FORCE)?)
@@ -345,16 +372,16 @@ pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, Error> {
         command_v: column("command", Dimension::VOLTAGE)?,
         force_n,
         kind,
-        body: match meta.body {
+        body: match meta.mounted.body {
             BodyState::None => drag::BodyState::None,
             BodyState::Dry => drag::BodyState::Dry,
             BodyState::Wet => drag::BodyState::Wet,
         },
         target_speed_m_s,
         direction: direction.sign(),
-        pair: meta.pair.unwrap_or(0),
-        is_ballasted: meta.is_ballasted,
-        hung_weight_n: meta.hung_weight_n,
+        pair: meta.carriage.pair.unwrap_or(0),
+        is_ballasted: meta.mounted.is_ballasted,
+        hung_weight_n: meta.mounted.hung_weight_n,
     }))
 }
 
@@ -386,8 +413,8 @@ pub fn mounted(mounts: &[BodyState]) -> String {
 pub(super) fn mounts<'a>(logs: impl IntoIterator<Item = &'a RunLog>) -> Vec<BodyState> {
     let mut out: Vec<BodyState> = Vec::new();
     for log in logs {
-        if !out.contains(&log.meta.body) {
-            out.push(log.meta.body);
+        if !out.contains(&log.meta.mounted.body) {
+            out.push(log.meta.mounted.body);
         }
     }
     out
