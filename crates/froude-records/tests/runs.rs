@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use common::{RATE_HZ, START_NS, layout, meta, row};
 use froude_records::hash::fingerprint_of_file;
 use froude_records::run::{
-    Axis, Block, BodyState, CampaignMark, CarriageFacts, Direction, DoubtKind, EventKind, GapCause, Mounted, Packing,
-    Pair, Recorder, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, check_pair, parse_run_meta, read_run,
-    read_run_meta, run_meta_text, write_run_meta,
+    Axis, Block, BodyState, CampaignMark, CarriageFacts, Direction, DoubtKind, EventKind, Frame, GapCause, Meaning,
+    Mounted, Packing, Pair, Recorder, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, check_pair, parse_run_meta,
+    read_run, read_run_meta, run_meta_text, write_run_meta,
 };
 use froude_records::units::Dimension;
 
@@ -47,7 +47,8 @@ fn a_run_reads_back_to_the_bits_that_were_recorded_in_every_packing() {
         assert_eq!((log.lost.len(), log.doubts.len()), (0, 0), "{:?} {:?}", log.lost, log.doubts);
         // The sidecar knows every byte of the log: the hash that was taken while it was written is that of the file.
         let fingerprint = Some(fingerprint_of_file(&path).unwrap());
-        let expected = RunMeta { status: RunStatus::Complete, log: fingerprint, ..meta(id) };
+        let channels = log.channels.iter().map(|(name, c)| (name.clone(), c.meaning.clone())).collect();
+        let expected = RunMeta { status: RunStatus::Complete, log: fingerprint, channels, ..meta(id) };
         assert_eq!(log.meta, expected);
         assert_eq!(log.sample_rate_hz().unwrap().round(), RATE_HZ);
         assert!((log.duration_s() - 8999.0 / RATE_HZ).abs() < 1e-9);
@@ -88,6 +89,84 @@ fn a_sidecar_is_for_people_and_reads_back() {
     assert!(text.contains("target_speed = \"0.55 m/s\"\n"), "{text}");
     assert!(text.contains("[carriage.rig.y]\ntorque_constant.value = \"0.0267 N m/A\"\n"), "{text}");
     assert_eq!(parse_run_meta(Path::new("0007-wet.toml"), &text).unwrap(), meta);
+}
+
+fn means(quantity: &str, unit: &str, frame: Frame, sign: i8) -> Meaning {
+    Meaning { quantity: quantity.to_owned(), unit: unit.to_owned(), frame, sign, clock: "board".to_owned() }
+}
+
+#[test]
+fn every_channel_says_quantity_unit_frame_sign_and_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = read_run(&recorded(folder.path(), "run", 0..10, Packing::Lz4)).unwrap();
+    let expected = [
+        ("force", means("force", "N", Frame::Y, -1)),
+        ("y/position", means("position", "m", Frame::Y, 1)),
+        ("x/reference_velocity", means("velocity", "m/s", Frame::X, 1)),
+        ("y/command", means("voltage", "V", Frame::Y, 1)),
+        ("x/current", means("current", "A", Frame::X, 1)),
+        ("y/encoder", means("count", "1", Frame::Sensor, 1)),
+        ("y/state", means("code", "1", Frame::None, 1)),
+        ("truth/y/load_position", means("position", "m", Frame::Y, 1)),
+        ("truth/y/drag", means("force", "N", Frame::Y, -1)),
+    ];
+    for (name, meaning) in expected {
+        assert_eq!((&log.channels[name].meaning, &log.meta.channels[name]), (&meaning, &meaning), "{name}");
+    }
+    let sidecar = std::fs::read_to_string(folder.path().join("run.toml")).unwrap();
+    let line = "\nforce = { quantity = \"force\", unit = \"N\", frame = \"y\", sign = -1, clock = \"board\" }\n";
+    assert!(sidecar.contains("\n[channels]\n\"y/encoder\" = {") && sidecar.contains(line), "{sidecar}");
+}
+
+#[test]
+fn a_unit_or_a_sign_that_the_log_does_not_have_is_refused_with_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), "run", 0..10, Packing::Lz4);
+    let sidecar = path.with_extension("toml");
+    let text = std::fs::read_to_string(&sidecar).unwrap();
+    let is_kept = |line: &&str| !line.starts_with("checksum");
+    let text: String = text.lines().filter(is_kept).map(|line| line.to_owned() + "\n").collect();
+    let at = |key: &str| 1 + text.lines().position(|line| line.starts_with(key)).unwrap();
+    let error = |from: &str, to: &str| {
+        assert!(text.contains(from), "{text}");
+        std::fs::write(&sidecar, text.replace(from, to)).unwrap();
+        read_run(&path).unwrap_err().to_string()
+    };
+    let (log, toml) = (path.display(), sidecar.display());
+    assert_eq!(
+        error("quantity = \"force\", unit = \"N\", frame = \"y\", sign = -1, clock", "unit = \"kN\", clock"),
+        format!("{toml}: `channels.\"force\".unit` is \"kN\"; expected \"N\", in which {log} was recorded")
+    );
+    let line = at("\"y/position\"");
+    let is_told = |error: String, problem: &str| {
+        assert!(error.starts_with(&format!("{toml}:{line}:")) && error.ends_with(problem), "{error}");
+    };
+    let position = "\"y/position\" = { quantity = \"position\", unit = \"m\", frame = \"y\", sign = 1";
+    is_told(
+        error(position, &position.replace("sign = 1", "sign = -1")),
+        &format!("`sign` is -1; expected 1: the name y/position says it"),
+    );
+    is_told(
+        error(position, &position.replace("\"m\"", "\"m/s\"")),
+        &format!("`unit` is \"m/s\"; expected a length (m), which y/position is"),
+    );
+    is_told(
+        error(position, &position.replace("= \"position\"", "= \"velocity\"")),
+        &format!("`quantity` is \"velocity\", a speed (m/s); expected a length (m), as its unit says"),
+    );
+    is_told(
+        error(position, &position.replace("frame = \"y\"", "frame = \"z\"")),
+        &format!("`frame` is \"z\"; did you mean `y` or `x`?"),
+    );
+    // Another word than the log's is an edit like any other: it is used, and said.
+    std::fs::write(
+        &sidecar,
+        text.replace(&format!("{position}, clock = \"board\""), &format!("{position}, clock = \"host\"")),
+    )
+    .unwrap();
+    let read = read_run(&path).unwrap();
+    assert_eq!(read.channels["y/position"].meaning.clock, "host");
+    assert_eq!(read.doubts[0].kind, DoubtKind::Edited);
 }
 
 #[test]
@@ -149,6 +228,10 @@ fn runs_of_the_first_schema_are_read_as_what_the_newest_says_of_them() {
         assert_eq!((log.meta.method.as_str(), log.meta.role), (TOW, role));
         // Which axis of the body lay along the travel, nobody wrote: none is guessed.
         assert_eq!((&log.meta.mounted, &log.meta.carriage), (&mounted, &carriage));
+        // What a channel is, its name tells.
+        assert_eq!(log.channels["force"].meaning, means("force", "N", Frame::Y, -1));
+        assert_eq!(log.meta.channels["truth/y/spring"], means("force", "N", Frame::Y, 1));
+        assert!(log.channels.iter().all(|(name, c)| log.meta.channels[name] == c.meaning));
         // Written again it is the newest form, and says the same.
         let text = run_meta_text(&log.meta);
         assert!(text.contains("schema = 2\n") && text.contains("method = \"tow\"\n"), "{text}");

@@ -5,6 +5,7 @@ use indexmap::IndexMap;
 use crate::campaign::BodyAxis;
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
+use crate::run::channel::Meaning;
 
 /// What a run is, on which rig, and how it ended.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -40,6 +41,8 @@ pub struct RunMeta {
     pub date: String,
     /// Host time of run time zero, ns since 1970; 0 where there is none. Log times in the file count from there.
     pub start_unix_ns: u64,
+    /// What its channels are, by name; of a log without a word of it, what their names tell, when the whole log has been read.
+    pub channels: IndexMap<String, Meaning>,
     /// Length and hash of the log, known when it has been finished; only a sidecar has it.
     pub log: Option<Fingerprint>,
 }

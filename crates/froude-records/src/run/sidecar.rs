@@ -15,6 +15,7 @@ use crate::checksum;
 use crate::error::{RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
+use crate::run::channel::Meaning;
 use crate::run::meta::{
     Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, Mounted, Role, RunMeta,
     RunStatus, TOW,
@@ -139,9 +140,12 @@ pub(crate) fn of_record(path: &Path, record: &BTreeMap<String, String>) -> Resul
     parse_run_meta(path, &text)
 }
 
-/// A value as TOML: bare, or as a text in quotes.
+/// A value as TOML: a table or bare as it is, or a text in quotes.
 fn written(key: &str, value: &str) -> String {
     let last = key.rsplit('.').next().unwrap_or(key);
+    if key.starts_with("channels.") {
+        return value.to_owned();
+    }
     let is_named_freely = ["versions.", "constants."].iter().any(|section| key.starts_with(section));
     if BARE.contains(&last) && !is_named_freely { value.to_owned() } else { quoted(value) }
 }
@@ -226,6 +230,13 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
         put("counts_per_revolution", format!("{} 1", constants.counts_per_revolution));
         put("efficiency_is_calibrated", constants.is_calibrated.to_string());
     }
+    for (name, Meaning { quantity, unit, frame, sign, clock }) in &meta.channels {
+        let [quantity, unit, frame, clock] = [quantity, unit, frame.name(), clock].map(quoted);
+        put(
+            &format!("channels.{}", key_word(name)),
+            format!("{{ quantity = {quantity}, unit = {unit}, frame = {frame}, sign = {sign}, clock = {clock} }}"),
+        );
+    }
     if let Some(log) = &meta.log {
         put("log.bytes", log.bytes.to_string());
         put("log.sha256", log.sha256.clone());
@@ -274,7 +285,7 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         s.only(&[&ALWAYS[..], &["kind"], &MOUNTED, &CARRIAGE].concat())?;
         (TOW.to_owned(), role("kind")?, mounted(s)?, carriage(s)?)
     } else {
-        s.only(&[&ALWAYS[..], &["method", "role", "mounted", "carriage"]].concat())?;
+        s.only(&[&ALWAYS[..], &["method", "role", "mounted", "carriage", "channels"]].concat())?;
         let method = s.text("method")?.ok_or_else(|| {
             s.missing("method", "say what sort of experiment it belongs to: \"tow\", \"free_decay\", …")
         })?;
@@ -306,6 +317,11 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         start_unix_ns: s.integer("start_unix_ns")?.unwrap_or(0),
         ..RunMeta::default()
     };
+    if let Some(channels) = s.section("channels")? {
+        for (name, _, value) in channels.entries() {
+            out.channels.insert(name.to_owned(), Meaning::read(&channels.as_section(name, value)?, name)?);
+        }
+    }
     if let Some(log) = s.section("log")? {
         log.only(&["bytes", "sha256"])?;
         let lacks =

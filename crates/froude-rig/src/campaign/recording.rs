@@ -76,6 +76,7 @@ impl<'a> Recording<'a> {
             log_rate_hz: rate_hz,
             date: setting.date.clone(),
             start_unix_ns: setting.start_unix_ns,
+            channels: IndexMap::new(),
             log: None,
         };
         let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };

@@ -4,18 +4,22 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use froude_hydro::fluid::Water;
+use froude_identify::carriage::coefficient::Method as CarriageMethod;
 use froude_identify::carriage::run as drag;
+use froude_identify::decay::Method as DecayMethod;
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
-    BodyState, Direction, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, read_run_meta,
+    BodyState, Direction, DoubtKind, FREE_DECAY, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
 };
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
 use super::whole::{Complete, beside, folder_of};
 use crate::Error;
+use crate::decay::logs_in;
 
 /// Name of the campaign's copy in a folder of runs.
 pub const CAMPAIGN_COPY: &str = "campaign.toml";
@@ -33,7 +37,7 @@ pub struct Runs {
     pub campaign: Option<Campaign>,
     /// The axis of the body along the travel, as the runs declare it or else their campaign; `None` where neither does.
     pub travel: Option<BodyAxis>,
-    /// How many runs of the same kinds lie beside single runs that were named, and were not named; 0 where whole folders were read.
+    /// How many runs of the same roles lie beside single runs that were named, and were not named; 0 where whole folders were read.
     pub beside: usize,
     /// What was named, as results are called after it.
     named: Named,
@@ -64,7 +68,7 @@ impl Runs {
     }
 }
 
-/// Reads the complete runs of these kinds below `paths` (folders, or single runs by their log or their sidecar). Truths of a twin are not read.
+/// Reads the complete tows of these roles below `paths` (folders, or single runs by their log or their sidecar). Truths of a twin are not read.
 ///
 /// A log that is damaged, cut off or gone is left out with a finding, and so is said what a folder lacks of its campaign.
 ///
@@ -74,7 +78,7 @@ impl Runs {
 /// whose log and sidecar were exchanged.
 pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Result<Runs, Error> {
     let mut out = Runs { folder: first_folder(paths), ..Runs::default() };
-    let (mut members, mut doubts) = (Vec::new(), Vec::new());
+    let (mut members, mut doubts, mut others) = (Vec::new(), Vec::new(), Vec::new());
     let mut complete = Complete::default();
     let files = files(paths)?;
     for file in &files {
@@ -85,6 +89,10 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
                 Err(_) if !file.exists() => continue,
                 meta => meta?,
             };
+            if meta.method != TOW {
+                others.push(meta);
+                continue;
+            }
             if !roles.contains(&meta.role) {
                 if meta.status == RunStatus::Complete && file.exists() && !is_put_aside(file, &meta) {
                     complete.add(file, &meta);
@@ -115,6 +123,10 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
         let wanted: Vec<String> =
             reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
         let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
+        if log.meta.method != TOW {
+            others.push(log.meta);
+            continue;
+        }
         if !roles.contains(&log.meta.role) {
             if log.meta.status == RunStatus::Complete {
                 complete.add(file, &log.meta);
@@ -183,30 +195,95 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
     let copy = out.folder.join(CAMPAIGN_COPY);
     let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
     out.campaign = path.as_deref().map(read_campaign).transpose()?;
-    out.travel = attitude(&out.logs, path.as_deref().zip(out.campaign.as_ref()))?;
+    out.travel = attitude(&out.logs, out.campaign.as_ref())?;
     if out.logs.is_empty() {
+        refuse_others(&out.folder, TOW, &others)?;
         let names: Vec<&str> = roles.iter().map(|k| k.name()).collect();
         let left = match out.findings.first() {
             Some(first) => format!("; left out: {}", first.message),
             None => String::new(),
         };
         return Err(Error::Nothing(format!(
-            "{}: no complete run of the kinds {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
+            "{}: no complete run of the roles {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
             out.folder.display(),
             names.join(", ")
         )));
     }
+    if let Some(first) = others.first() {
+        let text = format!(
+            "{} not of the method {TOW} and left out (the first is {}, of {})",
+            counted(others.len(), "run is", "runs are"),
+            first.id,
+            of_method(first)
+        );
+        out.findings.push(Finding::new(Severity::Note, "run-of-another-method", text));
+    }
     Ok(out)
 }
 
+/// The method that a run says it belongs to, in words.
+pub(crate) fn of_method(meta: &RunMeta) -> String {
+    if meta.method.is_empty() { "no method that it states".to_owned() } else { format!("the method {}", meta.method) }
+}
+
+/// What every run in a folder says of itself, as far as it can be read.
+pub(crate) fn recorded_in(folder: &Path) -> Result<Vec<RunMeta>, Error> {
+    let read = |log: PathBuf| {
+        read_run_meta(&log.with_extension("toml"))
+            .ok()
+            .or_else(|| Some(RunReader::open(&log).ok()?.read_all().ok()?.meta))
+    };
+    Ok(files(&[folder.to_owned()])?.into_iter().filter_map(read).collect())
+}
+
+/// Refuses a folder without runs of the method that is read (`wanted`) and with others.
+///
+/// # Errors
+///
+/// Runs of another method, or logs of another program where tows are read: which, and what reads them.
+pub(crate) fn refuse_others(folder: &Path, wanted: &str, found: &[RunMeta]) -> Result<(), Error> {
+    let decays = || DecayMethod::ALL.map(DecayMethod::name).to_vec();
+    let found: Vec<&RunMeta> = found.iter().filter(|meta| meta.method != wanted).collect();
+    let (what, readers) = match found.first() {
+        Some(first) => {
+            let roles: BTreeSet<&str> = found.iter().map(|meta| meta.role.name()).collect();
+            let roles = roles.into_iter().collect::<Vec<_>>().join(", ");
+            let readers = match first.method.as_str() {
+                TOW => CarriageMethod::ALL.map(CarriageMethod::name).to_vec(),
+                FREE_DECAY => decays(),
+                _ => Vec::new(),
+            };
+            let runs = counted(found.len(), "run there is", "runs there are");
+            (format!("{runs} of {} (role {roles})", of_method(first)), readers)
+        }
+        None if wanted == TOW && folder.is_dir() => match logs_in(folder)?.len() {
+            0 => return Ok(()),
+            n => (
+                format!("{} of other programs, as releases are", counted(n, "log there is", "logs there are")),
+                decays(),
+            ),
+        },
+        None => return Ok(()),
+    };
+    let instead = match readers.as_slice() {
+        [] => "no method of this version reads those".to_owned(),
+        _ => format!("a [[source]] with method = {readers:?} reads those"),
+    };
+    Err(Error::Nothing(format!(
+        "{}: {what}, and runs of the method {wanted} are read here: {instead}; else name a folder with runs of {wanted}",
+        folder.display()
+    )))
+}
+
 /// The axis of the body along the travel, on which the runs and their campaign must agree as far as they declare it.
-fn attitude(logs: &[RunLog], campaign: Option<(&Path, &Campaign)>) -> Result<Option<BodyAxis>, Error> {
+fn attitude(logs: &[RunLog], campaign: Option<&Campaign>) -> Result<Option<BodyAxis>, Error> {
     let of_run = |log: &RunLog| {
         let sidecar = log.path.with_extension("toml");
         Some((if sidecar.exists() { sidecar } else { log.path.clone() }, "mounted", log.meta.mounted.travel?))
     };
-    let of_campaign = |(path, campaign): (&Path, &Campaign)| {
-        Some((path.to_owned(), "body", campaign.body.as_ref().and_then(|body| body.travel)?))
+    let of_campaign = |campaign: &Campaign| {
+        let travel = campaign.body.as_ref().and_then(|body| body.travel)?;
+        Some((campaign.path.clone(), "body", travel))
     };
     let mut declared = logs.iter().filter_map(of_run).chain(campaign.and_then(of_campaign));
     let Some((first, section, axis)) = declared.next() else { return Ok(None) };
@@ -428,7 +505,39 @@ pub fn way(direction: Option<Direction>) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use froude_records::campaign::BodySpec;
+    use froude_records::run::Mounted;
+
     use super::*;
+
+    #[test]
+    fn the_attitude_is_that_of_the_runs_or_else_of_the_campaign_and_one_for_all() {
+        let log = |path: &str, travel| {
+            let mounted = Mounted { travel, ..Mounted::default() };
+            RunLog { path: path.into(), meta: RunMeta { mounted, ..RunMeta::default() }, ..RunLog::default() }
+        };
+        let campaign = |travel| {
+            let body = Some(BodySpec { travel, ..BodySpec::default() });
+            Campaign { body, ..Campaign::of_table(Path::new("campaign.toml"), None) }
+        };
+        let (x, y) = (Some(BodyAxis::X), Some(BodyAxis::Y));
+        let of = |runs: [Option<BodyAxis>; 2], declared| {
+            let logs = [log("045-wet.mcap", runs[0]), log("046-wet.mcap", runs[1])];
+            attitude(&logs, Some(&campaign(declared))).map_err(|error| error.to_string())
+        };
+        assert_eq!(of([None, None], None), Ok(None));
+        assert_eq!(of([None, None], y), Ok(y));
+        assert_eq!(of([None, x], None), Ok(x));
+        assert_eq!(of([x, x], x), Ok(x));
+        let told = |file: &str, section: &str| {
+            Err(format!(
+                "{file}: `travel` in [{section}] is \"y\"; expected \"x\", as [mounted] of 045-wet.mcap declares: a body lies one way along \
+                 its travel. Correct the one that is wrong, or reduce the runs of each attitude by themselves"
+            ))
+        };
+        assert_eq!(of([x, y], None), told("046-wet.mcap", "mounted"));
+        assert_eq!(of([x, None], y), told("campaign.toml", "body"));
+    }
 
     #[test]
     fn a_run_that_was_never_closed_says_what_became_of_it() {
