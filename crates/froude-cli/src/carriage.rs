@@ -12,7 +12,7 @@ use froude::carriage::{calibrate, runs};
 use froude::fit::budget::Uncertain;
 use froude::identify::carriage::calibration::{Jog, encoder_scale};
 use froude::pipeline::{Input, Job};
-use froude::records::run::RunKind;
+use froude::records::run::Role;
 use froude::records::text::counted;
 use froude::records::units::{Dimension, parse_quantity};
 use froude::report::document::TextTable;
@@ -79,9 +79,9 @@ fn preflight(prepared: &Prepared) {
         let pairs = f.drag_n.filter(|d| *d > 0.0);
         let pairs = pairs.map_or_else(|| "–".to_owned(), |d| format!("{:.0}", pairs_to_see(detectable_n, d)));
         let cells = vec![
-            match run.kind {
-                RunKind::Calibration => format!("{} {} N", run.kind.name(), run.hung_weight_n),
-                _ => run.kind.name().to_owned(),
+            match run.role {
+                Role::Calibration => format!("{} {} N", run.role.name(), run.hung_weight_n),
+                _ => run.role.name().to_owned(),
             },
             run.speed_m_s().map_or_else(|| "–".to_owned(), |v| format!("{v:.3}")),
             runs::way(run.direction()).to_owned(),
@@ -379,7 +379,7 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     let known = Uncertain::new(length("--measured", measured)?, length("--measured-standard", standard)?);
     let counted_m = counted.iter().map(|text| length("--counted", text)).collect::<Result<Vec<_>, _>>()?;
     let factor = encoder_scale(&counted_m, known)?;
-    let kinds = [RunKind::Calibration, RunKind::Jog];
+    let kinds = [Role::Calibration, Role::Jog];
     let read = runs::read(paths, &kinds, None)?;
     let Some(axis) = read.logs.iter().find_map(|log| log.meta.moving_axis()) else {
         return Err(Error::Nothing("the runs do not say what rig they come from".to_owned()));

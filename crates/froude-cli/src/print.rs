@@ -3,7 +3,7 @@
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::Error;
 use froude::identify::source::SourceResult;
-use froude::inspect::{ColumnFacts, Inspection, SourceFacts};
+use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::{Outcome, Summary};
 use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
@@ -202,11 +202,22 @@ pub fn inspection(i: &Inspection) {
 }
 
 fn columns(columns: &[ColumnFacts]) -> Table {
-    let mut out = table(&["column", "unit", "from", "to", "distinct"]);
+    let is_run = columns.iter().any(|c| c.channel.is_some());
+    let of_run: &[&str] = if is_run { &["quantity", "along", "clock"] } else { &[] };
+    let mut out = table(&[&["column", "unit", "from", "to", "distinct"], of_run].concat());
     for c in columns {
         let show = |x: Option<f64>| right(x.map_or(String::new(), |x| number::plain(x, 7)));
         let unit = if c.unit.is_empty() { "text" } else { &c.unit };
-        out.add_row(vec![cell(&c.name), cell(unit), show(c.low), show(c.high), right(c.distinct.to_string())]);
+        let mut row = vec![cell(&c.name), cell(unit), show(c.low), show(c.high), right(c.distinct.to_string())];
+        if let Some(ChannelFacts { quantity, frame, sign, clock }) = &c.channel {
+            let along = if frame == "none" {
+                "–".to_owned()
+            } else {
+                format!("{}{frame}", if *sign < 0 { "−" } else { "+" })
+            };
+            row.extend([cell(quantity), cell(along), cell(clock)]);
+        }
+        out.add_row(row);
     }
     out
 }

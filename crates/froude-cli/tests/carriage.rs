@@ -42,6 +42,16 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     let columns = inside["columns"].as_array().unwrap();
     let position = columns.iter().find(|c| c["name"] == "y/position").unwrap();
     assert_eq!(position["unit"], "m");
+    let of_channel = |c: &Value| ["quantity", "frame", "sign", "clock"].map(|key| c[key].clone());
+    assert_eq!(of_channel(position), ["position".into(), "y".into(), 1.into(), "board".into()] as [Value; 4]);
+    let force = columns.iter().find(|c| c["name"] == "force").unwrap();
+    assert_eq!(of_channel(force), ["force".into(), "y".into(), (-1).into(), "board".into()] as [Value; 4]);
+    let fact = |name: &str| {
+        let facts = inside["facts"].as_array().unwrap();
+        facts.iter().find(|f| f[0] == name).unwrap()[1].as_str().unwrap().to_owned()
+    };
+    assert_eq!(fact("method"), "tow, role wet");
+    assert_eq!(fact("mounted"), "body wet, ballasted, which axis lies along the travel is not declared");
     assert!(position["high"].as_f64().unwrap() - position["low"].as_f64().unwrap() > 2.1, "{position}");
     assert!(inside["facts"].to_string().contains("the motion begins"), "{inside}");
 
@@ -450,6 +460,31 @@ fn a_comparison_of_nothing_says_so() {
     let compared = json(&["compare", text(&path("a-results/estimate.json")), "--json"]);
     let told = findings_of(&compared, "nothing-compared");
     assert!(told.len() == 1 && told[0].1.contains("a.csv/quadratic (quadratic; f_x)"), "{compared}");
+}
+
+/// Which axis of the body lies along the travel, the runs carry from the campaign that drove them, and nothing may say another.
+#[test]
+fn the_attitude_goes_with_the_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut changes = bench::SHORT.to_vec();
+    changes.push(("[body]\n", "[body]\ntravel = \"y\"\n"));
+    json(&["run", text(&campaign(folder.path(), &changes)), "--yes", "--json"]);
+    let runs = folder.path().join("campaign-runs");
+    let copy = runs.join("campaign.toml");
+    let declared = std::fs::read_to_string(&copy).unwrap();
+    let of_drag = |record: &Value| record["estimates"][0]["attitude"]["travel"].clone();
+    assert_eq!(of_drag(&json(&["carriage", "drag", text(&runs), "--json"])), "y");
+    // A campaign that does not say it takes nothing away.
+    std::fs::write(&copy, declared.replace("travel = \"y\"\n", "")).unwrap();
+    let record = json(&["carriage", "drag", text(&runs), "--json"]);
+    assert_eq!(of_drag(&record), "y");
+    assert!(record["estimates"][0]["coefficients"]["D_y_II"].is_object(), "{record}");
+    std::fs::write(&copy, declared.replace("travel = \"y\"\n", "travel = \"x\"\n")).unwrap();
+    let said = bench::refusal(&["carriage", "drag", text(&runs)]);
+    assert!(
+        said.contains(&format!("{}: `travel` in [body] is \"x\"; expected \"y\", as [mounted] of ", copy.display())),
+        "{said}"
+    );
 }
 
 /// Runs beside a table in one campaign: a result for each method, set beside the table's; keys of tables are refused for runs.

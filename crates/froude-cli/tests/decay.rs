@@ -90,6 +90,21 @@ fn releases_of_a_body_on_springs_give_its_added_mass_and_damping() {
     assert!(inspected.to_string().contains("heave/decay_output_error"), "{inspected}");
 }
 
+/// A folder of releases is listed, one line a log.
+#[test]
+fn a_folder_of_releases_is_inspected() {
+    let folder = tempfile::tempdir().unwrap();
+    let runs = folder.path().join("releases");
+    releases(&runs, HEAVE, 2, "position [m]");
+    std::fs::write(runs.join("torn.csv"), "time [s],position [m]\n0,0.1\n").unwrap();
+    let inside = json(&["inspect", text(&runs), "--json"]);
+    assert_eq!(inside["kind"], "logs");
+    let facts = inside["facts"].as_array().unwrap();
+    let of = |name: &str| facts.iter().find(|f| f[0] == name).unwrap()[1].as_str().unwrap().to_owned();
+    assert_eq!(of("release-2.csv"), "726 samples at 50.0 Hz, 14.500 s: y/position [m]");
+    assert!(findings_of(&inside, "run-unreadable")[0].1.contains("torn.csv:2"), "{inside}");
+}
+
 /// A wrong declaration shows in A alone: C 2 % too large is 2 % of M + A.
 #[test]
 fn the_springs_are_the_scale_of_everything() {
@@ -139,6 +154,22 @@ fn what_is_missing_is_named() {
     assert!(said.contains("decay.toml:8") && said.contains("write [source.decay]"), "{said}");
     let said = told("\"mcd\"", DECLARED);
     assert!(said.contains("no method of the source is one of free decay"), "{said}");
+    // Logs of another method than the one asked for: what they are, and what reads them.
+    let said = told("\"mcd\"", "");
+    let instead = "3 logs there are of other programs, as releases are, and runs of the method tow are read here: a [[source]] with \
+                   method = [\"decay_envelope\", \"decay_output_error\"] reads those; else name a folder with runs of tow";
+    assert!(said.contains(&format!("{}: {instead}", runs.display())), "{said}");
+    let tows = Path::new(env!("CARGO_MANIFEST_DIR")).join("../froude-records/tests/golden/runs-1");
+    let away = folder.path().join("away");
+    std::fs::rename(&runs, &away).unwrap();
+    bench::copy(&tows, &runs);
+    let said = told("\"decay_envelope\"", DECLARED);
+    let instead = "3 runs there are of the method tow (role calibration, jog, wet), and runs of the method free_decay are read here: a \
+                   [[source]] with method = [\"fsm\", \"mcd\", \"mbdp_constant\", \"mbdp_mapped\", \"mbdp_flexible\"] reads those; else name \
+                   a folder with runs of free_decay";
+    assert!(said.contains(&format!("{}: {instead}", runs.display())), "{said}");
+    std::fs::remove_dir_all(&runs).unwrap();
+    std::fs::rename(&away, &runs).unwrap();
     let said = told("[\"decay_envelope\", \"mcd\"]", DECLARED);
     assert!(said.contains("read runs of two kinds; give each a [[source]] of its own"), "{said}");
     let said = told("\"decay_envelop\"", DECLARED);

@@ -1,6 +1,6 @@
-//! A run: one log of the carriage, channels over time with what they mean.
+//! A run: one log, channels over time with what they mean, of a method, in a role, with something mounted.
 //!
-//! **Setting.** One rig, one movement (or one still wait) of it, recorded tick by tick of the board's clock.
+//! **Setting.** One rig, one movement (or one still wait) of it, tick by tick of one clock.
 //! **Frame.** Axis `y` is along the tank, `x` across; positions on the chain, motor side. `force` is what the water
 //! exerts against +y motion: positive for a resistance when the carriage moves forward.
 //! **Units.** Every channel names its own; the columns of a run are SI.
@@ -10,6 +10,7 @@
 //! | a run in memory           | [`RunLog`]     |
 //! | what is known about it    | [`RunMeta`]; as text [`read_run_meta`], [`write_run_meta`] |
 //! | which columns, which topics | [`Layout`] |
+//! | what a column's numbers are | [`Meaning`] |
 //! | recording (MCAP)          | [`Recorder`]   |
 //! | reading, whole or streamed | [`read_run`], [`RunReader`] |
 //! | whether it lies as it was driven | [`check_pair`], [`Doubt`] |
@@ -27,6 +28,7 @@
 //! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-identify`'s.
 
 mod allowance;
+pub(crate) mod channel;
 mod file;
 mod import;
 mod layout;
@@ -38,10 +40,14 @@ mod seal;
 pub(crate) mod sidecar;
 mod sync;
 
+pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
-pub use meta::{Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus};
+pub use meta::{
+    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, FREE_DECAY, Mounted, Role,
+    RunMeta, RunStatus, TOW,
+};
 pub use reader::{Block, RunReader, read_run};
 pub use recorder::{Packing, Recorder};
 pub use seal::{CampaignMark, Doubt, DoubtKind, Pair, check_names, check_pair};

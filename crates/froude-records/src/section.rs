@@ -335,20 +335,26 @@ impl<'a> Section<'a> {
 
     /// Checks `schema = 1`.
     pub fn schema(&self, what: &str) -> Result<(), RecordError> {
-        let known = format!("{what} schema 1");
+        self.schema_up_to(what, 1).map(|_| ())
+    }
+
+    /// The schema, from 1 to the newest that is known.
+    pub fn schema_up_to(&self, what: &str, newest: u64) -> Result<u64, RecordError> {
         let place = || self.raw("schema").map_or_else(|| self.place(), |v| self.source.place(v.span().start));
         match self.integer("schema") {
-            Ok(Some(1)) => Ok(()),
-            Ok(Some(newer)) if newer > 1 => {
-                Err(RecordError::NewerSchema { place: place(), found: format!("{what} schema {newer}"), known })
-            }
+            Ok(Some(known)) if (1..=newest).contains(&known) => Ok(known),
+            Ok(Some(newer)) if newer > newest => Err(RecordError::NewerSchema {
+                place: place(),
+                found: format!("{what} schema {newer}"),
+                known: format!("{what} schema {newest}"),
+            }),
             Ok(Some(other)) => {
-                Err(RecordError::Schema { place: place(), found: other.to_string(), known: "1".to_owned() })
+                Err(RecordError::Schema { place: place(), found: other.to_string(), known: newest.to_string() })
             }
             Ok(None) => Err(self.misspelt("schema").unwrap_or_else(|| RecordError::Schema {
                 place: Place::line(self.source.path, 1),
                 found: "missing".to_owned(),
-                known: "schema = 1".to_owned(),
+                known: format!("schema = {newest}"),
             })),
             Err(e) => Err(e),
         }

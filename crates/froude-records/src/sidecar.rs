@@ -6,6 +6,7 @@ use indexmap::IndexMap;
 
 use crate::assemble::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
 use crate::error::{Place, RecordError, read_bytes, utf8};
+use crate::run::channel::Words;
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
 use crate::table::{Column, ColumnData, is_text_column, known_dimension};
@@ -31,10 +32,12 @@ pub struct Mapping {
     pub name: String,
     /// Unit of the numbers in the table; none for text and for scaled columns.
     pub unit: Option<Unit>,
-    /// Factor of sign or direction.
+    /// Factor of sign or direction: the number in the table times it is what the name means.
     pub sign: f64,
     /// Factor that gives a dimensionless column its dimension.
     pub scale: Option<Scale>,
+    /// What is said of it as a channel of a log.
+    pub(crate) words: Words,
     /// Where it stands in the sidecar.
     pub place: Place,
 }
@@ -87,7 +90,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
 }
 
 fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
-    section.only(&["name", "unit", "sign", "scale"])?;
+    section.only(&["name", "unit", "sign", "scale", "quantity", "frame", "clock"])?;
     let name = section.text("name")?.ok_or_else(|| section.missing("name", "write name = \"f_x\", say"))?.to_owned();
     let place = section.place();
     let unit = match section.text("unit")? {
@@ -134,7 +137,8 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
             advice: "write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column".to_owned(),
         });
     }
-    Ok(Mapping { name, unit, sign, scale, place })
+    let words = Words::read(section, unit.as_ref().map(|unit| unit.dimension))?;
+    Ok(Mapping { name, unit, sign, scale, words, place })
 }
 
 impl Sidecar {

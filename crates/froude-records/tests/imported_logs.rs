@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use froude_records::finding::Severity;
-use froude_records::run::{GapCause, import_run};
+use froude_records::run::{Frame, GapCause, import_run};
 use froude_records::units::Dimension;
 
 const SIDECAR: &str = "\
@@ -92,5 +92,49 @@ fn a_time_that_goes_back_or_is_not_there_is_told_with_its_line() {
     assert!(
         error.starts_with(&format!("{}: there is no column `time`; a log needs its times:", path.display())),
         "{error}"
+    );
+}
+
+#[test]
+fn an_entry_says_what_its_channel_is_and_else_its_name_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = log(folder.path(), [0.0, 1e-3, 2e-3]);
+    let entry = "name = \"position\", unit = \"mm\"";
+    let write = |to: &str| {
+        assert!(SIDECAR.contains(entry));
+        std::fs::write(folder.path().join("log.toml"), SIDECAR.replace(entry, to)).unwrap();
+    };
+    let plain = import_run(&path, None).unwrap().log;
+    let position = &plain.channels["y/position"].meaning;
+    assert_eq!((position.quantity.as_str(), position.unit.as_str()), ("position", "m"));
+    // Nobody said along what, nor which clock wrote the times.
+    assert_eq!((position.frame, position.sign, position.clock.as_str()), (Frame::None, 1, "log"));
+    assert_eq!(plain.meta.channels["y/command"], plain.channels["y/command"].meaning);
+
+    write(&format!("{entry}, quantity = \"draught\", frame = \"body\", clock = \"camera\", sign = -1"));
+    let told = import_run(&path, None).unwrap().log;
+    let own = &told.channels["y/position"];
+    let meaning = &own.meaning;
+    assert_eq!((meaning.quantity.as_str(), meaning.frame, meaning.clock.as_str()), ("draught", Frame::Body, "camera"));
+    // A sign in the table is undone when it is read: what is left is what the name means.
+    assert_eq!((own.values[2], meaning.sign), (-2e-3, 1));
+
+    let at = folder.path().join("log.toml");
+    let error = |to: &str| {
+        write(to);
+        import_run(&path, None).unwrap_err().to_string()
+    };
+    let place = format!("{}:7:", at.display());
+    assert_eq!(
+        error(&format!("{entry}, quantity = \"velocity\"")),
+        format!("{place}57: `quantity` is \"velocity\", a speed (m/s); expected a length (m), as its unit says")
+    );
+    assert_eq!(
+        error(&format!("{entry}, quantity = \"postion\"")),
+        format!("{place}57: `quantity` is \"postion\"; did you mean `position`?")
+    );
+    assert_eq!(
+        error(&format!("{entry}, frame = \"bodyy\"")),
+        format!("{place}54: `frame` is \"bodyy\"; did you mean `body`?")
     );
 }

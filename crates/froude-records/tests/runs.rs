@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 use common::{RATE_HZ, START_NS, layout, meta, row};
 use froude_records::hash::fingerprint_of_file;
 use froude_records::run::{
-    Block, CampaignMark, DoubtKind, EventKind, GapCause, Packing, Pair, Recorder, RunLog, RunMeta, RunReader,
-    RunStatus, check_pair, parse_run_meta, read_run, read_run_meta, run_meta_text, write_run_meta,
+    Axis, Block, BodyState, CampaignMark, CarriageFacts, Direction, DoubtKind, EventKind, Frame, GapCause, Meaning,
+    Mounted, Packing, Pair, Recorder, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, check_pair, parse_run_meta,
+    read_run, read_run_meta, run_meta_text, write_run_meta,
 };
 use froude_records::units::Dimension;
 
@@ -46,7 +47,8 @@ fn a_run_reads_back_to_the_bits_that_were_recorded_in_every_packing() {
         assert_eq!((log.lost.len(), log.doubts.len()), (0, 0), "{:?} {:?}", log.lost, log.doubts);
         // The sidecar knows every byte of the log: the hash that was taken while it was written is that of the file.
         let fingerprint = Some(fingerprint_of_file(&path).unwrap());
-        let expected = RunMeta { status: RunStatus::Complete, log: fingerprint, ..meta(id) };
+        let channels = log.channels.iter().map(|(name, c)| (name.clone(), c.meaning.clone())).collect();
+        let expected = RunMeta { status: RunStatus::Complete, log: fingerprint, channels, ..meta(id) };
         assert_eq!(log.meta, expected);
         assert_eq!(log.sample_rate_hz().unwrap().round(), RATE_HZ);
         assert!((log.duration_s() - 8999.0 / RATE_HZ).abs() < 1e-9);
@@ -85,18 +87,160 @@ fn a_sidecar_is_for_people_and_reads_back() {
     let meta = meta("0007-wet");
     let text = run_meta_text(&meta);
     assert!(text.contains("target_speed = \"0.55 m/s\"\n"), "{text}");
-    assert!(text.contains("[rig.y]\ntorque_constant.value = \"0.0267 N m/A\"\n"), "{text}");
+    assert!(text.contains("[carriage.rig.y]\ntorque_constant.value = \"0.0267 N m/A\"\n"), "{text}");
     assert_eq!(parse_run_meta(Path::new("0007-wet.toml"), &text).unwrap(), meta);
+}
+
+fn means(quantity: &str, unit: &str, frame: Frame, sign: i8) -> Meaning {
+    Meaning { quantity: quantity.to_owned(), unit: unit.to_owned(), frame, sign, clock: "board".to_owned() }
+}
+
+#[test]
+fn every_channel_says_quantity_unit_frame_sign_and_clock() {
+    let folder = tempfile::tempdir().unwrap();
+    let log = read_run(&recorded(folder.path(), "run", 0..10, Packing::Lz4)).unwrap();
+    let expected = [
+        ("force", means("force", "N", Frame::Y, -1)),
+        ("y/position", means("position", "m", Frame::Y, 1)),
+        ("x/reference_velocity", means("velocity", "m/s", Frame::X, 1)),
+        ("y/command", means("voltage", "V", Frame::Y, 1)),
+        ("x/current", means("current", "A", Frame::X, 1)),
+        ("y/encoder", means("count", "1", Frame::Sensor, 1)),
+        ("y/state", means("code", "1", Frame::None, 1)),
+        ("truth/y/load_position", means("position", "m", Frame::Y, 1)),
+        ("truth/y/drag", means("force", "N", Frame::Y, -1)),
+    ];
+    for (name, meaning) in expected {
+        assert_eq!((&log.channels[name].meaning, &log.meta.channels[name]), (&meaning, &meaning), "{name}");
+    }
+    let sidecar = std::fs::read_to_string(folder.path().join("run.toml")).unwrap();
+    let line = "\nforce = { quantity = \"force\", unit = \"N\", frame = \"y\", sign = -1, clock = \"board\" }\n";
+    assert!(sidecar.contains("\n[channels]\n\"y/encoder\" = {") && sidecar.contains(line), "{sidecar}");
+}
+
+#[test]
+fn a_unit_or_a_sign_that_the_log_does_not_have_is_refused_with_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = recorded(folder.path(), "run", 0..10, Packing::Lz4);
+    let sidecar = path.with_extension("toml");
+    let text = std::fs::read_to_string(&sidecar).unwrap();
+    let is_kept = |line: &&str| !line.starts_with("checksum");
+    let text: String = text.lines().filter(is_kept).map(|line| line.to_owned() + "\n").collect();
+    let at = |key: &str| 1 + text.lines().position(|line| line.starts_with(key)).unwrap();
+    let error = |from: &str, to: &str| {
+        assert!(text.contains(from), "{text}");
+        std::fs::write(&sidecar, text.replace(from, to)).unwrap();
+        read_run(&path).unwrap_err().to_string()
+    };
+    let (log, toml) = (path.display(), sidecar.display());
+    assert_eq!(
+        error("quantity = \"force\", unit = \"N\", frame = \"y\", sign = -1, clock", "unit = \"kN\", clock"),
+        format!("{toml}: `channels.\"force\".unit` is \"kN\"; expected \"N\", in which {log} was recorded")
+    );
+    let line = at("\"y/position\"");
+    let is_told = |error: String, problem: &str| {
+        assert!(error.starts_with(&format!("{toml}:{line}:")) && error.ends_with(problem), "{error}");
+    };
+    let position = "\"y/position\" = { quantity = \"position\", unit = \"m\", frame = \"y\", sign = 1";
+    is_told(
+        error(position, &position.replace("sign = 1", "sign = -1")),
+        &format!("`sign` is -1; expected 1: the name y/position says it"),
+    );
+    is_told(
+        error(position, &position.replace("\"m\"", "\"m/s\"")),
+        &format!("`unit` is \"m/s\"; expected a length (m), which y/position is"),
+    );
+    is_told(
+        error(position, &position.replace("= \"position\"", "= \"velocity\"")),
+        &format!("`quantity` is \"velocity\", a speed (m/s); expected a length (m), as its unit says"),
+    );
+    is_told(
+        error(position, &position.replace("frame = \"y\"", "frame = \"z\"")),
+        &format!("`frame` is \"z\"; did you mean `y` or `x`?"),
+    );
+    // Another word than the log's is an edit like any other: it is used, and said.
+    std::fs::write(
+        &sidecar,
+        text.replace(&format!("{position}, clock = \"board\""), &format!("{position}, clock = \"host\"")),
+    )
+    .unwrap();
+    let read = read_run(&path).unwrap();
+    assert_eq!(read.channels["y/position"].meaning.clock, "host");
+    assert_eq!(read.doubts[0].kind, DoubtKind::Edited);
 }
 
 #[test]
 fn a_misspelt_key_of_a_sidecar_is_told_with_its_line() {
-    let text = "schema = 1\nid = \"a\"\nkind = \"wet\"\nstatus = \"complete\"\ntarget_sped = \"0.5 m/s\"\n";
-    let error = parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
-    assert_eq!(error, "a.toml:5:1: unknown key `target_sped` in the file; did you mean `target_speed`?");
-    let text = "schema = 1\nid = \"a\"\nkind = \"wett\"\nstatus = \"complete\"\n";
-    let error = parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
-    assert_eq!(error, "a.toml:3:8: `kind` is \"wett\"; did you mean `wet`?");
+    let error = |text: &str| parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
+    let old = "schema = 1\nid = \"a\"\nkind = \"wet\"\nstatus = \"complete\"\n";
+    assert_eq!(
+        error(&(old.to_owned() + "target_sped = \"0.5 m/s\"\n")),
+        "a.toml:5:1: unknown key `target_sped` in the file; did you mean `target_speed`?"
+    );
+    assert_eq!(error(&old.replace("wet", "wett")), "a.toml:3:8: `kind` is \"wett\"; did you mean `wet`?");
+    let text = error(&(old.to_owned() + "travel = \"x\"\n"));
+    assert!(text.starts_with("a.toml:5:1: unknown key `travel` in the file; known: axis, "), "{text}");
+    let new = "schema = 2\nid = \"a\"\nmethod = \"tow\"\nrole = \"wet\"\nstatus = \"complete\"\n";
+    assert_eq!(error(&new.replace("wet", "wett")), "a.toml:4:8: `role` is \"wett\"; did you mean `wet`?");
+    assert_eq!(error(&new.replace("wet", "decoy")), "a.toml:4:8: `role` is \"decoy\"; did you mean `decay`?");
+    assert_eq!(
+        error(&(new.to_owned() + "[mounted]\nbody = \"wet\"\ntravel = \"up\"\n")),
+        "a.toml:8:10: `travel` is \"up\"; known: x, y, z"
+    );
+    let text = error(&(new.to_owned() + "body = \"wet\"\n"));
+    assert!(text.starts_with("a.toml:6:1: unknown key `body` in the file; known: campaign, "), "{text}");
+    assert_eq!(
+        error(&new.replace("schema = 2", "schema = 3")),
+        "a.toml:1:10: this is run schema 3; this program reads up to run schema 2: use a newer Froude"
+    );
+    // A method that this version does not know is kept: whoever cannot use the run says so.
+    let own = parse_run_meta(Path::new("a.toml"), &new.replace("tow", "planar_motion")).unwrap();
+    assert_eq!((own.method.as_str(), own.role), ("planar_motion", Role::Wet));
+    assert_eq!(parse_run_meta(Path::new("a.toml"), &run_meta_text(&own)).unwrap(), own);
+}
+
+/// Runs that the version before wrote: `tests/golden/runs-1`.
+#[test]
+fn runs_of_the_first_schema_are_read_as_what_the_newest_says_of_them() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/runs-1");
+    let facts = |set, pair, speed| CarriageFacts {
+        set,
+        pair,
+        repeat: pair,
+        axis: Axis::Y,
+        target_speed_m_s: speed,
+        direction: Some(Direction::Forward),
+        rig: [("y".to_owned(), meta("").carriage.rig["y"])].into_iter().collect(),
+        twin_seed: Some(7),
+    };
+    let bare = Mounted::default();
+    let hung = Mounted { body: BodyState::Dry, is_ballasted: true, hung_weight_n: Some(10.0), ..bare };
+    let wet = Mounted { body: BodyState::Wet, is_ballasted: true, ..bare };
+    let all = [
+        ("001-jog-forward", Role::Jog, bare, facts(None, None, None)),
+        ("005-calibration-10N-forward", Role::Calibration, hung, facts(None, None, Some(0.2))),
+        ("010-wet-p1-300mm_s-forward", Role::Wet, wet, facts(Some(2), Some(1), Some(0.3))),
+    ];
+    for (id, role, mounted, carriage) in all {
+        let path = folder.join(format!("{id}.mcap"));
+        let log = read_run(&path).unwrap();
+        assert_eq!((log.doubts.len(), log.lost.len()), (0, 0), "{:?} {:?}", log.doubts, log.lost);
+        assert_eq!((log.meta.method.as_str(), log.meta.role), (TOW, role));
+        // Which axis of the body lay along the travel, nobody wrote: none is guessed.
+        assert_eq!((&log.meta.mounted, &log.meta.carriage), (&mounted, &carriage));
+        // What a channel is, its name tells.
+        assert_eq!(log.channels["force"].meaning, means("force", "N", Frame::Y, -1));
+        assert_eq!(log.meta.channels["truth/y/spring"], means("force", "N", Frame::Y, 1));
+        assert!(log.channels.iter().all(|(name, c)| log.meta.channels[name] == c.meaning));
+        // Written again it is the newest form, and says the same.
+        let text = run_meta_text(&log.meta);
+        assert!(text.contains("schema = 2\n") && text.contains("method = \"tow\"\n"), "{text}");
+        let sidecar = read_run_meta(&path.with_extension("toml")).unwrap();
+        assert_eq!(parse_run_meta(&path, &run_meta_text(&sidecar)).unwrap(), sidecar);
+        // The log alone says it too, but for its own hash.
+        let alone = RunReader::new(&path, std::io::Cursor::new(std::fs::read(&path).unwrap()), None).unwrap();
+        assert_eq!(alone.read_all().unwrap().meta, RunMeta { log: None, ..log.meta });
+    }
 }
 
 #[test]

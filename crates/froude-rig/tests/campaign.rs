@@ -7,8 +7,9 @@ use froude_control::fault::StopCategory;
 use froude_control::request::Request;
 use froude_control::status::Phase;
 use froude_records::Place;
+use froude_records::campaign::BodyAxis;
 use froude_records::carriage::{Calibration, CarriagePlan, Directions, Order, PulseTrain};
-use froude_records::run::{Axis, RunKind, RunStatus, read_run};
+use froude_records::run::{Axis, Role, RunStatus, read_run};
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
@@ -98,6 +99,7 @@ fn setting(folder: &Path) -> Setting {
         return_speed_m_s: 0.4,
         homing_s: [300.0; 2],
         is_shaped: true,
+        travel: Some(BodyAxis::Y),
         constants: IndexMap::new(),
         load: Load::default(),
         twin_seed: Some(7),
@@ -144,6 +146,12 @@ fn a_campaign_is_driven_recorded_and_not_driven_twice() {
         assert_eq!(log.lost_ticks(), 0);
         assert!((log.sample_rate_hz().unwrap() - 1_000.0).abs() < 1e-6);
     }
+    // What hangs on the strut lies as the campaign says; where nothing hangs, nothing lies.
+    let mounted = |name: &str| read_run(&folder.path().join(format!("{name}.mcap"))).unwrap().meta.mounted;
+    for name in names(&steps) {
+        let of_body = if name.contains("jog") { None } else { Some(BodyAxis::Y) };
+        assert_eq!(mounted(name).travel, of_body, "{name}");
+    }
     // The wet run's sensor sees the drag, 20 · 0.3² = 1.8 N, within its drift of ± 0.2 N and the ripple.
     let wet = names(&steps).into_iter().find(|n| n.contains("wet")).unwrap();
     let log = read_run(&folder.path().join(format!("{wet}.mcap"))).unwrap();
@@ -180,7 +188,7 @@ fn the_first_press_stops_and_holds_and_the_campaign_goes_on_from_there() {
     // What was interrupted is kept beside the run that replaced it.
     assert!(folder.path().join(format!("{stopped}.interrupted-1.mcap")).exists());
     let log = read_run(&folder.path().join(format!("{stopped}.mcap"))).unwrap();
-    assert_eq!((log.meta.kind, log.meta.status), (RunKind::Dry, RunStatus::Complete));
+    assert_eq!((log.meta.role, log.meta.status), (Role::Dry, RunStatus::Complete));
 }
 
 #[test]

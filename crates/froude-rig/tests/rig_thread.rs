@@ -11,7 +11,7 @@ use froude_control::request::Request;
 use froude_control::status::Phase;
 use froude_records::Place;
 use froude_records::carriage::{CarriagePlan, Directions, Order};
-use froude_records::run::{Axis, BodyState, RunKind, RunStatus, read_run};
+use froude_records::run::{Axis, BodyState, Role, RunStatus, read_run};
 use froude_rig::campaign::plan::{Drive, OperatorStep, PlannedRun, Step};
 use froude_rig::campaign::runner::{Operator, Outcome, Progress, RunnerError, Setting, drive};
 use froude_rig::campaign::stop::StopSwitch;
@@ -92,7 +92,7 @@ fn steps() -> Vec<Step> {
     let prompt = "The body is off".to_owned();
     let tow = PlannedRun {
         id: "001-tow".to_owned(),
-        kind: RunKind::Dry,
+        role: Role::Dry,
         axis: Axis::Y,
         set: None,
         pair: None,
@@ -138,6 +138,7 @@ fn setting(folder: &Path) -> Setting {
         return_speed_m_s: 0.4,
         homing_s: [300.0; 2],
         is_shaped: true,
+        travel: None,
         constants: IndexMap::new(),
         load: Load::default(),
         twin_seed: None,

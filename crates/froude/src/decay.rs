@@ -7,13 +7,14 @@ use froude_identify::decay::{envelope, output_error, record};
 use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{Channel, ImportedRun, import_run};
+use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role, import_run};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{DocumentSection, TextTable};
 use froude_report::number;
 
 use crate::Error;
+use crate::carriage::runs::{recorded_in, refuse_others};
 use crate::method::{Found, Method};
 
 /// Envelope and output error of releases.
@@ -185,6 +186,18 @@ struct Releases {
     findings: Vec<Finding>,
 }
 
+/// The logs of other programs in a folder, in the order of their names.
+pub(crate) fn logs_in(folder: &Path) -> Result<Vec<PathBuf>, Error> {
+    let entries = std::fs::read_dir(folder)
+        .map_err(|source| Error::Nothing(format!("{}: the folder cannot be read: {source}", folder.display())))?;
+    let is_log = |path: &PathBuf| {
+        path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)))
+    };
+    let mut paths: Vec<PathBuf> = entries.filter_map(Result::ok).map(|e| e.path()).filter(is_log).collect();
+    paths.sort();
+    Ok(paths)
+}
+
 /// Every log in a folder, in the order of the names, with its sidecar where it has one.
 fn read(folder: &Path) -> Result<Releases, Error> {
     if folder.is_file() {
@@ -193,14 +206,9 @@ fn read(folder: &Path) -> Result<Releases, Error> {
             folder.display()
         )));
     }
-    let entries = std::fs::read_dir(folder)
-        .map_err(|source| Error::Nothing(format!("{}: the folder cannot be read: {source}", folder.display())))?;
-    let is_log = |path: &PathBuf| {
-        path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)))
-    };
-    let mut paths: Vec<PathBuf> = entries.filter_map(Result::ok).map(|e| e.path()).filter(is_log).collect();
-    paths.sort();
+    let paths = logs_in(folder)?;
     if paths.is_empty() {
+        refuse_others(folder, FREE_DECAY, &recorded_in(folder)?)?;
         return Err(Error::Nothing(format!(
             "{}: no releases: put one log each there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)",
             folder.display()
@@ -208,7 +216,8 @@ fn read(folder: &Path) -> Result<Releases, Error> {
     }
     let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     for path in paths {
-        let log = import_run(&path, None)?;
+        let mut log = import_run(&path, None)?;
+        (log.log.meta.method, log.log.meta.role) = (FREE_DECAY.to_owned(), Role::Decay);
         // Steps that are not even are refused by the methods; that they are is no news.
         out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
         let sidecar = path.with_extension("toml");
@@ -229,7 +238,7 @@ fn release(log: &ImportedRun, axis: Motion) -> Result<DecayRun<'_>, Error> {
         (&["y/position", "position"], Dimension::LENGTH)
     };
     let channels = &log.log.channels;
-    let is_meant = |c: &&Channel| c.unit == unit.to_string();
+    let is_meant = |c: &&Channel| c.meaning.unit == unit.to_string();
     let alike: Vec<&Channel> = channels.values().filter(is_meant).collect();
     // Any name will do where only one column can be meant.
     let only = alike.first().copied().filter(|_| alike.len() == 1 && !axis.is_rotation());

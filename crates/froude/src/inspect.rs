@@ -1,6 +1,6 @@
 //! `froude inspect`: what is in a table, a campaign, a record or a carriage's run, and everything doubtful about it. Nothing is fitted.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use froude_identify::reduce::{Reduced, reduce};
 use froude_identify::source::{asked_models, check_budget, laws};
@@ -10,7 +10,10 @@ use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
-use froude_records::run::{Block, Doubt, DoubtKind, RunKind, RunMeta, RunReader, RunStatus, read_run, read_run_meta};
+use froude_records::run::{
+    Block, BodyState, Doubt, DoubtKind, ImportedRun, Meaning, Mounted, Role, RunMeta, RunReader, RunStatus, TOW,
+    import_run, read_run, read_run_meta,
+};
 use froude_records::table::{ColumnData, Table, read_table};
 use froude_records::text::counted;
 
@@ -20,6 +23,7 @@ use crate::Error;
 use crate::carriage::runs;
 use crate::carriage::set::{Member, doubles, is_put_aside, strangers, summed_up};
 use crate::carriage::whole::Complete;
+use crate::decay::logs_in;
 
 /// A column of a table in short.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -34,6 +38,33 @@ pub struct ColumnFacts {
     pub high: Option<f64>,
     /// Distinct values.
     pub distinct: usize,
+    /// What it is as a channel of a run; none for a column of a table.
+    #[serde(flatten)]
+    pub channel: Option<ChannelFacts>,
+}
+
+/// What the numbers of a run's channel are, beside their unit.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ChannelFacts {
+    /// `position`, `force`, ….
+    pub quantity: String,
+    /// What its direction is along: `y`, `x`, `sensor`, `body` or `none`.
+    pub frame: String,
+    /// +1 or −1: value times sign is along the positive direction of the frame.
+    pub sign: i8,
+    /// Which clock its times are of.
+    pub clock: String,
+}
+
+impl ChannelFacts {
+    fn of(meaning: &Meaning) -> Self {
+        Self {
+            quantity: meaning.quantity.clone(),
+            frame: meaning.frame.name().to_owned(),
+            sign: meaning.sign,
+            clock: meaning.clock.clone(),
+        }
+    }
 }
 
 /// One entry of a sensor budget.
@@ -81,7 +112,7 @@ pub struct SourceFacts {
 /// What is in a file.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Inspection {
-    /// `table`, `campaign`, `estimate`, `run`, or `runs` for a folder of them.
+    /// `table`, `campaign`, `estimate`, `run`, `runs` for a folder of them, or `logs` for one of other programs' logs.
     pub kind: String,
     /// Facts in words, `(name, value)`.
     pub facts: Vec<(String, String)>,
@@ -148,6 +179,10 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
                 counted(sidecars, "sidecar of a run", "sidecars of runs")
             )));
         }
+        let others = logs_in(path)?;
+        if !others.is_empty() {
+            return Ok(logs(&others));
+        }
         return Err(Error::Nothing(format!(
             "{shown} is a folder without runs; name a table (.csv, .parquet), a campaign (.toml), a record (.json) or a run (.mcap)"
         )));
@@ -188,7 +223,7 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
     findings.extend(doubles(&members));
     findings.extend(strangers(&members)?);
     findings.extend(summed_up(&doubts));
-    findings.extend(complete.against_plan(path, &RunKind::ALL));
+    findings.extend(complete.against_plan(path, &Role::ALL));
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let each = |name: &dyn Fn(&RunMeta) -> String| {
         let mut counts: IndexMap<String, usize> = IndexMap::new();
@@ -199,14 +234,15 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
     };
     let aside = counted(n_aside, "more was put aside", "more were put aside");
     let aside = if n_aside == 0 { String::new() } else { format!("; {aside}") };
+    let is_towed = metas.iter().any(|meta| meta.method == TOW);
+    let together =
+        if is_towed { format!("froude carriage drag {shown} reduces them together; ") } else { String::new() };
     let facts = vec![
         ("campaign".to_owned(), each(&|meta| format!("of {:?}", meta.campaign))),
         ("runs".to_owned(), each(&|meta| meta.status.name().to_owned()) + &aside),
-        ("kinds".to_owned(), each(&|meta| meta.kind.name().to_owned())),
-        (
-            "next".to_owned(),
-            format!("froude carriage drag {shown} reduces them together; froude inspect {} shows one", first.display()),
-        ),
+        ("methods".to_owned(), each(&|meta| named(&meta.method).to_owned())),
+        ("roles".to_owned(), each(&|meta| meta.role.name().to_owned())),
+        ("next".to_owned(), format!("{together}froude inspect {} shows one", first.display())),
     ];
     Ok(Inspection::new("runs", facts, findings))
 }
@@ -238,6 +274,7 @@ fn columns(table: &Table) -> Vec<ColumnFacts> {
                 low: None,
                 high: None,
                 distinct: t.iter().collect::<std::collections::BTreeSet<_>>().len(),
+                channel: None,
             },
             ColumnData::Number { unit, si, .. } => {
                 let shown: Vec<f64> = si.iter().map(|v| unit.from_si(*v)).collect();
@@ -247,6 +284,7 @@ fn columns(table: &Table) -> Vec<ColumnFacts> {
                     low: shown.iter().copied().reduce(f64::min),
                     high: shown.iter().copied().reduce(f64::max),
                     distinct: si.iter().map(|v| v.to_bits()).collect::<std::collections::BTreeSet<_>>().len(),
+                    channel: None,
                 }
             }
         })
@@ -390,22 +428,78 @@ fn estimates(path: &Path) -> Result<Inspection, Error> {
     Ok(Inspection { estimates: record.estimates, ..Inspection::new("estimate", facts, record.findings) })
 }
 
-/// A carriage's run: what it was for, its channels, what happened, what is missing.
+/// The method of a run as it stands in its files.
+fn named(method: &str) -> &str {
+    if method.is_empty() { "not stated" } else { method }
+}
+
+/// What is mounted, in words.
+fn mounted(mounted: &Mounted) -> String {
+    let Mounted { body, is_ballasted, hung_weight_n, travel } = mounted;
+    let mut out = match body {
+        BodyState::None => "no body".to_owned(),
+        body => format!("body {}", body.name()),
+    };
+    if *is_ballasted {
+        out += ", ballasted";
+    }
+    if let Some(weight_n) = hung_weight_n {
+        out += &format!(", {weight_n} N over the pulley");
+    }
+    match (travel, body) {
+        (Some(axis), _) => out += &format!(", its {} axis along the travel", axis.name()),
+        (None, BodyState::None) => {}
+        (None, _) => out += ", which axis lies along the travel is not declared",
+    }
+    out
+}
+
+/// Logs of other programs in a folder, as releases are: how long each is, and what it holds.
+fn logs(paths: &[PathBuf]) -> Inspection {
+    let (mut facts, mut findings) = (Vec::new(), Vec::new());
+    facts.push((
+        "logs".to_owned(),
+        format!("{} of other programs; what they are, the method says that reads them", paths.len()),
+    ));
+    for path in paths {
+        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        match import_run(path, None) {
+            Ok(ImportedRun { log, findings: own, .. }) => {
+                let rate = log.sample_rate_hz().map_or_else(String::new, |hz| format!(" at {hz:.1} Hz"));
+                let channels = log.channels.iter().map(|(name, c)| format!("{name} [{}]", c.meaning.unit));
+                let channels = channels.collect::<Vec<_>>().join(", ");
+                facts.push((
+                    name,
+                    format!("{}{rate}, {:.3} s: {channels}", counted(log.len(), "sample", "samples"), log.duration_s()),
+                ));
+                findings.extend(own.into_iter().filter(|finding| finding.severity > Severity::Note));
+            }
+            Err(error) => findings.push(Finding::new(Severity::Error, "run-unreadable", error.to_string())),
+        }
+    }
+    facts.push((
+        "next".to_owned(),
+        "runs = \"FOLDER\" and method = \"decay_envelope\" or \"decay_output_error\" in a [[source]] take a folder of releases".to_owned(),
+    ));
+    findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+    Inspection::new("logs", facts, findings)
+}
+
+/// A run: what it was for, its channels, what happened, what is missing.
 fn run(path: &Path) -> Result<Inspection, Error> {
     let log = read_run(path)?;
     let meta = &log.meta;
     let mut facts: Vec<(String, String)> = Vec::new();
     let mut fact = |name: &str, value: String| facts.push((name.to_owned(), value));
     fact("run", format!("{} of campaign \"{}\"", meta.id, meta.campaign));
-    fact("kind", format!("{}, body {}, axis {}", meta.kind.name(), meta.body.name(), meta.axis.name()));
-    if let (Some(speed), Some(direction)) = (meta.target_speed_m_s, meta.direction) {
+    fact("method", format!("{}, role {}", named(&meta.method), meta.role.name()));
+    fact("mounted", mounted(&meta.mounted));
+    fact("axis", meta.carriage.axis.name().to_owned());
+    if let (Some(speed), Some(direction)) = (meta.carriage.target_speed_m_s, meta.carriage.direction) {
         fact("steady part", format!("{speed} m/s {}", direction.name()));
     }
-    if let Some(pair) = meta.pair {
+    if let Some(pair) = meta.carriage.pair {
         fact("pair", pair.to_string());
-    }
-    if let Some(weight_n) = meta.hung_weight_n {
-        fact("weight over the pulley", format!("{weight_n} N"));
     }
     let note = if meta.note.is_empty() { String::new() } else { format!(": {}", meta.note) };
     fact("status", format!("{}{note}", meta.status.name()));
@@ -440,10 +534,11 @@ fn run(path: &Path) -> Result<Inspection, Error> {
         .iter()
         .map(|(name, c)| ColumnFacts {
             name: name.clone(),
-            unit: c.unit.clone(),
+            unit: c.meaning.unit.clone(),
             low: c.values.iter().copied().reduce(f64::min),
             high: c.values.iter().copied().reduce(f64::max),
             distinct: c.values.iter().map(|v| v.to_bits()).collect::<std::collections::BTreeSet<_>>().len(),
+            channel: Some(ChannelFacts::of(&c.meaning)),
         })
         .collect();
     Ok(Inspection { columns, ..Inspection::new("run", facts, findings) })

@@ -11,12 +11,13 @@ use std::path::{Path, PathBuf};
 
 use froude::Error;
 use froude::inspect::inspect;
+use froude::records::campaign::BodyAxis;
 use froude::records::finding::Finding;
 use froude::records::json::{read_estimates, write_estimates};
 use froude::records::parquet_table::write_parquet;
 use froude::records::run::{
-    Axis, AxisSample, BodyState, CarriageSample, Direction, EventKind, Layout, Packing, Recorder, RunKind, RunMeta,
-    RunStatus, read_run,
+    Axis, AxisSample, BodyState, CarriageFacts, CarriageSample, Direction, EventKind, Layout, Mounted, Packing,
+    Recorder, Role, RunMeta, RunStatus, TOW, read_run,
 };
 use froude::records::table::{Column, read_table};
 
@@ -82,12 +83,16 @@ fn run(folder: &Path) -> PathBuf {
     let meta = RunMeta {
         campaign: "small".to_owned(),
         id: "045-wet".to_owned(),
-        kind: RunKind::Wet,
-        pair: Some(3),
-        axis: Axis::Y,
-        target_speed_m_s: Some(0.55),
-        direction: Some(Direction::Forward),
-        body: BodyState::Wet,
+        method: TOW.to_owned(),
+        role: Role::Wet,
+        mounted: Mounted { body: BodyState::Wet, travel: Some(BodyAxis::X), ..Mounted::default() },
+        carriage: CarriageFacts {
+            pair: Some(3),
+            axis: Axis::Y,
+            target_speed_m_s: Some(0.55),
+            direction: Some(Direction::Forward),
+            ..CarriageFacts::default()
+        },
         note: "ripples".to_owned(),
         log_rate_hz: 1000.0,
         date: "2026-11-21".to_owned(),

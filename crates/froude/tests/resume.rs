@@ -8,7 +8,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::records::run::{Layout, Packing, Recorder, RunMeta, RunStatus, read_run, read_run_meta, write_run_meta};
+use froude::records::run::{
+    Layout, Packing, Recorder, RunMeta, RunStatus, TOW, read_run, read_run_meta, write_run_meta,
+};
 use froude::rig::campaign::plan::PlannedRun;
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
@@ -137,7 +139,8 @@ fn done(folder: &Path, run: &PlannedRun, campaign: &str) {
     let meta = RunMeta {
         campaign: campaign.to_owned(),
         id: run.id.clone(),
-        kind: run.kind,
+        method: TOW.to_owned(),
+        role: run.role,
         log_rate_hz: 100.0,
         ..RunMeta::default()
     };
@@ -201,7 +204,7 @@ fn spread(runs: &[&PlannedRun]) -> Vec<usize> {
     let mut out: Vec<usize> = ONCE_FAILED.iter().map(|number| number - 1).collect();
     let mut seen = Vec::new();
     for (k, run) in runs.iter().enumerate() {
-        let sort = (run.kind, run.body, run.hung_weight_n.to_bits());
+        let sort = (run.role, run.body, run.hung_weight_n.to_bits());
         if !seen.contains(&sort) {
             seen.push(sort);
             out.push(k);

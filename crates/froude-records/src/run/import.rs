@@ -12,7 +12,8 @@
 //! ```
 //!
 //! The names of an axis ([`AXIS_NAMES`]) become channels of axis `y`, as in a run of the carriage; `force` and every other
-//! name stay as they are. Times are kept as they are written; steps that are not even are reported, never resampled.
+//! name stay as they are. An entry may also say `quantity`, `frame` and `clock`; what it leaves out is what its name tells, as it is
+//! written there (`y/position` is along the chain, `position` has no frame until somebody says it). Times are kept as they are written; steps that are not even are reported, never resampled.
 
 use std::path::Path;
 
@@ -21,8 +22,9 @@ use indexmap::IndexMap;
 use crate::error::{Place, RecordError};
 use crate::estimate::Measured;
 use crate::finding::{Finding, Severity};
+use crate::run::channel::{LOG, Meaning};
 use crate::run::log::{Channel, Gap, GapCause, RunLog};
-use crate::run::meta::{RunKind, RunMeta, RunStatus};
+use crate::run::meta::{Role, RunMeta, RunStatus};
 use crate::sidecar::{Sidecar, read_sidecar};
 use crate::table::{Column, ColumnData, Table, read_table};
 use crate::text::counted;
@@ -94,9 +96,12 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
         if column.name == "time" {
             continue;
         }
-        let name = channel_name(&column.name);
-        let unit = Unit::si(*dimension).text;
-        if channels.insert(name, Channel { unit, values: si.clone() }).is_some() {
+        let mut meaning = Meaning::of(&column.name, &Unit::si(*dimension).text, LOG);
+        let entry = sidecar.and_then(|s| s.columns.values().find(|entry| entry.name == column.name));
+        if let Some(entry) = entry {
+            entry.words.set(&mut meaning);
+        }
+        if channels.insert(channel_name(&column.name), Channel { meaning, values: si.clone() }).is_some() {
             return Err(RecordError::DuplicateColumn { place: Place::whole(&table.path), column: column.name.clone() });
         }
     }
@@ -106,9 +111,10 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
     });
     let meta = RunMeta {
         id: table.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
-        kind: RunKind::Excitation,
+        role: Role::Excitation,
         status: RunStatus::Complete,
         constants: constants.collect(),
+        channels: channels.iter().map(|(name, channel)| (name.clone(), channel.meaning.clone())).collect(),
         log_rate_hz: 1.0 / steps.median_s,
         ..RunMeta::default()
     };

@@ -7,6 +7,7 @@ use indexmap::IndexMap;
 
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
+use crate::run::channel::Meaning;
 use crate::run::meta::RunMeta;
 use crate::run::seal::Doubt;
 use crate::units::{Dimension, parse_unit};
@@ -35,8 +36,8 @@ pub struct RunLog {
 /// One column of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
-    /// Its unit, as [`parse_unit`] reads it; `1` for counts and codes.
-    pub unit: String,
+    /// What its numbers are.
+    pub meaning: Meaning,
     /// A value per tick.
     pub values: Vec<f64>,
 }
@@ -139,8 +140,8 @@ impl RunLog {
             column: name.to_owned(),
             advice: suggestion(name, self.channels.keys().map(String::as_str)),
         })?;
-        let header = || format!("{name} [{}]", channel.unit);
-        let unit = parse_unit(&channel.unit).map_err(|e| RecordError::BadUnit {
+        let header = || format!("{name} [{}]", channel.meaning.unit);
+        let unit = parse_unit(&channel.meaning.unit).map_err(|e| RecordError::BadUnit {
             place: self.place(),
             column: header(),
             problem: e.to_string(),
@@ -215,7 +216,7 @@ impl RunLog {
         let inside = |t: f64| from_s <= t && t < to_s;
         let cut = |(name, c): (&String, &Channel)| {
             let values = c.values.get(rows.clone()).unwrap_or_default().to_vec();
-            (name.clone(), Channel { unit: c.unit.clone(), values })
+            (name.clone(), Channel { meaning: c.meaning.clone(), values })
         };
         let touches = |gap: &&Gap| gap.from_s.is_none_or(|t| t < to_s) && gap.to_s.is_none_or(|t| t > from_s);
         Self {

@@ -2,8 +2,10 @@
 
 use indexmap::IndexMap;
 
+use crate::campaign::BodyAxis;
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
+use crate::run::channel::Meaning;
 
 /// What a run is, on which rig, and how it ended.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -14,8 +16,66 @@ pub struct RunMeta {
     pub campaign_sha256: String,
     /// Name of the run, unique in the campaign; also the stem of its files.
     pub id: String,
-    /// What it is for.
-    pub kind: RunKind,
+    /// What sort of experiment it belongs to, in the word by which methods know it: [`TOW`], [`FREE_DECAY`], any other; empty where
+    /// nobody said.
+    pub method: String,
+    /// What it is for there.
+    pub role: Role,
+    /// What hangs on the strut, and how.
+    pub mounted: Mounted,
+    /// Where a carriage drove it: how, and on which rig.
+    pub carriage: CarriageFacts,
+    /// Further constants by name, as a sidecar declares them (`drive_gain = "35.15 N/V"`).
+    pub constants: IndexMap<String, Measured>,
+    /// How it ended.
+    pub status: RunStatus,
+    /// Anything a person wants to add.
+    pub note: String,
+    /// Versions of program and board firmware by name.
+    pub versions: IndexMap<String, String>,
+    /// Board clock against host clock.
+    pub clock: Option<ClockAlignment>,
+    /// Nominal ticks per second.
+    pub log_rate_hz: f64,
+    /// When it began, in words (RFC 3339), e.g. `2026-11-21T10:57:34Z`.
+    pub date: String,
+    /// Host time of run time zero, ns since 1970; 0 where there is none. Log times in the file count from there.
+    pub start_unix_ns: u64,
+    /// What its channels are, by name; of a log without a word of it, what their names tell, when the whole log has been read.
+    pub channels: IndexMap<String, Meaning>,
+    /// Length and hash of the log, known when it has been finished; only a sidecar has it.
+    pub log: Option<Fingerprint>,
+}
+
+impl RunMeta {
+    /// Declared constants of the axis that moves.
+    #[must_use]
+    pub fn moving_axis(&self) -> Option<&AxisConstants> {
+        self.carriage.rig.get(self.carriage.axis.name())
+    }
+}
+
+/// The method of every run that the carriage drives.
+pub const TOW: &str = "tow";
+/// The method of a body that is let go and swings out.
+pub const FREE_DECAY: &str = "free_decay";
+
+/// What hangs on the strut of a run, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mounted {
+    /// Whether there is a body, and where.
+    pub body: BodyState,
+    /// Whether ballast makes the wheel load the same wet and dry.
+    pub is_ballasted: bool,
+    /// Known weight over the pulley, N, in a calibration.
+    pub hung_weight_n: Option<f64>,
+    /// The axis of the body that lies along the travel; `None` where nobody declared it.
+    pub travel: Option<BodyAxis>,
+}
+
+/// How a carriage drove a run, and on which rig.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CarriageFacts {
     /// ABBA block, from 1.
     pub set: Option<u32>,
     /// Wet/dry pair, from 1.
@@ -28,53 +88,15 @@ pub struct RunMeta {
     pub target_speed_m_s: Option<f64>,
     /// Which way the steady part goes.
     pub direction: Option<Direction>,
-    /// What hangs on the strut.
-    pub body: BodyState,
-    /// Whether ballast makes the wheel load the same wet and dry.
-    pub is_ballasted: bool,
-    /// Known weight over the pulley, N, in a calibration.
-    pub hung_weight_n: Option<f64>,
     /// Declared constants of the axes by name (`y`, `x`).
     pub rig: IndexMap<String, AxisConstants>,
-    /// Further constants by name, as a sidecar declares them (`drive_gain = "35.15 N/V"`).
-    pub constants: IndexMap<String, Measured>,
-    /// How it ended.
-    pub status: RunStatus,
-    /// Anything a person wants to add.
-    pub note: String,
-    /// Versions of program and board firmware by name.
-    pub versions: IndexMap<String, String>,
     /// Seed of the twin; `None` for a real rig.
     pub twin_seed: Option<u64>,
-    /// Board clock against host clock.
-    pub clock: Option<ClockAlignment>,
-    /// Nominal ticks per second.
-    pub log_rate_hz: f64,
-    /// When it began, in words (RFC 3339), e.g. `2026-11-21T10:57:34Z`.
-    pub date: String,
-    /// Host time of run time zero, ns since 1970; 0 where there is none. Log times in the file count from there.
-    pub start_unix_ns: u64,
-    /// Length and hash of the log, known when it has been finished; only a sidecar has it.
-    pub log: Option<Fingerprint>,
 }
 
-impl RunMeta {
-    /// Declared constants of the axis that moves.
-    #[must_use]
-    pub fn moving_axis(&self) -> Option<&AxisConstants> {
-        self.rig.get(self.axis.name())
-    }
-
-    /// Target speed with its sign; `None` where either is not known.
-    #[must_use]
-    pub fn target_velocity_m_s(&self) -> Option<f64> {
-        Some(self.target_speed_m_s? * self.direction?.sign())
-    }
-}
-
-/// What a run is for.
+/// What a run is for in its experiment.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum RunKind {
+pub enum Role {
     /// Brings gears and grease to temperature; not used in fits.
     #[default]
     WarmUp,
@@ -96,11 +118,15 @@ pub enum RunKind {
     Relay,
     /// Frequency sweep.
     Sweep,
+    /// The motion of a wet run in water, with the body off.
+    Tare,
+    /// A release.
+    Decay,
 }
 
-impl RunKind {
+impl Role {
     /// Each of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::WarmUp,
         Self::Still,
         Self::Jog,
@@ -111,9 +137,23 @@ impl RunKind {
         Self::Wet,
         Self::Relay,
         Self::Sweep,
+        Self::Tare,
+        Self::Decay,
     ];
-    pub(crate) const NAMES: [&'static str; 10] =
-        ["warm_up", "still", "jog", "friction", "calibration", "excitation", "dry", "wet", "relay", "sweep"];
+    pub(crate) const NAMES: [&'static str; 12] = [
+        "warm_up",
+        "still",
+        "jog",
+        "friction",
+        "calibration",
+        "excitation",
+        "dry",
+        "wet",
+        "relay",
+        "sweep",
+        "tare",
+        "decay",
+    ];
 
     /// As it stands in files.
     #[must_use]

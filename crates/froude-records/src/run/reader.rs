@@ -18,6 +18,7 @@ use mcap::records::op;
 use crate::error::{Place, RecordError, reason};
 use crate::hash::Fingerprint;
 use crate::run::allowance::{Allowance, holds};
+use crate::run::channel::{BOARD, LOG, Meaning};
 use crate::run::file::{End, FileChannel, Message, Step, Summary, Walk, metadata, records, schema, unpack};
 use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
 use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
@@ -263,17 +264,41 @@ impl<R: Read + Seek> RunReader<R> {
                 break;
             }
         }
+        let clock = if self.meta.method.is_empty() { LOG } else { BOARD };
         log.channels = self
             .channels
             .into_iter()
             .zip(columns)
-            .map(|((name, unit), values)| (name, Channel { unit, values }))
+            .map(|((name, unit), values)| {
+                let declared = self.meta.channels.get(&name).cloned();
+                (
+                    name.clone(),
+                    Channel { meaning: declared.unwrap_or_else(|| Meaning::of(&name, &unit, clock)), values },
+                )
+            })
             .collect();
+        // Logs of earlier versions say nothing of their channels.
+        for (name, channel) in &log.channels {
+            self.meta.channels.entry(name.clone()).or_insert_with(|| channel.meaning.clone());
+        }
         // An event may be recorded behind ticks that are later than it.
         log.events.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         log.meta = self.meta;
         log.doubts = self.doubts;
         Ok(log)
+    }
+
+    /// What is declared of a channel has the unit that the log has.
+    fn check_units(&self) -> Result<(), RecordError> {
+        let declared = |name: &String| self.meta.channels.get(name).map(|meaning| &meaning.unit);
+        let mut both = self.channels.iter().filter_map(|(name, unit)| Some((name, unit, declared(name)?)));
+        let Some((name, unit, declared)) = both.find(|(_, unit, declared)| unit != declared) else { return Ok(()) };
+        let path = if self.has_sidecar { self.path.with_extension("toml") } else { self.path.clone() };
+        Err(RecordError::Value {
+            place: Place::whole(&path),
+            key: format!("channels.{name:?}.unit"),
+            problem: format!("is {declared:?}; expected {unit:?}, in which {} was recorded", self.path.display()),
+        })
     }
 
     fn doubt(&mut self, kind: DoubtKind, problem: &str) {
@@ -662,6 +687,9 @@ impl<R: Read + Seek> RunReader<R> {
                 self.damage.get_or_insert_with(|| problem.clone());
                 block.lost.push(Gap { from_s, to_s: None, ticks: None, cause: GapCause::Damaged, text: problem });
             }
+        }
+        if self.damage.is_none() {
+            self.check_units()?;
         }
         self.settle();
         Ok(())

@@ -27,7 +27,8 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::write::NoSeek;
 
 use crate::error::{RecordError, reason};
-use crate::run::layout::{Layout, text};
+use crate::run::channel::{BOARD, Meaning};
+use crate::run::layout::{ChannelSpec, Layout, text};
 use crate::run::log::EventKind;
 use crate::run::meta::{RunMeta, RunStatus};
 use crate::run::seal::Sealed;
@@ -85,6 +86,7 @@ impl Recorder {
     /// that cannot be written.
     pub fn create(folder: &Path, meta: RunMeta, layout: Layout, packing: Packing) -> Result<Self, RecordError> {
         check(&meta)?;
+        let meta = with_channels(meta, &layout)?;
         let path = folder.join(format!("{}.mcap", meta.id));
         let failed = |error: &std::io::Error| RecordError::Write { path: path.clone(), reason: reason(error) };
         if path.with_extension("toml").exists() {
@@ -326,6 +328,18 @@ pub(crate) fn log_time_ns(meta: &RunMeta, tick: u64) -> u64 {
     let rest = tick as f64 - seconds * rate;
     let ns = seconds as u128 * 1_000_000_000 + (rest / rate * 1e9).round() as u128;
     meta.start_unix_ns.saturating_add(u64::try_from(ns).unwrap_or(u64::MAX))
+}
+
+/// What is known about the run with what its channels are, as far as nobody declared it by what their names tell.
+fn with_channels(mut meta: RunMeta, layout: &Layout) -> Result<RunMeta, RecordError> {
+    for ChannelSpec { name, unit, .. } in layout.channels() {
+        let known = meta.channels.entry(name.clone()).or_insert_with(|| Meaning::of(name, unit, BOARD));
+        if known.unit != *unit {
+            let problem = format!("is declared in {:?}, and is recorded in {unit:?}", known.unit);
+            return Err(RecordError::Channel { channel: name.clone(), problem });
+        }
+    }
+    Ok(meta)
 }
 
 fn check(meta: &RunMeta) -> Result<(), RecordError> {

@@ -1,18 +1,24 @@
 //! What is known about a run, as text: `RUN.toml` for people, and the same entries inside `RUN.mcap`.
 //!
 //! A number that measures something is a text with its unit, as in every other file. An entry has one dotted key
-//! (`rig.y.torque_constant.value`) in both places, so one reader does for both.
+//! (`carriage.rig.y.torque_constant.value`) in both places, so one reader does for both.
+//!
+//! Schema 1 knew runs of the carriage only: `kind` for the role, and what is mounted and how it was driven without sections of their
+//! own. It is read as runs of the method `tow`; which axis of the body lay along the travel, it does not say.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use crate::campaign::BodyAxis;
 use crate::campaign_toml::{count, one_of};
 use crate::checksum;
 use crate::error::{RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
+use crate::run::channel::Meaning;
 use crate::run::meta::{
-    Axis, AxisConstants, BodyState, ClockAlignment, Declared, Direction, RunKind, RunMeta, RunStatus,
+    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, Mounted, Role, RunMeta,
+    RunStatus, TOW,
 };
 use crate::section::{Section, Source, parse};
 use crate::units::Dimension;
@@ -32,6 +38,9 @@ pub(crate) const END_RECORD_NAME: &str = "froude_run_end";
 pub(crate) const TORQUE_CONSTANT: Dimension = Dimension { m: 2, kg: 1, s: -2, k: 0, a: -1 };
 /// A/V, of the amplifier.
 pub(crate) const AMPLIFIER: Dimension = Dimension { m: -2, kg: -1, s: 3, k: 0, a: 2 };
+
+/// The newest form, which is written.
+const SCHEMA: u64 = 2;
 
 /// Keys whose values are whole numbers or true and false; all others are texts.
 const BARE: [&str; 9] =
@@ -56,14 +65,14 @@ pub fn parse_run_meta(path: &Path, text: &str) -> Result<RunMeta, RecordError> {
     let source = Source { path, text };
     let document = parse(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
-    root.schema("run")?;
+    let schema = root.schema_up_to("run", SCHEMA)?;
     // First of all: what was changed since it was written is believed in nothing.
     if let Some(value) = root.get(checksum::KEY)
         && root.as_text(checksum::KEY, value)? != checksum::of_toml(document.get_ref())
     {
         return Err(RecordError::Checksum { place: source.place(value.span().start) });
     }
-    meta(&root)
+    meta(&root, schema)
 }
 
 /// Writes a run's sidecar, whole or not at all.
@@ -91,10 +100,10 @@ pub fn run_meta_text(meta: &RunMeta) -> String {
     text
 }
 
-/// `rig.y` and `torque_constant.value`; sections are one word, of the rig two.
+/// `carriage.rig.y` and `torque_constant.value`; sections are one word, of the rig three.
 fn split_section(key: &str) -> (&str, &str) {
     let mut dots = key.match_indices('.').map(|(at, _)| at);
-    let at = if key.starts_with("rig.") { dots.nth(1) } else { dots.next() };
+    let at = if key.starts_with("carriage.rig.") { dots.nth(2) } else { dots.next() };
     at.map_or(("", key), |at| (&key[..at], &key[at + 1..]))
 }
 
@@ -131,10 +140,14 @@ pub(crate) fn of_record(path: &Path, record: &BTreeMap<String, String>) -> Resul
     parse_run_meta(path, &text)
 }
 
-/// A value as TOML: bare, or as a text in quotes.
+/// A value as TOML: a table or bare as it is, or a text in quotes.
 fn written(key: &str, value: &str) -> String {
     let last = key.rsplit('.').next().unwrap_or(key);
-    if BARE.contains(&last) && !key.starts_with("versions.") { value.to_owned() } else { quoted(value) }
+    if key.starts_with("channels.") {
+        return value.to_owned();
+    }
+    let is_named_freely = ["versions.", "constants."].iter().any(|section| key.starts_with(section));
+    if BARE.contains(&last) && !is_named_freely { value.to_owned() } else { quoted(value) }
 }
 
 /// A basic string of TOML.
@@ -161,45 +174,41 @@ fn key_word(name: &str) -> String {
 fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     let mut out: Vec<(String, String)> = Vec::new();
     let mut put = |key: &str, value: String| out.push((key.to_owned(), value));
-    put("schema", "1".to_owned());
+    put("schema", SCHEMA.to_string());
     put("id", meta.id.clone());
     put("campaign", meta.campaign.clone());
     if !meta.campaign_sha256.is_empty() {
         put("campaign_sha256", meta.campaign_sha256.clone());
     }
-    put("kind", meta.kind.name().to_owned());
+    put("method", meta.method.clone());
+    put("role", meta.role.name().to_owned());
     put("status", meta.status.name().to_owned());
     put("date", meta.date.clone());
     put("start_unix_ns", meta.start_unix_ns.to_string());
     put("log_rate", format!("{} Hz", meta.log_rate_hz));
-    put("axis", meta.axis.name().to_owned());
-    put("body", meta.body.name().to_owned());
-    put("ballasted", meta.is_ballasted.to_string());
+    put("note", meta.note.clone());
+    let Mounted { body, is_ballasted, hung_weight_n, travel } = &meta.mounted;
+    let CarriageFacts { set, pair, repeat, axis, target_speed_m_s, direction, rig, twin_seed } = &meta.carriage;
     let known = [
-        ("set", meta.set.map(|n| n.to_string())),
-        ("pair", meta.pair.map(|n| n.to_string())),
-        ("repeat", meta.repeat.map(|n| n.to_string())),
-        ("target_speed", meta.target_speed_m_s.map(|v| format!("{v} m/s"))),
-        ("direction", meta.direction.map(|d| d.name().to_owned())),
-        ("hung_weight", meta.hung_weight_n.map(|w| format!("{w} N"))),
-        ("twin_seed", meta.twin_seed.map(|seed| seed.to_string())),
+        ("mounted.body", Some(body.name().to_owned())),
+        ("mounted.ballasted", Some(is_ballasted.to_string())),
+        ("mounted.hung_weight", hung_weight_n.map(|w| format!("{w} N"))),
+        ("mounted.travel", travel.map(|axis| axis.name().to_owned())),
+        ("carriage.axis", Some(axis.name().to_owned())),
+        ("carriage.set", set.map(|n| n.to_string())),
+        ("carriage.pair", pair.map(|n| n.to_string())),
+        ("carriage.repeat", repeat.map(|n| n.to_string())),
+        ("carriage.target_speed", target_speed_m_s.map(|v| format!("{v} m/s"))),
+        ("carriage.direction", direction.map(|d| d.name().to_owned())),
+        ("carriage.twin_seed", twin_seed.map(|seed| seed.to_string())),
     ];
+    let is_driven = meta.carriage != CarriageFacts::default();
     for (key, value) in known {
-        if let Some(value) = value {
+        if let Some(value) = value.filter(|_| is_driven || !key.starts_with("carriage.")) {
             put(key, value);
         }
     }
-    put("note", meta.note.clone());
-    if let Some(log) = &meta.log {
-        put("log.bytes", log.bytes.to_string());
-        put("log.sha256", log.sha256.clone());
-    }
-    if let Some(clock) = &meta.clock {
-        put("clock.host_at_zero", format!("{} s", clock.host_at_zero_s));
-        put("clock.drift", format!("{} 1", clock.drift));
-        put("clock.standard_uncertainty", format!("{} s", clock.standard_uncertainty_s));
-    }
-    for (axis, constants) in &meta.rig {
+    for (axis, constants) in rig {
         let axis = key_word(axis);
         let efficiencies = [
             ("efficiency_forward", "1", constants.efficiency_forward),
@@ -211,14 +220,31 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
             ("gear_ratio", "1", Some(constants.gear_ratio)),
             ("sprocket_radius", "m", Some(constants.sprocket_radius_m)),
         ];
+        let mut put = |key: &str, value: String| put(&format!("carriage.rig.{axis}.{key}"), value);
         for (key, unit, constant) in declared.into_iter().chain(efficiencies) {
             if let Some(constant) = constant {
-                put(&format!("rig.{axis}.{key}.value"), format!("{} {unit}", constant.value));
-                put(&format!("rig.{axis}.{key}.standard"), format!("{} {unit}", constant.standard_uncertainty));
+                put(&format!("{key}.value"), format!("{} {unit}", constant.value));
+                put(&format!("{key}.standard"), format!("{} {unit}", constant.standard_uncertainty));
             }
         }
-        put(&format!("rig.{axis}.counts_per_revolution"), format!("{} 1", constants.counts_per_revolution));
-        put(&format!("rig.{axis}.efficiency_is_calibrated"), constants.is_calibrated.to_string());
+        put("counts_per_revolution", format!("{} 1", constants.counts_per_revolution));
+        put("efficiency_is_calibrated", constants.is_calibrated.to_string());
+    }
+    for (name, Meaning { quantity, unit, frame, sign, clock }) in &meta.channels {
+        let [quantity, unit, frame, clock] = [quantity, unit, frame.name(), clock].map(quoted);
+        put(
+            &format!("channels.{}", key_word(name)),
+            format!("{{ quantity = {quantity}, unit = {unit}, frame = {frame}, sign = {sign}, clock = {clock} }}"),
+        );
+    }
+    if let Some(log) = &meta.log {
+        put("log.bytes", log.bytes.to_string());
+        put("log.sha256", log.sha256.clone());
+    }
+    if let Some(clock) = &meta.clock {
+        put("clock.host_at_zero", format!("{} s", clock.host_at_zero_s));
+        put("clock.drift", format!("{} 1", clock.drift));
+        put("clock.standard_uncertainty", format!("{} s", clock.standard_uncertainty_s));
     }
     for (name, constant) in &meta.constants {
         put(&format!("constants.{}", key_word(name)), format!("{} {}", constant.value, constant.unit));
@@ -229,63 +255,73 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     out
 }
 
-fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
-    const KEYS: [&str; 26] = [
-        "schema",
-        "checksum",
-        "id",
-        "campaign",
-        "campaign_sha256",
-        "kind",
-        "status",
-        "date",
-        "start_unix_ns",
-        "log_rate",
-        "set",
-        "pair",
-        "repeat",
-        "axis",
-        "target_speed",
-        "direction",
-        "body",
-        "ballasted",
-        "hung_weight",
-        "twin_seed",
-        "note",
-        "log",
-        "clock",
-        "rig",
-        "constants",
-        "versions",
-    ];
-    s.only(&KEYS)?;
+/// Keys of every form.
+const ALWAYS: [&str; 14] = [
+    "schema",
+    "checksum",
+    "id",
+    "campaign",
+    "campaign_sha256",
+    "status",
+    "date",
+    "start_unix_ns",
+    "log_rate",
+    "note",
+    "log",
+    "clock",
+    "constants",
+    "versions",
+];
+const MOUNTED: [&str; 3] = ["body", "ballasted", "hung_weight"];
+const CARRIAGE: [&str; 8] = ["set", "pair", "repeat", "axis", "target_speed", "direction", "twin_seed", "rig"];
+
+fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
     let text = |key: &'static str| Ok::<_, RecordError>(s.text(key)?.unwrap_or_default().to_owned());
-    let number = |key: &'static str| count(s, key, u64::from(u32::MAX)).map(|n| n.map(|n| n as u32));
+    let role = |key: &'static str| {
+        one_of(s, key, &Role::NAMES, &Role::ALL)?
+            .ok_or_else(|| s.missing(key, "say what the run is for: \"wet\", \"dry\", \"still\", …"))
+    };
+    let (method, role, mounted, carriage) = if schema == 1 {
+        s.only(&[&ALWAYS[..], &["kind"], &MOUNTED, &CARRIAGE].concat())?;
+        (TOW.to_owned(), role("kind")?, mounted(s)?, carriage(s)?)
+    } else {
+        s.only(&[&ALWAYS[..], &["method", "role", "mounted", "carriage", "channels"]].concat())?;
+        let method = s.text("method")?.ok_or_else(|| {
+            s.missing("method", "say what sort of experiment it belongs to: \"tow\", \"free_decay\", …")
+        })?;
+        let mounted = s.section("mounted")?.map(|m| {
+            m.only(&[&MOUNTED[..], &["travel"]].concat())?;
+            mounted(&m)
+        });
+        let carriage = s.section("carriage")?.map(|c| {
+            c.only(&CARRIAGE)?;
+            carriage(&c)
+        });
+        let (mounted, carriage) = (mounted.transpose()?, carriage.transpose()?);
+        (method.to_owned(), role("role")?, mounted.unwrap_or_default(), carriage.unwrap_or_default())
+    };
     let mut out = RunMeta {
         campaign: text("campaign")?,
         campaign_sha256: text("campaign_sha256")?,
         id: s.text("id")?.ok_or_else(|| s.missing("id", "write id = \"…\", the name of the run's files"))?.to_owned(),
-        kind: one_of(s, "kind", &RunKind::NAMES, &RunKind::ALL)?
-            .ok_or_else(|| s.missing("kind", "say what the run is for: \"wet\", \"dry\", \"still\", …"))?,
-        set: number("set")?,
-        pair: number("pair")?,
-        repeat: number("repeat")?,
-        axis: one_of(s, "axis", &Axis::NAMES, &Axis::ALL)?.unwrap_or_default(),
-        target_speed_m_s: s.quantity("target_speed", Dimension::SPEED)?,
-        direction: one_of(s, "direction", &Direction::NAMES, &Direction::ALL)?,
-        body: one_of(s, "body", &BodyState::NAMES, &BodyState::ALL)?.unwrap_or_default(),
-        is_ballasted: s.flag("ballasted")?.unwrap_or(false),
-        hung_weight_n: s.quantity("hung_weight", Dimension::FORCE)?,
+        method,
+        role,
+        mounted,
+        carriage,
         status: one_of(s, "status", &RunStatus::NAMES, &RunStatus::ALL)?.ok_or_else(|| {
             s.missing("status", "say how it ended: \"complete\", \"interrupted\", \"faulted\" or \"cut\"")
         })?,
         note: text("note")?,
-        twin_seed: s.integer("twin_seed")?,
         log_rate_hz: s.quantity("log_rate", Dimension::ANGULAR_SPEED)?.unwrap_or(0.0),
         date: text("date")?,
         start_unix_ns: s.integer("start_unix_ns")?.unwrap_or(0),
         ..RunMeta::default()
     };
+    if let Some(channels) = s.section("channels")? {
+        for (name, _, value) in channels.entries() {
+            out.channels.insert(name.to_owned(), Meaning::read(&channels.as_section(name, value)?, name)?);
+        }
+    }
     if let Some(log) = s.section("log")? {
         log.only(&["bytes", "sha256"])?;
         let lacks =
@@ -303,11 +339,6 @@ fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
             standard_uncertainty_s: part("standard_uncertainty", Dimension::TIME)?,
         });
     }
-    if let Some(rig) = s.section("rig")? {
-        for (axis, _, value) in rig.entries() {
-            out.rig.insert(axis.to_owned(), axis_constants(&rig.as_section(axis, value)?)?);
-        }
-    }
     if let Some(constants) = s.section("constants")? {
         for (name, _, value) in constants.entries() {
             let quantity = constants.as_quantity(name, value)?;
@@ -318,6 +349,37 @@ fn meta(s: &Section<'_>) -> Result<RunMeta, RecordError> {
     if let Some(versions) = s.section("versions")? {
         for (name, _, value) in versions.entries() {
             out.versions.insert(name.to_owned(), versions.as_text(name, value)?.to_owned());
+        }
+    }
+    Ok(out)
+}
+
+/// What is mounted: of a section of its own, in schema 1 of the file.
+fn mounted(s: &Section<'_>) -> Result<Mounted, RecordError> {
+    Ok(Mounted {
+        body: one_of(s, "body", &BodyState::NAMES, &BodyState::ALL)?.unwrap_or_default(),
+        is_ballasted: s.flag("ballasted")?.unwrap_or(false),
+        hung_weight_n: s.quantity("hung_weight", Dimension::FORCE)?,
+        travel: one_of(s, "travel", &BodyAxis::ALL.map(BodyAxis::name), &BodyAxis::ALL)?,
+    })
+}
+
+/// How a carriage drove it: of a section of its own, in schema 1 of the file.
+fn carriage(s: &Section<'_>) -> Result<CarriageFacts, RecordError> {
+    let number = |key: &'static str| count(s, key, u64::from(u32::MAX)).map(|n| n.map(|n| n as u32));
+    let mut out = CarriageFacts {
+        set: number("set")?,
+        pair: number("pair")?,
+        repeat: number("repeat")?,
+        axis: one_of(s, "axis", &Axis::NAMES, &Axis::ALL)?.unwrap_or_default(),
+        target_speed_m_s: s.quantity("target_speed", Dimension::SPEED)?,
+        direction: one_of(s, "direction", &Direction::NAMES, &Direction::ALL)?,
+        twin_seed: s.integer("twin_seed")?,
+        ..CarriageFacts::default()
+    };
+    if let Some(rig) = s.section("rig")? {
+        for (axis, _, value) in rig.entries() {
+            out.rig.insert(axis.to_owned(), axis_constants(&rig.as_section(axis, value)?)?);
         }
     }
     Ok(out)

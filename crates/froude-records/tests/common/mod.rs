@@ -1,9 +1,10 @@
 //! A carriage for tests: ticks whose every value can be computed again.
 #![allow(dead_code)]
 
+use froude_records::campaign::BodyAxis;
 use froude_records::run::{
-    Axis, AxisConstants, AxisSample, BodyState, CarriageSample, ClockAlignment, Declared, Direction, Layout, RunKind,
-    RunMeta,
+    Axis, AxisConstants, AxisSample, BodyState, CarriageFacts, CarriageSample, ClockAlignment, Declared, Direction,
+    Layout, Mounted, Role, RunMeta, TOW,
 };
 
 /// Ticks per second of the board.
@@ -32,22 +33,28 @@ pub fn meta(id: &str) -> RunMeta {
     RunMeta {
         campaign: "Cylinder across its axis \"wet\"\n".to_owned(),
         id: id.to_owned(),
-        kind: RunKind::Wet,
-        set: Some(1),
-        pair: Some(3),
-        repeat: Some(2),
-        axis: Axis::Y,
-        target_speed_m_s: Some(0.55),
-        direction: Some(Direction::Backward),
-        body: BodyState::Wet,
-        is_ballasted: true,
-        hung_weight_n: Some(19.62),
-        rig: [("y".to_owned(), constants)].into_iter().collect(),
+        method: TOW.to_owned(),
+        role: Role::Wet,
+        mounted: Mounted {
+            body: BodyState::Wet,
+            is_ballasted: true,
+            hung_weight_n: Some(19.62),
+            travel: Some(BodyAxis::Y),
+        },
+        carriage: CarriageFacts {
+            set: Some(1),
+            pair: Some(3),
+            repeat: Some(2),
+            axis: Axis::Y,
+            target_speed_m_s: Some(0.55),
+            direction: Some(Direction::Backward),
+            rig: [("y".to_owned(), constants)].into_iter().collect(),
+            twin_seed: Some(u64::MAX),
+        },
         note: "ripples, waited a minute more".to_owned(),
         versions: [("froude".to_owned(), "0.1.0".to_owned()), ("board fw".to_owned(), "1.0".to_owned())]
             .into_iter()
             .collect(),
-        twin_seed: Some(u64::MAX),
         clock: Some(ClockAlignment { host_at_zero_s: -0.0125, drift: 3.1e-6, standard_uncertainty_s: 2e-5 }),
         log_rate_hz: RATE_HZ,
         date: "2026-11-21T10:57:34Z".to_owned(),

@@ -1,7 +1,7 @@
 //! From what is asked for to runs in order.
 
 use froude_records::carriage::{CarriagePlan, Directions, Order};
-use froude_records::run::{Axis, BodyState, Direction, RunKind};
+use froude_records::run::{Axis, BodyState, Direction, Role};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
@@ -85,7 +85,7 @@ pub struct PlannedRun {
     /// Name, unique; also the stem of its files. It sorts in order of the plan.
     pub id: String,
     /// What it is for.
-    pub kind: RunKind,
+    pub role: Role,
     /// Axis.
     pub axis: Axis,
     /// ABBA block, from 1.
@@ -163,7 +163,7 @@ pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
     let mut planner =
         Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
     for (name, volts) in [("jog-forward", JOG_V), ("jog-backward", -JOG_V)] {
-        planner.run(name, RunKind::Jog, Drive::Jog { from_m: start_m, volts, distance_m: JOG_M }, None);
+        planner.run(name, Role::Jog, Drive::Jog { from_m: start_m, volts, distance_m: JOG_M }, None);
     }
     planner.warm_up();
     if let Some(p) = &asked.excitation {
@@ -175,7 +175,7 @@ pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
             duty: p.duty,
             duration_s: p.duration_s,
         };
-        planner.run("pulses", RunKind::Excitation, drive, None);
+        planner.run("pulses", Role::Excitation, drive, None);
     }
     // Friction and newtons a volt are those of the wheel load that is towed: the body rides along, dry.
     if asked.friction.is_some() || asked.calibration.is_some() {
@@ -228,7 +228,7 @@ pub fn tuning(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> 
         Planner { asked, start_m, steps: Vec::new(), body: BodyState::None, hung_weight_n: 0.0, number: 0 };
     let &Experiments { relay_v: volts, hysteresis_m, relay_s: duration_s, .. } = experiments;
     let from_m = start_m + 0.5 * asked.distance_m;
-    planner.run("relay", RunKind::Relay, Drive::Relay { from_m, volts, hysteresis_m, duration_s }, None);
+    planner.run("relay", Role::Relay, Drive::Relay { from_m, volts, hysteresis_m, duration_s }, None);
     planner.sweep("sweep", experiments);
     planner.steps
 }
@@ -252,15 +252,15 @@ impl Planner<'_> {
             sweep_v: volts, sweep_hz: [from_hz, to_hz], sweep_s: duration_s, sweep_m_s: speed_m_s, ..
         } = experiments;
         let from_m = self.start_m;
-        self.run(name, RunKind::Sweep, Drive::Sweep { from_m, speed_m_s, volts, from_hz, to_hz, duration_s }, None);
+        self.run(name, Role::Sweep, Drive::Sweep { from_m, speed_m_s, volts, from_hz, to_hz, duration_s }, None);
     }
 
-    fn run(&mut self, name: &str, kind: RunKind, drive: Drive, pair: Option<(u32, u32)>) {
+    fn run(&mut self, name: &str, role: Role, drive: Drive, pair: Option<(u32, u32)>) {
         self.number += 1;
         let is_wet = self.body == BodyState::Wet;
         self.steps.push(Step::Run(PlannedRun {
             id: format!("{:03}-{name}", self.number),
-            kind,
+            role,
             axis: self.asked.axis,
             set: pair.map(|p| p.0),
             pair: pair.map(|p| p.1),
@@ -308,8 +308,8 @@ impl Planner<'_> {
     }
 
     /// There, or there and back, where the tows go; each way is a run of its own.
-    fn strokes(&mut self, name: &str, kind: RunKind, speed_m_s: f64, is_both: bool, pair: Option<(u32, u32)>) {
-        self.strokes_over(self.start_m, self.asked.distance_m, name, kind, speed_m_s, is_both, pair);
+    fn strokes(&mut self, name: &str, role: Role, speed_m_s: f64, is_both: bool, pair: Option<(u32, u32)>) {
+        self.strokes_over(self.start_m, self.asked.distance_m, name, role, speed_m_s, is_both, pair);
     }
 
     fn strokes_over(
@@ -317,16 +317,16 @@ impl Planner<'_> {
         from_m: f64,
         way_m: f64,
         name: &str,
-        kind: RunKind,
+        role: Role,
         speed_m_s: f64,
         is_both: bool,
         pair: Option<(u32, u32)>,
     ) {
         let to_m = from_m + way_m;
-        self.run(&format!("{name}-forward"), kind, Drive::Profile { from_m, to_m, speed_m_s }, pair);
+        self.run(&format!("{name}-forward"), role, Drive::Profile { from_m, to_m, speed_m_s }, pair);
         if is_both {
             let back = Drive::Profile { from_m: to_m, to_m: from_m, speed_m_s };
-            self.run(&format!("{name}-backward"), kind, back, pair);
+            self.run(&format!("{name}-backward"), role, back, pair);
         }
     }
 
@@ -334,7 +334,7 @@ impl Planner<'_> {
         let Some(warm_up) = self.asked.warm_up else { return };
         let stroke_s = self.asked.distance_m / warm_up.speed_m_s;
         for _ in 0..(0.5 * warm_up.duration_s / stroke_s).ceil().clamp(1.0, 1e3) as usize {
-            self.strokes("warm-up", RunKind::WarmUp, warm_up.speed_m_s, true, None);
+            self.strokes("warm-up", Role::WarmUp, warm_up.speed_m_s, true, None);
         }
     }
 
@@ -344,7 +344,7 @@ impl Planner<'_> {
         for repeat in 1..=sweep.repeats as u32 {
             for &speed_m_s in &sweep.speed_m_s {
                 let name = format!("friction-{:.0}mm_s", 1e3 * speed_m_s);
-                self.strokes(&name, RunKind::Friction, speed_m_s, true, Some((repeat, repeat)));
+                self.strokes(&name, Role::Friction, speed_m_s, true, Some((repeat, repeat)));
             }
         }
     }
@@ -359,7 +359,7 @@ impl Planner<'_> {
             self.mount(self.body, weight_n);
             for _ in 0..calibration.repeats {
                 let name = format!("calibration-{weight_n}N");
-                self.strokes_over(from_m, way_m, &name, RunKind::Calibration, calibration.speed_m_s, true, None);
+                self.strokes_over(from_m, way_m, &name, Role::Calibration, calibration.speed_m_s, true, None);
             }
         }
     }
@@ -378,13 +378,13 @@ impl Planner<'_> {
         };
         for (set, (pair, body)) in (1..).zip(halves) {
             self.mount(body, 0.0);
-            let kind = if body == wet { RunKind::Wet } else { RunKind::Dry };
+            let role = if body == wet { Role::Wet } else { Role::Dry };
             let mut speeds = self.asked.speed_m_s.clone();
             speeds.shuffle(&mut rng);
             for speed_m_s in speeds {
-                let name = format!("{}-p{pair}-{:.0}mm_s", kind.name(), 1e3 * speed_m_s);
+                let name = format!("{}-p{pair}-{:.0}mm_s", role.name(), 1e3 * speed_m_s);
                 let is_both = self.asked.directions == Directions::Both;
-                self.strokes(&name, kind, speed_m_s, is_both, Some((set, pair)));
+                self.strokes(&name, role, speed_m_s, is_both, Some((set, pair)));
             }
         }
     }
@@ -438,18 +438,18 @@ pub(crate) mod tests {
     #[test]
     fn blocks_stand_in_abba_order_and_the_operator_is_asked_once_between_them() {
         let steps = plan(&asked(), 0.5, 1);
-        let mut blocks: Vec<RunKind> = Vec::new();
+        let mut blocks: Vec<Role> = Vec::new();
         let mut asked = 0;
         for step in &steps {
             match step {
-                Step::Run(r) if matches!(r.kind, RunKind::Dry | RunKind::Wet) && r.speed_m_s() == Some(0.25) => {
-                    blocks.push(r.kind);
+                Step::Run(r) if matches!(r.role, Role::Dry | Role::Wet) && r.speed_m_s() == Some(0.25) => {
+                    blocks.push(r.role);
                 }
                 Step::Operator(o) if o.body != BodyState::None => asked += 1,
                 _ => {}
             }
         }
-        let (a, b) = (RunKind::Dry, RunKind::Wet);
+        let (a, b) = (Role::Dry, Role::Wet);
         assert_eq!(blocks, [a, b, b, a, a, b, b, a]);
         // Dry for friction; on with the weight and off again; then dry, wet, dry, wet, dry without a change at the beginning.
         assert_eq!(asked, 7);
@@ -460,15 +460,15 @@ pub(crate) mod tests {
         let steps = plan(&asked(), 0.5, 1);
         for pair in 1..=4 {
             for speed in [0.05, 0.25, 0.55] {
-                let of = |kind| -> Vec<Drive> {
+                let of = |role| -> Vec<Drive> {
                     runs(&steps)
                         .iter()
-                        .filter(|r| r.pair == Some(pair) && r.kind == kind && r.speed_m_s() == Some(speed))
+                        .filter(|r| r.pair == Some(pair) && r.role == role && r.speed_m_s() == Some(speed))
                         .map(|r| r.drive)
                         .collect()
                 };
-                assert_eq!(of(RunKind::Dry).len(), 1);
-                assert_eq!(of(RunKind::Dry), of(RunKind::Wet));
+                assert_eq!(of(Role::Dry).len(), 1);
+                assert_eq!(of(Role::Dry), of(Role::Wet));
             }
         }
     }
@@ -477,9 +477,9 @@ pub(crate) mod tests {
     fn the_weight_hangs_for_the_calibration_only() {
         let steps = plan(&asked(), 0.5, 1);
         let weights: Vec<f64> =
-            runs(&steps).iter().filter(|r| r.kind == RunKind::Calibration).map(|r| r.hung_weight_n).collect();
+            runs(&steps).iter().filter(|r| r.role == Role::Calibration).map(|r| r.hung_weight_n).collect();
         assert_eq!(weights, [0.0, 0.0, 10.0, 10.0, 0.0, 0.0]);
-        assert!(runs(&steps).iter().filter(|r| r.kind != RunKind::Calibration).all(|r| r.hung_weight_n == 0.0));
+        assert!(runs(&steps).iter().filter(|r| r.role != Role::Calibration).all(|r| r.hung_weight_n == 0.0));
     }
 
     #[test]

@@ -12,7 +12,7 @@ use froude_control::request::{Excitation, Move};
 use froude_control::shaper::ShapedProfile;
 use froude_control::travel::{Rigid, foresee_excitation, preflight, preflight_excitation};
 use froude_records::carriage::{CarriagePlan, RigSpec};
-use froude_records::run::{BodyState, RunKind};
+use froude_records::run::{BodyState, Role};
 
 use super::plan::{Drive, JOG_S, PlannedRun};
 use super::setup;
@@ -245,7 +245,7 @@ fn tow(
         object(kind, text);
     }
     // What only warms up is not averaged.
-    if run.kind != RunKind::WarmUp
+    if run.role != Role::WarmUp
         && let Some(text) = ramps.too_short(way)
     {
         object("steady", text);

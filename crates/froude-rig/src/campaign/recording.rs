@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use froude_records::RecordError;
 use froude_records::run::{
-    AxisSample, CarriageSample, ClockAlignment, EventKind, Layout, Packing, Recorder, RunMeta, RunStatus,
+    AxisSample, BodyState, CarriageFacts, CarriageSample, ClockAlignment, EventKind, Layout, Mounted, Packing,
+    Recorder, Role, RunMeta, RunStatus, TOW,
 };
 use indexmap::IndexMap;
 
@@ -46,17 +47,24 @@ impl<'a> Recording<'a> {
             campaign: setting.campaign.clone(),
             campaign_sha256: setting.campaign_sha256.clone(),
             id: run.id.clone(),
-            kind: run.kind,
-            set: run.set,
-            pair: run.pair,
-            repeat: run.pair,
-            axis: run.axis,
-            target_speed_m_s: run.speed_m_s(),
-            direction: run.direction(),
-            body: run.body,
-            is_ballasted: run.is_ballasted,
-            hung_weight_n: (run.kind == froude_records::run::RunKind::Calibration).then_some(run.hung_weight_n),
-            rig: setting.constants.clone(),
+            method: TOW.to_owned(),
+            role: run.role,
+            mounted: Mounted {
+                body: run.body,
+                is_ballasted: run.is_ballasted,
+                hung_weight_n: (run.role == Role::Calibration).then_some(run.hung_weight_n),
+                travel: setting.travel.filter(|_| run.body != BodyState::None),
+            },
+            carriage: CarriageFacts {
+                set: run.set,
+                pair: run.pair,
+                repeat: run.pair,
+                axis: run.axis,
+                target_speed_m_s: run.speed_m_s(),
+                direction: run.direction(),
+                rig: setting.constants.clone(),
+                twin_seed: setting.twin_seed,
+            },
             constants: IndexMap::new(),
             status: RunStatus::Running,
             note: String::new(),
@@ -64,11 +72,11 @@ impl<'a> Recording<'a> {
                 ("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
                 ("board".to_owned(), facts.version.clone()),
             ]),
-            twin_seed: setting.twin_seed,
             clock: None,
             log_rate_hz: rate_hz,
             date: setting.date.clone(),
             start_unix_ns: setting.start_unix_ns,
+            channels: IndexMap::new(),
             log: None,
         };
         let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };

@@ -16,6 +16,7 @@ use froude_control::request::{Excitation, Move, Request};
 use froude_control::status::{Phase, Refusal};
 use froude_control::tick::AXES;
 use froude_records::RecordError;
+use froude_records::campaign::BodyAxis;
 use froude_records::run::{AxisConstants, BodyState, CampaignMark, EventKind, RunStatus};
 use indexmap::IndexMap;
 
@@ -262,6 +263,8 @@ pub struct Setting {
     pub homing_s: [f64; AXES],
     /// Shape the reference for the load's mode.
     pub is_shaped: bool,
+    /// The axis of the body that lies along the travel; `None` where nobody declared it.
+    pub travel: Option<BodyAxis>,
     /// Declared constants by axis.
     pub constants: IndexMap<String, AxisConstants>,
     /// What rides on the carriage apart from where it is mounted: only a twin needs it.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use froude_identify::carriage::DragRun;
 use froude_identify::carriage::calibration::{Calibration, Jog as Verdict, jog as judged};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{RunKind, RunLog};
+use froude_records::run::{Role, RunLog};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
@@ -48,13 +48,13 @@ const EXCITING: f64 = 4.0;
 ///
 /// See [`Error`].
 pub fn calibrate(paths: &[PathBuf], campaign: Option<PathBuf>) -> Result<CalibrationOutcome, Error> {
-    let runs = read(paths, &[RunKind::Calibration, RunKind::Jog], campaign.as_deref())?;
+    let runs = read(paths, &[Role::Calibration, Role::Jog], campaign.as_deref())?;
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
     let setup = setup_of(runs.campaign.as_ref(), constants);
     let hung: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let (calibration, why_not) = calibration_of(&hung, runs.campaign.as_ref(), &setup);
-    let jogs: Vec<Jog> = runs.logs.iter().filter(|l| l.meta.kind == RunKind::Jog).map(jog).collect::<Result<_, _>>()?;
+    let jogs: Vec<Jog> = runs.logs.iter().filter(|l| l.meta.role == Role::Jog).map(jog).collect::<Result<_, _>>()?;
     let mut findings = runs.findings;
     findings.extend(why_not);
     for jog in jogs.iter().filter(|j| j.verdict != Verdict::Right) {
@@ -93,7 +93,7 @@ pub fn calibrate(paths: &[PathBuf], campaign: Option<PathBuf>) -> Result<Calibra
 }
 
 fn jog(log: &RunLog) -> Result<Jog, Error> {
-    let axis = log.meta.axis.name();
+    let axis = log.meta.carriage.axis.name();
     let position = log.channel(&format!("{axis}/position"), Dimension::LENGTH)?;
     let command = log.channel(&format!("{axis}/command"), Dimension::VOLTAGE)?;
     let state = log.channel(&format!("{axis}/state"), Dimension::ONE)?;

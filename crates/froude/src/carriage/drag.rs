@@ -13,7 +13,7 @@ use froude_identify::carriage::run::{
 use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};
-use froude_records::run::{AxisConstants, RunKind, RunLog};
+use froude_records::run::{AxisConstants, Role, RunLog};
 use froude_records::text::counted;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{DocumentSection, TextTable};
@@ -24,9 +24,8 @@ use super::runs::{Runs, density_kg_m3, for_drag};
 use super::servo::two_masses;
 use crate::Error;
 
-/// Kinds of run that tell drag; pulses tell the two masses of the flexible model.
-pub(super) const KINDS: [RunKind; 5] =
-    [RunKind::Dry, RunKind::Wet, RunKind::Friction, RunKind::Calibration, RunKind::Excitation];
+/// Roles of runs that tell drag; pulses tell the two masses of the flexible model.
+pub(super) const KINDS: [Role; 5] = [Role::Dry, Role::Wet, Role::Friction, Role::Calibration, Role::Excitation];
 
 /// Standard acceleration of gravity, m/s².
 const G_M_S2: f64 = 9.80665;
@@ -55,6 +54,7 @@ pub(super) fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, Error>
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
     let (two_masses, no_two_masses) = two_masses(&runs.logs);
     let mut setup = setup_of(runs.campaign.as_ref(), constants);
+    setup.travel = runs.travel;
     setup.flexible = two_masses.map(|report| report.flexible());
     let (calibration, why_not) = calibration_of(&reduced, runs.campaign.as_ref(), &setup);
     setup.calibration = calibration.as_ref().map(|c| c.force_per_volt);
@@ -268,7 +268,7 @@ pub(crate) fn calibration_from(
 
 /// Key of a calibration: of the runs that it was made from. Whoever calibrates with the same runs has the same error.
 fn calibrated_by(runs: &Runs) -> Result<Option<String>, Error> {
-    let of = |log: &&RunLog| log.meta.kind == RunKind::Calibration;
+    let of = |log: &&RunLog| log.meta.role == Role::Calibration;
     let mut sums = runs.logs.iter().filter(of).map(|log| sha256_of_file(&log.path)).collect::<Result<Vec<_>, _>>()?;
     sums.sort_unstable();
     Ok((!sums.is_empty()).then(|| format!("force_per_volt/{}", short_key(sums.join(" ").as_bytes()))))
@@ -326,10 +326,10 @@ pub(super) fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentS
             let m = &log.meta;
             vec![
                 m.id.clone(),
-                m.kind.name().to_owned(),
-                m.pair.map_or_else(|| "–".to_owned(), |p| p.to_string()),
-                m.target_speed_m_s.map_or_else(|| "–".to_owned(), |v| number::plain(v, 3)),
-                super::runs::way(m.direction).to_owned(),
+                m.role.name().to_owned(),
+                m.carriage.pair.map_or_else(|| "–".to_owned(), |p| p.to_string()),
+                m.carriage.target_speed_m_s.map_or_else(|| "–".to_owned(), |v| number::plain(v, 3)),
+                super::runs::way(m.carriage.direction).to_owned(),
                 number::plain(log.duration_s(), 3),
             ]
         })

@@ -9,7 +9,7 @@ use froude_identify::carriage::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 use froude_records::hash::sha256_of_bytes;
-use froude_records::run::{BodyState, CampaignMark, RunKind, RunMeta, check_names, read_run};
+use froude_records::run::{BodyState, CampaignMark, Role, RunMeta, check_names, read_run};
 use froude_rig::campaign::lock::FolderLock;
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check, check_campaign};
@@ -283,6 +283,7 @@ pub fn drive(
         return_speed_m_s: return_speed_m_s(&prepared.asked, &axis.limits),
         homing_s: prepared.control.axes.map(|axis| homing_s(&axis.limits)),
         is_shaped: axis.mode_hz > 0.0,
+        travel: prepared.campaign.body.as_ref().and_then(|body| body.travel),
         constants,
         load,
         twin_seed,
@@ -389,11 +390,11 @@ impl Live {
     /// Reads the run again from its file and asks whether enough is known. A run that gives no point only gives none.
     fn after(&mut self, path: &Path, run: &PlannedRun) -> Option<String> {
         self.online.as_ref()?;
-        if !matches!(run.kind, RunKind::Dry | RunKind::Wet | RunKind::Calibration) {
+        if !matches!(run.role, Role::Dry | Role::Wet | Role::Calibration) {
             return None;
         }
         let log = read_run(path).ok()?;
-        if run.kind == RunKind::Calibration {
+        if run.role == Role::Calibration {
             if let Ok(Some(run)) = for_drag(&log) {
                 self.calibration.push(&run, self.setup.steady);
             }
@@ -407,9 +408,9 @@ impl Live {
             online.push_dry(mean);
         }
         let partner = self.waiting.iter().position(|other| {
-            other.meta.pair == log.meta.pair
-                && other.meta.target_speed_m_s == log.meta.target_speed_m_s
-                && other.meta.direction == log.meta.direction
+            other.meta.carriage.pair == log.meta.carriage.pair
+                && other.meta.carriage.target_speed_m_s == log.meta.carriage.target_speed_m_s
+                && other.meta.carriage.direction == log.meta.carriage.direction
         });
         let Some(partner) = partner else {
             self.waiting.push(Waiting { path: path.to_owned(), meta: log.meta });
@@ -418,7 +419,7 @@ impl Live {
         let other = read_run(&self.waiting.swap_remove(partner).path);
         self.differences += 1;
         if let Ok(other) = &other
-            && let (wet, dry) = if log.meta.body == BodyState::Wet { (&log, other) } else { (other, &log) }
+            && let (wet, dry) = if log.meta.mounted.body == BodyState::Wet { (&log, other) } else { (other, &log) }
             && let (Ok(Some(wet)), Ok(Some(dry))) = (for_drag(wet), for_drag(dry))
             && let Ok(point) = mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady)
         {

@@ -4,18 +4,22 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use froude_hydro::fluid::Water;
+use froude_identify::carriage::coefficient::Method as CarriageMethod;
 use froude_identify::carriage::run as drag;
+use froude_identify::decay::Method as DecayMethod;
 use froude_records::RecordError;
-use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::campaign::{BodyAxis, Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
-    BodyState, Direction, DoubtKind, RunKind, RunLog, RunMeta, RunReader, RunStatus, read_run_meta,
+    BodyState, Direction, DoubtKind, FREE_DECAY, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
 };
+use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
 use super::whole::{Complete, beside, folder_of};
 use crate::Error;
+use crate::decay::logs_in;
 
 /// Name of the campaign's copy in a folder of runs.
 pub const CAMPAIGN_COPY: &str = "campaign.toml";
@@ -31,7 +35,9 @@ pub struct Runs {
     pub findings: Vec<Finding>,
     /// The campaign that lies with them.
     pub campaign: Option<Campaign>,
-    /// How many runs of the same kinds lie beside single runs that were named, and were not named; 0 where whole folders were read.
+    /// The axis of the body along the travel, as the runs declare it or else their campaign; `None` where neither does.
+    pub travel: Option<BodyAxis>,
+    /// How many runs of the same roles lie beside single runs that were named, and were not named; 0 where whole folders were read.
     pub beside: usize,
     /// What was named, as results are called after it.
     named: Named,
@@ -62,7 +68,7 @@ impl Runs {
     }
 }
 
-/// Reads the complete runs of these kinds below `paths` (folders, or single runs by their log or their sidecar). Truths of a twin are not read.
+/// Reads the complete tows of these roles below `paths` (folders, or single runs by their log or their sidecar). Truths of a twin are not read.
 ///
 /// A log that is damaged, cut off or gone is left out with a finding, and so is said what a folder lacks of its campaign.
 ///
@@ -70,9 +76,9 @@ impl Runs {
 ///
 /// A path without runs, a run that cannot be read; a run that is there twice, of another campaign than the runs beside it, or
 /// whose log and sidecar were exchanged.
-pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Result<Runs, Error> {
+pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Result<Runs, Error> {
     let mut out = Runs { folder: first_folder(paths), ..Runs::default() };
-    let (mut members, mut doubts) = (Vec::new(), Vec::new());
+    let (mut members, mut doubts, mut others) = (Vec::new(), Vec::new(), Vec::new());
     let mut complete = Complete::default();
     let files = files(paths)?;
     for file in &files {
@@ -83,7 +89,11 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
                 Err(_) if !file.exists() => continue,
                 meta => meta?,
             };
-            if !kinds.contains(&meta.kind) {
+            if meta.method != TOW {
+                others.push(meta);
+                continue;
+            }
+            if !roles.contains(&meta.role) {
                 if meta.status == RunStatus::Complete && file.exists() && !is_put_aside(file, &meta) {
                     complete.add(file, &meta);
                 }
@@ -113,7 +123,11 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
         let wanted: Vec<String> =
             reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
         let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
-        if !kinds.contains(&log.meta.kind) {
+        if log.meta.method != TOW {
+            others.push(log.meta);
+            continue;
+        }
+        if !roles.contains(&log.meta.role) {
             if log.meta.status == RunStatus::Complete {
                 complete.add(file, &log.meta);
             }
@@ -155,11 +169,11 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     let singles: Vec<PathBuf> = files.iter().filter(|log| !paths.contains(&folder_of(log))).cloned().collect();
     // A calibration from another folder, beside whole folders of runs, is no part of a campaign: it is asked for its newtons a volt alone.
     let is_borrowed = |log: &PathBuf| {
-        let kind = out.logs.iter().find(|known| &known.path == log).map(|known| known.meta.kind);
-        kind == Some(RunKind::Calibration) && paths.iter().any(|path| path.is_dir())
+        let role = out.logs.iter().find(|known| &known.path == log).map(|known| known.meta.role);
+        role == Some(Role::Calibration) && paths.iter().any(|path| path.is_dir())
     };
     let parts: Vec<PathBuf> = singles.iter().filter(|log| !is_borrowed(log)).cloned().collect();
-    out.beside = beside(&parts, kinds)?.len();
+    out.beside = beside(&parts, roles)?.len();
     let mut folders: Vec<PathBuf> = paths.iter().filter(|path| path.is_dir()).cloned().collect();
     if out.beside == 0 {
         // All that lies there was named, one by one.
@@ -167,7 +181,7 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     }
     for folder in &folders {
         // That a campaign stopped early is said by whoever pays for it.
-        let lacking = complete.against_plan(folder, kinds).filter(|finding| finding.severity > Severity::Note);
+        let lacking = complete.against_plan(folder, roles).filter(|finding| finding.severity > Severity::Note);
         out.findings.extend(lacking);
     }
     out.named = match folders.as_slice() {
@@ -181,19 +195,107 @@ pub fn read(paths: &[PathBuf], kinds: &[RunKind], campaign: Option<&Path>) -> Re
     let copy = out.folder.join(CAMPAIGN_COPY);
     let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
     out.campaign = path.as_deref().map(read_campaign).transpose()?;
+    out.travel = attitude(&out.logs, out.campaign.as_ref())?;
     if out.logs.is_empty() {
-        let names: Vec<&str> = kinds.iter().map(|k| k.name()).collect();
+        refuse_others(&out.folder, TOW, &others)?;
+        let names: Vec<&str> = roles.iter().map(|k| k.name()).collect();
         let left = match out.findings.first() {
             Some(first) => format!("; left out: {}", first.message),
             None => String::new(),
         };
         return Err(Error::Nothing(format!(
-            "{}: no complete run of the kinds {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
+            "{}: no complete run of the roles {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
             out.folder.display(),
             names.join(", ")
         )));
     }
+    if let Some(first) = others.first() {
+        let text = format!(
+            "{} not of the method {TOW} and left out (the first is {}, of {})",
+            counted(others.len(), "run is", "runs are"),
+            first.id,
+            of_method(first)
+        );
+        out.findings.push(Finding::new(Severity::Note, "run-of-another-method", text));
+    }
     Ok(out)
+}
+
+/// The method that a run says it belongs to, in words.
+pub(crate) fn of_method(meta: &RunMeta) -> String {
+    if meta.method.is_empty() { "no method that it states".to_owned() } else { format!("the method {}", meta.method) }
+}
+
+/// What every run in a folder says of itself, as far as it can be read.
+pub(crate) fn recorded_in(folder: &Path) -> Result<Vec<RunMeta>, Error> {
+    let read = |log: PathBuf| {
+        read_run_meta(&log.with_extension("toml"))
+            .ok()
+            .or_else(|| Some(RunReader::open(&log).ok()?.read_all().ok()?.meta))
+    };
+    Ok(files(&[folder.to_owned()])?.into_iter().filter_map(read).collect())
+}
+
+/// Refuses a folder without runs of the method that is read (`wanted`) and with others.
+///
+/// # Errors
+///
+/// Runs of another method, or logs of another program where tows are read: which, and what reads them.
+pub(crate) fn refuse_others(folder: &Path, wanted: &str, found: &[RunMeta]) -> Result<(), Error> {
+    let decays = || DecayMethod::ALL.map(DecayMethod::name).to_vec();
+    let found: Vec<&RunMeta> = found.iter().filter(|meta| meta.method != wanted).collect();
+    let (what, readers) = match found.first() {
+        Some(first) => {
+            let roles: BTreeSet<&str> = found.iter().map(|meta| meta.role.name()).collect();
+            let roles = roles.into_iter().collect::<Vec<_>>().join(", ");
+            let readers = match first.method.as_str() {
+                TOW => CarriageMethod::ALL.map(CarriageMethod::name).to_vec(),
+                FREE_DECAY => decays(),
+                _ => Vec::new(),
+            };
+            let runs = counted(found.len(), "run there is", "runs there are");
+            (format!("{runs} of {} (role {roles})", of_method(first)), readers)
+        }
+        None if wanted == TOW && folder.is_dir() => match logs_in(folder)?.len() {
+            0 => return Ok(()),
+            n => (
+                format!("{} of other programs, as releases are", counted(n, "log there is", "logs there are")),
+                decays(),
+            ),
+        },
+        None => return Ok(()),
+    };
+    let instead = match readers.as_slice() {
+        [] => "no method of this version reads those".to_owned(),
+        _ => format!("a [[source]] with method = {readers:?} reads those"),
+    };
+    Err(Error::Nothing(format!(
+        "{}: {what}, and runs of the method {wanted} are read here: {instead}; else name a folder with runs of {wanted}",
+        folder.display()
+    )))
+}
+
+/// The axis of the body along the travel, on which the runs and their campaign must agree as far as they declare it.
+fn attitude(logs: &[RunLog], campaign: Option<&Campaign>) -> Result<Option<BodyAxis>, Error> {
+    let of_run = |log: &RunLog| {
+        let sidecar = log.path.with_extension("toml");
+        Some((if sidecar.exists() { sidecar } else { log.path.clone() }, "mounted", log.meta.mounted.travel?))
+    };
+    let of_campaign = |campaign: &Campaign| {
+        let travel = campaign.body.as_ref().and_then(|body| body.travel)?;
+        Some((campaign.path.clone(), "body", travel))
+    };
+    let mut declared = logs.iter().filter_map(of_run).chain(campaign.and_then(of_campaign));
+    let Some((first, section, axis)) = declared.next() else { return Ok(None) };
+    let Some((path, own_section, other)) = declared.find(|(.., other)| *other != axis) else { return Ok(Some(axis)) };
+    Err(Error::Nothing(format!(
+        "{}: `travel` in [{own_section}] is {:?}; expected {:?}, as [{section}] of {} declares: a body lies one way along its travel. Correct \
+         the one that is wrong, or reduce the runs of each attitude by themselves",
+        path.display(),
+        other.name(),
+        axis.name(),
+        first.display()
+    )))
 }
 
 /// What made room for another drive of the same run.
@@ -323,14 +425,16 @@ pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&
 /// A channel that is missing or of another dimension.
 pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, Error> {
     let meta = &log.meta;
-    let kind = match meta.kind {
-        RunKind::Dry | RunKind::Wet => drag::RunKind::Tow,
-        RunKind::Friction => drag::RunKind::Friction,
-        RunKind::Calibration => drag::RunKind::Calibration,
+    let kind = match meta.role {
+        Role::Dry | Role::Wet => drag::RunKind::Tow,
+        Role::Friction => drag::RunKind::Friction,
+        Role::Calibration => drag::RunKind::Calibration,
         _ => return Ok(None),
     };
-    let (Some(target_speed_m_s), Some(direction)) = (meta.target_speed_m_s, meta.direction) else { return Ok(None) };
-    let axis = meta.axis.name();
+    let (Some(target_speed_m_s), Some(direction)) = (meta.carriage.target_speed_m_s, meta.carriage.direction) else {
+        return Ok(None);
+    };
+    let axis = meta.carriage.axis.name();
     let column = |name: &str, dimension| column(log, &format!("{axis}/{name}"), dimension);
     let force_n = if log.channels.contains_key("force") && axis == "y" {
         Some(self::column(log, "force", Dimension::FORCE)?)
@@ -345,16 +449,16 @@ pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, Error> {
         command_v: column("command", Dimension::VOLTAGE)?,
         force_n,
         kind,
-        body: match meta.body {
+        body: match meta.mounted.body {
             BodyState::None => drag::BodyState::None,
             BodyState::Dry => drag::BodyState::Dry,
             BodyState::Wet => drag::BodyState::Wet,
         },
         target_speed_m_s,
         direction: direction.sign(),
-        pair: meta.pair.unwrap_or(0),
-        is_ballasted: meta.is_ballasted,
-        hung_weight_n: meta.hung_weight_n,
+        pair: meta.carriage.pair.unwrap_or(0),
+        is_ballasted: meta.mounted.is_ballasted,
+        hung_weight_n: meta.mounted.hung_weight_n,
     }))
 }
 
@@ -386,8 +490,8 @@ pub fn mounted(mounts: &[BodyState]) -> String {
 pub(super) fn mounts<'a>(logs: impl IntoIterator<Item = &'a RunLog>) -> Vec<BodyState> {
     let mut out: Vec<BodyState> = Vec::new();
     for log in logs {
-        if !out.contains(&log.meta.body) {
-            out.push(log.meta.body);
+        if !out.contains(&log.meta.mounted.body) {
+            out.push(log.meta.mounted.body);
         }
     }
     out
@@ -401,7 +505,39 @@ pub fn way(direction: Option<Direction>) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use froude_records::campaign::BodySpec;
+    use froude_records::run::Mounted;
+
     use super::*;
+
+    #[test]
+    fn the_attitude_is_that_of_the_runs_or_else_of_the_campaign_and_one_for_all() {
+        let log = |path: &str, travel| {
+            let mounted = Mounted { travel, ..Mounted::default() };
+            RunLog { path: path.into(), meta: RunMeta { mounted, ..RunMeta::default() }, ..RunLog::default() }
+        };
+        let campaign = |travel| {
+            let body = Some(BodySpec { travel, ..BodySpec::default() });
+            Campaign { body, ..Campaign::of_table(Path::new("campaign.toml"), None) }
+        };
+        let (x, y) = (Some(BodyAxis::X), Some(BodyAxis::Y));
+        let of = |runs: [Option<BodyAxis>; 2], declared| {
+            let logs = [log("045-wet.mcap", runs[0]), log("046-wet.mcap", runs[1])];
+            attitude(&logs, Some(&campaign(declared))).map_err(|error| error.to_string())
+        };
+        assert_eq!(of([None, None], None), Ok(None));
+        assert_eq!(of([None, None], y), Ok(y));
+        assert_eq!(of([None, x], None), Ok(x));
+        assert_eq!(of([x, x], x), Ok(x));
+        let told = |file: &str, section: &str| {
+            Err(format!(
+                "{file}: `travel` in [{section}] is \"y\"; expected \"x\", as [mounted] of 045-wet.mcap declares: a body lies one way along \
+                 its travel. Correct the one that is wrong, or reduce the runs of each attitude by themselves"
+            ))
+        };
+        assert_eq!(of([x, y], None), told("046-wet.mcap", "mounted"));
+        assert_eq!(of([x, None], y), told("campaign.toml", "body"));
+    }
 
     #[test]
     fn a_run_that_was_never_closed_says_what_became_of_it() {

@@ -14,7 +14,7 @@ use froude_identify::servo::report::of_runs as of_several;
 use froude_identify::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
 use froude_identify::servo::{Chain, Friction, Gear, ServoCoefficient, ServoLog, ServoReport, identify_servo};
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{AxisConstants, BodyState, Declared, RunKind, RunLog, import_run};
+use froude_records::run::{AxisConstants, BodyState, Declared, Role, RunLog, import_run};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
@@ -108,7 +108,7 @@ pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
 
 /// Columns of a run for the servo's identification.
 fn servo_log(log: &RunLog) -> Result<ServoLog, Error> {
-    let axis = log.meta.axis.name();
+    let axis = log.meta.carriage.axis.name();
     let column = |name: &str, dimension| column(log, &format!("{axis}/{name}"), dimension).map(<[f64]>::to_vec);
     let reference = format!("{axis}/reference_position");
     Ok(ServoLog {
@@ -194,7 +194,7 @@ fn some_or_error(is_some: bool, not_fitted: Vec<(Finding, Error)>) -> Result<Vec
 }
 
 /// Kinds of run that tell the servo.
-const KINDS: [RunKind; 3] = [RunKind::Friction, RunKind::Dry, RunKind::Excitation];
+const KINDS: [Role; 3] = [Role::Friction, Role::Dry, Role::Excitation];
 /// Rate at which rows of slow runs are compared, Hz: below the load's mode, so that the rigid model is what moves.
 const ROW_RATE_HZ: f64 = 20.0;
 /// Corner of the position's filter for the rigid model, Hz: the chain's modes lie above it.
@@ -213,8 +213,8 @@ fn of_runs(runs: &Runs) -> Result<ServoOutcome, Error> {
         Error::Nothing("the runs do not say what rig they come from (their .toml has no [rig])".to_owned())
     })?;
     let motor = motor_of(constants);
-    let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.kind == RunKind::Friction).collect();
-    let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.kind == RunKind::Dry).collect() } else { slow };
+    let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.role == Role::Friction).collect();
+    let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.role == Role::Dry).collect() } else { slow };
     let (mut models, mut not_fitted) = (Vec::new(), Vec::new());
     if !slow.is_empty() {
         let map = knots(&slow).map(|knots_m| Friction { knots_m, ..Friction::default() });
@@ -266,7 +266,7 @@ fn motor_of(constants: &AxisConstants) -> MotorSide {
 
 /// The run that tells the two masses.
 fn pulses(logs: &[RunLog]) -> Option<&RunLog> {
-    logs.iter().find(|l| l.meta.kind == RunKind::Excitation)
+    logs.iter().find(|l| l.meta.role == Role::Excitation)
 }
 
 /// Two masses and a chain from the first run with pulses; a finding where there is one that does not tell them.
@@ -305,7 +305,7 @@ fn flexible_options(motor: MotorSide, constants: &AxisConstants) -> FlexibleOpti
 fn knots(logs: &[&RunLog]) -> Result<Vec<f64>, Error> {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for log in logs {
-        for &y in column(log, &format!("{}/position", log.meta.axis.name()), Dimension::LENGTH)? {
+        for &y in column(log, &format!("{}/position", log.meta.carriage.axis.name()), Dimension::LENGTH)? {
             (low, high) = (low.min(y), high.max(y));
         }
     }
@@ -324,7 +324,7 @@ fn knots_between(low_m: f64, high_m: f64) -> Vec<f64> {
 
 /// The part of a run in which the reference moves; at rest friction is anything below breakaway and tells nothing.
 fn moving(log: &RunLog) -> Result<Option<RunLog>, Error> {
-    let speed = column(log, &format!("{}/reference_velocity", log.meta.axis.name()), Dimension::SPEED)?;
+    let speed = column(log, &format!("{}/reference_velocity", log.meta.carriage.axis.name()), Dimension::SPEED)?;
     let first = speed.iter().position(|v| *v != 0.0);
     let last = speed.iter().rposition(|v| *v != 0.0);
     Ok(first.zip(last).map(|(first, last)| log.between(log.time_s[first], log.time_s[last])))

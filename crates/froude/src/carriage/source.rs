@@ -109,9 +109,9 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
     })
 }
 
-/// The logs of runs, each in the role of its kind.
+/// The logs of runs, each in its role.
 pub(super) fn files_of(runs: &Runs) -> Vec<ReadFile> {
-    runs.logs.iter().map(|log| ReadFile::new(log.path.clone(), log.meta.kind.name())).collect()
+    runs.logs.iter().map(|log| ReadFile::new(log.path.clone(), log.meta.role.name())).collect()
 }
 
 fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read: usize) -> SourceResult {

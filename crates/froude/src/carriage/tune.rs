@@ -15,7 +15,7 @@ use froude_identify::tuning::resonance::{Shaper, TwoMassModes, shaper, two_mass_
 use froude_identify::tuning::response::{Sweep, plant_response};
 use froude_identify::tuning::tracking::{Forward, Ramp, Tracking, follow};
 use froude_identify::tuning::{LoopGains, ResponsePoint, TuningError};
-use froude_records::run::{Declared, RunKind, RunLog};
+use froude_records::run::{Declared, Role, RunLog};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Scale, Series};
 use froude_report::document::{Document, DocumentSection, TextTable};
@@ -130,15 +130,15 @@ pub fn tune(
         .logging_every_tick();
     crate::results::can_be_written(&report_of(&prepared))?;
     drive(&prepared, switch, operator, progress)?.whole()?;
-    let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Relay, RunKind::Sweep], None)?;
+    let runs = read(std::slice::from_ref(&prepared.folder), &[Role::Relay, Role::Sweep], None)?;
     let axis = prepared.axis();
-    let sweep = runs.logs.iter().find(|l| l.meta.kind == RunKind::Sweep);
+    let sweep = runs.logs.iter().find(|l| l.meta.role == Role::Sweep);
     let plant =
         response_of(sweep.ok_or_else(|| Error::Nothing("the sweep was not recorded".to_owned()))?, axis, &experiments)?;
     let cycle = runs
         .logs
         .iter()
-        .find(|l| l.meta.kind == RunKind::Relay)
+        .find(|l| l.meta.role == Role::Relay)
         .map_or(Err(TuningError::TooFew { what: "relay runs", found: 0, least: 1, advice: "drive one" }), |log| {
             cycle_of(log, axis, &experiments)
         });
@@ -190,14 +190,14 @@ pub fn find_resonance(
         prepare_with(&with_folder(job, "resonance"), &|asked, start_m, _| resonance(asked, start_m, &experiments))?;
     crate::results::can_be_written(&report_of(&prepared))?;
     drive(&prepared, switch, operator, progress)?.whole()?;
-    let runs = read(std::slice::from_ref(&prepared.folder), &[RunKind::Sweep], None)?;
+    let runs = read(std::slice::from_ref(&prepared.folder), &[Role::Sweep], None)?;
     let states = runs
         .logs
         .iter()
         .map(|log| {
             let plant = response_of(log, prepared.axis(), &experiments)?;
             let modes = two_mass_modes(&plant);
-            Ok(StateModes { body: log.meta.body.name().to_owned(), plant, modes })
+            Ok(StateModes { body: log.meta.mounted.body.name().to_owned(), plant, modes })
         })
         .collect::<Result<Vec<_>, Error>>()?;
     let towed: Vec<&TwoMassModes> =
@@ -241,7 +241,7 @@ struct Excited {
 
 /// `speed_m_s`: the reference below a sweep; `None` where the loop is open.
 fn excited(log: &RunLog, axis: &AxisConfig, speed_m_s: Option<f64>) -> Result<Excited, Error> {
-    let name = log.meta.axis.name();
+    let name = log.meta.carriage.axis.name();
     let column = |what: &str, dimension| log.channel(&format!("{name}/{what}"), dimension);
     let state = column("state", Dimension::ONE)?;
     let reference = column("reference_velocity", Dimension::SPEED)?;

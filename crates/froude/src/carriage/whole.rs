@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
-use froude_records::run::{RunKind, RunMeta, RunStatus, read_run_meta};
+use froude_records::run::{Role, RunMeta, RunStatus, read_run_meta};
 use froude_records::text::counted;
 use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 
@@ -46,9 +46,9 @@ impl Complete {
         }
     }
 
-    /// What a folder lacks of the plan of its campaign: a warning where that is runs of one of these kinds, and a note where a campaign stopped
+    /// What a folder lacks of the plan of its campaign: a warning where that is runs of one of these roles, and a note where a campaign stopped
     /// early and lacks none. Nothing where no plan is known: no copy of the campaign, one that was edited since, or runs of another verb.
-    pub fn against_plan(&self, folder: &Path, kinds: &[RunKind]) -> Option<Finding> {
+    pub fn against_plan(&self, folder: &Path, roles: &[Role]) -> Option<Finding> {
         let copy = folder.join(CAMPAIGN_COPY);
         if !copy.is_file() {
             return None;
@@ -71,12 +71,12 @@ impl Complete {
         if !planned.iter().any(|run| file(run, "mcap").exists() || file(run, "toml").exists()) {
             return None;
         }
-        here.against(&planned, EarlyStop::read(folder), kinds)
+        here.against(&planned, EarlyStop::read(folder), roles)
     }
 }
 
 impl Here {
-    fn against(&self, planned: &[PlannedRun], stop: Option<EarlyStop>, kinds: &[RunKind]) -> Option<Finding> {
+    fn against(&self, planned: &[PlannedRun], stop: Option<EarlyStop>, roles: &[Role]) -> Option<Finding> {
         let is_there = |run: &PlannedRun| self.ids.contains(&run.id);
         let spared_from = stop.as_ref().map_or(planned.len(), |stop| stop.spared_from(planned, &self.ids));
         let is_missing: Vec<bool> = planned
@@ -85,7 +85,7 @@ impl Here {
             .map(|(i, run)| !is_there(run) && !(i >= spared_from && run.pair.is_some()))
             .collect();
         let there = planned.iter().filter(|run| is_there(run)).count();
-        if planned.iter().zip(&is_missing).any(|(run, is_missing)| *is_missing && kinds.contains(&run.kind)) {
+        if planned.iter().zip(&is_missing).any(|(run, is_missing)| *is_missing && roles.contains(&run.role)) {
             let text = format!(
                 "{there} of {} are there complete; missing: {}. froude run with the same campaign drives what is missing",
                 counted(planned.len(), "planned run", "planned runs"),
@@ -158,8 +158,8 @@ fn stretches(planned: &[PlannedRun], missing: &[bool]) -> String {
     named.join(", ") + &more
 }
 
-/// Complete runs of these kinds that lie beside the named logs, and were not named.
-pub(crate) fn beside(named: &[PathBuf], kinds: &[RunKind]) -> Result<Vec<PathBuf>, Error> {
+/// Complete runs of these roles that lie beside the named logs, and were not named.
+pub(crate) fn beside(named: &[PathBuf], roles: &[Role]) -> Result<Vec<PathBuf>, Error> {
     let folders: BTreeSet<PathBuf> = named.iter().map(|log| folder_of(log)).collect();
     let mut out = Vec::new();
     for folder in folders {
@@ -167,7 +167,7 @@ pub(crate) fn beside(named: &[PathBuf], kinds: &[RunKind]) -> Result<Vec<PathBuf
             let is_named = named.iter().any(|named| named.file_name() == log.file_name() && folder_of(named) == folder);
             let Ok(meta) = read_run_meta(&log.with_extension("toml")) else { continue };
             let is_whole = meta.status == RunStatus::Complete && log.exists() && !is_put_aside(&log, &meta);
-            if !is_named && is_whole && kinds.contains(&meta.kind) {
+            if !is_named && is_whole && roles.contains(&meta.role) {
                 out.push(log);
             }
         }
