@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use froude_identify::carriage::coefficient::{Coefficient, Method as CarriageMethod};
-use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::Estimate;
@@ -113,8 +112,9 @@ pub(super) fn files_of(runs: &Runs) -> Vec<ReadFile> {
     runs.logs.iter().map(|log| ReadFile::new(log.path.clone(), log.meta.kind.name())).collect()
 }
 
+/// A result of the report under the name of the source.
 fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read: usize) -> SourceResult {
-    let Coefficient { method, model, data, .. } = coefficient;
+    let Coefficient { method, result, .. } = coefficient;
     let estimate = Estimate {
         id: format!("{}/{}", source.name, method.name()),
         source: source.name.clone(),
@@ -125,16 +125,7 @@ fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read:
         name: format!("{}, {}", source.name, method.name()),
         kind: source.kind,
         n_read,
-        not_fitted: Vec::new(),
-        tests: Vec::new(),
-        scores: vec![leave_one_out(&model, &data)],
-        blocks: Vec::new(),
-        recommendation: Some(Recommendation { index: 0, reason: method.words().to_owned() }),
-        validity: estimate.validity.clone(),
-        findings: Vec::new(),
-        files: Vec::new(),
-        models: vec![model],
         estimates: vec![estimate],
-        data,
+        ..result
     }
 }
