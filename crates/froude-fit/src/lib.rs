@@ -23,6 +23,7 @@
 //! | [`wild`]        | wild cluster bootstrap                                               |
 //! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
 //! | [`budget`]      | what each error does to the coefficients, intervals, jackknife       |
+//! | [`replicates`]  | scatter from replicates left out in turn, sums of such, a floor      |
 //! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
 //!
@@ -60,6 +61,7 @@ mod outcome;
 mod problem;
 pub mod propagate;
 pub mod rank;
+pub mod replicates;
 mod report;
 pub mod robust;
 pub mod select;

@@ -16,7 +16,8 @@
 //! | [`mcd`]           | motor current difference, paired by position                    | MCD eq. 8                 |
 //! | [`mbdp`]          | model of the servo: constant, mapped and flexible               | MCD eq. 2, 9              |
 //! | [`friction`]      | friction over position and speed from dry runs                  | –                         |
-//! | [`coefficient`]   | D_d, its scatter by pairs, budget, interval                     | GUM, JCGM 101             |
+//! | `observed`        | what each method makes of the runs, and how its points scatter  | –                         |
+//! | [`coefficient`]   | D_d by the common fit                                           | GUM, JCGM 101             |
 //! | [`detectability`] | the smallest drag that still and dry repeats can see            | –                         |
 //! | [`calibration`]   | newtons a volt from a known weight; encoder scale; jog          | –                         |
 //! | [`added_mass`]    | what the ramps say                                              | –                         |
@@ -34,10 +35,12 @@ pub mod calibration;
 pub mod coefficient;
 pub mod detectability;
 mod error;
+mod errors;
 pub mod friction;
 pub mod fsm;
 pub mod mbdp;
 pub mod mcd;
+mod observed;
 pub mod online;
 pub(crate) mod record;
 pub mod report;

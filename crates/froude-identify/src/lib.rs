@@ -1,8 +1,9 @@
 //! From observations to coefficients: records, force models and fits together.
 //!
-//! The way of the data: a source's table is **reduced** to observations, a
-//! **law** turns them into regressors, a **regression** fits it with its budget,
-//! **selection** chooses among laws, and a **record** carries the answer.
+//! The way of the data: a source's table or runs are **reduced** to observations
+//! and handed over the **seam**; a **law** turns them into regressors, a
+//! **regression** fits it with its budget, **selection** chooses among laws,
+//! and a **record** carries the answer.
 //! **Compare** sets records side by side; **simulate** goes the other way.
 //!
 //! **Frame.** Body axes, x forward, y to starboard, z down; loads of the fluid on the body.
@@ -28,6 +29,7 @@ pub mod lint;
 pub mod record;
 pub mod reduce;
 pub mod regression;
+pub mod seam;
 pub mod select;
 pub mod selection;
 pub mod servo;

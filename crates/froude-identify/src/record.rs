@@ -3,28 +3,22 @@
 use froude_fit as fit;
 use froude_fit::budget::{Kind as Evaluation, Part};
 use froude_fit::faer::Mat;
-use froude_records::campaign::Source;
 use froude_records::estimate::{
-    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, OWN, Output,
-    Range, ReferencePoint, SharedError, Signs, Status, TypeA,
+    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured, MethodUsed, OWN, Output,
+    SharedError, Signs, Status, TypeA,
 };
 use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, distinct, unit_text};
 use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
-use crate::regression::ModelFit;
+use crate::regression::{ModelFit, Scatter};
+use crate::seam::{self, Choice, Reduced};
+use crate::selection::Recommendation;
 
-/// The record of one fitted model.
+/// The record of one fitted model; `chosen` says why the data recommend it, where they do.
 #[must_use]
-pub fn estimate(
-    model: &ModelFit,
-    data: &Dataset,
-    source: &Source,
-    validity: &IndexMap<String, Range>,
-    diagnostics: Diagnostics,
-    recommended: bool,
-    reason: Option<String>,
-) -> Estimate {
+pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen: Option<&Recommendation>) -> Estimate {
+    let Reduced { data, stated, .. } = of;
     let mut constants = IndexMap::new();
     let mut refers_to = IndexMap::new();
     if let Some(d) = data.values("density") {
@@ -41,42 +35,78 @@ pub fn estimate(
         }
         Kind::Formulas(_) => {}
     }
-    let in_logarithms = model.law.in_logarithms();
+    constants.extend(stated.constants.clone());
+    refers_to.extend(stated.refers_to.clone());
+    let name = match of.choice {
+        Choice::Selection => &model.law.name,
+        Choice::Method(_) => &stated.method,
+    };
+    let coefficients = coefficients(model, &stated.labels);
+    let type_a = type_a(model);
+    let (dof, sigma) = scatter_by_load(model, data, type_a.as_ref());
     Estimate {
-        id: format!("{}/{}", source.name, model.law.name),
-        source: source.name.clone(),
-        kind: source.kind.name().to_owned(),
-        method: MethodUsed { name: "table".to_owned(), version: 1, words: method(model) },
-        frame: Frame::body(),
-        point: ReferencePoint::default(),
+        id: format!("{}/{name}", of.source),
+        source: of.source.clone(),
+        kind: of.kind.name().to_owned(),
+        method: MethodUsed {
+            name: stated.method.clone(),
+            version: 1,
+            words: stated.words.clone().unwrap_or_else(|| method(model)),
+        },
+        frame: stated.frame.clone(),
+        point: stated.point.clone(),
         signs: Signs::default(),
-        attitude: None,
+        attitude: stated.attitude.clone(),
         law: law(model, data, constants),
         refers_to,
         data: Vec::new(),
         clusters: clusters(model, data),
-        dof: model.fit.components.iter().map(|c| (c.name.clone(), Some(c.dof))).collect(),
-        sigma: model
-            .fit
-            .components
-            .iter()
-            .filter_map(|c| {
-                let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
-                c.sigma.map(|value| (c.name.clone(), Measured { value, unit }))
-            })
-            .collect(),
+        dof,
+        sigma,
         n_observations: data.rows,
-        coefficients: coefficients(model),
-        derived: IndexMap::new(),
-        type_a: type_a(model),
+        derived: stated.derived.iter().filter_map(|d| derived(d, &coefficients)).collect(),
+        coefficients,
+        type_a,
         errors: errors(model),
-        interval: Interval::default(),
+        interval: Interval { looks: of.looks, ..Interval::default() },
         undetermined: combinations(model),
-        validity: validity.clone(),
+        validity: of.validity.clone(),
         diagnostics,
-        recommended,
-        reason,
+        recommended: chosen.is_some(),
+        reason: chosen.map(|r| r.reason.clone()),
     }
+}
+
+/// Degrees of freedom and σ of each load. Replicates hold more than the residuals of the rows: they have degrees of freedom, and no σ of a row.
+fn scatter_by_load(
+    model: &ModelFit,
+    data: &Dataset,
+    type_a: Option<&TypeA>,
+) -> (IndexMap<String, Option<f64>>, IndexMap<String, Measured>) {
+    let loads = &model.fit.components;
+    if let Scatter::Replicates { .. } = model.scatter {
+        let fewest = type_a.and_then(|a| a.dof.iter().copied().flatten().reduce(f64::min));
+        return (loads.iter().map(|c| (c.name.clone(), fewest)).collect(), IndexMap::new());
+    }
+    let in_logarithms = model.law.in_logarithms();
+    let sigma = |c: &fit::ComponentSummary| {
+        let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
+        c.sigma.map(|value| (c.name.clone(), Measured { value, unit }))
+    };
+    (loads.iter().map(|c| (c.name.clone(), Some(c.dof))).collect(), loads.iter().filter_map(sigma).collect())
+}
+
+/// A coefficient times an exact factor.
+fn derived(d: &seam::Derived, coefficients: &IndexMap<String, Coefficient>) -> Option<(String, Derived)> {
+    let c = coefficients.get(&d.of)?;
+    let number = Derived {
+        formula: d.formula.clone(),
+        value: c.value.map(|x| x * d.factor),
+        unit: d.unit.clone(),
+        standard_uncertainty: c.standard_uncertainty.map(|u| u * d.factor),
+        interval_95: c.interval_95.map(|ends| ends.map(|x| x * d.factor)),
+    };
+    Some((d.name.clone(), number))
 }
 
 fn method(model: &ModelFit) -> String {
@@ -118,7 +148,7 @@ fn method(model: &ModelFit) -> String {
     out
 }
 
-fn coefficients(model: &ModelFit) -> IndexMap<String, Coefficient> {
+fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap<String, Coefficient> {
     model
         .specs
         .iter()
@@ -148,7 +178,7 @@ fn coefficients(model: &ModelFit) -> IndexMap<String, Coefficient> {
             };
             let status = if combined.is_some() && interval_95.is_none() { Status::BoundContradicted } else { status };
             let coefficient = Coefficient {
-                label: None,
+                label: labels.get(&spec.name).cloned(),
                 nuisance: j >= model.law.coefficients.len(),
                 value: fitted.value.map(|_| model.coefficients[j]),
                 unit: spec.unit.clone(),
@@ -165,7 +195,7 @@ fn coefficients(model: &ModelFit) -> IndexMap<String, Coefficient> {
 }
 
 /// The law with the motion that it reads and the loads that it gives.
-pub(crate) fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) -> Law {
+fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) -> Law {
     let output = |(i, load): (usize, &String)| {
         // A text may call its load by a ship theorist's letter.
         let formula = model.law.texts.get_index(i).map(|(_, text)| text.clone());
@@ -180,10 +210,17 @@ pub(crate) fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, 
     }
 }
 
-/// The clusters behind a covariance that counts them.
+/// The independent groups behind a scatter that counts them.
 fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
-    let group = data.group.as_ref().filter(|_| model.options.covariance == fit::CovarianceKind::Cr3)?;
-    Some(Clusters { by: "group".to_owned(), n: distinct(group).len() })
+    match &model.scatter {
+        Scatter::Classical | Scatter::Hc3 => None,
+        Scatter::Cluster => {
+            data.group.as_ref().map(|group| Clusters { by: "group".to_owned(), n: distinct(group).len() })
+        }
+        Scatter::Replicates { sets, .. } => {
+            sets.first().map(|set| Clusters { by: set.left_out.to_owned(), n: set.without.len() })
+        }
+    }
 }
 
 /// The coefficients that have an uncertainty.
@@ -196,7 +233,7 @@ fn square(of: &Mat<f64>, there: &[usize]) -> Vec<Vec<f64>> {
 }
 
 /// Covariance from the scatter over the coefficients that have an uncertainty.
-pub(crate) fn type_a(model: &ModelFit) -> Option<TypeA> {
+fn type_a(model: &ModelFit) -> Option<TypeA> {
     let there = known(model);
     let scatter = model.budget.iter().find(|part| part.kind == Evaluation::A)?;
     (!there.is_empty()).then(|| TypeA {
@@ -208,7 +245,7 @@ pub(crate) fn type_a(model: &ModelFit) -> Option<TypeA> {
 }
 
 /// All other errors that are added, by key. One that nobody else can have is written by what it does to the coefficients, under a key of its own.
-pub(crate) fn errors(model: &ModelFit) -> IndexMap<String, SharedError> {
+fn errors(model: &ModelFit) -> IndexMap<String, SharedError> {
     let there = known(model);
     let is_felt = |part: &&Part| there.iter().any(|&j| part.covariance[(j, j)] > 0.0);
     let added = model.budget.iter().filter(|part| part.kind == Evaluation::B && !part.in_scatter).filter(is_felt);
@@ -266,7 +303,8 @@ fn finite(dof: Option<f64>) -> Option<f64> {
 }
 
 /// The determined combinations of undetermined coefficients, named by their physical factors where these explain them.
-fn combinations(model: &ModelFit) -> Vec<String> {
+#[must_use]
+pub fn combinations(model: &ModelFit) -> Vec<String> {
     let symbols = model.law.factor_symbols();
     model
         .fit

@@ -15,9 +15,9 @@ use froude_records::table::{Column, ColumnData, Table, links_of_configuration, r
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
-/// A source ready to be fitted.
+/// The observations of a table.
 #[derive(Debug, Clone)]
-pub struct Reduced {
+pub struct Observations {
     /// The observations that are kept.
     pub data: Dataset,
     /// Rows in the file.
@@ -35,7 +35,7 @@ pub struct Reduced {
 /// # Errors
 ///
 /// Whatever the table reader finds; a source without table; nothing kept; impossible water.
-pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyError> {
+pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, IdentifyError> {
     let path = match &source.input {
         Input::Table(path) => path.clone(),
         other => return Err(not_a_table(source, other)),
@@ -86,7 +86,7 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyE
         shared_errors.extend(errors);
     }
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
-    Ok(Reduced { data, n_read, findings, shared_errors, files })
+    Ok(Observations { data, n_read, findings, shared_errors, files })
 }
 
 /// The loads that a law of the source gives or has; all of them where its laws cannot be made.

@@ -3,6 +3,7 @@
 use faer::Mat;
 use froude_fit as fit;
 use froude_fit::budget::{Combined, OUTSIDE_95, Part, combine};
+use froude_fit::replicates::{self, Replicates};
 use froude_records::campaign::{AngleOffset, BoundKind, BudgetEntry, Identify, SourceKind};
 use froude_records::finding::{Finding, Severity};
 
@@ -27,6 +28,44 @@ const NEARLY_PARALLEL: f64 = 0.999;
 /// Distance of a prior from what the data say, in standard uncertainties, that is no chance.
 const PRIOR_CONTRADICTED_ABOVE: f64 = 3.0;
 
+/// What the observations weigh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weight {
+    /// All alike.
+    One,
+    /// By the `std_*` column of a load; all alike in a load without one.
+    Std,
+}
+
+/// Where the standard uncertainties come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Scatter {
+    /// The residuals: independent, one σ a load.
+    Classical,
+    /// The residuals: independent, of any variance.
+    Hc3,
+    /// The residuals, correlated in the groups of the data.
+    Cluster,
+    /// Replicates that the method left out in turn: all coefficients of the law, or none where nothing tells the scatter.
+    Replicates {
+        /// The line of the budget.
+        name: String,
+        /// Independent sets of them.
+        sets: Vec<Replicates>,
+    },
+}
+
+impl Scatter {
+    /// What the residuals are asked for.
+    const fn of_residuals(&self) -> fit::CovarianceKind {
+        match self {
+            Self::Classical | Self::Replicates { .. } => fit::CovarianceKind::Classical,
+            Self::Hc3 => fit::CovarianceKind::Hc3,
+            Self::Cluster => fit::CovarianceKind::Cr3,
+        }
+    }
+}
+
 /// What a regression needs besides its data and law.
 #[derive(Debug, Clone, Copy)]
 pub struct Settings<'a> {
@@ -36,16 +75,36 @@ pub struct Settings<'a> {
     pub kind: SourceKind,
     /// `[identify]` of the campaign.
     pub identify: &'a Identify,
+    /// What the observations weigh.
+    pub weight: Weight,
+    /// Where the scatter comes from.
+    pub scatter: &'a Scatter,
     /// The declared budget.
     pub budget: &'a [BudgetEntry],
     /// Key of the campaign that declares it; empty where none does.
     pub campaign: &'a str,
     /// Errors from subtracted tares, and those that the source's method knows.
     pub shared_errors: &'a [SharedError],
-    /// The scatter, where the method has more to shake than its rows; else that of the residuals.
-    pub scatter: Option<&'a Part>,
     /// Looks that an interval pays for (Bonferroni), 1 or more.
     pub looks: usize,
+}
+
+impl<'a> Settings<'a> {
+    /// Weights of the table, scatter of the residuals, nothing declared, one look.
+    #[must_use]
+    pub const fn new(source_name: &'a str, kind: SourceKind, identify: &'a Identify) -> Self {
+        Self {
+            source_name,
+            kind,
+            identify,
+            weight: Weight::Std,
+            scatter: &Scatter::Classical,
+            budget: &[],
+            campaign: "",
+            shared_errors: &[],
+            looks: 1,
+        }
+    }
 }
 
 /// A fitted law.
@@ -71,7 +130,9 @@ pub struct ModelFit {
     pub budget: Vec<Part>,
     /// True where errors of speed and angle were fitted too.
     pub in_variables: bool,
-    /// Words for the covariance kind.
+    /// Where its scatter comes from.
+    pub scatter: Scatter,
+    /// Words for that.
     pub covariance_kind: String,
     /// What was found while fitting.
     pub findings: Vec<Finding>,
@@ -127,11 +188,11 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         unit: "rad".to_owned(),
     }));
     let mut findings = Vec::new();
-    let (covariance, covariance_kind) = covariance_choice(data, settings, &mut findings)?;
-    let mut options = options(law, &specs, settings, covariance);
+    let mut options = options(law, &specs, settings);
     let mut beta = start(law, data, &newtons, specs.len());
     let iterate = law.is_nonlinear() || !setups.names.is_empty();
-    let mut problem = problem(law, data, &specs, &measured, &setups, &beta)?;
+    let weight = weights(law, data, settings.weight)?;
+    let mut problem = problem(law, data, &specs, &measured, weight.clone(), &setups, &beta)?;
     let mut fitted = fit::fit(&problem, &options).map_err(refuse)?;
     if iterate {
         let mut converged = false;
@@ -139,7 +200,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             let next = step(&fitted);
             let change = next.iter().zip(&beta).map(|(a, b)| (a - b).abs() / (a.abs() + 1e-9)).fold(0.0, f64::max);
             beta = next;
-            problem = self::problem(law, data, &specs, &measured, &setups, &beta)?;
+            problem = self::problem(law, data, &specs, &measured, weight.clone(), &setups, &beta)?;
             fitted = fit::fit(&problem, &options).map_err(refuse)?;
             if change < CONVERGED {
                 converged = true;
@@ -204,17 +265,25 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             part.in_scatter |= eiv::is_input_error(entry);
         }
     }
-    let given = settings.scatter;
-    let budget: Vec<Part> =
-        std::iter::once(given.cloned().unwrap_or_else(|| scatter(&fitted))).chain(contributions).collect();
+    let replicates = match settings.scatter {
+        Scatter::Replicates { name, sets } => {
+            Some(replicates::together(name, sets).filter(|part| part.dof.len() == specs.len()))
+        }
+        Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,
+    };
+    // Where replicates tell no scatter nothing does: the residuals of one of them are not asked.
+    let is_known = |c: &fit::FitCoefficient| match &replicates {
+        Some(told) => told.is_some() && c.value.is_some(),
+        None => c.standard.is_some(),
+    };
+    let first = replicates.clone().flatten().unwrap_or_else(|| scatter(&fitted));
+    let budget: Vec<Part> = std::iter::once(first).chain(contributions).collect();
     let outside = OUTSIDE_95 / settings.looks.max(1) as f64;
     let combined: Vec<Option<Combined>> = fitted
         .coefficients
         .iter()
         .enumerate()
-        .map(|(j, c)| {
-            (c.standard.is_some() || (given.is_some() && c.value.is_some())).then(|| combine(&budget, j, outside))
-        })
+        .map(|(j, c)| is_known(c).then(|| combine(&budget, j, outside)))
         .collect();
     let mut covariance = Mat::zeros(specs.len(), specs.len());
     for part in budget.iter().filter(|part| !part.in_scatter) {
@@ -245,13 +314,14 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         coefficients,
         combined,
         covariance,
+        covariance_kind: match replicates {
+            Some(_) => budget[0].name.clone(),
+            None if in_variables => "model-based, errors in variables".to_owned(),
+            None => residuals_in_words(data, settings),
+        },
         budget,
         in_variables,
-        covariance_kind: match given {
-            Some(part) => part.name.clone(),
-            None if in_variables => "model-based, errors in variables".to_owned(),
-            None => covariance_kind,
-        },
+        scatter: settings.scatter.clone(),
         findings,
     })
 }
@@ -410,6 +480,7 @@ fn problem(
     data: &Dataset,
     specs: &[CoefficientSpec],
     measured: &[f64],
+    weight: Option<Vec<f64>>,
     setups: &OffsetSetups,
     beta: &[f64],
 ) -> Result<fit::Problem, IdentifyError> {
@@ -456,7 +527,7 @@ fn problem(
     Ok(fit::Problem {
         design,
         response,
-        weight: weights(law, data)?,
+        weight,
         component,
         components: law.responses.clone(),
         cluster: data.group.as_ref().map(|g| {
@@ -468,9 +539,9 @@ fn problem(
 }
 
 /// Relative weights from `std_*` columns, scaled so that their mean is one within a response.
-fn weights(law: &ForceLaw, data: &Dataset) -> Result<Option<Vec<f64>>, IdentifyError> {
+fn weights(law: &ForceLaw, data: &Dataset, weight: Weight) -> Result<Option<Vec<f64>>, IdentifyError> {
     let stds: Vec<Option<&[f64]>> = law.responses.iter().map(|r| data.values(&format!("std_{r}"))).collect();
-    if stds.iter().all(Option::is_none) {
+    if weight == Weight::One || stds.iter().all(Option::is_none) {
         return Ok(None);
     }
     let mut out = Vec::with_capacity(stds.len() * data.rows);
@@ -531,56 +602,20 @@ fn step(fitted: &fit::Fit) -> Vec<f64> {
     fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect()
 }
 
-/// Which covariance is used and what the record calls it.
-fn covariance_choice(
-    data: &Dataset,
-    settings: Settings<'_>,
-    findings: &mut Vec<Finding>,
-) -> Result<(fit::CovarianceKind, String), IdentifyError> {
-    let is_cfd = settings.kind == SourceKind::Cfd;
-    let clusters = data.group.as_ref().map_or(0, |g| distinct(g).len());
-    let label = |kind: &str| {
-        if is_cfd { format!("{kind}; residuals are model error, not noise") } else { kind.to_owned() }
+/// What the record calls the covariance of residuals.
+fn residuals_in_words(data: &Dataset, settings: Settings<'_>) -> String {
+    let clusters = || data.group.as_ref().map_or(0, |g| distinct(g).len());
+    let kind = match settings.scatter.of_residuals() {
+        fit::CovarianceKind::Classical => "classical".to_owned(),
+        fit::CovarianceKind::Hc3 => "HC3".to_owned(),
+        fit::CovarianceKind::Cr3 if settings.identify.covariance.is_some() => format!("CR3, {} clusters", clusters()),
+        fit::CovarianceKind::Cr3 => format!("CR3 by {} configurations", clusters()),
     };
-    let asked = settings.identify.covariance.as_deref();
-    Ok(match asked {
-        Some("classical") => (fit::CovarianceKind::Classical, label("classical")),
-        Some("HC3" | "hc3") => (fit::CovarianceKind::Hc3, label("HC3")),
-        Some("cluster" | "CR3" | "cr3") => (fit::CovarianceKind::Cr3, label(&format!("CR3, {clusters} clusters"))),
-        Some(other) => {
-            return Err(IdentifyError::Campaign {
-                place: "[identify]".to_owned(),
-                what: format!("covariance = {other:?} is not known; use classical, HC3 or cluster"),
-            });
-        }
-        None if is_cfd && clusters >= 5 => {
-            (fit::CovarianceKind::Cr3, label(&format!("CR3 by {clusters} configurations")))
-        }
-        None => {
-            if is_cfd {
-                findings.push(Finding::new(
-                    Severity::Warning,
-                    "cfd-few-clusters",
-                    format!(
-                        "residuals of CFD are model error, not noise; cluster-robust intervals need five \
-                         configurations and a `group`, there are {clusters}: HC3 is used"
-                    ),
-                ));
-                (fit::CovarianceKind::Hc3, label("HC3"))
-            } else {
-                (fit::CovarianceKind::Classical, label("classical"))
-            }
-        }
-    })
+    if settings.kind == SourceKind::Cfd { format!("{kind}; residuals are model error, not noise") } else { kind }
 }
 
 /// Bounds, fixed values, exclusions, priors and constraints by name.
-fn options(
-    law: &ForceLaw,
-    specs: &[CoefficientSpec],
-    settings: Settings<'_>,
-    covariance: fit::CovarianceKind,
-) -> fit::Options {
+fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) -> fit::Options {
     let identify = settings.identify;
     let position = |name: &str| specs.iter().position(|s| s.name == name);
     let is_drag = law.factor_symbols().is_some();
@@ -615,7 +650,7 @@ fn options(
         fixed: identify.fixed.iter().filter_map(|(n, v)| position(n).map(|j| (j, *v))).collect(),
         excluded: identify.exclude.iter().filter_map(|n| position(n)).collect(),
         loss: identify.huber.map_or(fit::Loss::Squares, |k| fit::Loss::Huber { k }),
-        covariance,
+        covariance: settings.scatter.of_residuals(),
         ..fit::Options::default()
     }
 }

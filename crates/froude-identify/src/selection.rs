@@ -97,11 +97,11 @@ pub fn aicc_of(model: &ModelFit, data: &Dataset, load: &str) -> Option<f64> {
     Some(base + 2.0 * jacobian)
 }
 
-/// AICc of the statement that a load is zero, with the weights of its `std_*` column.
-fn aicc_of_nothing(data: &Dataset, load: &str) -> Option<f64> {
+/// AICc of the statement that a load is zero, with the weights of its `std_*` column where the others have them.
+fn aicc_of_nothing(data: &Dataset, load: &str, is_weighted: bool) -> Option<f64> {
     let f = data.values(load)?;
     let mut weight = vec![1.0; f.len()];
-    if let Some(std) = data.values(&format!("std_{load}")) {
+    if let Some(std) = data.values(&format!("std_{load}")).filter(|_| is_weighted) {
         weight = std.iter().map(|s| 1.0 / (s * s)).collect();
         let mean = weight.iter().sum::<f64>() / weight.len() as f64;
         for w in &mut weight {
@@ -299,8 +299,9 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
     let determined = |m: &ModelFit| m.fit.coefficients.iter().all(|c| c.status != fit::Status::Undetermined);
     let loads = loads_of(models.iter().filter(|m| determined(m)));
     let explains = |m: &ModelFit, load: &str| m.law.responses.iter().any(|r| r == load);
+    let is_weighted = models.iter().any(|m| m.problem.weight.is_some());
     let part = |m: &ModelFit, load: &str| {
-        if explains(m, load) { aicc_of(m, data, load) } else { aicc_of_nothing(data, load) }
+        if explains(m, load) { aicc_of(m, data, load) } else { aicc_of_nothing(data, load, is_weighted) }
     };
     let score: Vec<Option<f64>> = models
         .iter()

@@ -1,27 +1,26 @@
-//! One source from its table to its estimates: reduce, lint, fit every model, choose.
+//! One source from its table to its estimates: reduce, lint, and the laws that its channels allow.
 
 use std::path::PathBuf;
 
+use froude_fit::FEWEST_CLUSTERS;
 use froude_hydro::{Body, CrossTerm, DragModel, Link};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source, SourceKind};
-use froude_records::estimate::{Estimate, Range, ReferencePoint};
+use froude_records::estimate::{Estimate, Frame, Range, ReferencePoint};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
 use indexmap::IndexMap;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, distinct};
 use crate::error::IdentifyError;
 use crate::law::{ForceLaw, aliased};
 use crate::lint::moving;
-use crate::record;
-use crate::reduce::{Reduced, reduce};
-use crate::regression::{ModelFit, Settings, regress};
-use crate::selection::{
-    BlockScore, NestedTest, Recommendation, Score, leave_one_out, nested_tests, range_block, recommend,
-};
+use crate::reduce::{Observations, reduce};
+use crate::regression::{ModelFit, Scatter, Weight};
+use crate::seam::{Choice, Reduced, Stated, fit};
+use crate::selection::{BlockScore, NestedTest, Recommendation, Score};
 use crate::validity::{AT_REST, off_axis};
-use crate::{bootstrap, columns, diagnosis, lint, uncertainty, validity};
+use crate::{columns, diagnosis, lint, validity};
 
 /// Everything that identification found out about one source.
 #[derive(Debug, Clone)]
@@ -92,7 +91,18 @@ pub fn identify_source(
     source: &Source,
     progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
-    let Reduced { data, n_read, mut findings, shared_errors, files } = reduce(campaign, source)?;
+    let mut result = fit(reduced(campaign, source)?, &campaign.identify, progress)?;
+    // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
+    if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
+        let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
+        result.findings.extend(found.into_iter().map(|f| f.of_source(&source.name)));
+    }
+    Ok(result)
+}
+
+/// The rows of a table with the laws that the campaign asks for.
+fn reduced(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyError> {
+    let Observations { data, n_read, mut findings, shared_errors, files } = reduce(campaign, source)?;
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     findings.extend(lint::observations(&data, campaign));
@@ -107,153 +117,72 @@ pub fn identify_source(
             ),
         ));
     }
-    let settings = Settings {
-        source_name: &source.name,
-        kind: source.kind,
-        identify: &campaign.identify,
-        budget: &source.uncertainty,
-        campaign: &campaign.key,
-        shared_errors: &shared_errors,
-        scatter: None,
-        looks: 1,
-    };
     let laws = laws(campaign, source, &data)?;
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
-    let (mut models, mut failed) = (Vec::new(), Vec::new());
-    for law in &laws {
-        progress(&law.name);
-        match regress(law, &data, settings) {
-            Ok(model) => {
-                findings.extend(model.findings.iter().cloned());
-                models.push(model);
-            }
-            Err(error) => failed.push((law.name.clone(), error)),
-        }
-    }
-    if models.is_empty() {
-        return Err(nothing_fitted(failed, &findings));
-    }
-    let not_fitted: Vec<NotFitted> =
-        failed.into_iter().map(|(model, error)| NotFitted { model, why: without_place(&error) }).collect();
-    findings.extend(not_fitted.iter().map(|n| {
-        let text = format!("model {} could not be fitted and is left out: {}", n.model, n.why);
-        Finding::new(Severity::Warning, "not-fitted", text)
-    }));
-    let tests = nested_tests(&models, &data);
-    let scores: Vec<Score> = models.iter().map(|m| leave_one_out(m, &data)).collect();
-    let blocks = campaign
-        .identify
-        .cross_validation
-        .iter()
-        .flat_map(|block| models.iter().filter_map(|m| range_block(m, &data, block)))
-        .collect();
-    let recommendation = recommend(&models, &data, &tests);
-    let mut estimates = Vec::new();
-    for (i, model) in models.iter().enumerate() {
-        let mut diagnostics = diagnosis::diagnostics(model, &data, &scores[i])?;
-        let chosen = recommendation.as_ref().is_some_and(|r| r.index == i);
-        if let Some(draws) = campaign.identify.monte_carlo.filter(|_| chosen) {
-            progress(&format!("{} by {draws} Monte Carlo draws", model.law.name));
-            diagnostics.notes.extend(monte_carlo_note(model, &data, settings, draws));
-        }
-        if let Some(resamples) = campaign.identify.wild_bootstrap.filter(|_| chosen) {
-            progress(&format!("{} by {resamples} wild cluster resamples", model.law.name));
-            match bootstrap::note(model, resamples) {
-                Ok(note) => diagnostics.notes.push(note),
-                Err(finding) => findings.push(finding),
-            }
-        }
-        let found = diagnosis::findings(model, &data, campaign, &diagnostics);
-        // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
-        if chosen {
-            findings.extend(found);
-        }
-        let reason = recommendation.as_ref().filter(|_| chosen).map(|r| r.reason.clone());
-        let record = record::estimate(model, &data, source, &validity, diagnostics, chosen, reason);
-        // Nobody else knows the point that moments are about.
-        let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
-        let point = ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() };
-        estimates.push(Estimate { point, ..record });
-    }
-    let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
-    Ok(SourceResult {
-        name: source.name.clone(),
+    let scatter = scatter(campaign, source, &data, &mut findings)?;
+    // Nobody but the campaign knows the point that moments are about.
+    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
+    Ok(Reduced {
+        source: source.name.clone(),
         kind: source.kind,
         data,
         n_read,
-        models,
-        not_fitted,
-        estimates,
-        tests,
-        scores,
-        blocks,
-        recommendation,
+        laws,
+        choice: Choice::Selection,
+        weight: Weight::Std,
+        scatter,
+        budget: source.uncertainty.clone(),
+        campaign: campaign.key.clone(),
+        errors: shared_errors,
+        looks: 1,
+        stated: Stated {
+            method: "table".to_owned(),
+            words: None,
+            frame: Frame::body(),
+            point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
+            attitude: None,
+            refers_to: IndexMap::new(),
+            constants: IndexMap::new(),
+            labels: IndexMap::new(),
+            derived: Vec::new(),
+        },
         validity,
         findings,
         files,
     })
 }
 
-/// Why an error came about, without the source and the model that it names: where it is shown, they stand beside it.
-fn without_place(error: &IdentifyError) -> String {
-    match error {
-        IdentifyError::Fit { source, .. } => source.to_string(),
-        IdentifyError::NoFit { why, .. } => why.clone(),
-        IdentifyError::Campaign { what, .. } => what.clone(),
-        other => other.to_string(),
-    }
-}
-
-/// The error of a source without any fit: what each model says once, and what was found in the data before.
-fn nothing_fitted(failed: Vec<(String, IdentifyError)>, findings: &[Finding]) -> IdentifyError {
-    let mut reasons: Vec<IdentifyError> = Vec::new();
-    for (_, error) in failed {
-        if !reasons.iter().any(|r| without_place(r) == without_place(&error)) {
-            reasons.push(error);
+/// The scatter that the campaign asks for, else what suits the source: residuals of a computation are model error, alike within a configuration.
+fn scatter(
+    campaign: &Campaign,
+    source: &Source,
+    data: &Dataset,
+    findings: &mut Vec<Finding>,
+) -> Result<Scatter, IdentifyError> {
+    match campaign.identify.covariance.as_deref() {
+        Some("classical") => return Ok(Scatter::Classical),
+        Some("HC3" | "hc3") => return Ok(Scatter::Hc3),
+        Some("cluster" | "CR3" | "cr3") => return Ok(Scatter::Cluster),
+        Some(other) => {
+            return Err(IdentifyError::Campaign {
+                place: "[identify]".to_owned(),
+                what: format!("covariance = {other:?} is not known; use classical, HC3 or cluster"),
+            });
         }
+        None if source.kind != SourceKind::Cfd => return Ok(Scatter::Classical),
+        None => {}
     }
-    let found: Vec<String> =
-        findings.iter().filter(|f| f.severity == Severity::Error).map(|f| f.message.clone()).collect();
-    match <[IdentifyError; 1]>::try_from(reasons) {
-        Ok([only]) if found.is_empty() => only,
-        Ok([only]) => IdentifyError::NothingFitted { reasons: vec![only], found },
-        Err(reasons) => IdentifyError::NothingFitted { reasons, found },
+    let clusters = data.group.as_ref().map_or(0, |g| distinct(g).len());
+    if clusters >= FEWEST_CLUSTERS {
+        return Ok(Scatter::Cluster);
     }
-}
-
-/// Type B uncertainties by Monte Carlo beside the linear ones: where they differ, the propagation is not linear.
-fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, draws: usize) -> Option<String> {
-    /// Seed of the draws; the same campaign gives the same note.
-    const SEED: u64 = 1;
-    // Entries that are part of the scatter are not drawn: the linear figure does not hold them either.
-    let (shared, drawn): (Vec<_>, Vec<_>) = settings
-        .budget
-        .iter()
-        .zip(&model.budget[1..])
-        .filter(|(_, part)| !part.in_scatter)
-        .map(|(entry, part)| (entry.clone(), part))
-        .unzip();
-    if shared.is_empty() {
-        return None;
-    }
-    let bare = Settings { budget: &[], shared_errors: &[], ..settings };
-    let covariance = uncertainty::monte_carlo(data, &shared, draws, SEED, |moved| {
-        regress(&model.law, moved, bare)
-            .ok()
-            .map(|m| m.fit.coefficients.iter().map(|c| c.unconstrained.unwrap_or(0.0)).collect())
-    })?;
-    let parts: Vec<String> = model
-        .specs
-        .iter()
-        .enumerate()
-        .filter_map(|(j, s)| {
-            model.combined[j]?;
-            let linear: f64 = drawn.iter().map(|part| part.covariance[(j, j)]).sum();
-            Some(format!("{} {:.2e} ({:.2e})", s.name, covariance[(j, j)].max(0.0).sqrt(), linear.max(0.0).sqrt()))
-        })
-        .collect();
-    Some(format!("type B by {draws} Monte Carlo draws (linear in parentheses): {}", parts.join(", ")))
+    let text = format!(
+        "residuals of CFD are model error, not noise; cluster-robust intervals need five configurations and a `group`, there are \
+         {clusters}: HC3 is used"
+    );
+    findings.push(Finding::new(Severity::Warning, "cfd-few-clusters", text));
+    Ok(Scatter::Hc3)
 }
 
 /// Built-in models that need no body.

@@ -85,6 +85,21 @@ fn the_records_carry_value_interval_and_budget() {
     assert_eq!(report.estimates.iter().filter(|e| e.recommended).count(), 1);
 }
 
+/// One wet run: nothing tells its scatter, so that the record has no interval and no covariance; what is declared is known all the same.
+#[test]
+fn the_record_of_one_run_states_what_is_declared_and_no_interval() {
+    let scenario = scenario();
+    let is_kept =
+        |r: &DragRun<'_>| r.body == BodyState::Wet && r.pair == 1 && r.target_speed_m_s == 0.55 && r.direction > 0.0;
+    let report = report(&scenario, &setup(&scenario), is_kept).unwrap();
+    let [record] = report.estimates.as_slice() else { panic!("{:?}", report.estimates) };
+    let d = &record.coefficients["D_x_II"];
+    assert!((d.value.unwrap() - 20.0).abs() < 1.0 && d.type_b.unwrap() > 0.0);
+    assert_eq!((d.standard_uncertainty, d.type_a, d.interval_95), (None, None, None));
+    assert!(record.type_a.is_none() && record.errors.is_empty() && record.clusters.is_none());
+    assert!(report.coefficients[0].budget.iter().all(|part| part.shared == "campaign" || part.in_scatter));
+}
+
 #[test]
 fn without_calibration_eq_8_is_a_quarter_too_high_and_says_why() {
     let scenario = scenario();

@@ -4,9 +4,8 @@
 use froude_fit::budget::Uncertain;
 use froude_identify::carriage::DragSetup;
 use froude_identify::carriage::calibration::ForcePerVolt;
-use froude_identify::carriage::coefficient::Point;
+use froude_identify::carriage::coefficient::{Point, of_differences};
 use froude_identify::carriage::detectability::{DryMean, predict};
-use froude_identify::carriage::report::of_differences;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::reduce::{Reduced, reduce};
+use froude_identify::reduce::{Observations, reduce};
 use froude_identify::source::{asked_models, check_budget, laws};
 use froude_identify::{columns, lint, validity};
 use froude_records::campaign::{BudgetEntry, Campaign, Input, Source, read_campaign};
@@ -292,7 +292,7 @@ fn columns(table: &Table) -> Vec<ColumnFacts> {
 }
 
 /// Everything doubtful about the observations of a source.
-fn doubts(campaign: &Campaign, source: &Source, reduced: &Reduced) -> Vec<Finding> {
+fn doubts(campaign: &Campaign, source: &Source, reduced: &Observations) -> Vec<Finding> {
     let mut findings = reduced.findings.clone();
     findings.extend(validity::ranges(&reduced.data, campaign).1);
     findings.extend(lint::observations(&reduced.data, campaign));

@@ -284,18 +284,6 @@ impl Agreement {
     }
 }
 
-/// Standard deviation of D_d from repeats with its degrees of freedom: what the wet repeats show (the jackknife over pairs), and no less
-/// than a floor.
-///
-/// A few pairs that agree by chance would otherwise state a D_d that is wrong by many of its intervals. Only what runs of a pair do not
-/// share goes into the floor: what they share may cancel in the difference, and a trouble that only the wet runs have is never in the dry
-/// ones, so that a mean of the two would be too small. In simulated campaigns of three to five pairs, with mounts that repeat to 0 to 2 % of
-/// D_d, flow left over and drifting friction, the interval covers 93.8 to 97.7 % (`tests/scatter.rs`).
-#[must_use]
-pub fn floored(seen: (f64, f64), floor: (f64, f64)) -> (f64, f64) {
-    if seen.0 >= floor.0 { seen } else { floor }
-}
-
 /// Holds the scatter of motor current differences against the prediction; `None` without repeats.
 #[must_use]
 pub fn agreement(points: &[Point], predicted: &Detectability, setup: &DragSetup) -> Option<Agreement> {

@@ -9,9 +9,8 @@
 
 use froude_fit::propagate::expanded;
 
-use super::coefficient::{Coefficient, Point, pairs};
+use super::coefficient::{Coefficient, Point, of_differences, pairs};
 use super::detectability::{DryMean, predict};
-use super::report::of_differences;
 use super::run::DragSetup;
 
 /// Fewest whole pairs to look at: two have one degree of freedom, and an interval of chance.

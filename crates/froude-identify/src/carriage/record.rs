@@ -1,18 +1,23 @@
-//! D_d as an estimate record: `D_x_II` of the law `quadratic`, as a table has it; C_D is made from it.
+//! D_d over the seam: `D_x_II` of the law `quadratic`, as a table has it, with the paper's name as its label; C_D is made from it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use froude_records::campaign::BodyAxis;
-use froude_records::estimate::{
-    Attitude, Clusters, Derived, Diagnostics, Estimate, Frame, Interval, Measured, MethodUsed, Range, ReferencePoint,
-    Signs, Status,
-};
+use froude_records::campaign::{BodyAxis, SourceKind};
+use froude_records::estimate::{Attitude, Frame, Measured, Range, ReferencePoint};
 use froude_records::text::counted;
+use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
-use super::coefficient::{Coefficient, Method, name};
+use super::coefficient::{Coefficient, Method, Point, slope};
+use super::errors;
+use super::fsm::reach;
+use super::observed::Observed;
 use super::run::{DragRun, DragSetup, Efficiency};
-use crate::record;
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+use crate::regression::Weight;
+use crate::seam::{Choice, Derived, Reduced, Stated};
 use crate::validity::{ALONG, OFF_AXIS};
 
 /// Name of the frame of a carriage where nobody has said which axis of the body lies along its travel.
@@ -29,82 +34,102 @@ fn frame(setup: &DragSetup) -> Frame {
     }
 }
 
-/// The record of one method's result.
-pub(super) fn estimate(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>], recommended: bool) -> Estimate {
-    let name = name(setup);
-    let recorded = froude_records::estimate::Coefficient {
-        label: Some("D_d".to_owned()),
-        value: Some(c.value),
-        unit: "kg/m".to_owned(),
-        status: Status::Free,
-        nuisance: false,
-        standard_uncertainty: c.standard,
-        type_a: c.type_a,
-        type_b: Some(c.type_b),
-        interval_95: c.interval_95,
-        effective_dof: Some(c.dof).filter(|d| d.is_finite()),
+/// Name of the coefficient, which the paper calls D_d.
+fn name(setup: &DragSetup) -> String {
+    format!("D_{}_II", setup.axis())
+}
+
+/// The points of a method as they are fitted, by the law that a table's `quadratic` is along one axis; `None` without a moving point.
+///
+/// # Errors
+///
+/// A law that cannot be made.
+pub(super) fn reduced(observed: &Observed, setup: &DragSetup) -> Result<Option<Reduced>, IdentifyError> {
+    let Observed { method, points, scatter, errors, .. } = observed;
+    let Some(measured) = slope(points) else { return Ok(None) };
+    let data = observations(points, setup);
+    let (axis, name) = (setup.axis(), name(setup));
+    let formula = format!("-{name}*v_{axis}*abs(v_{axis})");
+    let law = ForceLaw::formulas("quadratic", &IndexMap::from([(setup.load().to_owned(), formula)]), &data)?;
+    let mut errors = errors.clone();
+    errors.splice(0..0, errors::shared(*method, points, measured, setup));
+    Ok(Some(Reduced {
+        source: setup.name.clone(),
+        kind: SourceKind::Towing,
+        data,
+        n_read: points.len(),
+        laws: vec![law],
+        choice: Choice::Method(method.words().to_owned()),
+        weight: Weight::One,
+        scatter: scatter.clone(),
+        budget: Vec::new(),
+        campaign: String::new(),
+        errors,
+        looks: setup.looks,
+        stated: stated(*method, name, setup),
+        validity: validity(points, setup),
+        findings: Vec::new(),
+        files: Vec::new(),
+    }))
+}
+
+/// The points as observations, the drag of the strut taken off: loads of the fluid on the body, against the motion.
+fn observations(points: &[Point], setup: &DragSetup) -> Dataset {
+    let strut = setup.strut_n_s2_m2.map_or(0.0, |s| s.value);
+    let speed: Vec<f64> = points.iter().map(|p| p.speed_m_s).collect();
+    let load = points.iter().map(|p| strut * p.speed_m_s * p.speed_m_s.abs() - p.force_n).collect();
+    let texts = |of: &dyn Fn(&Point) -> String| points.iter().map(of).collect::<Vec<_>>();
+    let mut data = Dataset {
+        rows: points.len(),
+        configuration: vec![String::new(); points.len()],
+        setup: vec![String::new(); points.len()],
+        run: texts(&|p| p.run.clone()),
+        group: Some(texts(&|p| p.pair.to_string())),
+        line: (1..=points.len()).collect(),
+        ..Dataset::default()
     };
-    let mut refers_to =
-        IndexMap::from([("density".to_owned(), Measured { value: setup.density_kg_m3, unit: "kg/m^3".to_owned() })]);
-    let mut derived = IndexMap::new();
+    data.put(setup.velocity(), speed, Dimension::SPEED);
+    data.put("density", vec![setup.density_kg_m3; points.len()], Dimension::DENSITY);
+    data.put(setup.load(), load, Dimension::FORCE);
+    data
+}
+
+/// What the record says beside the fit.
+fn stated(method: Method, name: String, setup: &DragSetup) -> Stated {
+    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
+    let mut refers_to = IndexMap::from([("density".to_owned(), measured(setup.density_kg_m3, "kg/m^3"))]);
+    let mut derived = Vec::new();
     if let Some(area) = setup.reference_area_m2 {
-        refers_to.insert("area".to_owned(), Measured { value: area, unit: "m^2".to_owned() });
-        let scale = 2.0 / (setup.density_kg_m3 * area);
-        let drag = Derived {
+        refers_to.insert("area".to_owned(), measured(area, "m^2"));
+        derived.push(Derived {
+            name: "C_D".to_owned(),
             formula: format!("2*{name}/(density*area)"),
-            value: Some(c.value * scale),
+            of: name.clone(),
+            factor: 2.0 / (setup.density_kg_m3 * area),
             unit: "1".to_owned(),
-            standard_uncertainty: c.standard.map(|u| u * scale),
-            interval_95: c.interval_95.map(|[low, high]| [low * scale, high * scale]),
-        };
-        derived.insert("C_D".to_owned(), drag);
+        });
     }
     let mut constants = IndexMap::new();
-    if c.method.is_sensorless() {
-        let value = setup.force_per_volt_n();
-        constants.insert("force_per_volt".to_owned(), Measured { value, unit: "N/V".to_owned() });
+    if method.is_sensorless() {
+        constants.insert("force_per_volt".to_owned(), measured(setup.force_per_volt_n(), "N/V"));
     }
-    // Without pairs or runs to leave out nothing tells the scatter, and the estimate states no covariance.
-    let is_stated = c.standard.is_some();
-    let type_a = record::type_a(&c.model).filter(|_| is_stated);
-    let (by, n) = if c.pairs >= 2 { ("pair", c.pairs) } else { ("run", c.points.len()) };
-    Estimate {
-        id: format!("{}/{}", setup.name, c.method.name()),
-        source: setup.name.clone(),
-        kind: "towing".to_owned(),
-        method: MethodUsed {
-            name: c.method.name().to_owned(),
-            version: 1,
-            words: format!("{}; least squares over v|v| through the origin", c.method.words()),
-        },
+    Stated {
+        method: method.name().to_owned(),
+        words: Some(format!("{}; least squares over v|v| through the origin", method.words())),
         frame: frame(setup),
         point: ReferencePoint::default(),
-        signs: Signs::default(),
         attitude: setup.travel.map(|axis| Attitude { travel: axis.name().to_owned() }),
-        law: record::law(&c.model, &c.data, constants),
         refers_to,
-        data: Vec::new(),
-        n_observations: c.points.len(),
-        clusters: Some(Clusters { by: by.to_owned(), n }),
-        dof: IndexMap::from([(setup.load().to_owned(), type_a.as_ref().and_then(|a| a.dof[0]))]),
-        sigma: IndexMap::new(),
-        coefficients: IndexMap::from([(name, recorded)]),
+        constants,
+        labels: IndexMap::from([(name, "D_d".to_owned())]),
         derived,
-        type_a,
-        errors: if is_stated { record::errors(&c.model) } else { IndexMap::new() },
-        interval: Interval { looks: c.looks, ..Interval::default() },
-        undetermined: Vec::new(),
-        validity: validity(c, setup),
-        diagnostics: Diagnostics { notes: notes(c, setup, runs), ..Diagnostics::default() },
-        recommended,
-        reason: None,
     }
 }
 
 /// Speeds, and the angle to the flow that the attitude makes.
-fn validity(c: &Coefficient, setup: &DragSetup) -> IndexMap<String, Range> {
-    let speeds = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s.abs()).collect::<Vec<_>>());
-    let ways = super::fsm::reach(&c.points.iter().map(|p| p.speed_m_s).collect::<Vec<_>>());
+fn validity(points: &[Point], setup: &DragSetup) -> IndexMap<String, Range> {
+    let speeds = reach(&points.iter().map(|p| p.speed_m_s.abs()).collect::<Vec<_>>());
+    let ways = reach(&points.iter().map(|p| p.speed_m_s).collect::<Vec<_>>());
     // Astern is the other way round, where it went nowhere else.
     let along = if ways[1] > 0.0 { 0.0 } else { PI };
     let ranges: &[(&str, [f64; 2], &str)] = match setup.travel {
@@ -123,7 +148,7 @@ fn validity(c: &Coefficient, setup: &DragSetup) -> IndexMap<String, Range> {
 }
 
 /// The budget and what the value rests on, in sentences.
-fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) -> Vec<String> {
+pub(super) fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) -> Vec<String> {
     let mut out: Vec<String> = c
         .budget
         .iter()

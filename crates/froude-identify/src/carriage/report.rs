@@ -1,20 +1,19 @@
 //! All methods side by side over one campaign: the paper's Table IV with what it lacked.
 
-use froude_fit::budget::{Kind, jackknife_of_one};
+use froude_fit::budget::Kind;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
 use super::added_mass::{AddedMass, added_mass};
-use super::coefficient::{Coefficient, Method, Point, TypeA, coefficient, each_alone, pairs, scatter, slope, slope_of};
-use super::detectability::{Agreement, Detectability, DryMean, agreement, floored, predict, zero_change};
+use super::coefficient::{Coefficient, Method, Point, coefficient};
+use super::detectability::{Agreement, Detectability, agreement, zero_change};
 use super::error::DragError;
-use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
+use super::observed::{Told, Tows};
+use super::record;
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
-use super::steady::{Rejected, still_windows};
-use super::{fsm, mbdp, mcd, record};
+use super::steady::Rejected;
 use crate::error::IdentifyError;
-use crate::uncertainty::SharedError;
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;
@@ -64,56 +63,42 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
 ///
 /// As [`drag_report`].
 pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> Result<DragReport, DragError> {
-    let is_asked = |method: Method| methods.contains(&method);
     check(runs, setup)?;
-    let wet: Vec<&DragRun<'_>> = tows(runs, BodyState::Wet);
-    let dry: Vec<&DragRun<'_>> = tows(runs, BodyState::Dry);
-    if wet.is_empty() {
+    let tows = Tows::of(runs, setup);
+    if tows.wet.is_empty() {
         return Err(DragError::NoWetRuns { n: runs.len() });
     }
-    let mut rejected = Vec::new();
-    let mut findings = Vec::new();
-    let mut coefficients = Vec::new();
-    if is_asked(Method::Fsm) && wet.iter().any(|r| r.force_n.is_some()) {
-        let all = wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
-        let points = keep(all, Method::Fsm, &mut rejected);
-        let type_a = sensed_scatter(&points);
-        let drift = unseen_drift(&points, &wet, setup, &mut findings);
-        let sensed = coefficient(Method::Fsm, points, setup, type_a, drift.into_iter().collect());
-        coefficients.extend(or_told(Method::Fsm, sensed, &mut findings));
-    }
-    let k = setup.force_per_volt_n();
-    let differences = wet.iter().map(|w| match dry.iter().find(|d| d.is_partner_of(w)) {
-        Some(d) => mcd::point(w, d, k, setup.steady),
-        None => {
-            Err(Rejected::NoPartner { run: w.id.to_owned(), pair: w.pair, speed_m_s: w.target_speed_m_s * w.direction })
+    let mut told = Told::default();
+    let mut coefficients: Vec<Coefficient> = Vec::new();
+    for method in Method::ALL.into_iter().filter(|method| methods.contains(method)) {
+        let Some(observed) = tows.observed(method, setup, &mut told) else { continue };
+        let elsewhere = observed.elsewhere;
+        if let Some(mut c) = or_told(method, coefficient(observed, setup), &mut told.findings) {
+            told.findings.append(&mut c.result.findings);
+            told.findings.extend(elsewhere.map(|elsewhere| elsewhere.finding(method, c.value)));
+            coefficients.push(c);
         }
-    });
-    let means: Vec<DryMean> = dry.iter().filter_map(|r| DryMean::of(r, setup)).collect();
-    let (mut detectability, mut agrees) = (None, None);
-    if is_asked(Method::Mcd) && !dry.is_empty() {
-        let points = keep(differences, Method::Mcd, &mut rejected);
-        let of_pairs = predict(&means, differences_per_speed(&points), pairs(&points).len(), setup);
-        agrees = of_pairs.as_ref().and_then(|d| agreement(&points, d, setup));
-        let of_current = of_differences(points, of_pairs.as_ref(), setup);
-        coefficients.extend(or_told(Method::Mcd, of_current, &mut findings));
-        detectability = of_pairs.map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
     }
-    let sweeps: Vec<&DragRun<'_>> = runs.iter().filter(|r| r.kind == RunKind::Friction).collect();
-    let for_constant = if sweeps.is_empty() { &dry } else { &sweeps };
-    if is_asked(Method::MbdpConstant) {
-        let constant = Method::MbdpConstant;
-        coefficients.extend(model_based(constant, &wet, for_constant, &dry, setup, &mut rejected, &mut findings));
-    }
-    let everywhere: Vec<&DragRun<'_>> = dry.iter().chain(&sweeps).copied().collect();
-    let mapped = [Method::MbdpMapped, Method::MbdpFlexible];
-    let is_possible = |m: &Method| is_asked(*m) && (*m == Method::MbdpMapped || setup.flexible.is_some());
-    for method in mapped.into_iter().filter(is_possible) {
-        coefficients.extend(model_based(method, &wet, &everywhere, &dry, setup, &mut rejected, &mut findings));
-    }
+    Ok(judge(runs, setup, coefficients, methods.contains(&Method::Mcd).then_some(&tows), told))
+}
+
+/// The methods beside each other: which is the best, whether they agree among themselves and with what the dry repeats promised.
+///
+/// `tows` where motor current differences were asked for.
+fn judge(
+    runs: &[DragRun<'_>],
+    setup: &DragSetup,
+    mut coefficients: Vec<Coefficient>,
+    tows: Option<&Tows<'_, '_>>,
+    told: Told,
+) -> DragReport {
+    let Told { rejected, mut findings } = told;
     let by = |method: Method| coefficients.iter().find(|c| c.method == method);
-    let current = by(Method::Mcd);
-    let reference = by(Method::Fsm).or(current).or(coefficients.first()).map(|c| c.value);
+    let reference = by(Method::Fsm).or(by(Method::Mcd)).or(coefficients.first()).map(|c| c.value);
+    let differences = by(Method::Mcd).map_or(&[][..], |c| &c.points);
+    let promised = tows.filter(|tows| !tows.dry.is_empty()).and_then(|tows| tows.promised(differences, setup));
+    let agrees = promised.as_ref().and_then(|d| agreement(differences, d, setup));
+    let detectability = promised.map(|d| Detectability { zero_change_n: zero_change(runs, setup), ..d });
     let recommended = recommended(&coefficients);
     findings.extend(doubts(runs, setup, &coefficients, detectability.as_ref(), agrees));
     let added_mass = added_mass(runs, setup);
@@ -136,9 +121,19 @@ pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> R
             .filter(|(_, why)| !is_swing(why))
             .map(|(method, why)| Finding::new(Severity::Warning, "run-left-out", format!("{}: {why}", method.name()))),
     );
-    let estimates =
-        coefficients.iter().map(|c| record::estimate(c, setup, runs, recommended == Some(c.method))).collect();
-    Ok(DragReport {
+    for c in &mut coefficients {
+        let (notes, is_best) = (record::notes(c, setup, runs), recommended == Some(c.method));
+        c.result.n_read = runs.len();
+        for estimate in &mut c.result.estimates {
+            estimate.diagnostics.notes.clone_from(&notes);
+            estimate.recommended = is_best;
+            // What is declared is known also where nothing tells the scatter.
+            for coefficient in estimate.coefficients.values_mut() {
+                coefficient.type_b = Some(c.type_b);
+            }
+        }
+    }
+    DragReport {
         drag_coefficients: coefficients
             .iter()
             .map(|c| setup.reference_area_m2.map(|a| c.drag_coefficient(setup.density_kg_m3, a)))
@@ -150,29 +145,9 @@ pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> R
         added_mass,
         rejected,
         findings,
-        estimates,
+        estimates: coefficients.iter().flat_map(|c| c.result.estimates.iter().cloned()).collect(),
         coefficients,
-    })
-}
-
-fn tows<'r, 'a>(runs: &'r [DragRun<'a>], body: BodyState) -> Vec<&'r DragRun<'a>> {
-    runs.iter().filter(|r| r.kind == RunKind::Tow && r.body == body).collect()
-}
-
-/// The points that came out; the others are noted.
-fn keep(
-    all: impl Iterator<Item = Result<Point, Rejected>>,
-    method: Method,
-    rejected: &mut Vec<(Method, Rejected)>,
-) -> Vec<Point> {
-    let mut out = Vec::new();
-    for point in all {
-        match point {
-            Ok(point) => out.push(point),
-            Err(why) => rejected.push((method, why)),
-        }
     }
-    out
 }
 
 /// A method that cannot be fitted costs its own row and says so.
@@ -185,216 +160,6 @@ fn or_told(
         findings.push(Finding::new(Severity::Warning, "not-fitted", format!("{}: {error}", method.name())));
         None
     })
-}
-
-/// Where stand-stills do not bracket the tow, the sensor's drift is not seen and may be the same in all runs: then it does
-/// not average down, except that it pulls the same way in tows out and back.
-fn unseen_drift(
-    points: &[Point],
-    wet: &[&DragRun<'_>],
-    setup: &DragSetup,
-    findings: &mut Vec<Finding>,
-) -> Option<SharedError> {
-    let is_open = |r: &&&DragRun<'_>| r.force_n.is_some() && still_windows(r, setup.steady).iter().any(Option::is_none);
-    let open = wet.iter().filter(is_open).count();
-    if open == 0 || points.is_empty() {
-        return None;
-    }
-    let half_n = setup.sensor.drift_half_width_n;
-    findings.push(Finding::new(
-        Severity::Warning,
-        "zero-on-one-side",
-        format!(
-            "fsm: {} no still window on one side of the tow; the declared drift of ± {half_n:.2} N moves D_d by \
-             up to {:.2} N s^2/m^2. Stand still for two seconds before and after",
-            counted(open, "wet run has", "wet runs have"),
-            half_n * slope_of(points, |_| 1.0).abs(),
-        ),
-    ));
-    let name = "drift of the sensor that no still window shows";
-    Some(SharedError::between(name, setup.load(), &vec![1.0; points.len()], [-half_n, half_n]))
-}
-
-/// Whom a run that the friction is identified from stands or falls with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Cluster {
-    /// A dry tow: with its pair.
-    Pair(u32),
-    /// A friction run: with its repeat of all speeds, or alone where repeats are not told apart.
-    Sweep(u32),
-}
-
-/// Clusters of the runs that the friction is identified from.
-fn clusters(runs: &[&DragRun<'_>]) -> Vec<Cluster> {
-    let mut repeats = runs.iter().filter(|r| r.kind == RunKind::Friction).map(|r| r.pair);
-    let first = repeats.next();
-    let is_told = repeats.any(|r| Some(r) != first);
-    let of = |(i, r): (usize, &&DragRun<'_>)| match r.kind {
-        RunKind::Friction => Cluster::Sweep(if is_told { r.pair } else { i as u32 }),
-        _ => Cluster::Pair(r.pair),
-    };
-    runs.iter().enumerate().map(of).collect()
-}
-
-/// MBDP. Its type A has the scatter of the pairs, the friction identified anew without each of them, and that of the friction runs,
-/// each of their repeats left out in turn.
-fn model_based(
-    method: Method,
-    wet: &[&DragRun<'_>],
-    frictional: &[&DragRun<'_>],
-    dry: &[&DragRun<'_>],
-    setup: &DragSetup,
-    rejected: &mut Vec<(Method, Rejected)>,
-    findings: &mut Vec<Finding>,
-) -> Option<Coefficient> {
-    let is_mapped = method != Method::MbdpConstant;
-    let k = setup.force_per_volt_n();
-    let without_drag: Vec<(Cluster, Vec<Cell>)> =
-        clusters(frictional).into_iter().zip(frictional.iter().map(|r| cells(r, setup.steady))).collect();
-    let with_drag: Vec<(u32, Vec<Cell>)> = wet.iter().map(|r| (r.pair, cells(r, setup.steady))).collect();
-    // A map is made where it is used: friction runs elsewhere would leave stretches of it that nobody passed.
-    let towed: Vec<f64> = with_drag.iter().flat_map(|c| &c.1).map(|c| c.position_m).collect();
-    let [low, high] = super::fsm::reach(&towed);
-    let is_near = |c: &&Cell| !is_mapped || (low - KNOT_SPACING_M..=high + KNOT_SPACING_M).contains(&c.position_m);
-    let identify = |skip: Option<Cluster>| {
-        let cells = without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1);
-        Friction::identify(cells.filter(is_near), is_mapped)
-    };
-    let Some(friction) = identify(None) else {
-        if !frictional.is_empty() {
-            let why = if is_mapped {
-                "the dry runs do not pass every stretch of the tow"
-            } else {
-                "no dry run has a steady window"
-            };
-            findings.push(Finding::new(Severity::Note, "no-friction", format!("{}: left out: {why}", method.name())));
-        }
-        return None;
-    };
-    let model = setup.flexible.filter(|_| method == Method::MbdpFlexible);
-    let point = |run: &DragRun<'_>| match model {
-        Some(model) => mbdp::flexible_point(run, &friction, k, k / setup.ideal_force_per_volt_n, model, setup.steady),
-        None => mbdp::point(run, &friction, k, setup.steady),
-    };
-    let points = keep(wet.iter().map(|w| point(w)), method, rejected);
-    let groups = pairs(&points);
-    let without = |skip: Cluster| {
-        let without = identify(Some(skip))?;
-        let (mut xx, mut xy) = (0.0, 0.0);
-        for (_, cells) in with_drag.iter().filter(|c| Cluster::Pair(c.0) != skip && groups.contains(&c.0)) {
-            let x = cells.first().map_or(0.0, |c| c.speed_m_s * c.speed_m_s.abs());
-            let left = cells.iter().map(|c| c.weight * (c.command_v - without.command_v(c.position_m, c.speed_m_s)));
-            xx += x * x;
-            xy += x * k * left.sum::<f64>() / cells.iter().map(|c| c.weight).sum::<f64>().max(f64::MIN_POSITIVE);
-        }
-        (xx > 0.0).then(|| xy / xx)
-    };
-    let mut sweeps: Vec<Cluster> =
-        without_drag.iter().map(|c| c.0).filter(|c| matches!(c, Cluster::Sweep(_))).collect();
-    sweeps.dedup();
-    let of_pairs = jackknife_of_one(groups.len(), |g| without(Cluster::Pair(groups[g])));
-    let of_sweeps = jackknife_of_one(sweeps.len(), |g| without(sweeps[g]));
-    // A wet run alone has half the variance of a difference, and friction that is known exactly adds none.
-    let promised = predict(
-        &dry.iter().filter_map(|r| DryMean::of(r, setup)).collect::<Vec<_>>(),
-        differences_per_speed(&points),
-        groups.len(),
-        setup,
-    );
-    let of_repeats = of_pairs.map(|pairs| match &promised {
-        Some(Detectability { floor_n_s2_m2: (rest, dof), .. }) => {
-            held(pairs, ((0.5_f64.sqrt() * rest).hypot(on_drag(&points, setup)), *dof))
-        }
-        None => TypeA { standard: pairs.0, dof: pairs.1, name: "scatter between pairs" },
-    });
-    let named = of_repeats.map(|a| match of_sweeps {
-        Some(sweeps) => {
-            let (standard, dof) = together((a.standard, a.dof), sweeps);
-            TypeA { standard, dof, name: "scatter of pairs and of friction runs" }
-        }
-        None => a,
-    });
-    // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
-    let of_nothing: Vec<Point> = dry.iter().filter_map(|d| point(d).ok()).collect();
-    let scatter = named.map_or(f64::INFINITY, |t| t.standard);
-    let phantom = slope(&of_nothing).filter(|phantom| phantom.abs() > scatter);
-    let left = phantom.map(|phantom| {
-        let squares: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
-        let name = "friction where it was not identified, left as it is";
-        SharedError::of_load(name, setup.load(), &squares, phantom.abs(), f64::INFINITY)
-    });
-    let out = or_told(method, coefficient(method, points, setup, named, left.into_iter().collect()), findings)?;
-    if let Some(phantom) = phantom {
-        let from = friction.range_m;
-        findings.push(Finding::new(
-            Severity::Warning,
-            "friction-elsewhere",
-            format!(
-                "{}: the friction identified from {:.2} to {:.2} m leaves a drag of {phantom:.3} N s^2/m^2 ({:.1} % of D_d) \
-                 on the dry tows; identify it where the body is towed, or use the map",
-                method.name(),
-                from[0],
-                from[1],
-                100.0 * phantom / out.value
-            ),
-        ));
-    }
-    Some(out)
-}
-
-/// Two independent scatters: root of the sum of squares, degrees of freedom by Welch and Satterthwaite.
-fn together((u, dof): (f64, f64), (v, other): (f64, f64)) -> (f64, f64) {
-    (u.hypot(v), froude_fit::propagate::effective_dof(&[(u * u, dof), (v * v, other)]))
-}
-
-/// D_d from wet-less-dry differences, its scatter held against what the dry repeats show.
-///
-/// # Errors
-///
-/// As [`coefficient`].
-pub fn of_differences(
-    points: Vec<Point>,
-    promised: Option<&Detectability>,
-    setup: &DragSetup,
-) -> Result<Option<Coefficient>, IdentifyError> {
-    let type_a = scatter(&points).and_then(|(u, dof, shared)| {
-        let (rest, rest_dof) = promised.filter(|_| shared == "pair")?.floor_n_s2_m2;
-        Some(held((u, dof), (rest.hypot(on_drag(&points, setup)), rest_dof)))
-    });
-    coefficient(Method::Mcd, points, setup, type_a, Vec::new())
-}
-
-/// The scatter of pairs, or the floor under it.
-fn held(seen: (f64, f64), floor: (f64, f64)) -> TypeA {
-    let (standard, dof) = floored(seen, floor);
-    let name = if standard > seen.0 {
-        "scatter of the dry repeats (the pairs agree better than these allow)"
-    } else {
-        "scatter between pairs"
-    };
-    TypeA { standard, dof, name }
-}
-
-/// What K_T's drift from run to run does to D_d through the drag itself.
-fn on_drag(points: &[Point], setup: &DragSetup) -> f64 {
-    setup.torque_constant_drift_relative * each_alone(points, |p| p.force_n)
-}
-
-/// Scatter of the force sensor: that of the pairs, and not less than what noise and zeros within the runs must give.
-fn sensed_scatter(points: &[Point]) -> Option<TypeA> {
-    let (standard, _, _) = scatter(points)?;
-    let least = each_alone(points, |p| p.standard_n);
-    (least > standard).then_some(TypeA {
-        standard: least,
-        dof: points.iter().map(|p| p.effective_n).sum(),
-        name: "noise and zeros of the runs (the pairs agree better than these allow)",
-    })
-}
-
-/// Differences at one speed: both directions and all pairs.
-fn differences_per_speed(points: &[Point]) -> usize {
-    let fastest = points.iter().map(|p| p.speed_m_s.abs()).fold(0.0, f64::max);
-    points.iter().filter(|p| p.speed_m_s.abs() > 0.99 * fastest).count()
 }
 
 /// The narrowest interval among the methods that need no model of the friction, or the first method's; a number without an interval is
@@ -446,7 +211,7 @@ fn doubts(
             ),
         );
     } else if matches!(setup.ballast, Ballast::Matched { .. })
-        && tows(runs, BodyState::Dry).iter().any(|r| !r.is_ballasted)
+        && runs.iter().any(|r| r.kind == RunKind::Tow && r.body == BodyState::Dry && !r.is_ballasted)
     {
         warn(
             "ballast-contradicts",

@@ -110,20 +110,7 @@ fn drawn(fit: &DecayFit, data: &Dataset, source: &Source) -> Result<ModelFit, Id
     let law = ForceLaw::formulas("damping of amplitudes", &IndexMap::from([(load, text)]), data)?;
     let fixed = [(linear.clone(), fit.values[1]), (quadratic.clone(), fit.values[2])].into_iter().collect();
     let identify = Identify { fixed, bounds: BoundsSpec::default(), ..Identify::default() };
-    regress(
-        &law,
-        data,
-        Settings {
-            source_name: &source.name,
-            kind: source.kind,
-            identify: &identify,
-            budget: &[],
-            campaign: "",
-            shared_errors: &[],
-            scatter: None,
-            looks: 1,
-        },
-    )
+    regress(&law, data, Settings::new(&source.name, source.kind, &identify))
 }
 
 fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: bool) -> Estimate {

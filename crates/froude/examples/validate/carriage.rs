@@ -3,7 +3,7 @@
 use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
 use froude::identify::carriage::calibration::{CalibrationSetup, ForcePerVolt, calibrate};
-use froude::identify::carriage::coefficient::{Coefficient, Method, coefficient};
+use froude::identify::carriage::coefficient::{Coefficient, Method, of_differences};
 use froude::identify::carriage::detectability::DryMean;
 use froude::identify::carriage::online::OnLine;
 use froude::identify::carriage::run::Ballast;
@@ -458,8 +458,7 @@ fn early_stop(claims: &mut Claims, seeds: usize) {
                 let status = live.status(&setup)?;
                 if status.may_stop || pair == scenario.pairs {
                     let shown = (status.value - d).abs() <= status.half_width?;
-                    let plain =
-                        coefficient(Method::Mcd, all, &DragSetup { looks: 1, ..setup }, None, vec![]).ok()??;
+                    let plain = of_differences(all, None, &DragSetup { looks: 1, ..setup }).ok()??;
                     let [low, high] = plain.interval_95?;
                     return Some((pair, shown, (low..=high).contains(&d)));
                 }

@@ -248,22 +248,14 @@ pub fn undetermined(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
             let model = regress(law, &data, settings(&campaign))?;
             let null: Vec<&str> =
                 model.fit.coefficients.iter().filter(|c| c.value.is_none()).map(|c| c.name.as_str()).collect();
-            let record = froude::identify::record::estimate(
-                &model,
-                &data,
-                &campaign.sources[0],
-                &indexmap::IndexMap::new(),
-                froude::records::estimate::Diagnostics::default(),
-                false,
-                None,
-            );
+            let determined = froude::identify::record::combinations(&model);
             let text = if null.is_empty() {
                 "all determined".to_owned()
             } else {
-                format!("null: {}; determined: {}", null.join(", "), record.undetermined.join("; "))
+                format!("null: {}; determined: {}", null.join(", "), determined.join("; "))
             };
             let what = format!("{} over {}", law.name, if expected { "H1LT to H9LT" } else { "H1LT alone" });
-            let holds = if expected { null.is_empty() } else { !null.is_empty() && !record.undetermined.is_empty() };
+            let holds = if expected { null.is_empty() } else { !null.is_empty() && !determined.is_empty() };
             let should =
                 if expected { "all coefficients determined" } else { "null values, determined combinations named" };
             claims.holds(STRUCTURE, &what, should, text, holds);
@@ -273,16 +265,7 @@ pub fn undetermined(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
 }
 
 fn settings(campaign: &Campaign) -> Settings<'_> {
-    Settings {
-        source_name: "twin",
-        kind: SourceKind::Tank,
-        identify: &campaign.identify,
-        budget: &[],
-        campaign: "",
-        shared_errors: &[],
-        scatter: None,
-        looks: 1,
-    }
+    Settings::new("twin", SourceKind::Tank, &campaign.identify)
 }
 
 pub fn dissipativity(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {

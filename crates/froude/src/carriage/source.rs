@@ -1,7 +1,6 @@
 //! Runs as a source of a campaign: each method that reduces them gives its observations, its fit and its estimate.
 
 use froude_identify::carriage::coefficient::{Coefficient, Method as CarriageMethod};
-use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::estimate::Estimate;
@@ -114,8 +113,9 @@ pub(super) fn files_of(runs: &Runs) -> Vec<ReadFile> {
     runs.logs.iter().map(|log| ReadFile::new(log.path.clone(), log.meta.role.name())).collect()
 }
 
+/// A result of the report under the name of the source.
 fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read: usize) -> SourceResult {
-    let Coefficient { method, model, data, .. } = coefficient;
+    let Coefficient { method, result, .. } = coefficient;
     // Runs that no campaign names are called as their own campaign calls them.
     let name = if source.name.is_empty() { estimate.source.clone() } else { source.name.clone() };
     let estimate = Estimate {
@@ -128,16 +128,7 @@ fn result(source: &Source, coefficient: Coefficient, estimate: Estimate, n_read:
         name: format!("{name}, {}", method.name()),
         kind: source.kind,
         n_read,
-        not_fitted: Vec::new(),
-        tests: Vec::new(),
-        scores: vec![leave_one_out(&model, &data)],
-        blocks: Vec::new(),
-        recommendation: Some(Recommendation { index: 0, reason: method.words().to_owned() }),
-        validity: estimate.validity.clone(),
-        findings: Vec::new(),
-        files: Vec::new(),
-        models: vec![model],
         estimates: vec![estimate],
-        data,
+        ..result
     }
 }

@@ -1,0 +1,366 @@
+//! What each method makes of the runs: steady points, how these scatter, and the errors that only it knows.
+//!
+//! The scatter is that of the pairs, each left out in turn, since runs of one pair share mounts and the hour; with one pair that of its runs. It is
+//! not believed below what is known to differ between any two runs: noise and zeros of the sensor, or what the dry repeats show.
+
+use froude_fit::replicates::{Floor, Replicates, together};
+use froude_records::finding::{Finding, Severity};
+use froude_records::text::counted;
+
+use super::coefficient::{Method, Point, pairs, slope};
+use super::detectability::{Detectability, DryMean, predict};
+use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
+use super::run::{Ballast, BodyState, DragRun, DragSetup, RunKind};
+use super::steady::{Rejected, still_windows};
+use super::{fsm, mbdp, mcd};
+use crate::regression::Scatter;
+use crate::uncertainty::SharedError;
+
+/// The points of one method, in newtons.
+#[derive(Debug, Clone)]
+pub(super) struct Observed {
+    pub method: Method,
+    pub points: Vec<Point>,
+    pub scatter: Scatter,
+    /// Errors beside those that every method of a carriage has.
+    pub errors: Vec<SharedError>,
+    /// Friction that was identified elsewhere.
+    pub elsewhere: Option<Elsewhere>,
+}
+
+/// What a model of the friction leaves where it was not identified.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Elsewhere {
+    /// Drag that it finds on the dry tows, N s²/m².
+    phantom: f64,
+    /// Where it was identified, m.
+    range_m: [f64; 2],
+}
+
+impl Elsewhere {
+    pub fn finding(self, method: Method, d_n_s2_m2: f64) -> Finding {
+        let Self { phantom, range_m: [from, to] } = self;
+        Finding::new(
+            Severity::Warning,
+            "friction-elsewhere",
+            format!(
+                "{}: the friction identified from {from:.2} to {to:.2} m leaves a drag of {phantom:.3} N s^2/m^2 ({:.1} % of D_d) \
+                 on the dry tows; identify it where the body is towed, or use the map",
+                method.name(),
+                100.0 * phantom / d_n_s2_m2
+            ),
+        )
+    }
+}
+
+/// What is told on the way.
+#[derive(Debug, Default)]
+pub(super) struct Told {
+    /// Runs that gave no point.
+    pub rejected: Vec<(Method, Rejected)>,
+    pub findings: Vec<Finding>,
+}
+
+/// Runs by what they are for.
+pub(super) struct Tows<'r, 'a> {
+    pub wet: Vec<&'r DragRun<'a>>,
+    pub dry: Vec<&'r DragRun<'a>>,
+    sweeps: Vec<&'r DragRun<'a>>,
+    means: Vec<DryMean>,
+}
+
+impl<'r, 'a> Tows<'r, 'a> {
+    pub fn of(runs: &'r [DragRun<'a>], setup: &DragSetup) -> Self {
+        let of = |kind: RunKind, body: Option<BodyState>| {
+            runs.iter().filter(|r| r.kind == kind && body.is_none_or(|b| r.body == b)).collect::<Vec<_>>()
+        };
+        Self {
+            wet: of(RunKind::Tow, Some(BodyState::Wet)),
+            dry: of(RunKind::Tow, Some(BodyState::Dry)),
+            sweeps: of(RunKind::Friction, None),
+            means: runs.iter().filter_map(|r| DryMean::of(r, setup)).collect(),
+        }
+    }
+
+    /// What the dry repeats promise of so many points.
+    pub fn promised(&self, points: &[Point], setup: &DragSetup) -> Option<Detectability> {
+        predict(&self.means, differences_per_speed(points), pairs(points).len(), setup)
+    }
+
+    /// The points of a method; `None` where there are no runs for it.
+    pub fn observed(&self, method: Method, setup: &DragSetup, told: &mut Told) -> Option<Observed> {
+        match method {
+            Method::Fsm => self.wet.iter().any(|r| r.force_n.is_some()).then(|| self.sensed(setup, told)),
+            Method::Mcd => (!self.dry.is_empty()).then(|| self.differences(setup, told)),
+            Method::MbdpFlexible if setup.flexible.is_none() => None,
+            Method::MbdpConstant | Method::MbdpMapped | Method::MbdpFlexible => self.modelled(method, setup, told),
+        }
+    }
+
+    /// The force sensor. Its scatter is no less than what noise and zeros within the runs must give.
+    fn sensed(&self, setup: &DragSetup, told: &mut Told) -> Observed {
+        let all = self.wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
+        let points = keep(all, Method::Fsm, told);
+        let errors = unseen_drift(&points, &self.wet, setup, &mut told.findings).into_iter().collect();
+        let least = Floor {
+            name: "noise and zeros of the runs (the pairs agree better than these allow)".to_owned(),
+            variance: vec![each_alone(&points, |p| p.standard_n).powi(2)],
+            dof: points.iter().map(|p| p.effective_n).sum(),
+        };
+        let sets = repeats(&points).map(|r| r.above(least)).into_iter().collect();
+        Observed { scatter: scatter(sets), errors, ..Observed::of(Method::Fsm, points, setup) }
+    }
+
+    fn differences(&self, setup: &DragSetup, told: &mut Told) -> Observed {
+        let k = setup.force_per_volt_n();
+        let all = self.wet.iter().map(|w| match self.dry.iter().find(|d| d.is_partner_of(w)) {
+            Some(d) => mcd::point(w, d, k, setup.steady),
+            None => Err(Rejected::NoPartner {
+                run: w.id.to_owned(),
+                pair: w.pair,
+                speed_m_s: w.target_speed_m_s * w.direction,
+            }),
+        });
+        let points = keep(all, Method::Mcd, told);
+        let promised = self.promised(&points, setup);
+        Observed::of_differences(points, promised.as_ref(), setup)
+    }
+
+    /// MBDP. Its type A has the scatter of the pairs, the friction identified anew without each of them, and that of the friction runs, each of
+    /// their repeats left out in turn.
+    fn modelled(&self, method: Method, setup: &DragSetup, told: &mut Told) -> Option<Observed> {
+        let is_mapped = method != Method::MbdpConstant;
+        let frictional: Vec<&DragRun<'_>> = match (is_mapped, self.sweeps.is_empty()) {
+            (true, _) => self.dry.iter().chain(&self.sweeps).copied().collect(),
+            (false, true) => self.dry.clone(),
+            (false, false) => self.sweeps.clone(),
+        };
+        let k = setup.force_per_volt_n();
+        let without_drag: Vec<(Cluster, Vec<Cell>)> =
+            clusters(&frictional).into_iter().zip(frictional.iter().map(|r| cells(r, setup.steady))).collect();
+        let with_drag: Vec<(u32, Vec<Cell>)> = self.wet.iter().map(|r| (r.pair, cells(r, setup.steady))).collect();
+        // A map is made where it is used: friction runs elsewhere would leave stretches of it that nobody passed.
+        let towed: Vec<f64> = with_drag.iter().flat_map(|c| &c.1).map(|c| c.position_m).collect();
+        let [low, high] = fsm::reach(&towed);
+        let is_near = |c: &&Cell| !is_mapped || (low - KNOT_SPACING_M..=high + KNOT_SPACING_M).contains(&c.position_m);
+        let identify = |skip: Option<Cluster>| {
+            let cells = without_drag.iter().filter(|c| Some(c.0) != skip).flat_map(|c| &c.1);
+            Friction::identify(cells.filter(is_near), is_mapped)
+        };
+        let Some(friction) = identify(None) else {
+            if !frictional.is_empty() {
+                let why = if is_mapped {
+                    "the dry runs do not pass every stretch of the tow"
+                } else {
+                    "no dry run has a steady window"
+                };
+                let text = format!("{}: left out: {why}", method.name());
+                told.findings.push(Finding::new(Severity::Note, "no-friction", text));
+            }
+            return None;
+        };
+        let model = setup.flexible.filter(|_| method == Method::MbdpFlexible);
+        let point = |run: &DragRun<'_>| match model {
+            Some(model) => {
+                mbdp::flexible_point(run, &friction, k, k / setup.ideal_force_per_volt_n, model, setup.steady)
+            }
+            None => mbdp::point(run, &friction, k, setup.steady),
+        };
+        let points = keep(self.wet.iter().map(|w| point(w)), method, told);
+        let groups = pairs(&points);
+        let without = |skip: Cluster| {
+            let without = identify(Some(skip))?;
+            let (mut xx, mut xy) = (0.0, 0.0);
+            for (_, cells) in with_drag.iter().filter(|c| Cluster::Pair(c.0) != skip && groups.contains(&c.0)) {
+                let x = cells.first().map_or(0.0, |c| c.speed_m_s * c.speed_m_s.abs());
+                let left =
+                    cells.iter().map(|c| c.weight * (c.command_v - without.command_v(c.position_m, c.speed_m_s)));
+                xx += x * x;
+                xy += x * k * left.sum::<f64>() / cells.iter().map(|c| c.weight).sum::<f64>().max(f64::MIN_POSITIVE);
+            }
+            (xx > 0.0).then(|| vec![xy / xx])
+        };
+        let mut sweeps: Vec<Cluster> =
+            without_drag.iter().map(|c| c.0).filter(|c| matches!(c, Cluster::Sweep(_))).collect();
+        sweeps.dedup();
+        // A wet run alone has half the variance of a difference, and friction that is known exactly adds none.
+        let floor = self.promised(&points, setup).map(|d| of_dry_repeats(&d, 0.5_f64.sqrt(), &points, setup));
+        let of_pairs = Replicates::leaving_out("pair", groups.len(), |g| without(Cluster::Pair(groups[g])));
+        let of_sweeps = Replicates::leaving_out("friction run", sweeps.len(), |g| without(sweeps[g]));
+        let by_pairs: Vec<Replicates> = match of_pairs {
+            Some(pairs) => std::iter::once(Replicates { floor, ..pairs }).chain(of_sweeps).collect(),
+            None => Vec::new(),
+        };
+        // The same model over the dry tows should find no drag; what it finds there it finds in the wet runs too.
+        let of_nothing: Vec<Point> = self.dry.iter().filter_map(|d| point(d).ok()).collect();
+        let chance = together("", &by_pairs).map_or(f64::INFINITY, |part| part.standard(0));
+        let phantom = slope(&of_nothing).filter(|phantom| phantom.abs() > chance);
+        let left = phantom.map(|phantom| {
+            let squares: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
+            let name = "friction where it was not identified, left as it is";
+            SharedError::of_load(name, setup.load(), &squares, phantom.abs(), f64::INFINITY)
+        });
+        let sets = if by_pairs.is_empty() { repeats(&points).into_iter().collect() } else { by_pairs };
+        Some(Observed {
+            scatter: scatter(sets),
+            errors: left.into_iter().collect(),
+            elsewhere: phantom.map(|phantom| Elsewhere { phantom, range_m: friction.range_m }),
+            ..Observed::of(method, points, setup)
+        })
+    }
+}
+
+impl Observed {
+    /// Points whose repeats alone tell their scatter.
+    pub fn of(method: Method, mut points: Vec<Point>, setup: &DragSetup) -> Self {
+        restore_buoyancy(method, &mut points, setup);
+        let scatter = scatter(repeats(&points).into_iter().collect());
+        Self { method, points, scatter, errors: Vec::new(), elsewhere: None }
+    }
+
+    /// Differences of wet and dry runs; pairs are held against what the dry repeats promise.
+    pub fn of_differences(points: Vec<Point>, promised: Option<&Detectability>, setup: &DragSetup) -> Self {
+        let mut out = Self::of(Method::Mcd, points, setup);
+        if let (Some(promised), Scatter::Replicates { sets, .. }) = (promised, &mut out.scatter) {
+            for set in sets.iter_mut().filter(|set| set.left_out == "pair") {
+                set.floor = Some(of_dry_repeats(promised, 1.0, &out.points, setup));
+            }
+        }
+        out
+    }
+}
+
+/// Pairs left out in turn, where there are two; else the runs.
+fn repeats(points: &[Point]) -> Option<Replicates> {
+    let pairs = pairs(points);
+    if pairs.len() >= 2 {
+        let without = |g: usize| slope(points.iter().filter(|p| p.pair != pairs[g])).map(|d| vec![d]);
+        return Replicates::leaving_out("pair", pairs.len(), without);
+    }
+    let without = |g: usize| slope(points.iter().enumerate().filter(|(i, _)| *i != g).map(|(_, p)| p)).map(|d| vec![d]);
+    Replicates::leaving_out("run", points.len(), without)
+}
+
+/// Sets of replicates under their name.
+fn scatter(sets: Vec<Replicates>) -> Scatter {
+    let name = match sets.as_slice() {
+        [one] if one.left_out == "run" => "scatter of the runs about the law",
+        [_, _] => "scatter of pairs and of friction runs",
+        _ => "scatter between pairs",
+    };
+    Scatter::Replicates { name: name.to_owned(), sets }
+}
+
+/// The floor that dry repeats put under the scatter of pairs, `part` of their standard deviation: see [`Detectability::floor_n_s2_m2`].
+fn of_dry_repeats(promised: &Detectability, part: f64, points: &[Point], setup: &DragSetup) -> Floor {
+    let (rest, dof) = promised.floor_n_s2_m2;
+    Floor {
+        name: "scatter of the dry repeats (the pairs agree better than these allow)".to_owned(),
+        variance: vec![(part * rest).hypot(on_drag(points, setup)).powi(2)],
+        dof,
+    }
+}
+
+/// The points that came out; the others are noted.
+fn keep(all: impl Iterator<Item = Result<Point, Rejected>>, method: Method, told: &mut Told) -> Vec<Point> {
+    let mut out = Vec::new();
+    for point in all {
+        match point {
+            Ok(point) => out.push(point),
+            Err(why) => told.rejected.push((method, why)),
+        }
+    }
+    out
+}
+
+/// Where stand-stills do not bracket the tow, the sensor's drift is not seen and may be the same in all runs: then it does
+/// not average down, except that it pulls the same way in tows out and back.
+fn unseen_drift(
+    points: &[Point],
+    wet: &[&DragRun<'_>],
+    setup: &DragSetup,
+    findings: &mut Vec<Finding>,
+) -> Option<SharedError> {
+    let is_open = |r: &&&DragRun<'_>| r.force_n.is_some() && still_windows(r, setup.steady).iter().any(Option::is_none);
+    let open = wet.iter().filter(is_open).count();
+    if open == 0 || points.is_empty() {
+        return None;
+    }
+    let half_n = setup.sensor.drift_half_width_n;
+    findings.push(Finding::new(
+        Severity::Warning,
+        "zero-on-one-side",
+        format!(
+            "fsm: {} no still window on one side of the tow; the declared drift of ± {half_n:.2} N moves D_d by \
+             up to {:.2} N s^2/m^2. Stand still for two seconds before and after",
+            counted(open, "wet run has", "wet runs have"),
+            half_n * slope_of_one_newton(points).abs(),
+        ),
+    ));
+    let name = "drift of the sensor that no still window shows";
+    Some(SharedError::between(name, setup.load(), &vec![1.0; points.len()], [-half_n, half_n]))
+}
+
+/// Change of the slope for a newton more in each point, N s²/m² per N: Σ x / Σ x², x = v|v|.
+fn slope_of_one_newton(points: &[Point]) -> f64 {
+    let (mut xx, mut xy) = (0.0, 0.0);
+    for p in points {
+        let x = p.speed_m_s * p.speed_m_s.abs();
+        xx += x * x;
+        xy += x;
+    }
+    xy / xx
+}
+
+/// Whom a run that the friction is identified from stands or falls with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cluster {
+    /// A dry tow: with its pair.
+    Pair(u32),
+    /// A friction run: with its repeat of all speeds, or alone where repeats are not told apart.
+    Sweep(u32),
+}
+
+/// Clusters of the runs that the friction is identified from.
+fn clusters(runs: &[&DragRun<'_>]) -> Vec<Cluster> {
+    let mut repeats = runs.iter().filter(|r| r.kind == RunKind::Friction).map(|r| r.pair);
+    let first = repeats.next();
+    let is_told = repeats.any(|r| Some(r) != first);
+    let of = |(i, r): (usize, &&DragRun<'_>)| match r.kind {
+        RunKind::Friction => Cluster::Sweep(if is_told { r.pair } else { i as u32 }),
+        _ => Cluster::Pair(r.pair),
+    };
+    runs.iter().enumerate().map(of).collect()
+}
+
+/// What K_T's drift from run to run does to D_d through the drag itself.
+fn on_drag(points: &[Point], setup: &DragSetup) -> f64 {
+    setup.torque_constant_drift_relative * each_alone(points, |p| p.force_n)
+}
+
+/// Standard uncertainty of the slope from forces that err independently, each by `standard_n`: √(Σ x² u²)/Σ x², x = v².
+fn each_alone(points: &[Point], standard_n: impl Fn(&Point) -> f64) -> f64 {
+    let (mut sum, mut xx) = (0.0, 0.0);
+    for p in points {
+        let x = p.speed_m_s * p.speed_m_s;
+        sum += (x * standard_n(p)).powi(2);
+        xx += x * x;
+    }
+    if xx > 0.0 { sum.sqrt() / xx } else { 0.0 }
+}
+
+/// Differences at one speed: both directions and all pairs.
+fn differences_per_speed(points: &[Point]) -> usize {
+    let fastest = points.iter().map(|p| p.speed_m_s.abs()).fold(0.0, f64::max);
+    points.iter().filter(|p| p.speed_m_s.abs() > 0.99 * fastest).count()
+}
+
+/// Puts the friction back that buoyancy took off the wheels in the wet runs, where the rolling coefficient is declared.
+fn restore_buoyancy(method: Method, points: &mut [Point], setup: &DragSetup) {
+    if let (true, Ballast::Unballasted { unloaded_n, rolling: Some(rolling) }) = (method.is_sensorless(), setup.ballast)
+    {
+        for p in points {
+            p.force_n += rolling.value * unloaded_n * p.speed_m_s.signum();
+        }
+    }
+}
