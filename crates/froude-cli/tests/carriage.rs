@@ -157,6 +157,19 @@ fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported(
     let methods: Vec<&str> =
         record["estimates"].as_array().unwrap().iter().filter_map(|e| e["method"]["name"].as_str()).collect();
     assert!(methods.contains(&"mcd") && !methods.contains(&"fsm"), "{methods:?}");
+    // Whoever asks for it is told what is lacking; the water of a campaign is not that of its runs.
+    let asked = "schema = 1\nname = \"c\"\n[fluid]\ndensity = \"1025 kg/m^3\"\n[[source]]\nname = \"c\"\nkind = \"towing\"\nruns = \
+                 \"campaign-runs\"\nmethod = [\"mcd\", \"fsm\"]\n";
+    std::fs::write(folder.path().join("c.toml"), asked).unwrap();
+    let out = json(&["identify", text(&folder.path().join("c.toml")), "--json"]);
+    let lacking = &findings_of(&out, "not-fitted")[0].1;
+    let told = "fsm (force sensor, zero from still windows): there are no runs of the role wet with position, reference_velocity, force";
+    assert_eq!(lacking, told);
+    let density = &out["estimates"][0]["refers_to"]["density"]["value"];
+    assert!(
+        density.as_f64().unwrap() < 1000.0 && findings_of(&out, "runs-know-their-own")[0].1.starts_with("[fluid] of"),
+        "{out}"
+    );
 }
 
 #[test]

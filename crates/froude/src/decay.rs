@@ -15,7 +15,7 @@ use froude_report::number;
 
 use crate::Error;
 use crate::carriage::runs::{recorded_in, refuse_others};
-use crate::method::{Found, Method};
+use crate::method::{Found, Method, Need};
 
 /// Envelope and output error of releases.
 pub(crate) struct FreeDecay;
@@ -39,8 +39,12 @@ impl Method for FreeDecay {
         named(name).map_or("", DecayMethod::words)
     }
 
-    fn observes(&self, _: &str, role: &str) -> bool {
-        role == RELEASE
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const { &[Need::of(&[RELEASE], &[])] }
+    }
+
+    fn runs(&self) -> &'static str {
+        FREE_DECAY
     }
 
     fn identify(

@@ -24,8 +24,11 @@ pub(crate) trait Method: Sync {
     /// What each of them does, in words.
     fn words(&self, name: &str) -> &'static str;
 
-    /// Whether files of a role hold the observations of one of its names; what it reads besides is an error under its own key.
-    fn observes(&self, name: &str, role: &str) -> bool;
+    /// What one of them needs.
+    fn needs(&self, name: &str) -> &'static [Need];
+
+    /// The method that runs must be of, as they say it themselves; empty where no runs are read.
+    fn runs(&self) -> &'static str;
 
     /// Reduces and fits a source by the names asked for.
     ///
@@ -39,6 +42,49 @@ pub(crate) trait Method: Sync {
         asked: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, Error>;
+}
+
+/// Files that a method needs: those of any one of some roles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Need {
+    /// `table`, or roles of runs.
+    pub roles: &'static [&'static str],
+    /// Channels without which such a run is of no use to it, an axis' without the axis.
+    pub channels: &'static [&'static str],
+    /// Whether it can do without.
+    pub is_optional: bool,
+    /// Whether it takes observations from them; what it reads besides is an error under its own key.
+    pub is_observed: bool,
+}
+
+impl Need {
+    /// Observations, which must be there.
+    pub const fn of(roles: &'static [&'static str], channels: &'static [&'static str]) -> Self {
+        Self { roles, channels, is_optional: false, is_observed: true }
+    }
+
+    /// In words.
+    fn words(&self) -> String {
+        let channels =
+            if self.channels.is_empty() { String::new() } else { format!(" with {}", self.channels.join(", ")) };
+        format!("runs of the role {}{channels}", self.roles.join(" or "))
+    }
+}
+
+/// Whether files of a role hold observations of a method's name.
+pub(crate) fn observes(needs: &[Need], role: &str) -> bool {
+    needs.iter().any(|need| need.is_observed && need.roles.contains(&role))
+}
+
+/// What is needed and not there, in words; `has` says whether there is a file of a role with all of some channels.
+pub(crate) fn lacking(needs: &[Need], has: impl Fn(&str, &[&str]) -> bool) -> Vec<String> {
+    let is_there = |need: &&Need| need.is_optional || need.roles.iter().any(|role| has(role, need.channels));
+    needs.iter().filter(|need| !is_there(need)).map(Need::words).collect()
+}
+
+/// Names of the methods that read runs of a method.
+pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
+    METHODS.iter().filter(|method| method.runs() == runs).flat_map(|method| method.names()).copied().collect()
 }
 
 /// What a method found in a source.
@@ -73,8 +119,12 @@ impl Method for Table {
         "rows of a table"
     }
 
-    fn observes(&self, _: &str, role: &str) -> bool {
-        role == "table"
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const { &[Need::of(&["table"], &[])] }
+    }
+
+    fn runs(&self) -> &'static str {
+        ""
     }
 
     fn identify(

@@ -203,7 +203,8 @@ impl Gathered {
             method.identify(campaign, source, &asked, &step)?;
         for result in &mut results {
             for estimate in &mut result.estimates {
-                estimate.data = files.keys_of(&result.files, |role| method.observes(&estimate.method.name, role))?;
+                let needs = method.needs(&estimate.method.name);
+                estimate.data = files.keys_of(&result.files, |role| method::observes(needs, role))?;
             }
         }
         let first = self.sources.len();

@@ -24,9 +24,6 @@ use super::runs::{Runs, density_kg_m3, for_drag};
 use super::servo::two_masses;
 use crate::Error;
 
-/// Roles of runs that tell drag; pulses tell the two masses of the flexible model.
-pub(super) const KINDS: [Role; 5] = [Role::Dry, Role::Wet, Role::Friction, Role::Calibration, Role::Excitation];
-
 /// Standard acceleration of gravity, m/s².
 const G_M_S2: f64 = 9.80665;
 

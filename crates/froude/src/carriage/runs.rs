@@ -4,9 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use froude_hydro::fluid::Water;
-use froude_identify::carriage::coefficient::Method as CarriageMethod;
 use froude_identify::carriage::run as drag;
-use froude_identify::decay::Method as DecayMethod;
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
@@ -20,6 +18,7 @@ use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
 use super::whole::{Complete, beside, folder_of};
 use crate::Error;
 use crate::decay::logs_in;
+use crate::method::readers;
 
 /// Name of the campaign's copy in a folder of runs.
 pub const CAMPAIGN_COPY: &str = "campaign.toml";
@@ -242,25 +241,19 @@ pub(crate) fn recorded_in(folder: &Path) -> Result<Vec<RunMeta>, Error> {
 ///
 /// Runs of another method, or logs of another program where tows are read: which, and what reads them.
 pub(crate) fn refuse_others(folder: &Path, wanted: &str, found: &[RunMeta]) -> Result<(), Error> {
-    let decays = || DecayMethod::ALL.map(DecayMethod::name).to_vec();
     let found: Vec<&RunMeta> = found.iter().filter(|meta| meta.method != wanted).collect();
     let (what, readers) = match found.first() {
         Some(first) => {
             let roles: BTreeSet<&str> = found.iter().map(|meta| meta.role.name()).collect();
             let roles = roles.into_iter().collect::<Vec<_>>().join(", ");
-            let readers = match first.method.as_str() {
-                TOW => CarriageMethod::ALL.map(CarriageMethod::name).to_vec(),
-                FREE_DECAY => decays(),
-                _ => Vec::new(),
-            };
             let runs = counted(found.len(), "run there is", "runs there are");
-            (format!("{runs} of {} (role {roles})", of_method(first)), readers)
+            (format!("{runs} of {} (role {roles})", of_method(first)), readers(&first.method))
         }
         None if wanted == TOW && folder.is_dir() => match logs_in(folder)?.len() {
             0 => return Ok(()),
             n => (
                 format!("{} of other programs, as releases are", counted(n, "log there is", "logs there are")),
-                decays(),
+                readers(FREE_DECAY),
             ),
         },
         None => return Ok(()),

@@ -2,14 +2,15 @@
 
 use froude_identify::carriage::coefficient::{Coefficient, Method as CarriageMethod};
 use froude_identify::source::{ReadFile, SourceResult};
-use froude_records::campaign::{Campaign, Input, Source};
+use froude_records::campaign::{Campaign, Fluid, Identify, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
+use froude_records::run::{Role, TOW};
 
-use super::drag::{KINDS, Reduction, reduce, sections};
+use super::drag::{Reduction, reduce, sections};
 use super::runs::{Runs, read};
 use crate::Error;
-use crate::method::{Found, Method};
+use crate::method::{Found, Method, Need, lacking};
 
 /// The five methods of the towing carriage: one reduction, one setup.
 pub(crate) struct Carriage;
@@ -33,29 +34,69 @@ impl Method for Carriage {
         named(name).map_or("", CarriageMethod::words)
     }
 
-    fn observes(&self, name: &str, role: &str) -> bool {
-        named(name).is_some_and(|method| is_read_by(method, role))
+    fn needs(&self, name: &str) -> &'static [Need] {
+        named(name).map_or(&[], needs)
+    }
+
+    fn runs(&self) -> &'static str {
+        TOW
     }
 
     fn identify(
         &self,
-        _: &Campaign,
+        campaign: &Campaign,
         source: &Source,
         asked: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, Error> {
         let methods: Vec<CarriageMethod> = asked.iter().filter_map(|name| named(name)).collect();
-        identify(source, &methods, progress)
+        let mut found = identify(source, &methods, progress)?;
+        found.findings.extend(passed_over(campaign, source));
+        Ok(found)
     }
 }
 
-/// Whether a method takes its observations from runs of a kind; the calibration is an error under its own key.
-pub(super) fn is_read_by(method: CarriageMethod, role: &str) -> bool {
+/// Motion and command of a run.
+const DRIVEN: &[&str] = &["position", "reference_velocity", "command"];
+/// What calibrates all that read the motor's current; without it the gear's declared efficiency does.
+const WEIGHTS: Need = Need { is_optional: true, is_observed: false, ..Need::of(&["calibration"], DRIVEN) };
+
+const WET: Need = Need::of(&["wet"], DRIVEN);
+const FRICTION: Need = Need::of(&["dry", "friction"], DRIVEN);
+const SENSED: [Need; 1] = [Need::of(&["wet"], &["position", "reference_velocity", "force"])];
+const PAIRED: [Need; 3] = [WET, Need::of(&["dry"], DRIVEN), WEIGHTS];
+const MODELLED: [Need; 3] = [WET, FRICTION, WEIGHTS];
+const FLEXIBLE: [Need; 4] = [WET, FRICTION, Need::of(&["excitation"], DRIVEN), WEIGHTS];
+
+/// The runs that a method needs.
+const fn needs(method: CarriageMethod) -> &'static [Need] {
     match method {
-        CarriageMethod::Fsm => role == "wet",
-        CarriageMethod::Mcd => matches!(role, "wet" | "dry"),
-        CarriageMethod::MbdpConstant | CarriageMethod::MbdpMapped => matches!(role, "wet" | "dry" | "friction"),
-        CarriageMethod::MbdpFlexible => matches!(role, "wet" | "dry" | "friction" | "excitation"),
+        CarriageMethod::Fsm => &SENSED,
+        CarriageMethod::Mcd => &PAIRED,
+        CarriageMethod::MbdpConstant | CarriageMethod::MbdpMapped => &MODELLED,
+        CarriageMethod::MbdpFlexible => &FLEXIBLE,
+    }
+}
+
+/// Roles of all runs that one of the methods needs.
+fn roles() -> Vec<Role> {
+    let is_needed = |role: &Role| {
+        CarriageMethod::ALL.into_iter().any(|method| needs(method).iter().any(|need| need.roles.contains(&role.name())))
+    };
+    Role::ALL.into_iter().filter(is_needed).collect()
+}
+
+/// What a method needs and the runs do not have, in words.
+fn why_not(method: CarriageMethod, runs: &Runs) -> String {
+    let has = |role: &str, channels: &[&str]| {
+        runs.logs.iter().filter(|log| log.meta.role.name() == role).any(|log| {
+            let is_there = |wanted: &&str| log.channels.keys().any(|name| name.rsplit('/').next() == Some(wanted));
+            channels.iter().all(is_there)
+        })
+    };
+    match lacking(needs(method), has).as_slice() {
+        [] => "their windows give no point for it".to_owned(),
+        lacking => format!("there are no {}", lacking.join(", and no ")),
     }
 }
 
@@ -63,7 +104,7 @@ pub(super) fn is_read_by(method: CarriageMethod, role: &str) -> bool {
 fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)) -> Result<Found, Error> {
     let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
     progress("reading the runs");
-    let runs = read(paths, &KINDS, campaign.as_deref())?;
+    let runs = read(paths, &roles(), campaign.as_deref())?;
     progress("reducing the runs");
     let mut reduction = reduce(runs, methods)?;
     let (summary, blocks) = sections(&reduction);
@@ -76,7 +117,7 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
         let Some(i) = fitted.iter().position(|(coefficient, _)| coefficient.method == method) else {
             // Whoever names no method gets those that the runs allow.
             if !source.methods.is_empty() {
-                let text = format!("{}: these runs do not give what it needs ({})", method.name(), method.words());
+                let text = format!("{} ({}): {}", method.name(), method.words(), why_not(method, runs));
                 report.findings.push(Finding::new(Severity::Warning, "not-fitted", text));
             }
             continue;
@@ -105,6 +146,24 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
         findings: std::mem::take(&mut report.findings),
         beside: Some(runs.results("drag")),
         is_part: runs.beside > 0,
+    })
+}
+
+/// What a campaign declares beside runs, which know their own: it is not used for them, and that is said.
+fn passed_over(campaign: &Campaign, source: &Source) -> Option<Finding> {
+    let of_tables =
+        Identify { user_models: Vec::new(), models: Vec::new(), model_places: Vec::new(), ..campaign.identify.clone() };
+    let is_there = [("[fluid]", campaign.fluid != Fluid::default()), ("[identify]", of_tables != Identify::default())];
+    let sections: Vec<&str> = is_there.into_iter().filter(|(_, is)| *is).map(|(section, _)| section).collect();
+    (!sections.is_empty()).then(|| {
+        let text = format!(
+            "{} of this campaign {} not used for the runs in {}: water, rig and plan are those of the campaign that they were driven by, and the \
+             methods say how they are fitted",
+            sections.join(" and "),
+            if sections.len() == 1 { "is" } else { "are" },
+            source.input.path().display()
+        );
+        Finding::new(Severity::Note, "runs-know-their-own", text)
     })
 }
 
