@@ -223,6 +223,22 @@ fn a_record_compared_with_itself_is_no_evidence() {
     assert!(c["coefficients"][0]["e_n"].is_number() && c["joint"][0]["chi_squared"].is_number(), "{out}");
 }
 
+/// A model that the other record lacks is not passed over: `compare` says that it stands alone.
+#[test]
+fn what_compare_sets_beside_nothing_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let monday = tare_record(folder.path(), "monday", 1.0);
+    tare_record(folder.path(), "tuesday", 1.02);
+    let args = ["--json", "identify", "tuesday.csv", "--models", "quadratic", "--out", "short"];
+    assert_eq!(froude(folder.path(), &args).status.code(), Some(0));
+    let out = json(&froude(folder.path(), &["--json", "compare", &monday, "short/estimate.json"]));
+    let said = |f: &&serde_json::Value| f["code"] == "beside-no-other";
+    let finding = out["findings"].as_array().unwrap().iter().find(said).unwrap()["message"].as_str().unwrap().to_owned();
+    assert!(finding.contains("/linear_quadratic (linear_quadratic): no other source has its model"), "{finding}");
+    let both = json(&froude(folder.path(), &["--json", "compare", &monday, "tuesday-results/estimate.json"]));
+    assert!(both["findings"].as_array().unwrap().iter().all(|f| f["code"] != "beside-no-other"), "{both}");
+}
+
 #[test]
 fn a_comparison_is_a_record_and_a_report_where_a_folder_is_named() {
     let folder = tempfile::tempdir().unwrap();

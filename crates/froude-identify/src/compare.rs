@@ -181,6 +181,37 @@ pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> 
     ))
 }
 
+/// Which estimates stand beside no other, and why: for whoever asked for nothing but a comparison.
+#[must_use]
+pub fn left_out(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
+    let of_rows = out.coefficients.iter().flat_map(|row| [&row.first, &row.second]);
+    let of_loads = out.loads.iter().flat_map(|row| [&row.first, &row.second]);
+    let seen: BTreeSet<&str> = of_rows.chain(of_loads).map(|side| side.source.as_str()).collect();
+    let is_seen = |n: &&Named<'_>| {
+        let id = &n.estimate.id;
+        seen.contains(id.as_str()) || seen.contains(format!("{id} ({})", n.file).as_str())
+    };
+    let why = |n: &Named<'_>| {
+        let is_alike = |other: &&Named<'_>| other.estimate.law.name == n.estimate.law.name && !is_one_source(n, other);
+        let why = match all.iter().find(is_alike) {
+            Some(_) => "its method is set beside its like",
+            None if gives_forces(n.estimate) => {
+                "no other source has its model, and forces are those of the recommended ones"
+            }
+            None => "no other source has its model, and it gives no force along or across from a steady motion",
+        };
+        format!("{} ({}): {why}", n.estimate.id, n.estimate.law.name)
+    };
+    let alone: Vec<String> = all.iter().filter(|n| !is_seen(n)).map(why).collect();
+    if alone.is_empty() || out.is_empty() {
+        return None;
+    }
+    let more = alone.len().saturating_sub(MOST_NAMED);
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    let alone: Vec<String> = alone.into_iter().take(MOST_NAMED).collect();
+    Some(Finding::new(Severity::Note, "beside-no-other", format!("beside no other stand {}{more}", alone.join("; "))))
+}
+
 /// Why so many estimates are not compared.
 #[must_use]
 pub fn too_many(estimates: usize) -> String {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use froude_identify::compare::{MOST_COMPARED, compare, named, nothing_compared, too_many};
+use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared, too_many};
 use froude_identify::source::{SourceResult, asked_models};
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
@@ -234,7 +234,10 @@ fn side_by_side(all: &[(String, EstimateFile)], input: &Input) -> Result<Option<
         return Ok(None);
     }
     let mut out = compare(&all);
-    out.findings.extend(is_asked.then(|| nothing_compared(&all, &out)).flatten());
+    if is_asked {
+        let found = nothing_compared(&all, &out).or_else(|| left_out(&all, &out));
+        out.findings.extend(found);
+    }
     Ok(Some(out))
 }
 
