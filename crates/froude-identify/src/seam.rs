@@ -56,6 +56,32 @@ pub struct Reduced {
     pub files: Vec<ReadFile>,
 }
 
+impl Reduced {
+    /// Observations of which nothing more is known: weights of their `std_*` columns, scatter of their residuals, no errors, the law chosen by
+    /// the data.
+    #[must_use]
+    pub fn new(source: &str, kind: SourceKind, method: &str, data: Dataset, laws: Vec<ForceLaw>) -> Self {
+        Self {
+            source: source.to_owned(),
+            kind,
+            n_read: data.rows,
+            data,
+            laws,
+            choice: Choice::Selection,
+            weight: Weight::Std,
+            scatter: Scatter::Classical,
+            budget: Vec::new(),
+            campaign: String::new(),
+            errors: Vec::new(),
+            looks: 1,
+            stated: Stated { method: method.to_owned(), frame: Frame::body(), ..Stated::default() },
+            validity: IndexMap::new(),
+            findings: Vec::new(),
+            files: Vec::new(),
+        }
+    }
+}
+
 /// Who says which law is recommended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Choice {
@@ -67,7 +93,7 @@ pub enum Choice {
 }
 
 /// What a record states that no fit tells.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stated {
     /// Name of the method: `table`, `mcd`, ….
     pub method: String,

@@ -6,7 +6,7 @@ use froude_fit::FEWEST_CLUSTERS;
 use froude_hydro::{Body, CrossTerm, DragModel, Link};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source, SourceKind};
-use froude_records::estimate::{Estimate, Frame, Range, ReferencePoint};
+use froude_records::estimate::{Estimate, Range, ReferencePoint};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
 use indexmap::IndexMap;
@@ -16,8 +16,8 @@ use crate::error::IdentifyError;
 use crate::law::{ForceLaw, aliased};
 use crate::lint::moving;
 use crate::reduce::{Observations, reduce};
-use crate::regression::{ModelFit, Scatter, Weight};
-use crate::seam::{Choice, Reduced, Stated, fit};
+use crate::regression::{ModelFit, Scatter};
+use crate::seam::{Reduced, fit};
 use crate::selection::{BlockScore, NestedTest, Recommendation, Score};
 use crate::validity::{AT_REST, off_axis};
 use crate::{columns, diagnosis, lint, validity};
@@ -121,35 +121,20 @@ fn reduced(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyErro
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
     let scatter = scatter(campaign, source, &data, &mut findings)?;
+    let mut out = Reduced::new(&source.name, source.kind, "table", data, laws);
     // Nobody but the campaign knows the point that moments are about.
     let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
+    out.stated.point = ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() };
     Ok(Reduced {
-        source: source.name.clone(),
-        kind: source.kind,
-        data,
         n_read,
-        laws,
-        choice: Choice::Selection,
-        weight: Weight::Std,
         scatter,
         budget: source.uncertainty.clone(),
         campaign: campaign.key.clone(),
         errors: shared_errors,
-        looks: 1,
-        stated: Stated {
-            method: "table".to_owned(),
-            words: None,
-            frame: Frame::body(),
-            point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
-            attitude: None,
-            refers_to: IndexMap::new(),
-            constants: IndexMap::new(),
-            labels: IndexMap::new(),
-            derived: Vec::new(),
-        },
         validity,
         findings,
         files,
+        ..out
     })
 }
 

@@ -8,7 +8,7 @@ use froude_identify::regression::{Scatter, Weight};
 use froude_identify::seam::{Choice, Derived, Reduced, Stated, fit};
 use froude_identify::source::SourceResult;
 use froude_records::campaign::{Identify, SourceKind};
-use froude_records::estimate::{Frame, Measured, ReferencePoint};
+use froude_records::estimate::Measured;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
@@ -57,40 +57,26 @@ fn without(skip: Option<usize>) -> Vec<f64> {
 fn fitted(weight: Weight, scatter: Scatter) -> SourceResult {
     let data = data();
     let texts = IndexMap::from([("f_x".to_owned(), "-D_I*v_x - D_II*v_x*abs(v_x)".to_owned())]);
-    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
-    let reduced = Reduced {
-        source: "tank".to_owned(),
-        kind: SourceKind::Towing,
-        n_read: RUNS,
-        laws: vec![ForceLaw::formulas("law", &texts, &data).unwrap()],
-        data,
+    let law = ForceLaw::formulas("law", &texts, &data).unwrap();
+    let derived = Derived {
+        name: "C_D".to_owned(),
+        formula: "2*D_II/(1000*area)".to_owned(),
+        of: "D_II".to_owned(),
+        factor: 0.004,
+        unit: "1".to_owned(),
+    };
+    let mut reduced = Reduced {
         choice: Choice::Method("a method of its own".to_owned()),
         weight,
         scatter,
-        budget: Vec::new(),
-        campaign: String::new(),
-        errors: Vec::new(),
         looks: 2,
-        stated: Stated {
-            method: "own".to_owned(),
-            words: None,
-            frame: Frame::body(),
-            point: ReferencePoint::default(),
-            attitude: None,
-            refers_to: IndexMap::from([("area".to_owned(), measured(0.5, "m^2"))]),
-            constants: IndexMap::new(),
-            labels: IndexMap::from([("D_II".to_owned(), "D_d".to_owned())]),
-            derived: vec![Derived {
-                name: "C_D".to_owned(),
-                formula: "2*D_II/(1000*area)".to_owned(),
-                of: "D_II".to_owned(),
-                factor: 0.004,
-                unit: "1".to_owned(),
-            }],
-        },
-        validity: IndexMap::new(),
-        findings: Vec::new(),
-        files: Vec::new(),
+        ..Reduced::new("tank", SourceKind::Towing, "own", data, vec![law])
+    };
+    reduced.stated = Stated {
+        refers_to: IndexMap::from([("area".to_owned(), Measured { value: 0.5, unit: "m^2".to_owned() })]),
+        labels: IndexMap::from([("D_II".to_owned(), "D_d".to_owned())]),
+        derived: vec![derived],
+        ..reduced.stated
     };
     fit(reduced, &Identify::default(), &|_| {}).unwrap()
 }

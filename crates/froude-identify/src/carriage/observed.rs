@@ -287,6 +287,9 @@ fn unseen_drift(
         return None;
     }
     let half_n = setup.sensor.drift_half_width_n;
+    // D_d for a newton more in each point: Σ x / Σ x², x = v|v|.
+    let x = || points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs());
+    let moved = half_n * x().sum::<f64>() / x().map(|x| x * x).sum::<f64>();
     findings.push(Finding::new(
         Severity::Warning,
         "zero-on-one-side",
@@ -294,22 +297,11 @@ fn unseen_drift(
             "fsm: {} no still window on one side of the tow; the declared drift of ± {half_n:.2} N moves D_d by \
              up to {:.2} N s^2/m^2. Stand still for two seconds before and after",
             counted(open, "wet run has", "wet runs have"),
-            half_n * slope_of_one_newton(points).abs(),
+            moved.abs(),
         ),
     ));
     let name = "drift of the sensor that no still window shows";
     Some(SharedError::between(name, setup.load(), &vec![1.0; points.len()], [-half_n, half_n]))
-}
-
-/// Change of the slope for a newton more in each point, N s²/m² per N: Σ x / Σ x², x = v|v|.
-fn slope_of_one_newton(points: &[Point]) -> f64 {
-    let (mut xx, mut xy) = (0.0, 0.0);
-    for p in points {
-        let x = p.speed_m_s * p.speed_m_s.abs();
-        xx += x * x;
-        xy += x;
-    }
-    xy / xx
 }
 
 /// Whom a run that the friction is identified from stands or falls with.
@@ -340,12 +332,9 @@ fn on_drag(points: &[Point], setup: &DragSetup) -> f64 {
 
 /// Standard uncertainty of the slope from forces that err independently, each by `standard_n`: √(Σ x² u²)/Σ x², x = v².
 fn each_alone(points: &[Point], standard_n: impl Fn(&Point) -> f64) -> f64 {
-    let (mut sum, mut xx) = (0.0, 0.0);
-    for p in points {
-        let x = p.speed_m_s * p.speed_m_s;
-        sum += (x * standard_n(p)).powi(2);
-        xx += x * x;
-    }
+    let x = |p: &Point| p.speed_m_s * p.speed_m_s;
+    let xx: f64 = points.iter().map(|p| x(p) * x(p)).sum();
+    let sum: f64 = points.iter().map(|p| (x(p) * standard_n(p)).powi(2)).sum();
     if xx > 0.0 { sum.sqrt() / xx } else { 0.0 }
 }
 

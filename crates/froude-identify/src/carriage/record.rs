@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use froude_records::campaign::{BodyAxis, SourceKind};
-use froude_records::estimate::{Attitude, Frame, Measured, Range, ReferencePoint};
+use froude_records::estimate::{Attitude, Frame, Measured, Range};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
@@ -51,25 +51,15 @@ pub(super) fn reduced(observed: &Observed, setup: &DragSetup) -> Result<Option<R
     let (axis, name) = (setup.axis(), name(setup));
     let formula = format!("-{name}*v_{axis}*abs(v_{axis})");
     let law = ForceLaw::formulas("quadratic", &IndexMap::from([(setup.load().to_owned(), formula)]), &data)?;
-    let mut errors = errors.clone();
-    errors.splice(0..0, errors::shared(*method, points, measured, setup));
     Ok(Some(Reduced {
-        source: setup.name.clone(),
-        kind: SourceKind::Towing,
-        data,
-        n_read: points.len(),
-        laws: vec![law],
         choice: Choice::Method(method.words().to_owned()),
         weight: Weight::One,
         scatter: scatter.clone(),
-        budget: Vec::new(),
-        campaign: String::new(),
-        errors,
+        errors: errors::shared(*method, points, measured, setup).into_iter().chain(errors.clone()).collect(),
         looks: setup.looks,
         stated: stated(*method, name, setup),
         validity: validity(points, setup),
-        findings: Vec::new(),
-        files: Vec::new(),
+        ..Reduced::new(&setup.name, SourceKind::Towing, method.name(), data, vec![law])
     }))
 }
 
@@ -117,12 +107,12 @@ fn stated(method: Method, name: String, setup: &DragSetup) -> Stated {
         method: method.name().to_owned(),
         words: Some(format!("{}; least squares over v|v| through the origin", method.words())),
         frame: frame(setup),
-        point: ReferencePoint::default(),
         attitude: setup.travel.map(|axis| Attitude { travel: axis.name().to_owned() }),
         refers_to,
         constants,
         labels: IndexMap::from([(name, "D_d".to_owned())]),
         derived,
+        ..Stated::default()
     }
 }
 
