@@ -13,6 +13,7 @@
 use froude_fit as fit;
 use froude_hydro::{DragModel, Setting};
 use froude_records::campaign::RangeBlock;
+use froude_records::comparison::NestedTest;
 use froude_records::text::counted;
 
 use crate::dataset::{Dataset, labels};
@@ -23,23 +24,6 @@ use crate::regression::ModelFit;
 const REJECTED_BELOW: f64 = 0.01;
 /// AICc differences below this are no evidence.
 const NO_EVIDENCE_BELOW: f64 = 2.0;
-
-/// F test of a simpler model inside a more general one, for one load.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NestedTest {
-    /// Name of the restricted model.
-    pub simple: String,
-    /// Name of the model that it is nested in.
-    pub general: String,
-    /// Load component.
-    pub component: String,
-    /// F statistic.
-    pub f: f64,
-    /// Degrees of freedom: restrictions, residual.
-    pub dof: [f64; 2],
-    /// p-value.
-    pub p: f64,
-}
 
 /// Prediction of left-out observations by one model, by component.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,6 +6,7 @@ use froude_fit::FEWEST_CLUSTERS;
 use froude_hydro::{Body, CrossTerm, DragModel, Link};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source, SourceKind};
+use froude_records::comparison::NestedTest;
 use froude_records::estimate::{Estimate, Range, ReferencePoint};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
@@ -18,7 +19,7 @@ use crate::lint::moving;
 use crate::reduce::{Observations, reduce};
 use crate::regression::{ModelFit, Scatter};
 use crate::seam::{Reduced, fit};
-use crate::selection::{BlockScore, NestedTest, Recommendation, Score};
+use crate::selection::{BlockScore, Recommendation, Score};
 use crate::validity::{AT_REST, off_axis};
 use crate::{columns, diagnosis, lint, validity};
 

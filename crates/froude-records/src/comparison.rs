@@ -113,6 +113,23 @@ pub struct LoadComparison {
     pub note: String,
 }
 
+/// An F test of a simple model inside a general one, fitted to the same observations.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NestedTest {
+    /// The restricted model.
+    pub simple: String,
+    /// The model it is nested in.
+    pub general: String,
+    /// Load component.
+    pub component: String,
+    /// The statistic.
+    pub f: f64,
+    /// Degrees of freedom of numerator and denominator: restrictions, residual.
+    pub dof: [f64; 2],
+    /// Chance of a larger statistic if the simple model is true.
+    pub p: f64,
+}
+
 impl Comparison {
     /// True where nothing could be set side by side.
     #[must_use]

@@ -10,7 +10,7 @@
 //! treated like `None`; it is never printed as a number.
 
 use crate::document::DocumentSection;
-use froude_records::comparison::Comparison;
+use froude_records::comparison::{Comparison, NestedTest};
 use froude_records::estimate::{DataFile, Estimate};
 use froude_records::finding::Finding;
 use indexmap::IndexMap;
@@ -236,23 +236,6 @@ impl Default for SelectionRow {
             lack_of_fit_p: None,
         }
     }
-}
-
-/// An F test of a simple model inside a general one.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct NestedTest {
-    /// The restricted model.
-    pub simple: String,
-    /// The model it is nested in.
-    pub general: String,
-    /// Load component.
-    pub component: String,
-    /// The statistic.
-    pub f: f64,
-    /// Degrees of freedom of numerator and denominator.
-    pub dof: [f64; 2],
-    /// Chance of a larger statistic if the simple model is true.
-    pub p: f64,
 }
 
 /// Why a report could not be written.

@@ -40,6 +40,6 @@ mod tables;
 
 pub use figures::{Figure, figures};
 pub use input::{
-    Abscissa, Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, ReportError, SelectionRow, SourceSection,
+    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, ReportError, SelectionRow, SourceSection,
 };
 pub use page::{file_stem, html};

@@ -3,14 +3,15 @@
 
 mod sample;
 
-use froude_records::comparison::{CoefficientComparison, Comparison, JointComparison, LoadComparison, Side};
+use froude_records::comparison::{
+    CoefficientComparison, Comparison, JointComparison, LoadComparison, NestedTest, Side,
+};
 use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_report::chart::Chart;
 use froude_report::document::{DocumentSection, TextTable};
 use froude_report::{
-    Abscissa, Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, SelectionRow, SourceSection, figures,
-    html,
+    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection, figures, html,
 };
 use proptest::prelude::*;
 

@@ -16,7 +16,7 @@ use froude_records::text::counted;
 use froude_records::units::Dimension;
 use froude_report::document::DocumentSection;
 use froude_report::{
-    Abscissa, Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, SelectionRow, SourceSection, number,
+    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection, number,
 };
 
 use crate::pipeline::Outcome;
@@ -221,18 +221,7 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
         estimates: source.estimates.clone(),
         selection: selection(source),
         not_fitted: source.not_fitted.iter().map(|n| (n.model.clone(), n.why.clone())).collect(),
-        tests: source
-            .tests
-            .iter()
-            .map(|t| NestedTest {
-                simple: t.simple.clone(),
-                general: t.general.clone(),
-                component: t.component.clone(),
-                f: t.f,
-                dof: t.dof,
-                p: t.p,
-            })
-            .collect(),
+        tests: source.tests.clone(),
         recommendation: source.recommendation.as_ref().map_or_else(String::new, |r| r.reason.clone()),
         ..SourceSection::default()
     };

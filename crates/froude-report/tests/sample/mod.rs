@@ -1,12 +1,14 @@
 //! A whole report with invented forces around published coefficients.
 
-use froude_records::comparison::{CoefficientComparison, Comparison, JointComparison, LoadComparison, Side};
+use froude_records::comparison::{
+    CoefficientComparison, Comparison, JointComparison, LoadComparison, NestedTest, Side,
+};
 use froude_records::estimate::{
     Coefficient, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Range, ReferencePoint,
     Status, TypeA,
 };
 use froude_records::finding::{Finding, Severity};
-use froude_report::{Against, BudgetRow, Curve, InputFile, NestedTest, Point, Report, SelectionRow, SourceSection};
+use froude_report::{Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection};
 use indexmap::IndexMap;
 
 /// Names of the coefficients of f1 … f6 in the order of the paper's tables.
