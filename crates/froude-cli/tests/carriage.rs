@@ -51,7 +51,7 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
         facts.iter().find(|f| f[0] == name).unwrap()[1].as_str().unwrap().to_owned()
     };
     assert_eq!(fact("method"), "tow, role wet");
-    assert_eq!(fact("mounted"), "body wet, ballasted, which axis lies along the travel is not declared");
+    assert_eq!(fact("mounted"), "body wet, ballasted, axis along the travel not declared");
     assert!(position["high"].as_f64().unwrap() - position["low"].as_f64().unwrap() > 2.1, "{position}");
     assert!(inside["facts"].to_string().contains("the motion begins"), "{inside}");
 
@@ -481,7 +481,7 @@ fn the_attitude_goes_with_the_runs() {
     let folder = tempfile::tempdir().unwrap();
     let mut changes = bench::SHORT.to_vec();
     changes.push(("[body]\n", "[body]\ntravel = \"y\"\n"));
-    json(&["run", text(&campaign(folder.path(), &changes)), "--yes", "--json"]);
+    json(&["run", text(&bench::campaign(folder.path(), &changes)), "--yes", "--json"]);
     let runs = folder.path().join("campaign-runs");
     let copy = runs.join("campaign.toml");
     let declared = std::fs::read_to_string(&copy).unwrap();

@@ -144,19 +144,19 @@ fn a_unit_or_a_sign_that_the_log_does_not_have_is_refused_with_both() {
     let position = "\"y/position\" = { quantity = \"position\", unit = \"m\", frame = \"y\", sign = 1";
     is_told(
         error(position, &position.replace("sign = 1", "sign = -1")),
-        &format!("`sign` is -1; expected 1: the name y/position says it"),
+        "`sign` is -1; expected 1: the name y/position says it",
     );
     is_told(
         error(position, &position.replace("\"m\"", "\"m/s\"")),
-        &format!("`unit` is \"m/s\"; expected a length (m), which y/position is"),
+        "`unit` is \"m/s\"; expected a length (m), which y/position is",
     );
     is_told(
         error(position, &position.replace("= \"position\"", "= \"velocity\"")),
-        &format!("`quantity` is \"velocity\", a speed (m/s); expected a length (m), as its unit says"),
+        "`quantity` is \"velocity\", a speed (m/s); expected a length (m), as its unit says",
     );
     is_told(
         error(position, &position.replace("frame = \"y\"", "frame = \"z\"")),
-        &format!("`frame` is \"z\"; did you mean `y` or `x`?"),
+        "`frame` is \"z\"; did you mean `y` or `x`?",
     );
     // Another word than the log's is an edit like any other: it is used, and said.
     std::fs::write(

@@ -449,7 +449,7 @@ fn mounted(mounted: &Mounted) -> String {
     match (travel, body) {
         (Some(axis), _) => out += &format!(", its {} axis along the travel", axis.name()),
         (None, BodyState::None) => {}
-        (None, _) => out += ", which axis lies along the travel is not declared",
+        (None, _) => out += ", axis along the travel not declared",
     }
     out
 }
