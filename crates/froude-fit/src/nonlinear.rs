@@ -83,7 +83,7 @@ impl Parameter {
     }
 }
 
-/// A model with its data.
+/// A model with its data. Weighted residuals of the parameters, as a function, are one of a single run.
 pub trait Model {
     /// How many runs there are.
     fn runs(&self) -> usize;
@@ -101,13 +101,25 @@ pub trait Model {
     }
 }
 
+/// Weighted residuals over the parameters are a model of one run.
+impl<F: Fn(&[f64]) -> Option<Vec<f64>>> Model for F {
+    fn runs(&self) -> usize {
+        1
+    }
+
+    fn residuals(&self, _: usize, theta: &[f64]) -> Option<Vec<f64>> {
+        self(theta)
+    }
+}
+
 /// How the minimum is looked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Step of the differences, as part of a parameter's scale. 1e-4 suits smooth models; a simulation with kinks, as at reversals, wants 1e-3.
     pub difference: f64,
     /// Converged when a full step would move the model by less than this part of its standard deviation (the relative offset): parameters are
-    /// then off by about this part of their standard uncertainties.
+    /// then off by about this part of their standard uncertainties. Or when a step lowered the sum of squares by no more than such a step
+    /// would: what kinks make of a simulation lets no full step become small.
     pub offset: f64,
     /// Converged, too, when no parameter would move by more than this part of its scale: data without noise have no offset.
     pub step: f64,
@@ -185,19 +197,13 @@ impl Solution {
 /// The decay of a swing, half a radian at first, with a rate of 0.2 per second:
 ///
 /// ```
-/// use froude_fit::nonlinear::{Model, Parameter, Settings, minimise};
-/// struct Decay;
-/// impl Model for Decay {
-///     fn runs(&self) -> usize {
-///         1
-///     }
-///     fn residuals(&self, _: usize, theta: &[f64]) -> Option<Vec<f64>> {
-///         let measured = |t: f64| 0.5 * (-0.2 * t).exp();
-///         Some((0..20).map(f64::from).map(|t| measured(t) - theta[0] * (-theta[1] * t).exp()).collect())
-///     }
-/// }
+/// use froude_fit::nonlinear::{Parameter, Settings, minimise};
+/// let measured = |t: f64| 0.5 * (-0.2 * t).exp();
+/// let residuals = |theta: &[f64]| {
+///     Some((0..20).map(f64::from).map(|t| measured(t) - theta[0] * (-theta[1] * t).exp()).collect())
+/// };
 /// let start = [Parameter::new("amplitude", 1.0, 0.1), Parameter::new("rate", 1.0, 0.1).within(0.0, 10.0)];
-/// let found = minimise(&Decay, &start, &Settings::default())?;
+/// let found = minimise(&residuals, &start, &Settings::default())?;
 /// assert!((found.values[1] - 0.2).abs() < 1e-9);
 /// # Ok::<(), froude_fit::nonlinear::NonlinearError>(())
 /// ```
@@ -219,6 +225,11 @@ pub fn minimise(model: &dyn Model, parameters: &[Parameter], settings: &Settings
             lengths.iter().zip(parameters).map(|(l, p)| if *l > 0.0 { *l } else { 1.0 / p.scale }).collect();
         let (trial, promised) = bounded_step(&here, &problem, &newton.is_held, Damping { lambda, lengths: &holds });
         let is_rounding = promised <= ROUNDING * here.sum;
+        if is_rounding && growth > 2.0 && newton.size > ROUNDING * here.sum {
+            // Longer steps did not help, and shorter ones promise nothing: kinks.
+            report.end = End::Stalled;
+            break;
+        }
         let most = if is_rounding { here.sum * (1.0 + ROUNDING) } else { here.sum };
         // A step into the impossible, or to where no derivative exists, counts as one that does not help.
         let there = problem.residuals(&trial)?.filter(|(_, sum)| *sum < most).and_then(|(residuals, sum)| {
@@ -231,10 +242,15 @@ pub fn minimise(model: &dyn Model, parameters: &[Parameter], settings: &Settings
                 report.end = End::Converged;
                 break;
             }
-            let gain = (here.sum - there.sum) / promised;
+            let fall = here.sum - there.sum;
+            let gain = fall / promised;
             lambda *= if is_rounding { 1.0 / 3.0 } else { (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0) };
             growth = 2.0;
             (here, newton) = (there, next);
+            if !is_rounding && newton.is_within_offset(fall, &here, &problem, settings) {
+                report.end = End::Converged;
+                break;
+            }
         } else if lambda > MOST_DAMPING {
             report.end = if newton.size <= ROUNDING * here.sum { End::Converged } else { End::Stalled };
             break;
@@ -275,11 +291,16 @@ impl Newton {
         Self { is_held, step, size, rank: eliminated.rank() }
     }
 
-    /// Bates and Watts' relative offset, or a step that no scale would show.
-    fn is_small(&self, here: &Point, problem: &Problem<'_>, settings: &Settings) -> bool {
+    /// Bates and Watts' relative offset: whether squares are less than what the noise makes of them, many times over.
+    fn is_within_offset(&self, squares: f64, here: &Point, problem: &Problem<'_>, settings: &Settings) -> bool {
         let dof = problem.rows().saturating_sub(self.rank) as f64;
         let noise = (here.sum - self.size).max(0.0) * self.rank as f64;
-        self.size * dof <= settings.offset.powi(2) * noise && dof > 0.0
+        squares * dof <= settings.offset.powi(2) * noise && dof > 0.0
+    }
+
+    /// The offset of the full step, or a step that no scale would show.
+    fn is_small(&self, here: &Point, problem: &Problem<'_>, settings: &Settings) -> bool {
+        self.is_within_offset(self.size, here, problem, settings)
             || self.step.iter().zip(problem.parameters).all(|(s, p)| s.abs() <= settings.step * p.scale)
     }
 }

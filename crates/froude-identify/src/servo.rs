@@ -25,7 +25,6 @@ mod cluster;
 mod error;
 pub mod flexible;
 pub mod friction;
-mod gauss_newton;
 pub mod held_out;
 pub mod instrument;
 pub mod interval;

@@ -153,7 +153,4 @@ pub enum TuningError {
         /// Highest.
         high_hz: f64,
     },
-    /// The fit itself failed.
-    #[error(transparent)]
-    Fit(#[from] froude_fit::FitError),
 }

@@ -1,5 +1,7 @@
 //! Non-linear least squares: laws, and whether its intervals cover.
 
+use std::cell::Cell;
+
 use faer::Mat;
 use froude_fit::coverage::{Count, z_limit};
 use froude_fit::nonlinear::{
@@ -347,6 +349,34 @@ fn the_impossible_at_the_start_is_told_and_on_the_way_avoided() {
     assert_eq!(error, NonlinearError::Impossible { run: 0 });
 }
 
+/// A line with a triangular wave on it, a seventieth of the noise: differences wider than the wave see the line, and near its least squares no
+/// full step helps. Damped to nothing and freed again in turns, the search would go on to its limit (1,417 evaluations); it says that it is stuck.
+#[test]
+fn a_search_among_kinks_ends_soon_and_says_so() {
+    let noise = |i: i32| (1.7 * f64::from(i * i)).sin();
+    let x = |i: i32| f64::from(i) / 400.0;
+    let find = |size: f64, period: f64| {
+        let evaluations = Cell::new(0);
+        let wave = |y: f64| size * (4.0 * (y / period - (y / period).round()).abs() - 1.0);
+        let residuals = |b: &[f64]| {
+            evaluations.set(evaluations.get() + 1);
+            let line = |i: i32| b[0] + b[1] * x(i);
+            Some((0..400).map(|i| noise(i) + 2.0 + 3.0 * x(i) - line(i) - wave(line(i) * (1.0 + x(i)))).collect())
+        };
+        let parameters = [Parameter::new("level", 1.0, 50.0), Parameter::new("slope", 1.0, 50.0)];
+        let settings = Settings { difference: 1e-3, offset: 0.02, ..Settings::default() };
+        (minimise(&residuals, &parameters, &settings).unwrap(), evaluations.get())
+    };
+    let (line, _) = find(0.0, 1.0);
+    assert_eq!(line.report.end, End::Converged);
+    let half = 0.5 * line.covariance(Scatter::Independent).unwrap().standard(0).unwrap();
+    for period in [0.01, 0.03, 0.1] {
+        let (found, evaluations) = find(0.01, period);
+        assert!(found.report.end == End::Stalled && evaluations < 50, "{period}: {:?} {evaluations}", found.report);
+        assert!((found.values[0] - line.values[0]).abs() < half, "{period}: {:?} {:?}", found.values, line.values);
+    }
+}
+
 #[test]
 fn every_misuse_is_an_error_that_says_what_to_do() {
     let good = given(2, |_, b: &[f64]| Some(vec![b[0] - 1.0, b[0], 3.0]));
@@ -451,12 +481,9 @@ fn a_profile_below_the_solution_is_told() {
 const REPETITIONS: u64 = 2000;
 /// Chance of any false alarm among the coverages below.
 const FAMILY_WISE: f64 = 0.001;
-/// One-step jackknife and linearised interval are of the first order: what is left of the second is allowed as one per cent.
-const SECOND_ORDER: f64 = 0.01;
-
-/// Largest distance from the nominal rate that chance and second order allow.
+/// Largest distance from the nominal rate that chance allows; what the first order leaves out has to stay hidden in it.
 fn allowed() -> f64 {
-    SECOND_ORDER + z_limit(FAMILY_WISE, 4) * (0.95 * 0.05 / REPETITIONS as f64).sqrt()
+    z_limit(FAMILY_WISE, 4) * (0.95 * 0.05 / REPETITIONS as f64).sqrt()
 }
 
 /// Noise that remembers three quarters of itself, runs of 40 rows, an amplitude per run.

@@ -1,5 +1,6 @@
 //! Why an axis could not be identified.
 
+use froude_fit::nonlinear::NonlinearError;
 use froude_fit::stream::StreamError;
 use froude_signal::SignalError;
 
@@ -88,4 +89,8 @@ pub enum ServoError {
     /// The fit refused.
     #[error(transparent)]
     Fit(#[from] StreamError),
+
+    /// The search refused.
+    #[error(transparent)]
+    Search(#[from] NonlinearError),
 }

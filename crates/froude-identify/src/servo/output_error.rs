@@ -10,13 +10,16 @@
 //! Trans. Control Syst. Technol. 21, 428 (DIDIM: the residual is the force's).
 
 use froude_fit::Report;
+use froude_fit::nonlinear::{NonlinearError, Parameter, Settings, minimise};
 
-use crate::servo::chain::{Chain, Rows};
+use crate::servo::chain::{Chain, Rows, norm};
 use crate::servo::error::ServoError;
-use crate::servo::gauss_newton::minimise;
 use crate::servo::log::ServoLog;
 use crate::servo::report::{ServoReport, identify_servo, of_rows};
 use crate::servo::simulate::{Loop, Rigid, closed_loop};
+
+/// The search: differences wide against the kinks of reversals; the end within a thousandth of a standard deviation.
+const SEARCH: Settings = Settings { difference: 1e-3, offset: 1e-3, step: 1e-10, iterations: 50 };
 
 /// Coefficients that make the simulated loop give the recorded force.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,17 +60,25 @@ pub fn refine(log: &ServoLog, chain: &Chain, servo: &Loop) -> Result<OutputError
     let values = start.values();
     // A natural step: a tenth of a coefficient, or of the Coulomb force for an offset near zero.
     let typical = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let scale: Vec<f64> = values.iter().map(|v| 0.1 * v.abs().max(1e-3 * typical)).collect();
-    let fitted = minimise(&values, &scale, residuals)?;
+    let parameters: Vec<Parameter> = (names.iter().zip(&values))
+        .map(|(name, v)| Parameter::new(*name, *v, 0.1 * v.abs().max(1e-3 * typical)))
+        .collect();
+    let fitted = match minimise(&|values: &[f64]| residuals(values).ok(), &parameters, &SEARCH) {
+        // The simulation knows better why it cannot start.
+        Err(NonlinearError::Impossible { .. }) => {
+            return Err(residuals(&values).err().unwrap_or(ServoError::Dependent));
+        }
+        fitted => fitted?,
+    };
     // The linearised model: force = residual + Σ column · parameter.
-    let mut force_n = fitted.residuals.clone();
-    for (column, p) in fitted.columns.iter().zip(&fitted.parameters) {
+    let (residuals_n, columns) = (&fitted.residuals[0], &fitted.columns[0]);
+    let mut force_n = residuals_n.clone();
+    for (column, p) in columns.iter().zip(&fitted.values) {
         force_n.iter_mut().zip(column).for_each(|(f, c)| *f += c * p);
     }
-    let rows = Rows { force_n, columns: fitted.columns, ..start.rows.clone() };
+    let rows = Rows { force_n, columns: columns.clone(), ..start.rows.clone() };
     let mut report = of_rows(rows, chain)?;
-    let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
-    report.relative_force_error = norm(&fitted.residuals) / norm(&measured_n);
+    report.relative_force_error = norm(residuals_n) / norm(&measured_n);
     report.record_rate_hz = rate_hz;
     Ok(OutputError { report, end: fitted.report })
 }

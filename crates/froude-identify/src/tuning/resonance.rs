@@ -5,7 +5,7 @@
 //! makes of the motor: the load's closed-loop mode. Its **resonance** ω_p is the free mode of both masses, the 13 Hz of the
 //! paper. A reference is therefore shaped for ω_a; shaping for ω_p leaves the load's swing as it was.
 
-use froude_fit::{Options, Problem, faer::Mat};
+use froude_fit::nonlinear::{Parameter, Scatter, Settings, Solution, minimise};
 use num_complex::Complex64;
 
 use super::{ResponsePoint, TuningError};
@@ -46,12 +46,16 @@ pub struct TwoMassModes {
 
 const PARAMETERS: usize = 7;
 const NAMES: [&str; PARAMETERS] = ["ln k", "ln b", "ln f_a", "zeta_a", "ln f_p", "zeta_p", "T"];
+/// Natural steps: a tenth, and a tenth of a delay that would show.
+const SCALES: [f64; PARAMETERS] = [0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.01];
+/// From a start that leads nowhere the search goes no further than this; the end within a thousandth of a standard deviation.
+const SEARCH: Settings = Settings { difference: 1e-4, offset: 1e-3, step: 1e-10, iterations: 50 };
 /// Coherence above which a point counts in the residual.
 const SEEN: f64 = 0.8;
 /// A fit that leaves more than this of the response is none.
 const LARGEST_RESIDUAL: f64 = 0.35;
 
-fn model(p: &[f64; PARAMETERS], frequency_hz: f64) -> Complex64 {
+fn model(p: &[f64], frequency_hz: f64) -> Complex64 {
     let tau = std::f64::consts::TAU;
     let s = Complex64::new(0.0, tau * frequency_hz);
     let (k, b, a, pole) = (p[0].exp(), p[1].exp(), tau * p[2].exp(), tau * p[4].exp());
@@ -61,7 +65,7 @@ fn model(p: &[f64; PARAMETERS], frequency_hz: f64) -> Complex64 {
 
 /// Fits the two-mass model to the logarithm of the response (modulus and phase), weighted by the coherence.
 ///
-/// Gauss–Newton with halved steps from a grid of starts; the best is kept.
+/// The search begins from a grid of starts; the best end is kept.
 ///
 /// # Errors
 ///
@@ -75,24 +79,26 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
             advice: "sweep longer",
         });
     }
-    let mut best: Option<Refined> = None;
-    for start in starts(plant) {
-        // A start from which the normal equations fail is one start less.
-        if let Ok(refined) = refine(plant, start)
-            && best.as_ref().is_none_or(|b| refined.sum < b.sum)
-        {
-            best = Some(refined);
-        }
-    }
+    let from = |start: [f64; PARAMETERS]| -> Option<Solution> {
+        let parameters: [Parameter; PARAMETERS] = std::array::from_fn(|j| {
+            let free = Parameter::new(NAMES[j], start[j], SCALES[j]);
+            if NAMES[j].starts_with("zeta") { free.within(0.0, f64::INFINITY) } else { free }
+        });
+        // A start that the search refuses is one start less.
+        minimise(&|p: &[f64]| Some(residuals(plant, p)), &parameters, &SEARCH).ok()
+    };
+    let found = starts(plant).into_iter().filter_map(from);
+    let best = found.min_by(|a, b| a.sum_of_squares.total_cmp(&b.sum_of_squares));
     let (low_hz, high_hz) = (plant[0].frequency_hz, plant[plant.len() - 1].frequency_hz);
-    let Some(Refined { parameters: p, fit, .. }) = best else {
+    let Some((best, covariance)) = best.and_then(|b| b.covariance(Scatter::Independent).ok().map(|c| (b, c))) else {
         return Err(TuningError::NoModes { residual_percent: 100.0, low_hz, high_hz });
     };
+    let p = &best.values;
     // Only where the response was seen at all: at an antiresonance the encoder may see nothing.
     let seen: Vec<&ResponsePoint> = plant.iter().filter(|q| q.coherence > SEEN).collect();
     let (load_hz, free_hz) = (p[2].exp(), p[4].exp());
     let mut squares: Vec<f64> =
-        seen.iter().map(|q| (model(&p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).collect();
+        seen.iter().map(|q| (model(p, q.frequency_hz) / q.plant_rad_v - 1.0).norm_sqr()).collect();
     let relative_residual = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
     squares.sort_by(f64::total_cmp);
     let median_residual = squares.get(squares.len() / 2).map_or(f64::NAN, |x| x.sqrt());
@@ -101,7 +107,7 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
     if !(relative_residual < LARGEST_RESIDUAL && is_inside(load_hz) && is_inside(free_hz) && load_hz < free_hz) {
         return Err(TuningError::NoModes { residual_percent: 100.0 * relative_residual, low_hz, high_hz });
     }
-    let std = |j: usize| fit.coefficients[j].standard.unwrap_or(f64::NAN);
+    let std = |j: usize| covariance.standard(j).unwrap_or(f64::NAN);
     let mode = |f: usize, z: usize| Mode {
         frequency_hz: p[f].exp(),
         frequency_std_hz: p[f].exp() * std(f),
@@ -192,40 +198,6 @@ impl TwoMassModes {
     }
 }
 
-/// A fit from one start.
-struct Refined {
-    parameters: [f64; PARAMETERS],
-    sum: f64,
-    fit: froude_fit::Fit,
-}
-
-/// Gauss–Newton with halved steps.
-fn refine(plant: &[ResponsePoint], start: [f64; PARAMETERS]) -> Result<Refined, TuningError> {
-    let mut p = start;
-    let sum_of = |p: &[f64; PARAMETERS]| residuals(plant, p).iter().map(|r| r * r).sum::<f64>();
-    let mut sum = sum_of(&p);
-    loop {
-        let fit = froude_fit::fit(&linearised(plant, &p), &Options::default())?;
-        let before = sum;
-        let mut part = 1.0;
-        while part > 1e-4 {
-            let mut trial = p;
-            trial.iter_mut().zip(&fit.coefficients).for_each(|(x, c)| *x += part * c.value.unwrap_or(0.0));
-            trial[3] = trial[3].abs();
-            trial[5] = trial[5].abs();
-            let trial_sum = sum_of(&trial);
-            if trial_sum < sum {
-                (p, sum) = (trial, trial_sum);
-                break;
-            }
-            part *= 0.5;
-        }
-        if sum >= before * (1.0 - 1e-6) {
-            return Ok(Refined { parameters: p, sum, fit });
-        }
-    }
-}
-
 /// First guesses: the load's mode anywhere in the range, the free one above it by what light to heavy loads give.
 fn starts(plant: &[ResponsePoint]) -> Vec<[f64; PARAMETERS]> {
     let (first, last) = (&plant[0], &plant[plant.len() - 1]);
@@ -242,7 +214,7 @@ fn starts(plant: &[ResponsePoint]) -> Vec<[f64; PARAMETERS]> {
 }
 
 /// Weighted residuals ln(measured/model): moduli first, then phases.
-fn residuals(plant: &[ResponsePoint], p: &[f64; PARAMETERS]) -> Vec<f64> {
+fn residuals(plant: &[ResponsePoint], p: &[f64]) -> Vec<f64> {
     let ratio = |q: &ResponsePoint| (q.plant_rad_v / model(p, q.frequency_hz)).ln() / weight(q);
     plant.iter().map(|q| ratio(q).re).chain(plant.iter().map(|q| ratio(q).im)).collect()
 }
@@ -250,20 +222,6 @@ fn residuals(plant: &[ResponsePoint], p: &[f64; PARAMETERS]) -> Vec<f64> {
 /// Standard deviation of a point, at least 1 %: what friction bends does not show in the coherence.
 fn weight(point: &ResponsePoint) -> f64 {
     point.relative_std.max(0.01)
-}
-
-fn linearised(plant: &[ResponsePoint], p: &[f64; PARAMETERS]) -> Problem {
-    let base = residuals(plant, p);
-    let mut design = Mat::zeros(base.len(), PARAMETERS);
-    for j in 0..PARAMETERS {
-        let h = if j == 6 { 1e-6 } else { 1e-5 };
-        let mut moved = *p;
-        moved[j] += h;
-        for (i, r) in residuals(plant, &moved).iter().enumerate() {
-            design[(i, j)] = (base[i] - r) / h;
-        }
-    }
-    Problem::single(design, base, NAMES.iter().map(|&n| n.to_owned()).collect())
 }
 
 /// A shaper for a mode: impulses that leave it at rest (Singer & Seering 1990).
