@@ -76,7 +76,11 @@ impl Takes {
         if !error.is_bad_input() {
             return error;
         }
-        let other = |path: &PathBuf| Some((path.clone(), kind_of(path).filter(|kind| !self.kinds.contains(kind))?));
+        // A folder with logs of other programs is one of runs, of another method: the reader has said which reads them.
+        let is_taken = |path: &PathBuf, kind: Kind| {
+            self.kinds.contains(&kind) || (kind == Kind::Folder && self.kinds.contains(&Kind::Runs) && has_logs(path))
+        };
+        let other = |path: &PathBuf| Some((path.clone(), kind_of(path).filter(|kind| !is_taken(path, *kind))?));
         match paths.iter().find_map(other) {
             Some((path, kind)) => Error::Nothing(format!(
                 "{} is {}; froude {} takes {}. {}",
@@ -153,6 +157,12 @@ impl Kind {
             Self::Folder => "a folder",
         }
     }
+}
+
+/// Whether a folder holds tables, as other programs write logs.
+fn has_logs(folder: &Path) -> bool {
+    let is_log = |file: PathBuf| matches!(kind_of(&file), Some(Kind::Table));
+    std::fs::read_dir(folder).is_ok_and(|entries| entries.filter_map(Result::ok).any(|entry| is_log(entry.path())))
 }
 
 /// What is there under a name; `None` where nothing is, or nothing that is known.

@@ -103,6 +103,12 @@ fn a_folder_of_releases_is_inspected() {
     let of = |name: &str| facts.iter().find(|f| f[0] == name).unwrap()[1].as_str().unwrap().to_owned();
     assert_eq!(of("release-2.csv"), "725 samples at 50.0 Hz, 14.480 s: y/position [m]");
     assert!(findings_of(&inside, "run-unreadable")[0].1.contains("torn.csv:2"), "{inside}");
+    // The drag of a carriage is not read from them; what reads them is said.
+    let said = refusal(&["carriage", "drag", text(&runs)]);
+    assert!(
+        said.contains("3 logs there are of other programs, as releases are") && said.contains("decay_envelope"),
+        "{said}"
+    );
 }
 
 /// A wrong declaration shows in A alone: C 2 % too large is 2 % of M + A.

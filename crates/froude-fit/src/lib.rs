@@ -24,6 +24,8 @@
 //! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
 //! | [`budget`]      | what each error does to the coefficients, intervals, jackknife       |
 //! | [`replicates`]  | scatter from replicates left out in turn, sums of such, a floor      |
+//! | [`series`]      | mean of a correlated series                                          |
+//! | [`long_run`]    | long-run covariance of scores (HAC), automatic lag                   |
 //! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
 //!
@@ -54,6 +56,7 @@ mod error;
 mod estimate;
 pub mod factored;
 pub mod linear;
+pub mod long_run;
 pub mod nonlinear;
 pub mod odr;
 mod options;
@@ -65,6 +68,7 @@ pub mod replicates;
 mod report;
 pub mod robust;
 pub mod select;
+pub mod series;
 mod shape;
 pub mod stream;
 pub mod wild;

@@ -25,6 +25,7 @@ mod cluster;
 mod error;
 pub mod flexible;
 pub mod friction;
+mod gauss_newton;
 pub mod held_out;
 pub mod instrument;
 pub mod interval;

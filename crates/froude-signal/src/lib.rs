@@ -14,7 +14,6 @@
 //! | [`decimate`]        | zero-phase FIR low-pass, every q-th sample                        | zeros                   |
 //! | [`stream`]          | the same chain a chunk at a time, in bounded memory               | as above                |
 //! | [`autocorrelation`] | autocorrelation, integrated autocorrelation time                  | –                       |
-//! | [`long_run`]        | long-run covariance of scores (Newey–West), automatic lag         | –                       |
 //! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
 //! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
 //!
@@ -35,7 +34,6 @@ pub mod differences;
 mod error;
 pub mod gaussian;
 mod lanes;
-pub mod long_run;
 mod pages;
 pub mod savitzky_golay;
 pub mod spectrum;

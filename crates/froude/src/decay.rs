@@ -7,6 +7,7 @@ use froude_identify::decay::{envelope, output_error, record};
 use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::manifest::MANIFEST;
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role, import_run};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
@@ -190,10 +191,13 @@ struct Releases {
     findings: Vec<Finding>,
 }
 
-/// The logs of other programs in a folder, in the order of their names.
+/// The logs of other programs in a folder, in the order of their names; none in a folder of results, whose tables are Froude's.
 pub(crate) fn logs_in(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     let entries = std::fs::read_dir(folder)
         .map_err(|source| Error::Nothing(format!("{}: the folder cannot be read: {source}", folder.display())))?;
+    if folder.join(MANIFEST).exists() {
+        return Ok(Vec::new());
+    }
     let is_log = |path: &PathBuf| {
         path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)))
     };

@@ -19,8 +19,9 @@
 //! Valid from rest; flow history (start-up of the wake) is in the result.
 
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
-use super::steady::{SteadySettings, driving_part, tapered, window};
+use super::steady::{SteadySettings, driving_part, window};
 use froude_fit::budget::{Uncertain, jackknife_of_one};
+use froude_fit::series::tapered;
 
 /// Water that moves along with the body.
 #[derive(Debug, Clone, PartialEq)]

@@ -18,13 +18,14 @@
 use froude_fit::budget::Uncertain;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
+use froude_fit::series::mean;
 use froude_fit::{CovarianceKind, Fit, Options, Prior, Problem, fit};
 use froude_records::text::counted;
 
 use super::error::DragError;
 use super::fsm::reach;
 use super::run::{DragRun, RunKind};
-use super::steady::{SteadySettings, mean, window};
+use super::steady::{SteadySettings, window};
 
 /// The pulley's loss where both directions with light weights do not measure it, and nobody declared it: a ball bearing
 /// with a thin cord loses 0 to 2 %, taken as uniform.

@@ -12,11 +12,12 @@
 
 use froude_fit::distribution::{coverage_factor, f_upper};
 use froude_fit::propagate::effective_dof;
+use froude_fit::series::mean;
 use froude_records::text::counted;
 
 use super::coefficient::Point;
 use super::run::{BodyState, DragRun, DragSetup, RunKind};
-use super::steady::{mean, still_windows, window};
+use super::steady::{still_windows, window};
 
 /// More repeats than this are no advice.
 const MOST_REPEATS: usize = 1000;

@@ -6,11 +6,12 @@
 //! over cells of one knot spacing of the steady windows, each weighted by its part of the window's tapered mean.
 
 use froude_fit::faer::Mat;
+use froude_fit::series::taper;
 use froude_fit::{Options, Problem, fit};
 
 use super::fsm::reach;
 use super::run::DragRun;
-use super::steady::{SteadySettings, taper, window};
+use super::steady::{SteadySettings, window};
 
 /// Spacing of the knots of a map, m, where that takes no more than 2501 of them: 0.1 m resolves a bump that is half a metre wide to 2 % of its height.
 pub const KNOT_SPACING_M: f64 = 0.1;

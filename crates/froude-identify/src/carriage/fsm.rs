@@ -6,7 +6,8 @@
 
 use super::coefficient::Point;
 use super::run::DragRun;
-use super::steady::{Rejected, SteadySettings, Window, mean, settled_window, still_windows};
+use super::steady::{Rejected, SteadySettings, Window, settled_window, still_windows};
+use froude_fit::series::mean;
 
 /// The steady point of a run with a force column.
 ///

@@ -11,7 +11,8 @@ use super::coefficient::Point;
 use super::friction::Friction;
 use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
-use super::steady::{Rejected, SteadySettings, Window, driving_part, mean, window};
+use super::steady::{Rejected, SteadySettings, Window, driving_part, window};
+use froude_fit::series::mean;
 
 /// A map may be used this far beyond its ends, m.
 const BEYOND_M: f64 = 0.1;

@@ -7,7 +7,8 @@
 use super::coefficient::Point;
 use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
-use super::steady::{Rejected, SteadySettings, Window, driving_part, mean, settled_part, window};
+use super::steady::{Rejected, SteadySettings, Window, driving_part, settled_part, window};
+use froude_fit::series::mean;
 
 /// Shortest stretch of positions in common, as part of the wet window.
 const SHARED: f64 = 0.5;

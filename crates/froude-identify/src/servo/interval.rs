@@ -18,10 +18,10 @@
 use froude_fit::diagnostics::ljung_box;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
+use froude_fit::long_run::{self, automatic_lag};
 use froude_fit::stream::Solution;
 use froude_signal::autocorrelation::{autocorrelation, integrated_time};
 use froude_signal::blocks::MovingBlocks;
-use froude_signal::long_run::{automatic_lag, covariance_of_sum};
 use rayon::prelude::*;
 
 use crate::servo::chain::Rows;
@@ -186,7 +186,7 @@ pub(crate) fn hac(
     (diagonal_roots(&covariance), lag_s)
 }
 
-/// HAC covariance `n/(n − p) (XᵀX)⁻¹ S (XᵀX)⁻¹`, and the lag used, s.
+/// HAC covariance, and the lag used, s.
 pub(crate) fn hac_covariance(
     columns: &[Vec<f64>],
     residuals: &[f64],
@@ -197,11 +197,7 @@ pub(crate) fn hac_covariance(
     let scores: Vec<Vec<f64>> = columns.iter().map(|c| c.iter().zip(residuals).map(|(x, r)| x * r).collect()).collect();
     let scores: Vec<&[f64]> = scores.iter().map(Vec::as_slice).collect();
     let lag = lag_s.map_or_else(|| long_enough(&scores, residuals), |s| (s * rate_hz).round() as usize);
-    let p = columns.len();
-    let n = residuals.len() as f64;
-    let middle = covariance_of_sum(&scores, lag);
-    let middle = Mat::from_fn(p, p, |i, j| n / (n - p as f64) * middle[i * p + j]);
-    (inverse_gram * middle * inverse_gram, lag as f64 / rate_hz)
+    (long_run::hac(&scores, inverse_gram, lag), lag as f64 / rate_hz)
 }
 
 /// Covariance of an estimator over moving blocks.

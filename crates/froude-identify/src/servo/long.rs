@@ -518,7 +518,7 @@ mod tests {
             let found = windows.finish(&coefficients);
             let e: Vec<f64> = (0..y.len()).map(|i| y[i] - coefficients[0] * x[0][i] - coefficients[1] * x[1][i]).collect();
             let scores: Vec<Vec<f64>> = x.iter().map(|x| x.iter().zip(&e).map(|(x, e)| x * e).collect()).collect();
-            let expected = froude_signal::long_run::covariance_of_sum(&[&scores[0], &scores[1]], lag);
+            let expected = froude_fit::long_run::covariance_of_sum(&[&scores[0], &scores[1]], lag);
             for (a, b) in found.iter().zip(&expected) {
                 // Some 60² products of numbers of the order of one.
                 prop_assert!((a - b).abs() < 1e-12, "{} {}", a, b);

@@ -28,7 +28,6 @@
 use froude_fit::budget::Uncertain;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
-use froude_fit::nonlinear::{Parameter, Scatter, Settings, Solution, minimise};
 use froude_fit::propagate::effective_dof;
 use froude_fit::{End, Report};
 use froude_signal::{decimate, differences};
@@ -39,10 +38,11 @@ use crate::servo::cluster::{Clustered, Enlarged, stretches};
 use crate::servo::error::ServoError;
 use crate::servo::flexible::{Stepper, TwoMass};
 use crate::servo::friction::Friction;
+use crate::servo::gauss_newton::{DIFFERENCE, Fitted, minimise};
 use crate::servo::interval::{IntervalOptions, Whiteness, hac_covariance, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
-use crate::servo::regression::least_squares;
+use crate::servo::regression::{inverse_gram, least_squares, solve};
 use crate::servo::report::ServoCoefficient;
 
 /// Mean and standard deviation of a fraction of which nothing is known.
@@ -50,9 +50,6 @@ const KNOWS_NOTHING: [f64; 2] = [0.5, 0.288_675_134_594_812_9];
 
 /// Parameters of the iteration: logarithms of four, sums of two, fractions of two.
 const PARAMETERS: usize = 8;
-const NAMES: [&str; PARAMETERS] = ["ln m", "ln M", "ln K_e", "ln B_e", "B_sum", "C_sum", "B_m/B", "C_m/C"];
-/// The search: differences wide against the kinks of reversals; the end within a fiftieth of a standard deviation.
-const SEARCH: Settings = Settings { difference: 1e-3, offset: 0.02, step: 1e-10, iterations: 50 };
 
 /// Most rough searches, the ratio of force to noise chosen anew before each.
 const SEARCHES: usize = 2;
@@ -164,7 +161,7 @@ pub struct FlexibleReport {
     pub whiteness: Option<Whiteness>,
     /// Samples compared.
     pub n_rows: usize,
-    /// How the iteration ended. Friction that turns puts kinks into the sum of squares: where a step of no length helps, it has converged.
+    /// How the iteration ended.
     pub end: Report,
     /// What a reader must know before using the numbers.
     pub findings: Vec<String>,
@@ -209,32 +206,25 @@ pub fn identify_flexible(log: &ServoLog, options: &FlexibleOptions) -> Result<Fl
     let mut ratio = record.best_ratio(&start)?;
     let mut fitted = record.search(&start, &scale, ratio)?;
     for _ in 1..SEARCHES {
-        let better = record.best_ratio(&fitted.values)?;
+        let better = record.best_ratio(&fitted.parameters)?;
         if (better - ratio).abs() < RATIO_TOLERANCE {
             break;
         }
         ratio = better;
-        fitted = record.search(&fitted.values, &scale, ratio)?;
+        fitted = record.search(&fitted.parameters, &scale, ratio)?;
     }
     // Differences over ± half a standard deviation: kinks within it are no slope.
-    let white = classical(&fitted)?;
-    let scale: Vec<f64> = (0..PARAMETERS).map(|j| 0.5 * white[(j, j)].sqrt() / SEARCH.difference).collect();
+    let scale = spreads(&fitted)?.map(|std| 0.5 * std / DIFFERENCE);
     record.step_s = options.step_s;
-    let ratio = record.best_ratio(&fitted.values)?;
-    let fitted = record.search(&fitted.values, &scale, ratio)?;
+    let ratio = record.best_ratio(&fitted.parameters)?;
+    let fitted = record.search(&fitted.parameters, &scale, ratio)?;
     record.report(&fitted)
 }
 
-/// Covariance of the parameters, were the innovations white.
-fn classical(fitted: &Solution) -> Result<Mat<f64>, ServoError> {
-    let covariance = fitted.covariance(Scatter::Independent)?;
-    let mut out = Mat::zeros(PARAMETERS, PARAMETERS);
-    for i in 0..PARAMETERS {
-        for j in 0..PARAMETERS {
-            out[(i, j)] = covariance.covariance(i, j).ok_or(ServoError::Dependent)?;
-        }
-    }
-    Ok(out)
+/// Standard deviations of the parameters, were the innovations white.
+fn spreads(fitted: &Fitted) -> Result<[f64; PARAMETERS], ServoError> {
+    let solution = solve(&fitted.columns, &fitted.residuals)?;
+    Ok(std::array::from_fn(|j| solution.standard[j]))
 }
 
 /// A record made ready for comparison.
@@ -318,12 +308,10 @@ impl<'a> Record<'a> {
     }
 
     /// Least squares of what an observer with this ratio does not predict.
-    fn search(&mut self, start: &[f64], scale: &[f64], ratio: f64) -> Result<Solution, ServoError> {
+    fn search(&mut self, start: &[f64], scale: &[f64], ratio: f64) -> Result<Fitted, ServoError> {
         self.gain = self.stepper(start)?.gain(10_f64.powf(ratio));
         let sigma = self.noise(start)?;
-        let parameters: Vec<Parameter> =
-            (0..PARAMETERS).map(|j| Parameter::new(NAMES[j], start[j], scale[j])).collect();
-        Ok(minimise(&|theta: &[f64]| self.residuals_with_prior(theta, sigma).ok(), &parameters, &SEARCH)?)
+        minimise(start, scale, |theta| self.residuals_with_prior(theta, sigma))
     }
 
     /// Innovations, and two rows of prior in their unit.
@@ -396,15 +384,11 @@ impl<'a> Record<'a> {
         })
     }
 
-    fn report(&self, fitted: &Solution) -> Result<FlexibleReport, ServoError> {
-        let theta = &fitted.values;
-        let end = match fitted.report.end {
-            End::Stalled => Report { end: End::Converged, ..fitted.report },
-            _ => fitted.report,
-        };
-        let n = self.log.position_m.len();
+    fn report(&self, fitted: &Fitted) -> Result<FlexibleReport, ServoError> {
+        let theta = &fitted.parameters;
+        let n = fitted.residuals.len() - 2;
         let covariance = self.covariance(fitted, n)?;
-        let innovations = &fitted.residuals[0][..n];
+        let innovations = &fitted.residuals[..n];
         let speed = self.speed(&self.log.position_m)?;
         let splits = [(6, "B_m/B"), (7, "C_m/C")].map(|(j, name)| {
             let half = covariance.half_width(&unit_vector(j, 1.0));
@@ -419,8 +403,8 @@ impl<'a> Record<'a> {
             innovation_m: norm(innovations) / (n as f64).sqrt(),
             whiteness: whiteness(innovations, self.rate_hz),
             n_rows: n,
-            end,
-            findings: self.findings(&splits, &end),
+            end: fitted.report,
+            findings: self.findings(&splits, &fitted.report),
             splits: splits.to_vec(),
         })
     }
@@ -446,23 +430,22 @@ impl<'a> Record<'a> {
     }
 
     /// Covariances of the parameters of the iteration, three ways.
-    fn covariance(&self, fitted: &Solution, n: usize) -> Result<Covariance, ServoError> {
-        let classical = classical(fitted)?;
-        let columns = &fitted.columns[0];
-        let variance = fitted.sum_of_squares / fitted.dof as f64;
-        let gram = Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| classical[(i, j)] / variance);
-        let data: Vec<Vec<f64>> = columns.iter().map(|c| c[..n].to_vec()).collect();
-        let innovations = &fitted.residuals[0][..n];
+    fn covariance(&self, fitted: &Fitted, n: usize) -> Result<Covariance, ServoError> {
+        let gram = inverse_gram(&solve(&fitted.columns, &fitted.residuals)?);
+        let data: Vec<Vec<f64>> = fitted.columns.iter().map(|c| c[..n].to_vec()).collect();
+        let innovations = &fitted.residuals[..n];
         let options = &self.options.intervals;
         let (hac, _) = hac_covariance(&data, innovations, &gram, self.rate_hz, options.hac_lag_s);
-        let information =
-            Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| (n..n + 2).map(|k| columns[i][k] * columns[j][k]).sum());
+        let information = Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| {
+            (n..n + 2).map(|k| fitted.columns[i][k] * fitted.columns[j][k]).sum()
+        });
         let length = (options.block_s * self.rate_hz).round() as usize;
         let clustered =
             Clustered::new(&data, innovations, &stretches(n, length), Some(&information), Enlarged::Average)?;
-        let prior = Self::of_prior(columns, n, &gram);
+        let prior = Self::of_prior(fitted, n, &gram);
+        let scatter = norm(innovations) / ((n - PARAMETERS) as f64).sqrt();
         Ok(Covariance {
-            classical,
+            classical: Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| scatter * scatter * gram[(i, j)]),
             hac: &hac + &prior,
             known: &prior + &self.of_declared(fitted, &gram)?,
             clustered,
@@ -471,19 +454,19 @@ impl<'a> Record<'a> {
     }
 
     /// What the prior's own uncertainty brings: `G x_k x_kᵀ G` for its two rows, of variance `σ²` each.
-    fn of_prior(columns: &[Vec<f64>], n: usize, gram: &Mat<f64>) -> Mat<f64> {
+    fn of_prior(fitted: &Fitted, n: usize, gram: &Mat<f64>) -> Mat<f64> {
         let [_, std] = KNOWS_NOTHING;
         let mut out = Mat::zeros(PARAMETERS, PARAMETERS);
         for (k, j) in [(n, 6), (n + 1, 7)] {
-            let row: Vec<f64> = columns.iter().map(|c| c[k]).collect();
-            add_outer(&mut out, &times(gram, &row), columns[j][k].abs() * std);
+            let row: Vec<f64> = fitted.columns.iter().map(|c| c[k]).collect();
+            add_outer(&mut out, &times(gram, &row), fitted.columns[j][k].abs() * std);
         }
         out
     }
 
     /// What the declared inputs' uncertainties bring: each moves the estimate by one linearised step.
-    fn of_declared(&self, fitted: &Solution, gram: &Mat<f64>) -> Result<Mat<f64>, ServoError> {
-        let theta = &fitted.values;
+    fn of_declared(&self, fitted: &Fitted, gram: &Mat<f64>) -> Result<Mat<f64>, ServoError> {
+        let theta = &fitted.parameters;
         let mut out = Mat::zeros(PARAMETERS, PARAMETERS);
         for (k, input) in self.options.declared().iter().enumerate().filter(|(_, d)| d.standard > 0.0) {
             // Half a standard uncertainty to either side, unless that is not possible (a delay below zero).
@@ -496,7 +479,9 @@ impl<'a> Record<'a> {
                 Ok(down) => (moved(0.5)?, down, 1.0),
                 Err(_) => (moved(0.5)?, moved(0.0)?, 0.5),
             };
-            let score: Vec<f64> = (fitted.columns[0].iter())
+            let score: Vec<f64> = fitted
+                .columns
+                .iter()
                 .map(|c| up.iter().zip(&down).zip(c).map(|((u, d), x)| (u - d) / width * x).sum::<f64>())
                 .collect();
             add_outer(&mut out, &times(gram, &score), 1.0);

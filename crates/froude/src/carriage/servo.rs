@@ -7,7 +7,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_fit::budget::Uncertain;
-use froude_identify::carriage::steady::{SteadySettings, mean, window};
+use froude_fit::series::mean;
+use froude_identify::carriage::steady::{SteadySettings, window};
 use froude_identify::servo::chain::Rows;
 use froude_identify::servo::motor::MotorSide;
 use froude_identify::servo::report::of_runs as of_several;

@@ -2,11 +2,27 @@
 //!
 //! For scores `s_i` (regressors times residual, a row of p numbers) the covariance of their sum is n times
 //! `Γ₀ + Σ_k w_k (Γ_k + Γ_kᵀ)`, `Γ_k = (1/n) Σ s_i s_{i+k}ᵀ`, with Bartlett weights `w_k = 1 − k/(lag + 1)`: never negative.
-//! Between `(XᵀX)⁻¹` on both sides it is the HAC covariance of a least-squares fit.
+//! Between `(XᵀX)⁻¹` on both sides it is the HAC covariance of a least-squares fit ([`hac`]).
 //!
 //! # Source
 //!
 //! Newey & West (1987), Econometrica 55, 703; automatic lag: Newey & West (1994), Rev. Econ. Stud. 61, 631, without prewhitening.
+
+use faer::Mat;
+
+/// HAC covariance of a least-squares fit, `n/(n − p) (XᵀX)⁻¹ S (XᵀX)⁻¹`, from its scores (a column per coefficient) and `(XᵀX)⁻¹`.
+///
+/// # Panics
+///
+/// When the columns differ in length.
+#[must_use]
+pub fn hac(scores: &[&[f64]], inverse_gram: &Mat<f64>, lag: usize) -> Mat<f64> {
+    let p = scores.len();
+    let n = scores.first().map_or(0, |s| s.len()) as f64;
+    let middle = covariance_of_sum(scores, lag);
+    let middle = Mat::from_fn(p, p, |i, j| n / (n - p as f64) * middle[i * p + j]);
+    inverse_gram * middle * inverse_gram
+}
 
 /// Sum over all lags of the scores' products, `n (Γ₀ + Σ w_k (Γ_k + Γ_kᵀ))`, `p × p`, row-major.
 ///
