@@ -107,7 +107,9 @@ fn coefficient_pair(rows: &[&CoefficientComparison]) {
     let mut out = narrow(&header);
     for r in rows {
         let mut row = vec![
-            cell(&r.coefficient),
+            cell(
+                r.label.as_ref().map_or_else(|| r.coefficient.clone(), |label| format!("{} ({label})", r.coefficient)),
+            ),
             cell(&r.unit),
             right(value_and_uncertainty(&r.first)),
             right(value_and_uncertainty(&r.second)),

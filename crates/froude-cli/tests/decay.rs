@@ -106,7 +106,8 @@ fn a_folder_of_releases_is_inspected() {
     // The drag of a carriage is not read from them; what reads them is said.
     let said = refusal(&["carriage", "drag", text(&runs)]);
     assert!(
-        said.contains("3 logs there are of other programs, as releases are") && said.contains("decay_envelope"),
+        said.contains("logs there are of other programs (a table of steady runs is what froude identify FILE reads")
+            && said.contains("decay_envelope"),
         "{said}"
     );
 }
@@ -162,8 +163,9 @@ fn what_is_missing_is_named() {
     assert!(said.contains("no method of the source is one of free decay"), "{said}");
     // Logs of another method than the one asked for: what they are, and what reads them.
     let said = told("\"mcd\"", "");
-    let instead = "3 logs there are of other programs, as releases are, and runs of the method tow are read here: a [[source]] with \
-                   method = [\"decay_envelope\", \"decay_output_error\"] reads those; else name a folder with runs of tow";
+    let instead = "3 logs there are of other programs (a table of steady runs is what froude identify FILE reads, a servo's log what froude carriage \
+                   identify FILE does), and runs of the method tow are read here: a [[source]] with method = [\"decay_envelope\", \
+                   \"decay_output_error\"] reads releases; else name a folder with runs of tow";
     assert!(said.contains(&format!("{}: {instead}", runs.display())), "{said}");
     let tows = Path::new(env!("CARGO_MANIFEST_DIR")).join("../froude-records/tests/golden/runs-1");
     let away = folder.path().join("away");

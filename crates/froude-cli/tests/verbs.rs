@@ -257,6 +257,21 @@ fn a_comparison_is_a_record_and_a_report_where_a_folder_is_named() {
     );
     assert!(page.contains(&froude::report::number::fixed(e_n, 2)), "{e_n}");
     assert!(inspect(folder.path(), "both/estimate.json").0.starts_with("estimate"));
+    // The folder of what is compared is not taken.
+    let out = froude(folder.path(), &["compare", &records[0], &records[1], "--out", "monday-results"]);
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(out.status.code() == Some(2) && said.contains("which is read: results there would replace it"), "{said}");
+    // An error of a record goes with it.
+    let text = std::fs::read_to_string(folder.path().join(&records[1])).unwrap();
+    let mut record: serde_json::Value = serde_json::from_str(&text).unwrap();
+    record.as_object_mut().unwrap().remove("checksum");
+    record["findings"] =
+        serde_json::json!([{"severity": "error", "code": "calibration-impossible", "message": "the gear"}]);
+    std::fs::write(folder.path().join("faulty.json"), record.to_string()).unwrap();
+    let out = json(&froude(folder.path(), &["--json", "compare", &records[0], "faulty.json"]));
+    let is_said =
+        |f: &serde_json::Value| f["code"] == "record-with-errors" && f["message"].to_string().contains("the gear");
+    assert!(out["findings"].as_array().unwrap().iter().any(is_said), "{}", out["findings"]);
     // Without a folder nothing is written.
     let before = std::fs::read_dir(folder.path()).unwrap().count();
     froude(folder.path(), &["compare", &records[0], &records[1]]);

@@ -353,6 +353,7 @@ fn coefficient_rows(
             CoefficientComparison {
                 model: a.estimate.law.name.clone(),
                 coefficient: name.clone(),
+                label: x.label.clone().or_else(|| y.label.clone()),
                 unit: x.unit.clone(),
                 first: stated(x).of(&first),
                 second: stated(y).of(&second),
@@ -567,7 +568,8 @@ fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
         "axes-not-tied",
         format!(
             "{} is along the chain of its carriage, {} in body axes: their f_x are set side by side as if the body had been towed along its x \
-             axis; if it was towed across it, they are two forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign",
+             axis; if it was towed across it, they are two forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign; of runs that are driven already, in \
+             a campaign that `froude carriage drag --campaign` names",
             chain.id, body.id
         ),
     ))

@@ -54,6 +54,9 @@ pub struct CoefficientComparison {
     pub model: String,
     /// Name of the coefficient.
     pub coefficient: String,
+    /// What a paper or a trade calls it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// Its unit.
     pub unit: String,
     /// One side.

@@ -132,6 +132,7 @@ fn comparison() -> Comparison {
         coefficients: vec![CoefficientComparison {
             model: text("f4"),
             coefficient: text("C_d_II"),
+            label: Some(text("C_d")),
             unit: text("1"),
             first: side("tank/f4"),
             second: side("CFD/f4"),

@@ -571,7 +571,7 @@ fn determined(estimates: &[Estimate]) -> Markup {
     html! {
         @for e in estimates.iter().filter(|e| !e.undetermined.is_empty()) {
             p {
-                "Model " (e.law.name) " is not determined coefficient by coefficient; determined are the combinations "
+                "Model " (tables::called(e, &estimates.iter().collect::<Vec<_>>())) " is not determined coefficient by coefficient; determined are the combinations "
                 @for (i, combination) in e.undetermined.iter().enumerate() {
                     @if i > 0 { ", " }
                     code { (combination) }
@@ -584,11 +584,13 @@ fn determined(estimates: &[Estimate]) -> Markup {
 
 /// Sentences of the diagnostics, by model.
 fn notes(estimates: &[Estimate], with_cross_validation: bool) -> Markup {
+    let all: Vec<&Estimate> = estimates.iter().collect();
     let rows: Vec<(&str, &str)> = estimates
         .iter()
         .flat_map(|e| {
             let note = e.diagnostics.cross_validation_note.as_deref().filter(|_| with_cross_validation);
-            e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (e.law.name.as_str(), n))
+            let name = tables::called(e, &all);
+            e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (name, n))
         })
         .collect();
     // The same sentence of several models is told once.

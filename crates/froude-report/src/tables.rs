@@ -76,6 +76,12 @@ pub(crate) fn html_symbol(name: &str) -> Markup {
     }
 }
 
+/// What an estimate is called beside others: its law, or, where several have that one, what its id ends with.
+pub(crate) fn called<'a>(e: &'a Estimate, beside: &[&Estimate]) -> &'a str {
+    let is_alone = beside.iter().filter(|other| other.law.name == e.law.name).count() < 2;
+    if is_alone { &e.law.name } else { e.id.rsplit_once('/').map_or(e.id.as_str(), |(_, method)| method) }
+}
+
 /// A coefficient's symbol, with what a paper calls it.
 pub(crate) fn named(name: &str, c: &Coefficient) -> Markup {
     html! { (html_symbol(name)) @if let Some(label) = &c.label { " (" (html_symbol(label)) ")" } }
@@ -307,7 +313,7 @@ impl Tables {
                     thead {
                         tr {
                             th scope="col" { "Coefficient" }
-                            @for e in group { th scope="col" class=(class(e)) { (e.law.name) } }
+                            @for e in group { th scope="col" class=(class(e)) { (called(e, group)) } }
                         }
                     }
                     tbody { @for row in &rows { (row) } }
@@ -694,7 +700,8 @@ impl Tables {
                 let (shown, is_all) = corners(&places);
                 let caption = self.caption(&format!(
                     "Loads that the sources predict over their common range{}. ± U: expanded uncertainty, 95 %, U = k·u; \
-                     Eₙ = (a − b)/√(U²(a) + U²(b)), a from {first}.",
+                     Eₙ = (a − b)/U, a from {first}, U the \
+                     expanded uncertainty of the difference: √(U²(a) + U²(b)) where the two have no error in common.",
                     if is_all { "" } else { ", at its ends and middle" }
                 ));
                 parts.push(prediction_table(&shown, first, block, &caption));
@@ -777,7 +784,11 @@ fn pair_table(pairs: &[Vec<&CoefficientComparison>], caption: &Markup) -> Markup
                         }
                         @for c in own {
                             tr {
-                                th scope="row" { (html_symbol(&c.coefficient)) (head_unit(&c.unit)) }
+                                th scope="row" {
+                                    (html_symbol(&c.coefficient))
+                                    @if let Some(label) = &c.label { " (" (html_symbol(label)) ")" }
+                                    (head_unit(&c.unit))
+                                }
                                 td class="num" { (side(&c.first)) }
                                 td class="num" { (side(&c.second)) }
                                 td class="num" { (normalised(c.e_n)) }

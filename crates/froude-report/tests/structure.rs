@@ -302,6 +302,7 @@ fn hostile_names_are_escaped_everywhere() {
             coefficients: vec![CoefficientComparison {
                 model: h(),
                 coefficient: h(),
+                label: None,
                 unit: h(),
                 first: side(),
                 second: side(),
@@ -628,6 +629,7 @@ fn a_comparison_costs_as_much_as_it_has_pairs() {
             .map(|(i, j)| CoefficientComparison {
                 model: "quadratic".to_owned(),
                 coefficient: "D_x_II".to_owned(),
+                label: None,
                 unit: "kg/m".to_owned(),
                 first: side(i),
                 second: side(j),

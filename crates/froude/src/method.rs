@@ -10,6 +10,7 @@ use froude_identify::source::{SourceResult, identify_source};
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::finding::Finding;
 use froude_records::nearest::meant;
+use froude_records::text::counted;
 use froude_report::document::DocumentSection;
 
 use crate::Error;
@@ -62,13 +63,6 @@ impl Need {
     pub const fn of(roles: &'static [&'static str], channels: &'static [&'static str]) -> Self {
         Self { roles, channels, is_optional: false, is_observed: true }
     }
-
-    /// In words.
-    fn words(&self) -> String {
-        let channels =
-            if self.channels.is_empty() { String::new() } else { format!(" with {}", self.channels.join(", ")) };
-        format!("runs of the role {}{channels}", self.roles.join(" or "))
-    }
 }
 
 /// Whether files of a role hold observations of a method's name.
@@ -76,10 +70,26 @@ pub(crate) fn observes(needs: &[Need], role: &str) -> bool {
     needs.iter().any(|need| need.is_observed && need.roles.contains(&role))
 }
 
-/// What is needed and not there, in words; `has` says whether there is a file of a role with all of some channels.
-pub(crate) fn lacking(needs: &[Need], has: impl Fn(&str, &[&str]) -> bool) -> Vec<String> {
-    let is_there = |need: &&Need| need.is_optional || need.roles.iter().any(|role| has(role, need.channels));
-    needs.iter().filter(|need| !is_there(need)).map(Need::words).collect()
+/// What is needed and not there, in words; `files` gives, for each file of a role, whether it has a channel.
+pub(crate) fn lacking<'a>(needs: &[Need], files: impl Fn(&str) -> Vec<Box<dyn Fn(&str) -> bool + 'a>>) -> Vec<String> {
+    let of = |need: &Need| {
+        let there: Vec<_> = need.roles.iter().flat_map(|role| files(role)).collect();
+        if there.iter().any(|has| need.channels.iter().all(|channel| has(channel))) {
+            return None;
+        }
+        let roles = need.roles.join(" or ");
+        if there.is_empty() {
+            return Some(format!("there are no runs of the role {roles}"));
+        }
+        let missing = need.channels.iter().filter(|channel| !there.iter().any(|has| has(channel)));
+        let missing: Vec<&str> = missing.copied().collect();
+        let missing = if missing.is_empty() { need.channels.join(" with ") } else { missing.join(", ") };
+        Some(format!(
+            "none of the {} of the role {roles} has the channel {missing}",
+            counted(there.len(), "run", "runs")
+        ))
+    };
+    needs.iter().filter(|need| !need.is_optional).filter_map(of).collect()
 }
 
 /// Names of the methods that read runs of a method.

@@ -102,6 +102,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     };
     if let Some(out) = &out {
         results::can_be_written(out)?;
+        reads_nothing_in(out, &campaign)?;
     }
     if !job.models.is_empty() {
         campaign.identify.models.clone_from(&job.models);
@@ -128,7 +129,11 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let Gathered { sources, summaries, blocks, published, mut findings, beside, is_part } = gathered;
     findings.extend(laws_not_asked(&campaign));
     if sources.is_empty() && published.is_empty() {
-        return Err(Error::Nothing(format!("{}: the campaign has no [[source]]", campaign.path.display())));
+        let path = campaign.path.display();
+        let instead = campaign.carriage.as_ref().map_or_else(String::new, |_| {
+            format!("; it drives a carriage: froude run {path}, and of its runs froude carriage drag FOLDER")
+        });
+        return Err(Error::Nothing(format!("{path}: the campaign has no [[source]]{instead}")));
     }
     progress("comparing the sources");
     let estimates: Vec<Estimate> = sources.iter().flat_map(|s| s.estimates.iter().cloned()).collect();
@@ -193,6 +198,7 @@ impl Gathered {
                 record.estimates = vec![one];
             }
             files.key(path, "record")?;
+            self.findings.extend(errors_of(path, &record));
             // Whoever asks for records and nothing else knows that they are.
             self.findings.extend((!is_all).then(|| froude_identify::source::published_note(source)));
             self.published.push((relative(path, &campaign.path), record));
@@ -207,12 +213,18 @@ impl Gathered {
                 estimate.data = files.keys_of(&result.files, |role| method::observes(needs, role))?;
             }
         }
+        // Of several sources each says whose its section is.
+        let is_one = campaign.sources.len() == 1;
+        let titled = |section: DocumentSection| match is_one {
+            true => section,
+            false => DocumentSection { title: format!("{}: {}", source.name, section.title), ..section },
+        };
         let first = self.sources.len();
         self.sources.append(&mut results);
         if let Some(section) = summary {
-            self.summaries.push(Summary { sources: first..self.sources.len(), section });
+            self.summaries.push(Summary { sources: first..self.sources.len(), section: titled(section) });
         }
-        self.blocks.extend(blocks);
+        self.blocks.extend(blocks.into_iter().map(titled));
         let of_source = |f: Finding| if source.name.is_empty() { f } else { f.of_source(&source.name) };
         self.findings.extend(findings.into_iter().map(of_source));
         self.beside = self.beside.take().or(beside);
@@ -241,9 +253,43 @@ fn side_by_side(all: &[(String, EstimateFile)], input: &Input) -> Result<Option<
     Ok(Some(out))
 }
 
+/// Refuses results in the folder of a record that is read: they would take its place.
+fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
+    let Ok(out) = std::fs::canonicalize(out) else { return Ok(()) };
+    let is_record = |source: &&Source| matches!(source.input, campaign::Input::Record { .. });
+    let path = |source: &Source| std::fs::canonicalize(source.input.path()).ok();
+    match campaign
+        .sources
+        .iter()
+        .filter(is_record)
+        .find(|source| path(source).is_some_and(|path| path.starts_with(&out)))
+    {
+        None => Ok(()),
+        Some(source) => Err(Error::Nothing(format!(
+            "{} holds {}, which is read: results there would replace it. Name another folder with --out",
+            out.display(),
+            source.input.path().display()
+        ))),
+    }
+}
+
+/// What a record says of itself that whoever sets it beside others must know.
+fn errors_of(path: &Path, record: &EstimateFile) -> Option<Finding> {
+    let mut errors = record.findings.iter().filter(|finding| finding.severity == Severity::Error);
+    let first = errors.next()?;
+    let more = errors.count();
+    let more = if more > 0 { format!(" (and {more} more)") } else { String::new() };
+    let text = format!("{} has an error of its own{more}: [{}] {}", path.display(), first.code, first.message);
+    Some(Finding::new(Severity::Warning, "record-with-errors", text))
+}
+
 /// Refuses to replace the result of more runs by that of a part of them, and, in a place that nobody chose, that of other runs.
 fn replaces_no_more(out: &Path, file: &EstimateFile, is_chosen: bool) -> Result<(), Error> {
-    let Ok(old) = read_estimates(&out.join("estimate.json")) else { return Ok(()) };
+    let path = out.join("estimate.json");
+    if !path.exists() {
+        return Ok(());
+    }
+    let old = read_estimates(&path)?;
     let named: BTreeSet<&str> = file.data.values().map(|data| data.path.as_str()).collect();
     let mut others = old.data.values().filter(|data| !named.contains(data.path.as_str()));
     let Some(first) = others.next() else { return Ok(()) };

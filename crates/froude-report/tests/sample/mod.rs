@@ -504,6 +504,7 @@ pub fn report() -> Report {
                 CoefficientComparison {
                     model: "f4".to_owned(),
                     coefficient: "C_d_II".to_owned(),
+                    label: None,
                     unit: "1".to_owned(),
                     first: side("circulation tank", 1.4272, Some(0.057)),
                     second: side("CFD", 0.4064, Some(0.024)),
@@ -513,6 +514,7 @@ pub fn report() -> Report {
                 CoefficientComparison {
                     model: "f4".to_owned(),
                     coefficient: "C_XY_II".to_owned(),
+                    label: None,
                     unit: "1".to_owned(),
                     first: side("circulation tank", 0.4612, Some(0.14)),
                     second: side("CFD", 0.1957, Some(0.04)),
@@ -522,6 +524,7 @@ pub fn report() -> Report {
                 CoefficientComparison {
                     model: "f4".to_owned(),
                     coefficient: "C_XY_II".to_owned(),
+                    label: None,
                     unit: "1".to_owned(),
                     first: side("circulation tank", 0.4612, Some(0.14)),
                     second: side("Kelasidi et al., circulation tank", 0.4612, None),

@@ -252,7 +252,11 @@ pub(crate) fn refuse_others(folder: &Path, wanted: &str, found: &[RunMeta]) -> R
         None if wanted == TOW && folder.is_dir() => match logs_in(folder)?.len() {
             0 => return Ok(()),
             n => (
-                format!("{} of other programs, as releases are", counted(n, "log there is", "logs there are")),
+                format!(
+                    "{} of other programs (a table of steady runs is what froude identify FILE reads, a servo's log what froude carriage \
+                     identify FILE does)",
+                    counted(n, "log there is", "logs there are")
+                ),
                 readers(FREE_DECAY),
             ),
         },
@@ -260,6 +264,7 @@ pub(crate) fn refuse_others(folder: &Path, wanted: &str, found: &[RunMeta]) -> R
     };
     let instead = match readers.as_slice() {
         [] => "no method of this version reads those".to_owned(),
+        _ if found.is_empty() => format!("a [[source]] with method = {readers:?} reads releases"),
         _ => format!("a [[source]] with method = {readers:?} reads those"),
     };
     Err(Error::Nothing(format!(

@@ -88,15 +88,17 @@ fn roles() -> Vec<Role> {
 
 /// What a method needs and the runs do not have, in words.
 fn why_not(method: CarriageMethod, runs: &Runs) -> String {
-    let has = |role: &str, channels: &[&str]| {
-        runs.logs.iter().filter(|log| log.meta.role.name() == role).any(|log| {
-            let is_there = |wanted: &&str| log.channels.keys().any(|name| name.rsplit('/').next() == Some(wanted));
-            channels.iter().all(is_there)
-        })
+    let files = |role: &str| {
+        let of_role = runs.logs.iter().filter(|log| log.meta.role.name() == role);
+        of_role
+            .map(|log| -> Box<dyn Fn(&str) -> bool> {
+                Box::new(|channel| log.channels.keys().any(|name| name.rsplit('/').next() == Some(channel)))
+            })
+            .collect()
     };
-    match lacking(needs(method), has).as_slice() {
+    match lacking(needs(method), files).as_slice() {
         [] => "their windows give no point for it".to_owned(),
-        lacking => format!("there are no {}", lacking.join(", and no ")),
+        lacking => lacking.join("; "),
     }
 }
 
