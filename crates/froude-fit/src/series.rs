@@ -118,7 +118,7 @@ pub fn taper(n: usize) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Averages of blocks, at most [`MOST_BLOCKS`] of them; what does not fill the last block is left out.
+/// Averages of blocks, at most 500 of them; what does not fill the last block is left out.
 #[must_use]
 pub fn blocked(series: &[f64]) -> (Vec<f64>, usize) {
     let per_block = series.len().div_ceil(MOST_BLOCKS).max(1);

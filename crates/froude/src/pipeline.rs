@@ -215,9 +215,9 @@ impl Gathered {
         }
         // Of several sources each says whose its section is.
         let is_one = campaign.sources.len() == 1;
-        let titled = |section: DocumentSection| match is_one {
-            true => section,
-            false => DocumentSection { title: format!("{}: {}", source.name, section.title), ..section },
+        let titled = |section: DocumentSection| {
+            let title = if is_one { section.title.clone() } else { format!("{}: {}", source.name, section.title) };
+            DocumentSection { title, ..section }
         };
         let first = self.sources.len();
         self.sources.append(&mut results);
