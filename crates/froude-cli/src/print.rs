@@ -66,6 +66,9 @@ pub fn outcome(outcome: &Outcome, all: bool) {
         Some(c) if outcome.sources.is_empty() => comparison(c, all),
         Some(c) if !c.coefficients.is_empty() => {
             say!("\nThe sources are compared in the report (E_n, χ², predicted forces).");
+            for verdict in c.verdicts() {
+                sentence(&verdict);
+            }
         }
         _ => {}
     }
@@ -170,7 +173,7 @@ pub fn wrapped(text: &str) -> String {
 }
 
 /// Prints a sentence in lines of at most [`WIDEST`] characters, two spaces in.
-fn sentence(text: &str) {
+pub fn sentence(text: &str) {
     let mut line = " ".to_owned();
     for word in text.split_whitespace() {
         if line.chars().count() + 1 + word.chars().count() > usize::from(WIDEST) && !line.trim().is_empty() {

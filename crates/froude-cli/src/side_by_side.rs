@@ -8,7 +8,7 @@ use froude::records::text::counted;
 use froude::report::number;
 
 use crate::out::say;
-use crate::print::{cell, right, table};
+use crate::print::{cell, right, sentence, table};
 
 /// Widest table; a wider one is wrapped or told in blocks.
 const MOST_CHARACTERS: u16 = 118;
@@ -50,6 +50,9 @@ fn reasons<'a>(notes: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 
 /// Sources side by side.
 pub fn comparison(c: &Comparison, all: bool) {
+    for verdict in c.verdicts() {
+        sentence(&verdict);
+    }
     let predicted = c.load_sources();
     let recommended = |side: &Side| predicted.contains(&side.source.as_str());
     let is_shown = |r: &CoefficientComparison| {

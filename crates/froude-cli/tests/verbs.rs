@@ -256,6 +256,15 @@ fn a_comparison_is_a_record_and_a_report_where_a_folder_is_named() {
         &page[page.find("<h1").unwrap()..][..300]
     );
     assert!(page.contains(&froude::report::number::fixed(e_n, 2)), "{e_n}");
+    // Whether they agree is the first thing that is said.
+    assert!(page.contains(" agree within their uncertainties (largest E_n: "), "{e_n}");
+    let far = tare_record(folder.path(), "wednesday", 1.5);
+    let said = String::from_utf8_lossy(&froude(folder.path(), &["compare", &records[0], &far]).stdout).into_owned();
+    let first = said.lines().next().unwrap().trim_start();
+    assert!(
+        first.starts_with("monday.csv/") && first.contains(" differ by more than their uncertainties: E_n of "),
+        "{said}"
+    );
     assert!(inspect(folder.path(), "both/estimate.json").0.starts_with("estimate"));
     // The folder of what is compared is not taken.
     let out = froude(folder.path(), &["compare", &records[0], &records[1], "--out", "monday-results"]);

@@ -155,6 +155,35 @@ impl Comparison {
     }
 }
 
+impl Comparison {
+    /// Whether the estimates whose loads are predicted (the recommended ones, where there are several) agree in their coefficients, a sentence per
+    /// pair that has an E_n.
+    #[must_use]
+    pub fn verdicts(&self) -> Vec<String> {
+        let of = self.load_sources();
+        let is_of = |side: &Side| of.contains(&side.source.as_str());
+        let rows: Vec<&CoefficientComparison> =
+            self.coefficients.iter().filter(|r| r.e_n.is_some() && is_of(&r.first) && is_of(&r.second)).collect();
+        let sides = |r: &CoefficientComparison| [r.first.source.clone(), r.second.source.clone()];
+        let said = |pair: &[&CoefficientComparison]| {
+            let number = |r: &CoefficientComparison| {
+                let name = r.label.as_ref().unwrap_or(&r.coefficient);
+                format!("{name} {:+.2}", r.e_n.unwrap_or(f64::NAN)).replace('-', "−")
+            };
+            let size = |r: &&&CoefficientComparison| r.e_n.map_or(0.0, f64::abs);
+            let apart: Vec<String> = pair.iter().filter(|r| size(r) > 1.0).map(|r| number(r)).collect();
+            let largest = pair.iter().max_by(|a, b| size(a).total_cmp(&size(b))).map(|r| number(r)).unwrap_or_default();
+            let [first, second] = sides(pair[0]);
+            if apart.is_empty() {
+                format!("{first} and {second} agree within their uncertainties (largest E_n: {largest})")
+            } else {
+                format!("{first} and {second} differ by more than their uncertainties: E_n of {}", apart.join(", "))
+            }
+        };
+        rows.chunk_by(|a, b| sides(a) == sides(b)).map(said).collect()
+    }
+}
+
 /// Which coverage factor the expanded uncertainties of one estimate have, in words.
 #[must_use]
 pub fn coverage_note<'a>(id: &str, stated: impl IntoIterator<Item = &'a Side>) -> String {

@@ -163,6 +163,9 @@ impl Page<'_> {
                 @if self.report.sources.is_empty() {
                     p { @if self.report.published.is_empty() { "No source was fitted." } @else { "Records side by side; nothing was fitted." } }
                 }
+                @if let Some(comparison) = &self.report.comparison {
+                    @for verdict in comparison.verdicts() { p { (verdict) "." } }
+                }
                 @for (i, source) in self.report.sources.iter().enumerate().filter(|(_, s)| !self.is_beside_the_recommended(s)) {
                     (summary_of(i, source))
                 }
