@@ -162,13 +162,18 @@ impl Comparison {
     pub fn verdicts(&self) -> Vec<String> {
         let of = self.load_sources();
         let is_of = |side: &Side| of.contains(&side.source.as_str());
-        let rows: Vec<&CoefficientComparison> =
-            self.coefficients.iter().filter(|r| r.e_n.is_some() && is_of(&r.first) && is_of(&r.second)).collect();
+        let rows: Vec<&CoefficientComparison> = self
+            .coefficients
+            .iter()
+            .filter(|r| r.e_n.is_some_and(f64::is_finite) && is_of(&r.first) && is_of(&r.second))
+            .collect();
         let sides = |r: &CoefficientComparison| [r.first.source.clone(), r.second.source.clone()];
         let said = |pair: &[&CoefficientComparison]| {
             let number = |r: &CoefficientComparison| {
                 let name = r.label.as_ref().unwrap_or(&r.coefficient);
-                format!("{name} {:+.2}", r.e_n.unwrap_or(f64::NAN)).replace('-', "−")
+                let e_n = r.e_n.unwrap_or(f64::NAN);
+                let digits = if e_n.abs() < 1e4 { format!("{e_n:+.2}") } else { format!("{e_n:+.1e}") };
+                format!("{name} {}", digits.replace('-', "−"))
             };
             let size = |r: &&&CoefficientComparison| r.e_n.map_or(0.0, f64::abs);
             let apart: Vec<String> = pair.iter().filter(|r| size(r) > 1.0).map(|r| number(r)).collect();
