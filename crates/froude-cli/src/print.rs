@@ -13,7 +13,7 @@ use froude::report::number;
 use froude::results::Written;
 
 use crate::out::say;
-use crate::side_by_side::comparison;
+use crate::side_by_side::{comparison, verdicts};
 
 /// One JSON document on standard output.
 pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Error> {
@@ -66,9 +66,7 @@ pub fn outcome(outcome: &Outcome, all: bool) {
         Some(c) if outcome.sources.is_empty() => comparison(c, all),
         Some(c) if !c.coefficients.is_empty() => {
             say!("\nThe sources are compared in the report (E_n, χ², predicted forces).");
-            for verdict in c.verdicts() {
-                sentence(&verdict);
-            }
+            verdicts(c);
         }
         _ => {}
     }
@@ -206,7 +204,7 @@ pub fn inspection(i: &Inspection) {
 
 fn columns(columns: &[ColumnFacts]) -> Table {
     let is_run = columns.iter().any(|c| c.channel.is_some());
-    let of_run: &[&str] = if is_run { &["quantity", "along", "clock"] } else { &[] };
+    let of_run: &[&str] = if is_run { &["quantity", "positive along", "clock"] } else { &[] };
     let mut out = table(&[&["column", "unit", "from", "to", "distinct"], of_run].concat());
     for c in columns {
         let show = |x: Option<f64>| right(x.map_or(String::new(), |x| number::plain(x, 7)));

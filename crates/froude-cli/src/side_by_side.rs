@@ -6,6 +6,7 @@ use froude::records::comparison::{
 };
 use froude::records::text::counted;
 use froude::report::number;
+use froude::report::verdict::verdict_words;
 
 use crate::out::say;
 use crate::print::{cell, right, sentence, table};
@@ -50,9 +51,7 @@ fn reasons<'a>(notes: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 
 /// Sources side by side.
 pub fn comparison(c: &Comparison, all: bool) {
-    for verdict in c.verdicts() {
-        sentence(&verdict);
-    }
+    verdicts(c);
     let predicted = c.load_sources();
     let recommended = |side: &Side| predicted.contains(&side.source.as_str());
     let is_shown = |r: &CoefficientComparison| {
@@ -90,6 +89,13 @@ fn sources(r: &CoefficientComparison) -> [&String; 2] {
     [&r.first.source, &r.second.source]
 }
 
+/// Whether the estimates agree, a line per pair.
+pub fn verdicts(c: &Comparison) {
+    for verdict in &c.verdicts {
+        sentence(&verdict_words(verdict));
+    }
+}
+
 /// The coefficients that two estimates share, a column each.
 fn coefficient_pair(rows: &[&CoefficientComparison]) {
     let Some(one) = rows.first() else { return };
@@ -124,7 +130,7 @@ fn coefficient_pair(rows: &[&CoefficientComparison]) {
     }
     say!("{out}");
     if is_stated {
-        say!("  ± U: expanded uncertainty, 95 %, U = k·u");
+        say!("  ± U: expanded uncertainty, 95 %, U = k·u; E_n takes the arm of a one-sided interval");
         say!("    {}", coverage_note(one_id, rows.iter().map(|r| &r.first)));
         if one_id != other_id {
             say!("    {}", coverage_note(other_id, rows.iter().map(|r| &r.second)));
@@ -182,7 +188,7 @@ fn forces(c: &Comparison) {
         say!("{out}");
     }
     if c.loads.iter().any(|r| [&r.first, &r.second].iter().any(|side| side.standard_uncertainty.is_some())) {
-        say!("  ± U: expanded uncertainty, 95 %, U = k·u");
+        say!("  ± U: expanded uncertainty, 95 %, U = k·u; E_n takes the arm of a one-sided interval");
     }
     for note in &c.coverage {
         say!("    {note}");

@@ -51,7 +51,7 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
         facts.iter().find(|f| f[0] == name).unwrap()[1].as_str().unwrap().to_owned()
     };
     assert_eq!(fact("method"), "tow, role wet");
-    assert_eq!(fact("mounted"), "body wet, ballasted, axis along the travel not declared");
+    assert_eq!(fact("mounted"), "body wet, wheel load matched by ballast, axis along the travel not declared");
     assert!(position["high"].as_f64().unwrap() - position["low"].as_f64().unwrap() > 2.1, "{position}");
     assert!(inside["facts"].to_string().contains("the motion begins"), "{inside}");
 

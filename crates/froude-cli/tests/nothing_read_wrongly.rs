@@ -613,6 +613,10 @@ fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() 
         assert!((value(estimate(&fitted, "strut"), name) / STRUT - 1.0).abs() < 0.01, "{name}");
     }
 
+    // Results in the folder of the tare's record would take its place.
+    let out = froude(folder, &["identify", "with-tare.toml", "--out", "tare-results"]);
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(out.status.code() == Some(2) && said.contains("which is read: results there would replace it"), "{said}");
     let wrong = json_in(folder, &["identify", "with-tare.toml"]);
     let told = findings(&wrong, "tare-straight-ahead");
     assert_eq!(told.len(), 1, "{:?}", wrong["findings"]);

@@ -257,14 +257,13 @@ fn a_comparison_is_a_record_and_a_report_where_a_folder_is_named() {
     );
     assert!(page.contains(&froude::report::number::fixed(e_n, 2)), "{e_n}");
     // Whether they agree is the first thing that is said.
-    assert!(page.contains(" agree within their uncertainties (largest E_n: "), "{e_n}");
+    assert!(page.contains(" agree within their uncertainties: largest E_n of the forces "), "{e_n}");
+    assert_eq!(out["comparison"]["verdicts"][0]["agree"], true);
     let far = tare_record(folder.path(), "wednesday", 1.5);
     let said = String::from_utf8_lossy(&froude(folder.path(), &["compare", &records[0], &far]).stdout).into_owned();
-    let first = said.lines().next().unwrap().trim_start();
-    assert!(
-        first.starts_with("monday.csv/") && first.contains(" differ by more than their uncertainties: E_n of "),
-        "{said}"
-    );
+    let first = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let verdict = " differ by more than their uncertainties: largest E_n of the forces ";
+    assert!(first.starts_with("monday.csv/") && first.contains(verdict), "{said}");
     assert!(inspect(folder.path(), "both/estimate.json").0.starts_with("estimate"));
     // The folder of what is compared is not taken.
     let out = froude(folder.path(), &["compare", &records[0], &records[1], "--out", "monday-results"]);

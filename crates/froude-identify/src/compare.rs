@@ -33,6 +33,7 @@ use crate::common::{self, Common, Number};
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::uncertainty::coverage_factor;
+use crate::verdict::verdicts;
 
 /// Speeds and angles at which forces are predicted, per axis of the common range.
 const FORCE_POINTS: usize = 5;
@@ -113,7 +114,7 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
         out.findings.push(Finding::new(Severity::Warning, "not-compared", too_many(all.len())));
         return out;
     }
-    let origins = origins(all);
+    let (origins, labels) = (origins(all), labels(all));
     let mut told: BTreeSet<[(&str, &str); 2]> = BTreeSet::new();
     let mut shared: BTreeMap<[(&str, &str); 2], Vec<Common<'_>>> = BTreeMap::new();
     for (i, a) in all.iter().enumerate() {
@@ -135,10 +136,11 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
                 out.findings.extend(contradiction(a, b));
             }
             let common = Common::of(a.estimate, b.estimate);
-            out.coefficients.extend(coefficient_rows(a, b, &common, is_same_data));
+            let ids = [labels[i].as_str(), &labels[j]];
+            out.coefficients.extend(coefficient_rows([a, b], ids, &common, is_same_data));
             let has_common = a.estimate.coefficients.keys().any(|name| b.estimate.coefficients.contains_key(name));
             if has_common {
-                out.joint.push(joint(a, b, &common, is_same_data));
+                out.joint.push(joint([a, b], ids, &common, is_same_data));
             }
             if !is_same_data {
                 let of_pair = shared.entry(pair).or_default();
@@ -151,7 +153,8 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
     }
     out.findings.extend(shared.into_values().flat_map(|all| common::findings(&all)));
     out.findings.extend(differing_constants(all));
-    predict_forces(all, &mut out);
+    predict_forces(all, &labels, &mut out);
+    out.verdicts = verdicts(&out);
     out
 }
 
@@ -193,12 +196,16 @@ pub fn left_out(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
     };
     let why = |n: &Named<'_>| {
         let is_alike = |other: &&Named<'_>| other.estimate.law.name == n.estimate.law.name && !is_one_source(n, other);
-        let why = match all.iter().find(is_alike) {
-            Some(_) => "its method is set beside its like",
-            None if gives_forces(n.estimate) => {
+        let alike: Vec<&Named<'_>> = all.iter().filter(is_alike).collect();
+        let why = match alike.len() {
+            1.. if alike.iter().any(|other| !has_likes(all, n, other)) => {
+                "the other sources' estimates by its model have no coefficient in common with it"
+            }
+            1.. => "its method is set beside its like",
+            0 if gives_forces(n.estimate) => {
                 "no other source has its model, and forces are those of the recommended ones"
             }
-            None => "no other source has its model, and it gives no force along or across from a steady motion",
+            0 => "no other source has its model, and it gives no force along or across from a steady motion",
         };
         format!("{} ({}): {why}", n.estimate.id, n.estimate.law.name)
     };
@@ -220,8 +227,17 @@ pub fn too_many(estimates: usize) -> String {
     )
 }
 
-fn label(n: &Named<'_>, other: &Named<'_>) -> String {
-    if n.estimate.id == other.estimate.id { format!("{} ({})", n.estimate.id, n.file) } else { n.estimate.id.clone() }
+/// What each estimate is called: its id, with its file where two files have it.
+fn labels(all: &[Named<'_>]) -> Vec<String> {
+    let mut ids: BTreeMap<&str, usize> = BTreeMap::new();
+    for n in all {
+        *ids.entry(&n.estimate.id).or_default() += 1;
+    }
+    let label = |n: &Named<'_>| {
+        let id = &n.estimate.id;
+        if ids[id.as_str()] > 1 { format!("{id} ({})", n.file) } else { id.clone() }
+    };
+    all.iter().map(label).collect()
 }
 
 /// What is read as something else than observations: it is the same error under its own key, or no error at all.
@@ -331,12 +347,11 @@ fn same_data_finding(a: &Named<'_>, b: &Named<'_>) -> Finding {
 }
 
 fn coefficient_rows(
-    a: &Named<'_>,
-    b: &Named<'_>,
+    [a, b]: [&Named<'_>; 2],
+    [first, second]: [&str; 2],
     common: &Common<'_>,
     is_same_data: bool,
 ) -> Vec<CoefficientComparison> {
-    let (first, second) = (label(a, b), label(b, a));
     a.estimate
         .coefficients
         .iter()
@@ -344,8 +359,8 @@ fn coefficient_rows(
         .map(|(name, x, y)| {
             let e_n = if x.unit == y.unit {
                 let sides = [Number::of_coefficient(a.estimate, name), Number::of_coefficient(b.estimate, name)];
-                e_n([&sides[0], &sides[1]], common, [&first, &second], is_same_data)
-                    .and_then(|e_n| not_free(x, &first).or_else(|| not_free(y, &second)).map_or(Ok(e_n), Err))
+                e_n([&sides[0], &sides[1]], common, [first, second], is_same_data)
+                    .and_then(|e_n| not_free(x, first).or_else(|| not_free(y, second)).map_or(Ok(e_n), Err))
             } else {
                 Err(format!("units differ: {} and {}", x.unit, y.unit))
             };
@@ -355,8 +370,8 @@ fn coefficient_rows(
                 coefficient: name.clone(),
                 label: x.label.clone().or_else(|| y.label.clone()),
                 unit: x.unit.clone(),
-                first: stated(x).of(&first),
-                second: stated(y).of(&second),
+                first: stated(x).of(first),
+                second: stated(y).of(second),
                 e_n,
                 note,
             }
@@ -394,23 +409,24 @@ fn e_n(sides: [&Number<'_>; 2], common: &Common<'_>, ids: [&str; 2], is_same_dat
 }
 
 /// χ² = dᵀC⁻¹d over the coefficients that both estimate, C = C_a + C_b less what common errors make of the covariance between them.
-fn joint(a: &Named<'_>, b: &Named<'_>, common: &Common<'_>, is_same_data: bool) -> JointComparison {
-    let (first, second) = (label(a, b), label(b, a));
+fn joint(
+    [a, b]: [&Named<'_>; 2],
+    [first, second]: [&str; 2],
+    common: &Common<'_>,
+    is_same_data: bool,
+) -> JointComparison {
     let result = (|| {
         let (ca, cb) = (a.estimate.covariance(), b.estimate.covariance());
         let (Some(ca), Some(cb)) = (&ca, &cb) else {
-            let without: Vec<&str> = [(&ca, first.as_str()), (&cb, second.as_str())]
-                .into_iter()
-                .filter(|(c, _)| c.is_none())
-                .map(|(_, id)| id)
-                .collect();
+            let without: Vec<&str> =
+                [(&ca, first), (&cb, second)].into_iter().filter(|(c, _)| c.is_none()).map(|(_, id)| id).collect();
             return Err(format!("no covariance matrix stated by {}", without.join(" and ")));
         };
         if is_same_data {
             return Err(SAME_DATA_JOINTLY.to_owned());
         }
         let names: Vec<&String> = ca.names.iter().filter(|n| cb.names.contains(n)).collect();
-        for (n, id) in [(a, &first), (b, &second)] {
+        for (n, id) in [(a, first), (b, second)] {
             let mut constrained = names.iter().filter_map(|name| n.estimate.coefficients.get(*name));
             if let Some(why) = constrained.find_map(|c| not_free(c, id)) {
                 return Err(format!("a coefficient is {why}: χ² is for estimates that are free"));
@@ -449,7 +465,7 @@ fn joint(a: &Named<'_>, b: &Named<'_>, common: &Common<'_>, is_same_data: bool) 
         };
         Ok((chi2, m, probability(chi2, m, dof)))
     })();
-    let model = a.estimate.law.name.clone();
+    let (model, first, second) = (a.estimate.law.name.clone(), first.to_owned(), second.to_owned());
     match result {
         Ok((chi_squared, dof, p)) => JointComparison {
             chi_squared: Some(chi_squared),
@@ -614,12 +630,12 @@ fn gives_forces(estimate: &Estimate) -> bool {
 }
 
 /// Forces by the recommended estimates over the common range of speed and angle.
-fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
-    let all: Vec<&Named<'_>> = all.iter().filter(|n| gives_forces(n.estimate)).collect();
-    let recommended: Vec<&Named<'_>> = all.iter().copied().filter(|n| n.estimate.recommended).collect();
-    let chosen: Vec<&Named<'_>> = if recommended.len() >= 2 { recommended } else { all };
+fn predict_forces(all: &[Named<'_>], labels: &[String], out: &mut Comparison) {
+    let all: Vec<(&Named<'_>, &String)> = all.iter().zip(labels).filter(|(n, _)| gives_forces(n.estimate)).collect();
+    let recommended: Vec<_> = all.iter().copied().filter(|(n, _)| n.estimate.recommended).collect();
+    let chosen = if recommended.len() >= 2 { recommended } else { all };
     let range = |name: &str| -> Option<Range> {
-        let stated: Vec<&Range> = chosen.iter().filter_map(|n| n.estimate.validity.get(name)).collect();
+        let stated: Vec<&Range> = chosen.iter().filter_map(|(n, _)| n.estimate.validity.get(name)).collect();
         let first = stated.first()?;
         Some(Range {
             low: stated.iter().map(|r| r.low).fold(f64::NEG_INFINITY, f64::max),
@@ -648,30 +664,25 @@ fn predict_forces(all: &[Named<'_>], out: &mut Comparison) {
         ));
         return;
     }
-    let has_links =
-        links.is_some() || chosen.iter().any(|n| froude_hydro::DragModel::from_name(&n.estimate.law.name).is_some());
+    let has_links = links.is_some()
+        || chosen.iter().any(|(n, _)| froude_hydro::DragModel::from_name(&n.estimate.law.name).is_some());
     let links: Vec<f64> =
         links.map_or_else(|| vec![1.0], |r| if r.low == r.high { vec![r.low] } else { vec![r.low, r.high] });
     let data = operating_points(
         &speed,
         &angle,
         &links,
-        chosen.first().and_then(|n| n.estimate.density()).map_or(1000.0, |d| d.value),
+        chosen.first().and_then(|(n, _)| n.estimate.density()).map_or(1000.0, |d| d.value),
     );
     let (mut predictions, mut ids) = (Vec::new(), Vec::new());
-    for n in &chosen {
+    for &(n, label) in &chosen {
         let Ok(law) = ForceLaw::of_estimate(n.estimate, &data) else { continue };
         let values: Option<Vec<f64>> =
             law.coefficients.iter().map(|c| n.estimate.coefficients.get(&c.name)?.value).collect();
         let Some(values) = values else { continue };
         let (Ok(force), Ok(slopes)) = (law.predict(&data, &values), law.regressors(&data, &values)) else { continue };
-        let id = if chosen.iter().filter(|m| m.estimate.id == n.estimate.id).count() > 1 {
-            format!("{} ({})", n.estimate.id, n.file)
-        } else {
-            n.estimate.id.clone()
-        };
-        ids.push(id);
-        predictions.push((law, force, slopes, *n));
+        ids.push(label.clone());
+        predictions.push((law, force, slopes, n));
     }
     if predictions.len() < 2 {
         return;

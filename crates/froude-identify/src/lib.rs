@@ -40,5 +40,6 @@ pub mod tuning;
 pub mod two_units;
 pub mod uncertainty;
 pub mod validity;
+mod verdict;
 
 pub use error::IdentifyError;

@@ -11,6 +11,9 @@ use crate::finding::Finding;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Comparison {
+    /// Whether the estimates whose loads are predicted agree, pair by pair.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub verdicts: Vec<Verdict>,
     /// Coefficient by coefficient, pair by pair; same model and same name only.
     #[serde(default)]
     pub coefficients: Vec<CoefficientComparison>,
@@ -28,6 +31,52 @@ pub struct Comparison {
     pub findings: Vec<Finding>,
 }
 
+/// Whether two estimates agree: all E_n of their forces and of their coefficients at most 1, and p of the vector at least 0.05.
+///
+/// Each number alone exceeds its bound in 5 % of the pairs that measure the same; that one of several does is more frequent.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Verdict {
+    /// Id of the first estimate.
+    pub first: String,
+    /// Id of the second.
+    pub second: String,
+    /// Whether they agree within their uncertainties.
+    pub agree: bool,
+    /// The force with the largest |E_n|; null where no force has one.
+    pub load: Option<LargestLoad>,
+    /// The coefficient with the largest |E_n|; null where none is stated by both, as in two different laws.
+    pub coefficient: Option<LargestCoefficient>,
+    /// Chance of a larger χ² if both measure the same; null where there is no χ².
+    pub p: Option<f64>,
+}
+
+/// The predicted force on which two estimates differ most.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LargestLoad {
+    /// Load component.
+    pub component: String,
+    /// Links of the configuration; null for a body without links.
+    pub n_links: Option<f64>,
+    /// Speed.
+    pub speed_m_s: f64,
+    /// Angle `atan2(−v_y, v_x)`.
+    pub angle_rad: f64,
+    /// Normalised difference.
+    pub e_n: f64,
+}
+
+/// The coefficient on which two estimates differ most.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LargestCoefficient {
+    /// Its label, or its name where it has none.
+    pub coefficient: String,
+    /// Normalised difference.
+    pub e_n: f64,
+}
+
 /// A number as one estimate states it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -42,7 +91,8 @@ pub struct Side {
     pub effective_dof: Option<f64>,
     /// Coverage factor k of the 95 % uncertainty U = k·u.
     pub coverage_factor: Option<f64>,
-    /// Expanded (95 %) uncertainty U.
+    /// Expanded (95 %) uncertainty U = k·u. The interval of a coefficient that reaches further to one side, or pays for looks, is in its estimate:
+    /// E_n takes the arm that points to the other value.
     pub expanded_uncertainty: Option<f64>,
 }
 
@@ -152,40 +202,6 @@ impl Comparison {
             }
         }
         out
-    }
-}
-
-impl Comparison {
-    /// Whether the estimates whose loads are predicted (the recommended ones, where there are several) agree in their coefficients, a sentence per
-    /// pair that has an E_n.
-    #[must_use]
-    pub fn verdicts(&self) -> Vec<String> {
-        let of = self.load_sources();
-        let is_of = |side: &Side| of.contains(&side.source.as_str());
-        let rows: Vec<&CoefficientComparison> = self
-            .coefficients
-            .iter()
-            .filter(|r| r.e_n.is_some_and(f64::is_finite) && is_of(&r.first) && is_of(&r.second))
-            .collect();
-        let sides = |r: &CoefficientComparison| [r.first.source.clone(), r.second.source.clone()];
-        let said = |pair: &[&CoefficientComparison]| {
-            let number = |r: &CoefficientComparison| {
-                let name = r.label.as_ref().unwrap_or(&r.coefficient);
-                let e_n = r.e_n.unwrap_or(f64::NAN);
-                let digits = if e_n.abs() < 1e4 { format!("{e_n:+.2}") } else { format!("{e_n:+.1e}") };
-                format!("{name} {}", digits.replace('-', "−"))
-            };
-            let size = |r: &&&CoefficientComparison| r.e_n.map_or(0.0, f64::abs);
-            let apart: Vec<String> = pair.iter().filter(|r| size(r) > 1.0).map(|r| number(r)).collect();
-            let largest = pair.iter().max_by(|a, b| size(a).total_cmp(&size(b))).map(|r| number(r)).unwrap_or_default();
-            let [first, second] = sides(pair[0]);
-            if apart.is_empty() {
-                format!("{first} and {second} agree within their uncertainties (largest E_n: {largest})")
-            } else {
-                format!("{first} and {second} differ by more than their uncertainties: E_n of {}", apart.join(", "))
-            }
-        };
-        rows.chunk_by(|a, b| sides(a) == sides(b)).map(said).collect()
     }
 }
 

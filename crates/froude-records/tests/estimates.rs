@@ -3,7 +3,9 @@
 
 use std::path::Path;
 
-use froude_records::comparison::{CoefficientComparison, Comparison, JointComparison, LoadComparison, Side};
+use froude_records::comparison::{
+    CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison, Side, Verdict,
+};
 use froude_records::estimate::{
     Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, ErrorKind, Estimate,
     EstimateFile, Frame, Interval, Law, Measured, MethodUsed, NamedCorrelation, Output, Range, ReferencePoint,
@@ -129,6 +131,20 @@ fn comparison() -> Comparison {
     };
     let text = str::to_owned;
     Comparison {
+        verdicts: vec![Verdict {
+            first: text("tank/f4"),
+            second: text("CFD/f4"),
+            agree: true,
+            load: Some(LargestLoad {
+                component: text("f_x"),
+                n_links: Some(1.0),
+                speed_m_s: 0.4,
+                angle_rad: 0.0,
+                e_n: 0.3,
+            }),
+            coefficient: Some(LargestCoefficient { coefficient: text("C_d"), e_n: 0.0 }),
+            p: None,
+        }],
         coefficients: vec![CoefficientComparison {
             model: text("f4"),
             coefficient: text("C_d_II"),

@@ -37,6 +37,7 @@ mod plot;
 mod statistics;
 mod symbol;
 mod tables;
+pub mod verdict;
 
 pub use figures::{Figure, figures};
 pub use input::{

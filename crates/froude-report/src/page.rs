@@ -15,6 +15,7 @@ use crate::input::{InputFile, Report, ReportError, SourceSection};
 use crate::number;
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
+use crate::verdict::verdict_words;
 
 pub(crate) const STYLE: &str = include_str!("report.css");
 
@@ -164,7 +165,7 @@ impl Page<'_> {
                     p { @if self.report.published.is_empty() { "No source was fitted." } @else { "Records side by side; nothing was fitted." } }
                 }
                 @if let Some(comparison) = &self.report.comparison {
-                    @for verdict in comparison.verdicts() { p { (verdict) "." } }
+                    @for verdict in &comparison.verdicts { p { (verdict_words(verdict)) "." } }
                 }
                 @for (i, source) in self.report.sources.iter().enumerate().filter(|(_, s)| !self.is_beside_the_recommended(s)) {
                     (summary_of(i, source))

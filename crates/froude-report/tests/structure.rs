@@ -4,7 +4,8 @@
 mod sample;
 
 use froude_records::comparison::{
-    CoefficientComparison, Comparison, JointComparison, LoadComparison, NestedTest, Side,
+    CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison, NestedTest,
+    Side, Verdict,
 };
 use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
 use froude_records::finding::{Finding, Severity};
@@ -299,6 +300,13 @@ fn hostile_names_are_escaped_everywhere() {
         versions: [(h(), h())].into(),
         citations: vec![h()],
         comparison: Some(Comparison {
+            verdicts: vec![Verdict {
+                first: h(),
+                second: h(),
+                load: Some(LargestLoad { component: h(), ..LargestLoad::default() }),
+                coefficient: Some(LargestCoefficient { coefficient: h(), ..LargestCoefficient::default() }),
+                ..Verdict::default()
+            }],
             coefficients: vec![CoefficientComparison {
                 model: h(),
                 coefficient: h(),
@@ -602,6 +610,11 @@ proptest! {
             sources: vec![section],
             published: vec![e],
             comparison: Some(Comparison {
+                verdicts: vec![Verdict {
+                    load: Some(LargestLoad { speed_m_s: values[1], angle_rad: values[5], e_n: values[0], ..LargestLoad::default() }),
+                    p: Some(values[4]),
+                    ..Verdict::default()
+                }],
                 coefficients: vec![CoefficientComparison { first: side.clone(), second: side.clone(), e_n: Some(values[2]), ..CoefficientComparison::default() }],
                 joint: vec![JointComparison { chi_squared: Some(values[3]), p: Some(values[4]), dof: Some(7), ..JointComparison::default() }],
                 loads: vec![LoadComparison { first: side.clone(), second: side, speed_m_s: values[6], angle_rad: values[7], e_n: Some(values[0]), ..LoadComparison::default() }],

@@ -440,8 +440,8 @@ fn mounted(mounted: &Mounted) -> String {
         BodyState::None => "no body".to_owned(),
         body => format!("body {}", body.name()),
     };
-    if *is_ballasted {
-        out += ", ballasted";
+    if *is_ballasted && matches!(body, BodyState::Wet) {
+        out += ", wheel load matched by ballast";
     }
     if let Some(weight_n) = hung_weight_n {
         out += &format!(", {weight_n} N over the pulley");

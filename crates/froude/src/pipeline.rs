@@ -253,22 +253,20 @@ fn side_by_side(all: &[(String, EstimateFile)], input: &Input) -> Result<Option<
     Ok(Some(out))
 }
 
-/// Refuses results in the folder of a record that is read: they would take its place.
+/// Refuses results in the folder of a record that is read, as an estimate or as a tare: they would take its place.
 fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
     let Ok(out) = std::fs::canonicalize(out) else { return Ok(()) };
-    let is_record = |source: &&Source| matches!(source.input, campaign::Input::Record { .. });
-    let path = |source: &Source| std::fs::canonicalize(source.input.path()).ok();
-    match campaign
-        .sources
-        .iter()
-        .filter(is_record)
-        .find(|source| path(source).is_some_and(|path| path.starts_with(&out)))
-    {
+    let records = campaign.sources.iter().flat_map(|source| {
+        let own = Some(source.input.path()).filter(|_| matches!(source.input, campaign::Input::Record { .. }));
+        own.into_iter().chain(source.tare.as_ref().map(|tare| tare.record.as_path()))
+    });
+    let is_replaced = |path: &&Path| std::fs::canonicalize(path).is_ok_and(|path| path.starts_with(&out));
+    match records.into_iter().find(is_replaced) {
         None => Ok(()),
-        Some(source) => Err(Error::Nothing(format!(
+        Some(record) => Err(Error::Nothing(format!(
             "{} holds {}, which is read: results there would replace it. Name another folder with --out",
             out.display(),
-            source.input.path().display()
+            record.display()
         ))),
     }
 }

@@ -1,7 +1,7 @@
 //! A whole report with invented forces around published coefficients.
 
 use froude_records::comparison::{
-    CoefficientComparison, Comparison, JointComparison, LoadComparison, NestedTest, Side,
+    CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LoadComparison, NestedTest, Side, Verdict,
 };
 use froude_records::estimate::{
     Coefficient, Diagnostics, Estimate, Frame, Law, Measured, MethodUsed, NamedCorrelation, Range, ReferencePoint,
@@ -500,6 +500,14 @@ pub fn report() -> Report {
             "The Froude developers: Froude 0.1.0.".to_owned(),
         ],
         comparison: Some(Comparison {
+            verdicts: vec![Verdict {
+                first: "circulation tank".to_owned(),
+                second: "CFD".to_owned(),
+                agree: false,
+                load: None,
+                coefficient: Some(LargestCoefficient { coefficient: "C_d_II".to_owned(), e_n: 8.25 }),
+                p: Some(1e-12),
+            }],
             coefficients: vec![
                 CoefficientComparison {
                     model: "f4".to_owned(),
