@@ -10,7 +10,7 @@ use froude::carriage::tune::{
 };
 use froude::carriage::{calibrate, runs};
 use froude::fit::budget::Uncertain;
-use froude::identify::carriage::calibration::{Jog, encoder_scale};
+use froude::methods::carriage::drag::calibration::{Jog, encoder_scale};
 use froude::pipeline::{Input, Job};
 use froude::records::run::Role;
 use froude::records::text::counted;
@@ -268,7 +268,7 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
     bar.set_message("identifying");
     let outcome = identify(&ServoJob { input, sidecar, out, date: Some(crate::today()) })?;
     bar.finish_and_clear();
-    let coefficients = |c: &[froude::identify::servo::ServoCoefficient]| -> Vec<serde_json::Value> {
+    let coefficients = |c: &[froude::methods::carriage::servo::ServoCoefficient]| -> Vec<serde_json::Value> {
         c.iter()
             .map(|c| {
                 json!({"name": c.name, "unit": c.unit, "value": c.value, "interval_95": c.interval,

@@ -28,7 +28,6 @@ use froude_records::estimate::{Coefficient, DataFile, Estimate, EstimateFile, Ra
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
 
-use crate::carriage::record::CHAIN;
 use crate::common::{self, Common, Number};
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
@@ -574,7 +573,7 @@ fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
 
 /// Forces of a carriage, which knows no axis of the body, beside those in body axes.
 fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
-    let (chain, body) = match [a, b].map(|e| e.frame.name == CHAIN) {
+    let (chain, body) = match [a, b].map(|e| e.frame.is_chain()) {
         [true, false] => (a, b),
         [false, true] => (b, a),
         _ => return None,

@@ -13,12 +13,10 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod bootstrap;
-pub mod carriage;
 pub mod columns;
 mod common;
 pub mod compare;
 pub mod dataset;
-pub mod decay;
 pub mod diagnosis;
 pub mod dissipation;
 pub mod eiv;
@@ -32,11 +30,9 @@ pub mod regression;
 pub mod seam;
 pub mod select;
 pub mod selection;
-pub mod servo;
 pub mod simulate;
 pub mod source;
 mod tare;
-pub mod tuning;
 pub mod two_units;
 pub mod uncertainty;
 pub mod validity;

@@ -21,10 +21,10 @@ const WAVE_LIMIT: f64 = 0.4;
 pub(crate) const AT_REST: f64 = 0.01;
 
 /// Name of the range of the angle between the motion and the x axis, ahead or astern: what a strut sees of the angle.
-pub(crate) const OFF_AXIS: &str = "angle_off_axis";
+pub const OFF_AXIS: &str = "angle_off_axis";
 
 /// Name of the range of the velocity along x, over the rows that move: whether a tare was towed ahead, astern or both.
-pub(crate) const ALONG: &str = "v_x";
+pub const ALONG: &str = "v_x";
 
 /// Angle between a velocity and the x axis, ahead or astern, rad.
 pub(crate) fn off_axis([v_x, v_y]: [f64; 2]) -> f64 {

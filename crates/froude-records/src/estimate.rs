@@ -251,7 +251,26 @@ impl Frame {
             words: "body axes: x forward, y to starboard, z down; loads of the fluid on the body".to_owned(),
         }
     }
+
+    /// That of a carriage where nobody has said which axis of the body lies along its travel.
+    #[must_use]
+    pub fn chain() -> Self {
+        Self {
+            name: CHAIN.to_owned(),
+            axes: Vec::new(),
+            words: "x along the chain; f_x of the fluid on the body".to_owned(),
+        }
+    }
+
+    /// Whether this is [`Frame::chain`].
+    #[must_use]
+    pub fn is_chain(&self) -> bool {
+        self.name == CHAIN
+    }
 }
+
+/// Name of [`Frame::chain`].
+const CHAIN: &str = "chain";
 
 /// The point that moments are about.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]

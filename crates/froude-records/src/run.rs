@@ -25,7 +25,7 @@
 //! **Log and sidecar are tied.** Both name run and campaign (with the SHA-256 of its file); the sidecar of a finished log has the
 //! log's length and SHA-256, and a checksum of itself. A reader says what does not fit ([`RunLog::doubts`]).
 //!
-//! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-identify`'s.
+//! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-carriage`'s.
 
 mod allowance;
 pub(crate) mod channel;

@@ -2,8 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, RunSummary};
-use froude_identify::decay::{envelope, output_error, record};
 use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
@@ -13,6 +11,8 @@ use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Series};
 use froude_report::document::{DocumentSection, TextTable};
 use froude_report::number;
+use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, RunSummary};
+use froude_tank::decay::{envelope, output_error, record};
 
 use crate::Error;
 use crate::carriage::runs::{recorded_in, refuse_others};

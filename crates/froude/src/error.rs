@@ -16,15 +16,15 @@ pub enum Error {
 
     /// Runs of a carriage give no drag.
     #[error(transparent)]
-    Drag(#[from] froude_identify::carriage::DragError),
+    Drag(#[from] froude_carriage::drag::DragError),
 
     /// A record of a servo gives no parameters.
     #[error(transparent)]
-    Servo(#[from] froude_identify::servo::ServoError),
+    Servo(#[from] froude_carriage::servo::ServoError),
 
     /// An experiment on the loop gives no answer.
     #[error(transparent)]
-    Tuning(#[from] froude_identify::tuning::TuningError),
+    Tuning(#[from] froude_carriage::tuning::TuningError),
 
     /// The rig cannot be set up as the campaign declares it.
     #[error(transparent)]

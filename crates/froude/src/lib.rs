@@ -21,6 +21,12 @@ pub use froude_records as records;
 pub use froude_report as report;
 pub use froude_rig as rig;
 
+/// The methods that make estimates of sources, by what they are measured with.
+pub mod methods {
+    pub use froude_carriage as carriage;
+    pub use froude_tank as tank;
+}
+
 pub mod added_mass;
 pub mod carriage;
 mod data_files;

@@ -1,7 +1,7 @@
 //! What the pre-flight asks of a run is what the reduction needs of it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use froude::identify::carriage::steady::SteadySettings;
+use froude::methods::carriage::drag::steady::SteadySettings;
 use froude::rig::campaign::preflight::{SHORTEST_STEADY_S, SHORTEST_STILL_S};
 
 #[test]

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{BufWriter, Read, Write};
 use std::path::Path;
 
-use froude_identify::servo::{Chain, Friction, LongServo};
+use froude_carriage::servo::{Chain, Friction, LongServo};
 
 use crate::Outcome;
 use crate::make::Normal;

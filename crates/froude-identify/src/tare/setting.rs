@@ -6,7 +6,6 @@ use froude_records::text::counted;
 
 use super::angles::SAME_ANGLE_RAD;
 use super::size;
-use crate::carriage::record::CHAIN;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::lint::moving;
@@ -70,7 +69,7 @@ impl Use<'_> {
 
     /// The drag of a carriage is along its chain, and taken off along x.
     pub fn along_the_chain(&self) -> Option<Finding> {
-        (self.estimate.frame.name == CHAIN).then(|| {
+        (self.estimate.frame.is_chain()).then(|| {
             let text = format!(
                 "the tare {} is along the chain of its carriage and is taken off f_x: that is right where x was along the travel",
                 self.estimate.id

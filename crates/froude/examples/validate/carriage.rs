@@ -2,16 +2,16 @@
 
 use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
-use froude::identify::carriage::calibration::{CalibrationSetup, ForcePerVolt, calibrate};
-use froude::identify::carriage::coefficient::{Coefficient, Method, of_differences};
-use froude::identify::carriage::detectability::DryMean;
-use froude::identify::carriage::online::OnLine;
-use froude::identify::carriage::run::Ballast;
-use froude::identify::carriage::simulate::Scenario;
-use froude::identify::carriage::steady::SteadySettings;
-use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, drag_report, mcd};
 use froude::identify::compare::{compare, named};
 use froude::identify::lint;
+use froude::methods::carriage::drag::calibration::{CalibrationSetup, ForcePerVolt, calibrate};
+use froude::methods::carriage::drag::coefficient::{Coefficient, Method, of_differences};
+use froude::methods::carriage::drag::detectability::DryMean;
+use froude::methods::carriage::drag::online::OnLine;
+use froude::methods::carriage::drag::run::Ballast;
+use froude::methods::carriage::drag::simulate::Scenario;
+use froude::methods::carriage::drag::steady::SteadySettings;
+use froude::methods::carriage::drag::{BodyState, DragReport, DragRun, DragSetup, drag_report, mcd};
 use froude::records::estimate::{DataFile, EstimateFile, keyed};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! Free decay from the twin of its rig: coverage of the intervals that a user sees, with releases that are alike and with releases that are not.
 
 use froude::fit::budget::Uncertain;
-use froude::identify::decay::{DecayFit, DecayRun, DecaySetup, Method, envelope, output_error};
+use froude::methods::tank::decay::{DecayFit, DecayRun, DecaySetup, Method, envelope, output_error};
 use froude::records::campaign::Motion;
 use froude::rig::decay::{DecayRig, DecaySensor, Release};
 use rand_pcg::Pcg64;

@@ -9,11 +9,11 @@ use std::path::Path;
 use froude::control::config::Config;
 use froude::control::request::{Move, Request};
 use froude::fit::budget::Uncertain;
-use froude::identify::carriage::calibration::ForcePerVolt;
-use froude::identify::carriage::coefficient::{Coefficient, Method};
-use froude::identify::carriage::run::RunKind;
-use froude::identify::carriage::simulate::Logged;
-use froude::identify::carriage::{BodyState, DragReport, DragRun, DragSetup, drag_report};
+use froude::methods::carriage::drag::calibration::ForcePerVolt;
+use froude::methods::carriage::drag::coefficient::{Coefficient, Method};
+use froude::methods::carriage::drag::run::RunKind;
+use froude::methods::carriage::drag::simulate::Logged;
+use froude::methods::carriage::drag::{BodyState, DragReport, DragRun, DragSetup, drag_report};
 use froude::records::campaign::read_campaign;
 use froude::rig::campaign::setup;
 use froude::rig::closed_loop::ClosedLoop;
@@ -135,7 +135,7 @@ fn campaign(twin: &TwinConfig, mut load: Load, control: &Config, d: f64, seed: u
     declared.reference_area_m2 = Some(0.04);
     declared.speed_scale_relative = 0.0;
     declared.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
-    declared.ballast = froude::identify::carriage::run::Ballast::Matched {
+    declared.ballast = froude::methods::carriage::drag::run::Ballast::Matched {
         carried_kg: Some(Uncertain::new(load.balancing_ballast_kg(), 0.0)),
     };
     let views: Vec<DragRun<'_>> = runs.iter().map(Logged::view).collect();

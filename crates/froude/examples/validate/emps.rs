@@ -3,9 +3,9 @@
 use std::error::Error;
 use std::path::Path;
 
-use froude::identify::servo::held_out::halves;
-use froude::identify::servo::simulate::{Loop, Rigid, closed_loop};
-use froude::identify::servo::{
+use froude::methods::carriage::servo::held_out::halves;
+use froude::methods::carriage::servo::simulate::{Loop, Rigid, closed_loop};
+use froude::methods::carriage::servo::{
     Chain, Friction, ServoCoefficient, ServoLog, ServoReport, identify_servo, instrument, output_error,
 };
 use froude::records::table::read_table;

@@ -4,9 +4,11 @@ use std::error::Error;
 use std::f64::consts::PI;
 
 use froude::fit::budget::Uncertain;
-use froude::identify::servo::flexible::TwoMass;
-use froude::identify::servo::synthetic::{Noise, carriage, record};
-use froude::identify::servo::{FlexibleOptions, FlexibleReport, Gear, MotorSide, ServoError, identify_flexible};
+use froude::methods::carriage::servo::flexible::TwoMass;
+use froude::methods::carriage::servo::synthetic::{Noise, carriage, record};
+use froude::methods::carriage::servo::{
+    FlexibleOptions, FlexibleReport, Gear, MotorSide, ServoError, identify_flexible,
+};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -97,7 +99,7 @@ fn of_case(claims: &mut Claims, case: &Case, seeds: u64) -> Result<(), ServoErro
         let inside = found.iter().filter(|c| c.interval[0] <= truth && truth <= c.interval[1]).count();
         let mean = found.iter().map(|c| c.value).sum::<f64>() / n as f64;
         let std = (found.iter().map(|c| (c.value - mean).powi(2)).sum::<f64>() / (n - 1) as f64).sqrt();
-        let rms = |of: fn(&&&froude::identify::servo::ServoCoefficient) -> f64| {
+        let rms = |of: fn(&&&froude::methods::carriage::servo::ServoCoefficient) -> f64| {
             (found.iter().map(|c| of(&c).powi(2)).sum::<f64>() / n as f64).sqrt() / std
         };
         let share = inside as f64 / n as f64;

@@ -1,9 +1,9 @@
 //! Friction sweeps of a campaign: what a rigid axis is told by runs that differ from each other.
 
 use froude::fit::coverage::Count;
-use froude::identify::carriage::simulate::Scenario;
-use froude::identify::servo::report::of_runs;
-use froude::identify::servo::{Chain, Friction, ServoError, ServoLog, ServoReport};
+use froude::methods::carriage::drag::simulate::Scenario;
+use froude::methods::carriage::servo::report::of_runs;
+use froude::methods::carriage::servo::{Chain, Friction, ServoError, ServoLog, ServoReport};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
@@ -86,7 +86,7 @@ fn identified(scenario: &Scenario, friction: &Friction, seed: u64) -> Result<Ser
     let runs = scenario
         .runs(seed)
         .into_iter()
-        .filter(|run| run.kind == froude::identify::carriage::RunKind::Friction)
+        .filter(|run| run.kind == froude::methods::carriage::drag::RunKind::Friction)
         .map(|run| {
             let moves = |v: &f64| *v != 0.0;
             let first = run.reference_speed_m_s.iter().position(moves).unwrap_or(0);

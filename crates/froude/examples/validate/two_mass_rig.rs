@@ -6,7 +6,7 @@ use froude::control::request::{Excitation, Move, Request};
 use froude::control::status::Phase;
 use froude::fit::budget::Uncertain;
 use froude::fit::coverage::Count;
-use froude::identify::servo::{FlexibleOptions, FlexibleReport, Gear, MotorSide, ServoLog, identify_flexible};
+use froude::methods::carriage::servo::{FlexibleOptions, FlexibleReport, Gear, MotorSide, ServoLog, identify_flexible};
 use froude::rig::closed_loop::ClosedLoop;
 use froude::rig::defaults::control_config;
 use froude::rig::load::{Load, Mounting, Strut};

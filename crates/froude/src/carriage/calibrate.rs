@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use froude_identify::carriage::DragRun;
-use froude_identify::carriage::calibration::{Calibration, Jog as Verdict, jog as judged};
+use froude_carriage::drag::DragRun;
+use froude_carriage::drag::calibration::{Calibration, Jog as Verdict, jog as judged};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Role, RunLog};
 use froude_records::text::counted;

@@ -3,13 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use froude_carriage::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
+use froude_carriage::drag::coefficient::Method;
+use froude_carriage::drag::report::{DragReport, drag_by};
+use froude_carriage::drag::run::{self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget};
 use froude_fit::budget::Uncertain;
-use froude_identify::carriage::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
-use froude_identify::carriage::coefficient::Method;
-use froude_identify::carriage::report::{DragReport, drag_by};
-use froude_identify::carriage::run::{
-    self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget,
-};
 use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::carriage::calibration::Readings;
-use froude_identify::carriage::detectability::DryMean;
-use froude_identify::carriage::online::OnLine;
-use froude_identify::carriage::{mcd, run as drag_run};
+use froude_carriage::drag::calibration::Readings;
+use froude_carriage::drag::detectability::DryMean;
+use froude_carriage::drag::online::OnLine;
+use froude_carriage::drag::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 use froude_records::hash::sha256_of_bytes;

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use froude_carriage::drag::run as drag;
 use froude_hydro::fluid::Water;
-use froude_identify::carriage::run as drag;
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};

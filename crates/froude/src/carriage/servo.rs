@@ -6,14 +6,14 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use froude_carriage::drag::steady::{SteadySettings, window};
+use froude_carriage::servo::chain::Rows;
+use froude_carriage::servo::motor::MotorSide;
+use froude_carriage::servo::report::of_runs as of_several;
+use froude_carriage::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
+use froude_carriage::servo::{Chain, Friction, Gear, ServoCoefficient, ServoLog, ServoReport, identify_servo};
 use froude_fit::budget::Uncertain;
 use froude_fit::series::mean;
-use froude_identify::carriage::steady::{SteadySettings, window};
-use froude_identify::servo::chain::Rows;
-use froude_identify::servo::motor::MotorSide;
-use froude_identify::servo::report::of_runs as of_several;
-use froude_identify::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
-use froude_identify::servo::{Chain, Friction, Gear, ServoCoefficient, ServoLog, ServoReport, identify_servo};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{AxisConstants, BodyState, Declared, Role, RunLog, import_run};
 use froude_records::units::Dimension;
@@ -638,7 +638,7 @@ fn force_chart(model: &Model) -> Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use froude_identify::servo::chain::Rows;
+    use froude_carriage::servo::chain::Rows;
 
     /// Six runs, each in its own time from zero: a line that went through all would run back five times.
     #[test]

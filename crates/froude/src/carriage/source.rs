@@ -1,6 +1,6 @@
 //! Runs as a source of a campaign: each method that reduces them gives its observations, its fit and its estimate.
 
-use froude_identify::carriage::coefficient::{Coefficient, Method as CarriageMethod};
+use froude_carriage::drag::coefficient::{Coefficient, Method as CarriageMethod};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, Fluid, Identify, Input, Source};
 use froude_records::estimate::Estimate;

@@ -7,14 +7,14 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
+use froude_carriage::tuning::gains::{Demand, Encoder, shaped_on_response, ziegler_nichols};
+use froude_carriage::tuning::margins::{Margins, margins, open_loop};
+use froude_carriage::tuning::relay::{LimitCycle, limit_cycle};
+use froude_carriage::tuning::resonance::{Shaper, TwoMassModes, shaper, two_mass_modes};
+use froude_carriage::tuning::response::{Sweep, plant_response};
+use froude_carriage::tuning::tracking::{Forward, Ramp, Tracking, follow};
+use froude_carriage::tuning::{LoopGains, ResponsePoint, TuningError};
 use froude_control::config::{AxisConfig, CountGains, Gains};
-use froude_identify::tuning::gains::{Demand, Encoder, shaped_on_response, ziegler_nichols};
-use froude_identify::tuning::margins::{Margins, margins, open_loop};
-use froude_identify::tuning::relay::{LimitCycle, limit_cycle};
-use froude_identify::tuning::resonance::{Shaper, TwoMassModes, shaper, two_mass_modes};
-use froude_identify::tuning::response::{Sweep, plant_response};
-use froude_identify::tuning::tracking::{Forward, Ramp, Tracking, follow};
-use froude_identify::tuning::{LoopGains, ResponsePoint, TuningError};
 use froude_records::run::{Declared, Role, RunLog};
 use froude_records::units::Dimension;
 use froude_report::chart::{Chart, ChartPanel, Mark, Scale, Series};
@@ -210,7 +210,7 @@ pub fn find_resonance(
     });
     let shaper = proposed.and_then(|(frequency_hz, damping)| {
         let middle = towed.first()?.load;
-        Some(shaper(&froude_identify::tuning::resonance::Mode { frequency_hz, damping, ..middle }, true))
+        Some(shaper(&froude_carriage::tuning::resonance::Mode { frequency_hz, damping, ..middle }, true))
     });
     let mut outcome =
         ResonanceOutcome { states, efficiency: prepared.efficiency(), proposed, shaper, page: PathBuf::new() };

@@ -13,12 +13,12 @@ use froude_records::units::{Dimension, Unit};
 use indexmap::IndexMap;
 
 use super::fit::{DecayFit, HalfCycle};
-use crate::dataset::Dataset;
-use crate::error::IdentifyError;
-use crate::law::ForceLaw;
-use crate::regression::{ModelFit, Settings, regress};
-use crate::selection::{Recommendation, leave_one_out};
-use crate::source::SourceResult;
+use froude_identify::IdentifyError;
+use froude_identify::dataset::Dataset;
+use froude_identify::law::ForceLaw;
+use froude_identify::regression::{ModelFit, Settings, regress};
+use froude_identify::selection::{Recommendation, leave_one_out};
+use froude_identify::source::SourceResult;
 
 /// The law of the record.
 const LAW: &str = "added_mass_linear_quadratic";

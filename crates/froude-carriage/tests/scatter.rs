@@ -1,11 +1,11 @@
 //! The interval of D_d from a few pairs covers whatever makes the pairs differ.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+use froude_carriage::drag::DragSetup;
+use froude_carriage::drag::calibration::ForcePerVolt;
+use froude_carriage::drag::coefficient::{Point, of_differences};
+use froude_carriage::drag::detectability::{DryMean, predict};
 use froude_fit::budget::Uncertain;
-use froude_identify::carriage::DragSetup;
-use froude_identify::carriage::calibration::ForcePerVolt;
-use froude_identify::carriage::coefficient::{Point, of_differences};
-use froude_identify::carriage::detectability::{DryMean, predict};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

@@ -60,7 +60,7 @@ pub struct LongReport {
 /// # Example
 ///
 /// ```
-/// use froude_identify::servo::{Chain, Friction, LongServo};
+/// use froude_carriage::servo::{Chain, Friction, LongServo};
 /// let mut servo = LongServo::new(&Chain::new(6.0, Friction::symmetric()), 1000.0)?;
 /// for second in 0..20 {
 ///     let time_s: Vec<f64> = (0..1000).map(|i| f64::from(second) + 1e-3 * f64::from(i)).collect();
@@ -77,7 +77,7 @@ pub struct LongReport {
 /// let report = servo.finish()?;
 /// assert_eq!(report.names[0].0, "M");
 /// assert!((report.coefficients[0] - 6.0).abs() < 0.01);
-/// # Ok::<(), froude_identify::servo::ServoError>(())
+/// # Ok::<(), froude_carriage::servo::ServoError>(())
 /// ```
 #[derive(Debug)]
 pub struct LongServo {

@@ -3,13 +3,13 @@
 
 use std::f64::consts::{PI, TAU};
 
-use froude_identify::tuning::gains::{Demand, Encoder, shaped_on_response, ziegler_nichols};
-use froude_identify::tuning::margins::margins;
-use froude_identify::tuning::relay::limit_cycle;
-use froude_identify::tuning::resonance::{Mode, shaper, two_mass_modes};
-use froude_identify::tuning::response::{Sweep, plant_response};
-use froude_identify::tuning::tracking::{Forward, Ramp, follow};
-use froude_identify::tuning::{LoopGains, ResponsePoint, TuningError};
+use froude_carriage::tuning::gains::{Demand, Encoder, shaped_on_response, ziegler_nichols};
+use froude_carriage::tuning::margins::margins;
+use froude_carriage::tuning::relay::limit_cycle;
+use froude_carriage::tuning::resonance::{Mode, shaper, two_mass_modes};
+use froude_carriage::tuning::response::{Sweep, plant_response};
+use froude_carriage::tuning::tracking::{Forward, Ramp, follow};
+use froude_carriage::tuning::{LoopGains, ResponsePoint, TuningError};
 use num_complex::Complex64;
 
 fn measured(n: usize, from_hz: f64, to_hz: f64, plant: impl Fn(Complex64) -> Complex64) -> Vec<ResponsePoint> {

@@ -13,8 +13,8 @@ use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
 use super::run::{Ballast, BodyState, DragRun, DragSetup, RunKind};
 use super::steady::{Rejected, still_windows};
 use super::{fsm, mbdp, mcd};
-use crate::regression::Scatter;
-use crate::uncertainty::SharedError;
+use froude_identify::regression::Scatter;
+use froude_identify::uncertainty::SharedError;
 
 /// The points of one method, in newtons.
 #[derive(Debug, Clone)]

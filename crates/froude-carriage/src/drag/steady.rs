@@ -383,7 +383,7 @@ fn head_against_rest(force: &[f64], window: Window, split: usize, step_s: f64) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::carriage::run::{BodyState, RunKind};
+    use crate::drag::run::{BodyState, RunKind};
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
     use rand_pcg::Pcg64;

@@ -32,7 +32,7 @@ use froude_fit::propagate::effective_dof;
 use froude_fit::{End, Report};
 use froude_signal::{decimate, differences};
 
-use crate::carriage::mbdp;
+use crate::drag::mbdp;
 use crate::servo::chain::{Chain, norm};
 use crate::servo::cluster::{Clustered, Enlarged, stretches};
 use crate::servo::error::ServoError;

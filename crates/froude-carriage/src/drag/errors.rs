@@ -2,7 +2,7 @@
 
 use super::coefficient::{Method, Point};
 use super::run::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLARED_ROLLING};
-use crate::uncertainty::SharedError;
+use froude_identify::uncertainty::SharedError;
 
 /// Errors that all pairs share, and those that the scatter already shows.
 pub(super) fn shared(method: Method, points: &[Point], measured: f64, setup: &DragSetup) -> Vec<SharedError> {

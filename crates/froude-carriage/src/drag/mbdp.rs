@@ -225,7 +225,7 @@ fn half_width(step_s: f64, span_s: f64, n: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::carriage::run::{BodyState, RunKind};
+    use crate::drag::run::{BodyState, RunKind};
 
     const DRAG: f64 = 20.0;
     const ADDED_KG: f64 = 6.0;

@@ -3,9 +3,9 @@
 
 use froude_fit::budget::{OUTSIDE_95, Uncertain, combine};
 use froude_fit::coverage::{Count, z_limit};
-use froude_identify::decay::simulate::{Logged, Scenario};
-use froude_identify::decay::{DecayError, DecayFit, DecayRun, DecaySetup, DecayWindow, Method, envelope, output_error};
 use froude_records::campaign::Motion;
+use froude_tank::decay::simulate::{Logged, Scenario};
+use froude_tank::decay::{DecayError, DecayFit, DecayRun, DecaySetup, DecayWindow, Method, envelope, output_error};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;

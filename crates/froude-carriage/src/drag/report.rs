@@ -13,7 +13,7 @@ use super::observed::{Told, Tows};
 use super::record;
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
 use super::steady::Rejected;
-use crate::error::IdentifyError;
+use froude_identify::IdentifyError;
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;
@@ -223,7 +223,7 @@ fn doubts(
         let name = c.method.name();
         if let Some(area) = setup.reference_area_m2
             && let Some(finding) =
-                crate::lint::drag_coefficient(&format!("D_d ({name})"), c.value, setup.density_kg_m3, area)
+                froude_identify::lint::drag_coefficient(&format!("D_d ({name})"), c.value, setup.density_kg_m3, area)
         {
             out.push(finding);
         }

@@ -358,7 +358,7 @@ pub fn jog(position_m: &[f64], command_v: &[f64]) -> Jog {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::carriage::simulate::{Logged, Scenario};
+    use crate::drag::simulate::{Logged, Scenario};
 
     fn quiet() -> Scenario {
         let mut s = Scenario::pinned(20.0);

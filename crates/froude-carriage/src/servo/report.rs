@@ -91,7 +91,7 @@ impl ServoReport {
 /// An axis of 6 kg with friction, driven by two tones:
 ///
 /// ```
-/// use froude_identify::servo::{Chain, Friction, ServoLog, identify_servo};
+/// use froude_carriage::servo::{Chain, Friction, ServoLog, identify_servo};
 /// let time_s: Vec<f64> = (0..20_000).map(|i| 1e-3 * f64::from(i)).collect();
 /// let position_m = time_s.iter().map(|t| 0.2 * (1.3 * t).sin() + 0.1 * (3.1 * t).sin()).collect();
 /// let command_v = time_s
@@ -106,7 +106,7 @@ impl ServoReport {
 /// let report = identify_servo(&log, &Chain::new(6.0, Friction::symmetric()))?;
 /// let mass_kg = report.coefficient("M").map_or(f64::NAN, |c| c.value);
 /// assert!((mass_kg - 6.0).abs() < 0.01);
-/// # Ok::<(), froude_identify::servo::ServoError>(())
+/// # Ok::<(), froude_carriage::servo::ServoError>(())
 /// ```
 pub fn identify_servo(columns: &ServoLog, chain: &Chain) -> Result<ServoReport, ServoError> {
     let rows = chain.rows(columns)?;
@@ -236,8 +236,8 @@ fn findings(coefficients: &[ServoCoefficient], whiteness: Option<&Whiteness>, sp
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::carriage::RunKind;
-    use crate::carriage::simulate::Scenario;
+    use crate::drag::RunKind;
+    use crate::drag::simulate::Scenario;
     use crate::servo::Friction;
 
     /// Friction 2 % and newtons a volt 0.5 % from run to run, 0.05 N rms that wanders with 0.3 s within one.

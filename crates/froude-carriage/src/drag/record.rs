@@ -13,24 +13,17 @@ use super::errors;
 use super::fsm::reach;
 use super::observed::Observed;
 use super::run::{DragRun, DragSetup, Efficiency};
-use crate::dataset::Dataset;
-use crate::error::IdentifyError;
-use crate::law::ForceLaw;
-use crate::regression::Weight;
-use crate::seam::{Choice, Derived, Reduced, Stated};
-use crate::validity::{ALONG, OFF_AXIS};
-
-/// Name of the frame of a carriage where nobody has said which axis of the body lies along its travel.
-pub(crate) const CHAIN: &str = "chain";
+use froude_identify::IdentifyError;
+use froude_identify::dataset::Dataset;
+use froude_identify::law::ForceLaw;
+use froude_identify::regression::Weight;
+use froude_identify::seam::{Choice, Derived, Reduced, Stated};
+use froude_identify::validity::{ALONG, OFF_AXIS};
 
 fn frame(setup: &DragSetup) -> Frame {
     match setup.travel {
         Some(_) => Frame::body(),
-        None => Frame {
-            name: CHAIN.to_owned(),
-            axes: Vec::new(),
-            words: "x along the chain; f_x of the fluid on the body".to_owned(),
-        },
+        None => Frame::chain(),
     }
 }
 

@@ -93,9 +93,9 @@ fn pairs_needed(c: &Coefficient, n: usize, target: f64, setup: &DragSetup) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::carriage::calibration::ForcePerVolt;
-    use crate::carriage::coefficient::slope;
-    use crate::carriage::run::Efficiency;
+    use crate::drag::calibration::ForcePerVolt;
+    use crate::drag::coefficient::slope;
+    use crate::drag::run::Efficiency;
     use froude_fit::budget::Uncertain;
 
     fn point(pair: u32, v: f64, force_n: f64) -> Point {

@@ -1,4 +1,4 @@
-//! D_d from steady points: F = D_d v|v| through the origin, by the fit that all sources pass ([`crate::seam`]).
+//! D_d from steady points: F = D_d v|v| through the origin, by the fit that all sources pass ([`froude_identify::seam`]).
 //!
 //! All points have one weight: friction repeats to a part of itself, so the scatter hardly grows with speed.
 
@@ -9,9 +9,9 @@ use super::detectability::Detectability;
 use super::observed::Observed;
 use super::record;
 use super::run::DragSetup;
-use crate::error::IdentifyError;
-use crate::seam::fit;
-use crate::source::SourceResult;
+use froude_identify::IdentifyError;
+use froude_identify::seam::fit;
+use froude_identify::source::SourceResult;
 
 /// A steady force.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,13 +1,13 @@
 //! Drag from simulated campaigns: what the report says, and when it refuses.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+use froude_carriage::drag::calibration::ForcePerVolt;
+use froude_carriage::drag::coefficient::{Coefficient, Method};
+use froude_carriage::drag::mbdp::Flexible;
+use froude_carriage::drag::run::{Ballast, Efficiency};
+use froude_carriage::drag::simulate::{Logged, Scenario};
+use froude_carriage::drag::{BodyState, DragError, DragReport, DragRun, DragSetup, drag_report};
 use froude_fit::budget::Uncertain;
-use froude_identify::carriage::calibration::ForcePerVolt;
-use froude_identify::carriage::coefficient::{Coefficient, Method};
-use froude_identify::carriage::mbdp::Flexible;
-use froude_identify::carriage::run::{Ballast, Efficiency};
-use froude_identify::carriage::simulate::{Logged, Scenario};
-use froude_identify::carriage::{BodyState, DragError, DragReport, DragRun, DragSetup, drag_report};
 
 /// A short campaign: three pairs out and back, 100 samples a second.
 fn scenario() -> Scenario {

@@ -1,0 +1,9 @@
+//! The methods of the towing carriage: what its runs say of the drag, of the drive and of the loop that it is driven by.
+//!
+//! [`drag`] reduces towed runs to D_d by a force sensor, by differences of the motor's current and by a model of the drive. [`servo`] identifies that
+//! model, rigid and as two masses with a chain between them. [`tuning`] measures the frequency response of an axis and chooses its gains.
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+pub mod drag;
+pub mod servo;
+pub mod tuning;
