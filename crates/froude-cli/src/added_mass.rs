@@ -10,9 +10,9 @@ use froude::added_mass::load::Loaded;
 use froude::added_mass::refine::{Forecast, Wanted, duration};
 use froude::added_mass::several::{Apart, SeveralOutcome, several};
 use froude::added_mass::{page, repair};
+use froude::records::page::TextTable;
 use froude::records::plausible;
 use froude::records::units::{Dimension, parse_quantity, parse_unit};
-use froude::report::document::TextTable;
 
 use crate::args::{AddedMassArgs, BodyAxes, Export, MeshAxis};
 use crate::out::{note, say};

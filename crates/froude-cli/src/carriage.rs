@@ -12,10 +12,10 @@ use froude::carriage::{calibrate, runs};
 use froude::fit::budget::Uncertain;
 use froude::methods::carriage::drag::calibration::{Jog, encoder_scale};
 use froude::pipeline::{Input, Job};
+use froude::records::page::TextTable;
 use froude::records::run::Role;
 use froude::records::text::counted;
 use froude::records::units::{Dimension, parse_quantity};
-use froude::report::document::TextTable;
 use froude::rig::campaign::plan::{PlannedRun, Step};
 use froude::rig::campaign::preflight::Objection;
 use serde_json::json;
@@ -296,7 +296,7 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
         );
     }
     for model in &outcome.models {
-        let error = froude::report::number::percent(model.report.relative_force_error);
+        let error = froude::records::number::percent(model.report.relative_force_error);
         say!("\nRigid, friction {}{} (relative force error {error})", model.name, runs::mounted(&outcome.rigid_mounts));
         print::text_table(&coefficient_table(String::new(), &model.report.coefficients));
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == "symmetric") {
@@ -346,7 +346,7 @@ fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> R
         say!("{}: {:.2} V moved {:.2} mm: polarity {told}", j.id, j.command_v, 1e3 * j.way_m);
     }
     if let Some(c) = &outcome.calibration {
-        use froude::report::number::{interval, short_form};
+        use froude::records::number::{interval, short_form};
         let k = c.force_per_volt.force_per_volt_n;
         say!(
             "{} N/V, 95 % interval {} N/V, from {} ({} overhauled left out)",
@@ -387,7 +387,7 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     let radius_mm = 1e3 * axis.sprocket_radius_m.value;
     say!(
         "encoder scale {}: sprocket_radius = {{ value = \"{:.4} mm\", standard = \"{:.4} mm\" }} (declared {radius_mm:.4} mm)",
-        froude::report::number::short_form(factor.value, factor.standard),
+        froude::records::number::short_form(factor.value, factor.standard),
         radius_mm * factor.value,
         radius_mm * factor.standard
     );

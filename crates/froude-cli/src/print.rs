@@ -7,9 +7,9 @@ use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::{Outcome, Summary};
 use froude::records::estimate::{Diagnostics, Estimate, Status};
 use froude::records::finding::{Finding, Severity};
+use froude::records::number;
+use froude::records::page::{DocumentSection, TextTable};
 use froude::records::text::{counted, visible_json};
-use froude::report::document::{DocumentSection, TextTable};
-use froude::report::number;
 use froude::results::Written;
 
 use crate::out::say;

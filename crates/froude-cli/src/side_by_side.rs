@@ -4,8 +4,8 @@ use comfy_table::{LineStyle, Table};
 use froude::records::comparison::{
     CoefficientComparison, Comparison, JointComparison, LoadComparison, Side, coverage_note,
 };
+use froude::records::number;
 use froude::records::text::counted;
-use froude::report::number;
 use froude::report::verdict::verdict_words;
 
 use crate::out::say;

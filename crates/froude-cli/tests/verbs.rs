@@ -255,7 +255,7 @@ fn a_comparison_is_a_record_and_a_report_where_a_folder_is_named() {
         "{}",
         &page[page.find("<h1").unwrap()..][..300]
     );
-    assert!(page.contains(&froude::report::number::fixed(e_n, 2)), "{e_n}");
+    assert!(page.contains(&froude::records::number::fixed(e_n, 2)), "{e_n}");
     // Whether they agree is the first thing that is said.
     assert!(page.contains(" agree within their uncertainties: largest E_n of the forces "), "{e_n}");
     assert_eq!(out["comparison"]["verdicts"][0]["agree"], true);

@@ -38,6 +38,8 @@ pub mod keep;
 pub mod manifest;
 pub mod memory;
 pub mod nearest;
+pub mod number;
+pub mod page;
 mod parquet_sums;
 pub mod parquet_table;
 pub mod plausible;

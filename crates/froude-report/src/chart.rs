@@ -2,6 +2,8 @@
 //!
 //! For what is not a load against speed or angle: a Bode plot, friction over position, tracking over time, spectra.
 
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
+
 use crate::canvas::{Align, Canvas};
 use crate::input::ReportError;
 use crate::plot::{
@@ -10,92 +12,32 @@ use crate::plot::{
 };
 use crate::symbol::Rich;
 
-/// How an axis runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
-    /// Evenly.
-    #[default]
-    Linear,
-    /// In decades; numbers ≤ 0 are not drawn.
-    Logarithmic,
-}
-
-/// How a series is drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mark {
-    /// A line.
-    #[default]
-    Line,
-    /// A dashed line: a reference, a limit.
-    Dashed,
-    /// Points, with bars where `low` and `high` are given.
-    Points,
-}
-
-/// One line or cloud of points. `low` and `high` are empty or as long as `y`.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Series {
-    /// Name in the legend; series of the same name share a colour and an entry.
-    pub name: String,
-    /// How it is drawn.
-    pub mark: Mark,
-    /// Abscissae.
-    pub x: Vec<f64>,
-    /// Ordinates.
-    pub y: Vec<f64>,
-    /// Lower ends of the interval.
-    pub low: Vec<f64>,
-    /// Upper ends.
-    pub high: Vec<f64>,
-}
-
-/// One panel.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ChartPanel {
-    /// Label of the ordinate, unit included: `|L| [1]`.
-    pub y_label: String,
-    /// How it runs.
-    pub y_scale: Scale,
-    /// What is drawn.
-    pub series: Vec<Series>,
-}
-
-/// A figure of panels over one abscissa.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Chart {
-    /// Stem of the file's name.
-    pub name: String,
-    /// Title, for readers who do not see the picture.
-    pub title: String,
-    /// Caption below the figure.
-    pub caption: String,
-    /// Label of the abscissa, unit included.
-    pub x_label: String,
-    /// How it runs.
-    pub x_scale: Scale,
-    /// From top to bottom.
-    pub panels: Vec<ChartPanel>,
-}
-
 /// Longest line that is drawn point by point; longer ones are drawn by the extremes of equal stretches.
 const MOST_POINTS: usize = 2_000;
 const LEFT: f64 = 74.0;
 const HEIGHT: f64 = 210.0;
 const GAP: f64 = 26.0;
 
-impl Chart {
-    /// The chart as SVG.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Figure`] when the drawing library refuses it.
-    pub fn svg(&self) -> Result<String, ReportError> {
-        self.canvas()
-            .svg(&crate::figures::slug(&self.name), &self.title, &self.caption)
-            .map_err(|reason| ReportError::Figure { figure: self.title.clone(), reason })
-    }
+/// The chart as SVG.
+///
+/// # Errors
+///
+/// [`ReportError::Figure`] when the drawing library refuses it.
+pub fn svg(chart: &Chart) -> Result<String, ReportError> {
+    canvas(chart)
+        .svg(&crate::figures::slug(&chart.name), &chart.title, &chart.caption)
+        .map_err(|reason| ReportError::Figure { figure: chart.title.clone(), reason })
+}
 
-    pub(crate) fn canvas(&self) -> Canvas {
+pub(crate) fn canvas(chart: &Chart) -> Canvas {
+    Drawn(chart).canvas()
+}
+
+/// A chart on its way to a canvas.
+struct Drawn<'a>(&'a Chart);
+
+impl Drawn<'_> {
+    fn canvas(&self) -> Canvas {
         let names = self.names();
         let legend: Vec<Entry> = names
             .iter()
@@ -111,14 +53,14 @@ impl Chart {
             })
             .collect();
         let top = legend_height(&legend, LEFT) + 8.0;
-        let n = self.panels.len() as f64;
+        let n = self.0.panels.len() as f64;
         let total = top + n * HEIGHT + (n - 1.0).max(0.0) * GAP + 52.0;
         let mut canvas = Canvas::new(WIDTH, total);
         draw_legend(&mut canvas, &legend, LEFT, 0.0);
         let x_all =
-            self.panels.iter().flat_map(|p| p.series.iter().flat_map(|s| s.x.iter().map(|&x| on(self.x_scale, x))));
+            self.0.panels.iter().flat_map(|p| p.series.iter().flat_map(|s| s.x.iter().map(|&x| on(self.0.x_scale, x))));
         let x_span = Span::of(x_all).map_or(Span { low: 0.0, high: 1.0 }, |s| s.aired(0.02));
-        for (i, panel) in self.panels.iter().enumerate() {
+        for (i, panel) in self.0.panels.iter().enumerate() {
             let y_all = panel
                 .series
                 .iter()
@@ -132,11 +74,11 @@ impl Chart {
                 x: x_span,
                 y: y_span,
             };
-            let is_last = i + 1 == self.panels.len();
+            let is_last = i + 1 == self.0.panels.len();
             self.axes(&mut canvas, &frame, panel, is_last);
             for series in &panel.series {
                 let ink = category(names.iter().position(|(n, _)| *n == series.name).unwrap_or(0));
-                draw(&mut canvas, &frame, series, (self.x_scale, panel.y_scale), ink);
+                draw(&mut canvas, &frame, series, (self.0.x_scale, panel.y_scale), ink);
             }
         }
         canvas
@@ -144,7 +86,7 @@ impl Chart {
 
     fn names(&self) -> Vec<(&str, Mark)> {
         let mut out: Vec<(&str, Mark)> = Vec::new();
-        for series in self.panels.iter().flat_map(|p| &p.series) {
+        for series in self.0.panels.iter().flat_map(|p| &p.series) {
             if !series.name.is_empty() && !out.iter().any(|(n, _)| *n == series.name) {
                 out.push((&series.name, series.mark));
             }
@@ -153,7 +95,7 @@ impl Chart {
     }
 
     fn axes(&self, canvas: &mut Canvas, frame: &Panel, panel: &ChartPanel, is_last: bool) {
-        let x = ticks(frame.x, self.x_scale, 8);
+        let x = ticks(frame.x, self.0.x_scale, 8);
         let y = ticks(frame.y, panel.y_scale, 5);
         frame.axes(canvas, None, None, (&x, &y));
         for &place in &y.places {
@@ -168,11 +110,11 @@ impl Chart {
         canvas.upward_text(titled(&y, panel.y_scale, &panel.y_label), (14.0, middle), LABEL_SIZE, TEXT);
         if is_last {
             for &place in &x.places {
-                let text = label(&x, self.x_scale, place);
+                let text = label(&x, self.0.x_scale, place);
                 canvas.text(text, (frame.at_x(place), frame.bottom() + 14.0), TICK_SIZE, MUTED, Align::Center);
             }
             let at = (frame.left + 0.5 * frame.width, frame.bottom() + 38.0);
-            canvas.text(titled(&x, self.x_scale, &self.x_label), at, LABEL_SIZE, TEXT, Align::Center);
+            canvas.text(titled(&x, self.0.x_scale, &self.0.x_label), at, LABEL_SIZE, TEXT, Align::Center);
         }
     }
 }
@@ -208,7 +150,7 @@ fn label(ticks: &Ticks, scale: Scale, place: f64) -> Rich {
     match scale {
         Scale::Linear => Rich::plain(&ticks.label(place)),
         Scale::Logarithmic if (-3.0..4.0).contains(&place) => {
-            Rich::plain(&crate::number::significant(10f64.powf(place), 1))
+            Rich::plain(&froude_records::number::significant(10f64.powf(place), 1))
         }
         Scale::Logarithmic => Rich::plain(&format!("{:.0e}", 10f64.powf(place))),
     }
@@ -294,17 +236,17 @@ mod tests {
     fn a_bode_panel_has_its_decades_and_labels() {
         let x: Vec<f64> = (0..50).map(|i| 10f64.powf(f64::from(i) / 24.5)).collect();
         let y = x.iter().map(|f| 1.0 / (f * f)).collect();
-        let svg = chart(x, y).svg().unwrap();
+        let drawn = svg(&chart(x, y)).unwrap();
         for text in ["frequency [Hz]", "|L| [1]", "10", "100", "measured"] {
-            assert!(svg.lines().any(|line| line.trim() == text), "{text} is missing");
+            assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
         }
     }
 
     #[test]
     fn numbers_that_a_logarithm_does_not_take_leave_no_mark_and_no_panic() {
-        let svg = chart(vec![0.0, -1.0, f64::NAN, 1.0, 2.0], vec![1.0, 1.0, 1.0, 0.0, f64::INFINITY]).svg().unwrap();
-        assert!(!svg.contains("NaN") && svg.ends_with("</svg>\n"));
-        assert!(Chart::default().svg().is_ok());
+        let drawn = svg(&chart(vec![0.0, -1.0, f64::NAN, 1.0, 2.0], vec![1.0, 1.0, 1.0, 0.0, f64::INFINITY])).unwrap();
+        assert!(!drawn.contains("NaN") && drawn.ends_with("</svg>\n"));
+        assert!(svg(&Chart::default()).is_ok());
     }
 
     #[test]

@@ -4,10 +4,11 @@
 //! every number; nothing is computed here.
 
 use froude_records::finding::Finding;
+use froude_records::page::{DocumentSection, TextTable};
 use froude_records::text::visible;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::chart::Chart;
+use crate::chart;
 use crate::input::ReportError;
 use crate::page::{POLICY, STYLE, findings_by_severity};
 use crate::tables::Tables;
@@ -27,30 +28,6 @@ pub struct Document {
     pub sections: Vec<DocumentSection>,
     /// What the checks found.
     pub findings: Vec<Finding>,
-}
-
-/// A section.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct DocumentSection {
-    /// Heading.
-    pub title: String,
-    /// Text before the tables.
-    pub paragraphs: Vec<String>,
-    /// Tables.
-    pub tables: Vec<TextTable>,
-    /// Figures.
-    pub charts: Vec<Chart>,
-}
-
-/// A table whose cells are written already, with the digits that their uncertainty allows.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct TextTable {
-    /// Caption.
-    pub caption: String,
-    /// Column heads, units included.
-    pub head: Vec<String>,
-    /// Rows, a cell per head; the first cell names the row.
-    pub rows: Vec<Vec<String>>,
 }
 
 impl Document {
@@ -121,11 +98,11 @@ fn section_markup(
     tables: &mut Tables,
     figure: &mut usize,
 ) -> Result<Markup, ReportError> {
-    let pictures = section.charts.iter().map(Chart::svg).collect::<Result<Vec<_>, _>>()?;
+    let pictures = section.charts.iter().map(chart::svg).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         section {
             h2 id={ "section-" (i + 1) } { span class="n" { (i + 1) } (section.title) }
-            (section.text(tables))
+            (section_text(section, tables))
             @for (chart, svg) in section.charts.iter().zip(&pictures) {
                 figure {
                     (PreEscaped(svg))
@@ -136,13 +113,11 @@ fn section_markup(
     })
 }
 
-impl DocumentSection {
-    /// Paragraphs and tables.
-    pub(crate) fn text(&self, tables: &mut Tables) -> Markup {
-        html! {
-            @for paragraph in &self.paragraphs { p { (paragraph) } }
-            @for t in &self.tables { (table_markup(t, tables)) }
-        }
+/// Paragraphs and tables.
+pub(crate) fn section_text(section: &DocumentSection, tables: &mut Tables) -> Markup {
+    html! {
+        @for paragraph in &section.paragraphs { p { (paragraph) } }
+        @for t in &section.tables { (table_markup(t, tables)) }
     }
 }
 
@@ -181,6 +156,7 @@ fn count(n: &mut usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use froude_records::page::Chart;
 
     #[test]
     fn every_word_of_a_document_is_escaped_and_stands_in_the_page() {

@@ -12,8 +12,8 @@ mod residuals;
 use froude_records::estimate::Estimate;
 
 use crate::canvas::Canvas;
-use crate::chart::Chart;
 use crate::input::{Report, ReportError, SourceSection};
+use froude_records::page::Chart;
 
 use budget::budget_drawing;
 pub(crate) use budget::{budget_rows, ranked_inputs, share};
@@ -78,7 +78,7 @@ pub(crate) fn placed_figures(report: &Report) -> Result<Vec<(Place, Figure)>, Re
             slug: chart.name.clone(),
             title: chart.title.clone(),
             caption: chart.caption.clone(),
-            canvas: chart.canvas(),
+            canvas: crate::chart::canvas(chart),
         };
         drawings.extend(block.charts.iter().map(|chart| (Place::Block(i), drawing(chart))));
     }

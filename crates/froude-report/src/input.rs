@@ -9,10 +9,10 @@
 //! **Missing numbers.** `None` is printed as "—". A NaN or an infinity is
 //! treated like `None`; it is never printed as a number.
 
-use crate::document::DocumentSection;
 use froude_records::comparison::{Comparison, NestedTest};
 use froude_records::estimate::{DataFile, Estimate};
 use froude_records::finding::Finding;
+use froude_records::page::DocumentSection;
 use indexmap::IndexMap;
 
 /// A whole report, from the title to the hashes.

@@ -31,7 +31,6 @@ pub mod chart;
 pub mod document;
 mod figures;
 mod input;
-pub mod number;
 mod page;
 mod plot;
 mod statistics;

@@ -9,13 +9,13 @@ use froude_records::estimate::{Estimate, Measured};
 use froude_records::finding::{Finding, Severity};
 use maud::{Markup, PreEscaped, html};
 
-use crate::document::sheet;
+use crate::document::{section_text, sheet};
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs, recommended, slug};
 use crate::input::{InputFile, Report, ReportError, SourceSection};
-use crate::number;
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
 use crate::verdict::verdict_words;
+use froude_records::number;
 
 pub(crate) const STYLE: &str = include_str!("report.css");
 
@@ -40,7 +40,7 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
     let mut body = Vec::new();
     for (i, block) in report.blocks.iter().enumerate() {
         let heading = page.open(&format!("block-{}", i + 1), &block.title, "");
-        let text = block.text(&mut page.tables);
+        let text = section_text(block, &mut page.tables);
         body.push(html! { section { (heading) (text) (page.figures_at(Place::Block(i))) } });
     }
     body.push(page.method());

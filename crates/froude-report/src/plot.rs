@@ -4,8 +4,8 @@
 //! units in every axis label, legend above the panels and never on the data.
 
 use crate::canvas::{Align, Canvas, Ink, Xy, text_width};
-use crate::number;
 use crate::symbol::{Rich, Style};
+use froude_records::number;
 
 /// Width of every figure in CSS pixels.
 pub(crate) const WIDTH: f64 = 860.0;

@@ -9,8 +9,8 @@ use maud::{Markup, html};
 
 use crate::figures::{budget_rows, ranked_inputs, share};
 use crate::input::{BudgetRow, SelectionRow, SourceSection};
-use crate::number::{self, MISSING};
 use crate::symbol::{Rich, Style, symbol, unit_text};
+use froude_records::number::{self, MISSING};
 
 /// Most models side by side in one table.
 const MOST_COLUMNS: usize = 6;

@@ -2,7 +2,7 @@
 
 use froude_records::comparison::Verdict;
 
-use crate::number::{fixed, p_value};
+use froude_records::number::{fixed, p_value};
 
 /// A verdict in words, with the numbers that it rests on; without a full stop.
 #[must_use]

@@ -9,8 +9,7 @@ use froude_records::comparison::{
 };
 use froude_records::estimate::{Coefficient, Estimate, Measured, Range, Status};
 use froude_records::finding::{Finding, Severity};
-use froude_report::chart::Chart;
-use froude_report::document::{DocumentSection, TextTable};
+use froude_records::page::{Chart, DocumentSection, TextTable};
 use froude_report::{
     Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection, figures, html,
 };

@@ -6,11 +6,10 @@ use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::manifest::MANIFEST;
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role, import_run};
 use froude_records::units::Dimension;
-use froude_report::chart::{Chart, ChartPanel, Mark, Series};
-use froude_report::document::{DocumentSection, TextTable};
-use froude_report::number;
 use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, RunSummary};
 use froude_tank::decay::{envelope, output_error, record};
 

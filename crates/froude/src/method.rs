@@ -10,8 +10,8 @@ use froude_identify::source::{SourceResult, identify_source};
 use froude_records::campaign::{Campaign, Input, Source};
 use froude_records::finding::Finding;
 use froude_records::nearest::meant;
+use froude_records::page::DocumentSection;
 use froude_records::text::counted;
-use froude_report::document::DocumentSection;
 
 use crate::Error;
 use crate::carriage::source::Carriage;

@@ -11,8 +11,8 @@ use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
+use froude_records::page::DocumentSection;
 use froude_records::text::counted;
-use froude_report::document::DocumentSection;
 
 use crate::Error;
 use crate::data_files::DataFiles;

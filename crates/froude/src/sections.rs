@@ -12,12 +12,11 @@ use froude_identify::source::SourceResult;
 use froude_identify::uncertainty::{SCATTER, coverage_factor};
 use froude_records::campaign::Campaign;
 use froude_records::estimate::Estimate;
+use froude_records::number;
+use froude_records::page::DocumentSection;
 use froude_records::text::counted;
 use froude_records::units::Dimension;
-use froude_report::document::DocumentSection;
-use froude_report::{
-    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection, number,
-};
+use froude_report::{Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, SelectionRow, SourceSection};
 
 use crate::pipeline::Outcome;
 

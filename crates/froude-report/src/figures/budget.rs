@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use super::{Drawing, MOST_ROWS, distinct, recommended};
 use crate::canvas::{Align, Canvas, WHITE, shortened, text_width};
 use crate::input::{BudgetRow, SourceSection};
-use crate::number;
 use crate::plot::{
     AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, WIDTH, category, draw_legend,
     legend_height,
 };
 use crate::symbol::{Rich, symbol};
 use crate::tables::counted;
+use froude_records::number;
 
 /// The rows of the budget that the report shows first: those of the recommended
 /// model, else of the first model in the budget.

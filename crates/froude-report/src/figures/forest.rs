@@ -10,13 +10,13 @@ use froude_records::estimate::{Coefficient, Estimate, Status};
 use super::{Drawing, MOST_ROWS, distinct};
 use crate::canvas::{Align, Canvas, Ink, shortened, text_width};
 use crate::input::Report;
-use crate::number;
 use crate::plot::{
     ACCENT, ALERT, AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, Ticks, WIDTH,
     chunk_size, draw_legend, drawable, grid_shape, legend_height,
 };
 use crate::symbol::{Rich, Style, symbol_and_unit};
 use crate::tables::counted;
+use froude_records::number;
 
 /// Every estimate with the label of its source, fitted ones first.
 fn all_estimates(report: &Report) -> Vec<(String, bool, &Estimate)> {

@@ -6,8 +6,8 @@ use froude_mesh::measure::Measure;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::problem::Frame;
 use froude_records::estimate::{EstimateFile, keyed};
-use froude_report::document::TextTable;
-use froude_report::number;
+use froude_records::number;
+use froude_records::page::TextTable;
 
 use super::cross_checks;
 use super::exports::{self, extras};

@@ -7,8 +7,8 @@ use froude_mesh::{Mesh, Vec3};
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
 use froude_records::body::Shape;
-use froude_report::document::TextTable;
-use froude_report::number;
+use froude_records::number;
+use froude_records::page::TextTable;
 
 use super::refine::Refined;
 

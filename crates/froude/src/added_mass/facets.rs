@@ -4,8 +4,8 @@ use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::mirror::{Kind, Mirror};
 use froude_panel::problem::{Frame, Problem};
-use froude_report::document::TextTable;
-use froude_report::number;
+use froude_records::number;
+use froude_records::page::TextTable;
 
 use super::body::Case;
 use super::load::WARP;

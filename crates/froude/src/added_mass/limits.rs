@@ -5,8 +5,8 @@
 use froude_hydro::sloshing::rectangular_tank_modes_rad_s;
 use froude_mesh::Mesh;
 use froude_records::finding::{Finding, Severity};
-use froude_report::document::TextTable;
-use froude_report::number;
+use froude_records::number;
+use froude_records::page::TextTable;
 
 use super::body::Case;
 use super::record::MOTIONS;

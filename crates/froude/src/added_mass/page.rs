@@ -2,9 +2,9 @@
 
 use froude_mesh::Vec3;
 use froude_records::estimate::{Estimate, EstimateFile};
-use froude_report::chart::{Chart, ChartPanel, Mark, Scale, Series};
-use froude_report::document::{Document, DocumentSection, TextTable};
-use froude_report::number;
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_report::document::Document;
 
 use super::body::BodyOutcome;
 use super::links::{Configuration, no_fits};

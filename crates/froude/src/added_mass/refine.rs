@@ -9,7 +9,7 @@ use froude_panel::problem::{Frame, Problem, Report, Solution};
 use froude_panel::study::{SLOW, Size, study};
 use froude_panel::tank::{Surface, Tank};
 use froude_panel::{fast, is_plain, solve};
-use froude_report::number;
+use froude_records::number;
 
 use super::family::{Family, Member};
 use crate::Error;

@@ -23,8 +23,9 @@ use froude_records::estimate::{
     Coefficient, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Status, keyed,
 };
 use froude_records::finding::{Finding, Severity};
-use froude_report::document::{Document, DocumentSection, TextTable};
-use froude_report::number;
+use froude_records::number;
+use froude_records::page::{DocumentSection, TextTable};
+use froude_report::document::Document;
 use indexmap::IndexMap;
 
 use super::body::BodyJob;

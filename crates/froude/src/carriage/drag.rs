@@ -11,11 +11,10 @@ use froude_fit::budget::Uncertain;
 use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
 use froude_records::run::{AxisConstants, Role, RunLog};
 use froude_records::text::counted;
-use froude_report::chart::{Chart, ChartPanel, Mark, Series};
-use froude_report::document::{DocumentSection, TextTable};
-use froude_report::number;
 
 use super::drive::STOPPED_EARLY;
 use super::runs::{Runs, density_kg_m3, for_drag};

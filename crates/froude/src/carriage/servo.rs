@@ -15,11 +15,11 @@ use froude_carriage::servo::{Chain, Friction, Gear, ServoCoefficient, ServoLog, 
 use froude_fit::budget::Uncertain;
 use froude_fit::series::mean;
 use froude_records::finding::{Finding, Severity};
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
 use froude_records::run::{AxisConstants, BodyState, Declared, Role, RunLog, import_run};
 use froude_records::units::Dimension;
-use froude_report::chart::{Chart, ChartPanel, Mark, Series};
-use froude_report::document::{Document, DocumentSection, TextTable};
-use froude_report::number;
+use froude_report::document::Document;
 
 use super::runs::{Runs, column, for_drag, mounted, mounts, read};
 use crate::Error;

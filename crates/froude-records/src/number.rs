@@ -18,7 +18,7 @@
 //! A number that is not finite is printed as [`MISSING`], in every function. The
 //! minus sign is U+2212, as in print.
 
-use froude_records::estimate::{Coefficient, Status};
+use crate::estimate::{Coefficient, Status};
 
 /// What stands for a number that does not exist.
 pub const MISSING: &str = "—";
@@ -320,12 +320,14 @@ pub fn degrees_of_freedom(n: f64) -> String {
 }
 
 /// A finite value that the record really holds.
-pub(crate) fn finite(x: Option<f64>) -> Option<f64> {
+#[must_use]
+pub fn finite(x: Option<f64>) -> Option<f64> {
     x.filter(|x| x.is_finite())
 }
 
 /// A standard uncertainty that can be used: finite and above zero.
-pub(crate) fn usable(standard: Option<f64>) -> Option<f64> {
+#[must_use]
+pub fn usable(standard: Option<f64>) -> Option<f64> {
     standard.filter(|u| u.is_finite() && *u > 0.0)
 }
 

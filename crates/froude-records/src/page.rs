@@ -1,0 +1,94 @@
+//! Blocks of a page: sections with paragraphs, tables whose cells are written already, charts of any two quantities.
+//!
+//! Whoever has a result says every word and every number of it here; a page or a terminal shows them. Nothing is computed or drawn.
+
+/// A section.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DocumentSection {
+    /// Heading.
+    pub title: String,
+    /// Text before the tables.
+    pub paragraphs: Vec<String>,
+    /// Tables.
+    pub tables: Vec<TextTable>,
+    /// Figures.
+    pub charts: Vec<Chart>,
+}
+
+/// A table whose cells are written already, with the digits that their uncertainty allows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TextTable {
+    /// Caption.
+    pub caption: String,
+    /// Column heads, units included.
+    pub head: Vec<String>,
+    /// Rows, a cell per head; the first cell names the row.
+    pub rows: Vec<Vec<String>>,
+}
+
+/// How an axis runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// Evenly.
+    #[default]
+    Linear,
+    /// In decades; numbers ≤ 0 are not drawn.
+    Logarithmic,
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mark {
+    /// A line.
+    #[default]
+    Line,
+    /// A dashed line: a reference, a limit.
+    Dashed,
+    /// Points, with bars where `low` and `high` are given.
+    Points,
+}
+
+/// One line or cloud of points. `low` and `high` are empty or as long as `y`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// Name in the legend; series of the same name share a colour and an entry.
+    pub name: String,
+    /// How it is drawn.
+    pub mark: Mark,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Ordinates.
+    pub y: Vec<f64>,
+    /// Lower ends of the interval.
+    pub low: Vec<f64>,
+    /// Upper ends.
+    pub high: Vec<f64>,
+}
+
+/// One panel.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ChartPanel {
+    /// Label of the ordinate, unit included: `|L| [1]`.
+    pub y_label: String,
+    /// How it runs.
+    pub y_scale: Scale,
+    /// What is drawn.
+    pub series: Vec<Series>,
+}
+
+/// A figure of panels over one abscissa.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Chart {
+    /// Stem of the file's name.
+    pub name: String,
+    /// Title, for readers who do not see the picture.
+    pub title: String,
+    /// Caption below the figure.
+    pub caption: String,
+    /// Label of the abscissa, unit included.
+    pub x_label: String,
+    /// How it runs.
+    pub x_scale: Scale,
+    /// From top to bottom.
+    pub panels: Vec<ChartPanel>,
+}
