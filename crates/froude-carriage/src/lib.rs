@@ -5,5 +5,9 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod drag;
+pub mod reduction;
+pub mod runs;
 pub mod servo;
+pub mod source;
 pub mod tuning;
+pub mod two_masses;

@@ -3,20 +3,21 @@
 use std::path::PathBuf;
 
 use froude::Error;
+use froude::carriage::calibrate;
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
 use froude::carriage::tune::{
     candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
 };
-use froude::carriage::{calibrate, runs};
 use froude::fit::budget::Uncertain;
 use froude::methods::carriage::drag::calibration::{Jog, encoder_scale};
+use froude::methods::carriage::runs;
 use froude::pipeline::{Input, Job};
+use froude::records::carriage::plan::{PlannedRun, Step};
 use froude::records::page::TextTable;
 use froude::records::run::Role;
 use froude::records::text::counted;
 use froude::records::units::{Dimension, parse_quantity};
-use froude::rig::campaign::plan::{PlannedRun, Step};
 use froude::rig::campaign::preflight::Objection;
 use serde_json::json;
 

@@ -12,8 +12,8 @@ use std::time::{Duration, Instant};
 
 use froude::Error;
 use froude::carriage::drive::Prepared;
+use froude::records::carriage::plan::PlannedRun;
 use froude::records::text::visible;
-use froude::rig::campaign::plan::PlannedRun;
 use froude::rig::campaign::runner::{Operator, Progress};
 use froude::rig::campaign::stop::StopSwitch;
 use froude::rig::drive::Sample;

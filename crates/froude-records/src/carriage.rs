@@ -18,6 +18,8 @@
 //! # order, repeats, waits …
 //! ```
 
+pub mod plan;
+
 use crate::error::Place;
 use crate::run::{Axis, AxisConstants, Declared};
 use crate::units::Quantity;

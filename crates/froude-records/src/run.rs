@@ -27,6 +27,15 @@
 //!
 //! Not here: any physics. Filters are `froude-signal`'s, drag is `froude-carriage`'s.
 
+/// Name of the campaign's copy in a folder of runs.
+pub const CAMPAIGN_COPY: &str = "campaign.toml";
+
+/// Name of the file that says why a campaign stopped before all its pairs were driven.
+pub const STOPPED_EARLY: &str = "stopped-early.txt";
+
+/// What its line with the last run begins with.
+pub const LAST_RUN: &str = "last run: ";
+
 mod allowance;
 pub(crate) mod channel;
 mod file;

@@ -18,7 +18,6 @@
 
 mod hand_over;
 pub mod lock;
-pub mod plan;
 pub mod preflight;
 mod recording;
 mod resume;

@@ -31,6 +31,7 @@ mod pool;
 pub mod record;
 pub mod run;
 pub mod simulate;
+pub mod source;
 mod swings;
 
 pub use envelope::{FEWEST_RUNS, envelope};

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_identify::method::MethodError;
+use froude_records::run::FREE_DECAY;
+
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -13,6 +16,26 @@ pub enum Error {
     /// The campaign gives no coefficients.
     #[error(transparent)]
     Identify(#[from] froude_identify::IdentifyError),
+
+    /// A method gives no estimates.
+    #[error(transparent)]
+    Method(MethodError),
+
+    /// Runs of another method than the one that reads.
+    #[error(
+        "{}: {found}, and runs of the method {wanted} are read here: {instead}; else name a folder with runs of {wanted}",
+        .folder.display()
+    )]
+    OfAnotherMethod {
+        /// Where they lie.
+        folder: PathBuf,
+        /// How many of what.
+        found: String,
+        /// The method that is read here.
+        wanted: String,
+        /// What reads them, if anything does.
+        instead: String,
+    },
 
     /// Runs of a carriage give no drag.
     #[error(transparent)]
@@ -113,6 +136,22 @@ pub enum Error {
     Nothing(String),
 }
 
+impl From<MethodError> for Error {
+    /// What a method cannot know is who reads the runs that it has no use for.
+    fn from(error: MethodError) -> Self {
+        let MethodError::OfAnotherMethod { folder, found, method, is_imported, wanted } = error else {
+            return Self::Method(error);
+        };
+        let readers = crate::method::readers(if is_imported { FREE_DECAY } else { &method });
+        let instead = match readers.as_slice() {
+            [] => "no method of this version reads those".to_owned(),
+            _ if is_imported => format!("a [[source]] with method = {readers:?} reads releases"),
+            _ => format!("a [[source]] with method = {readers:?} reads those"),
+        };
+        Self::OfAnotherMethod { folder, found, wanted, instead }
+    }
+}
+
 impl Error {
     /// True where the input is at fault (exit code 2), false where the machine is (exit code 1).
     #[must_use]
@@ -121,10 +160,12 @@ impl Error {
             Self::InFinished { is_bad_input, .. } => *is_bad_input,
             Self::Record(e) => !e.is_output(),
             Self::Identify(froude_identify::IdentifyError::Record(e)) => !e.is_output(),
+            Self::Method(e) => e.is_bad_input(),
             Self::Identify(_)
             | Self::NotEmpty { .. }
             | Self::NotOurs { .. }
             | Self::Nothing(_)
+            | Self::OfAnotherMethod { .. }
             | Self::Drag(_)
             | Self::Servo(_)
             | Self::Tuning(_)

@@ -20,10 +20,10 @@ use froude_records::text::counted;
 use indexmap::IndexMap;
 
 use crate::Error;
-use crate::carriage::runs;
-use crate::carriage::set::{Member, doubles, is_put_aside, strangers, summed_up};
-use crate::carriage::whole::Complete;
-use crate::decay::logs_in;
+use froude_carriage::runs;
+use froude_carriage::runs::set::{Member, doubles, is_put_aside, strangers, summed_up};
+use froude_carriage::runs::whole::Complete;
+use froude_identify::runs::{files, logs_in};
 
 /// A column of a table in short.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -169,7 +169,7 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
 fn folder(path: &Path) -> Result<Inspection, Error> {
     let (mut metas, mut members, mut doubts, mut findings) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let (mut n_aside, mut complete) = (0, Complete::default());
-    let files = runs::files(&[path.to_owned()])?;
+    let files = files(&[path.to_owned()])?;
     let shown = path.display();
     let Some(first) = files.iter().find(|file| file.exists()) else {
         let sidecars = files.iter().filter(|log| read_run_meta(&log.with_extension("toml")).is_ok()).count();

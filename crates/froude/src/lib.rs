@@ -30,7 +30,6 @@ pub mod methods {
 pub mod added_mass;
 pub mod carriage;
 mod data_files;
-mod decay;
 pub mod demo;
 mod error;
 pub mod inspect;

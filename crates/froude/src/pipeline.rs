@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared, too_many};
+use froude_identify::method::{Found, observes};
 use froude_identify::source::{SourceResult, asked_models};
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
@@ -16,7 +17,7 @@ use froude_records::text::counted;
 
 use crate::Error;
 use crate::data_files::DataFiles;
-use crate::method::{self, Found};
+use crate::method;
 use crate::results::Written;
 use crate::{observations, results, sections};
 
@@ -210,7 +211,7 @@ impl Gathered {
         for result in &mut results {
             for estimate in &mut result.estimates {
                 let needs = method.needs(&estimate.method.name);
-                estimate.data = files.keys_of(&result.files, |role| method::observes(needs, role))?;
+                estimate.data = files.keys_of(&result.files, |role| observes(needs, role))?;
             }
         }
         // Of several sources each says whose its section is.

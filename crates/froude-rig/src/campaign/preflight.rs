@@ -14,8 +14,8 @@ use froude_control::travel::{Rigid, foresee_excitation, preflight, preflight_exc
 use froude_records::carriage::{CarriagePlan, RigSpec};
 use froude_records::run::{BodyState, Role};
 
-use super::plan::{Drive, JOG_S, PlannedRun};
 use super::setup;
+use froude_records::carriage::plan::{Drive, JOG_S, PlannedRun};
 
 /// What a run asks of the rig.
 #[derive(Debug, Clone, PartialEq)]
@@ -531,10 +531,10 @@ fn at_most(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plan::{Experiments, Step, plan, tuning};
     use super::*;
     use crate::load::TowedBody;
     use froude_records::carriage::CarriageCampaign;
+    use froude_records::carriage::plan::{Experiments, Step, plan, tuning};
 
     /// The example's campaign with some texts replaced.
     fn campaign(changes: &[(&str, &str)]) -> CarriageCampaign {

@@ -9,9 +9,9 @@ use froude_records::run::{
 };
 use indexmap::IndexMap;
 
-use super::plan::PlannedRun;
 use super::runner::Setting;
 use crate::drive::{HostClock, Rig, Sample};
+use froude_records::carriage::plan::PlannedRun;
 
 /// What a rig is, for the record.
 pub(super) struct RigFacts {

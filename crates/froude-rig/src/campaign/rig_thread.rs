@@ -11,10 +11,10 @@ use froude_control::request::Request;
 use froude_records::run::EventKind;
 
 use super::hand_over::{Engine, Next, Pace};
-use super::plan::PlannedRun;
 use super::runner::{RunnerError, Session, Setting, said_of};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{HostClock, Rig, Sample, Stranger};
+use froude_records::carriage::plan::PlannedRun;
 
 /// What the campaign orders.
 pub(super) enum Order<'a> {

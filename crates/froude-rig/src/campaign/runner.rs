@@ -23,13 +23,13 @@ use indexmap::IndexMap;
 use froude_records::carriage::CarriagePlan;
 
 use super::hand_over::{Engine, Helm, hand_over};
-use super::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
 use super::recording::{Recording, RigFacts};
 use super::resume::{Found, look};
 use super::rig_thread::{self, Ended, Entry, Order};
 use super::stop::{Asked, StopSwitch};
 use crate::drive::{Rig, RigError, Sample, Stranger};
 use crate::load::Load;
+use froude_records::carriage::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Step};
 
 /// Why a campaign stopped before its end.
 #[derive(Debug, thiserror::Error)]

@@ -9,9 +9,9 @@ use froude_records::run::{Role, RunLog};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
-use super::drag::{calibration_of, setup_of};
-use super::runs::{for_drag, read};
 use crate::Error;
+use froude_carriage::reduction::{calibration_of, setup_of};
+use froude_carriage::runs::{for_drag, read};
 
 /// What a jog showed.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,11 +7,11 @@ use froude_carriage::drag::detectability::DryMean;
 use froude_carriage::drag::online::OnLine;
 use froude_carriage::drag::{mcd, run as drag_run};
 use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 use froude_records::hash::sha256_of_bytes;
 use froude_records::run::{BodyState, CampaignMark, Role, RunMeta, check_names, read_run};
 use froude_rig::campaign::lock::FolderLock;
-use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 use froude_rig::campaign::preflight::{Expected, Forecast, Objection, check, check_campaign};
 use froude_rig::campaign::runner::{self, Operator, Progress, Setting};
 use froude_rig::campaign::stop::StopSwitch;
@@ -21,9 +21,10 @@ use froude_rig::drive::twin::TwinRig;
 use froude_rig::load::{Load, TowedBody};
 use indexmap::IndexMap;
 
-use super::drag::{calibration_from, setup_of};
-use super::runs::{CAMPAIGN_COPY, density_kg_m3, for_drag};
 use crate::Error;
+use froude_carriage::reduction::{calibration_from, setup_of};
+use froude_carriage::runs::{density_kg_m3, for_drag};
+use froude_records::run::{CAMPAIGN_COPY, LAST_RUN, STOPPED_EARLY};
 
 /// What to drive and where the runs go.
 #[derive(Debug, Clone)]
@@ -227,14 +228,6 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
     })
 }
 
-/// What the order of the speeds within a half of a pair is drawn from.
-pub(crate) fn order_seed(rig: &RigKind) -> u64 {
-    match rig {
-        RigKind::Twin { seed, .. } => *seed,
-        RigKind::Serial { .. } => 1,
-    }
-}
-
 fn return_speed_m_s(asked: &CarriagePlan, limits: &froude_control::config::Limits) -> f64 {
     let fastest = asked.speed_m_s.iter().copied().fold(0.0, f64::max);
     fastest.clamp(0.05, 0.5).min(limits.speed_m_s)
@@ -338,11 +331,6 @@ fn own_folder(folder: &Path, campaign: &Path) -> Result<String, Error> {
     }
     Ok(sha256_of_bytes(&text))
 }
-
-/// What says in a folder of runs that its campaign stopped because it knew enough: in words, and after which run.
-pub const STOPPED_EARLY: &str = "stopped-early.txt";
-/// What the run stands behind there.
-pub(crate) const LAST_RUN: &str = "last run: ";
 
 /// D_d while the campaign runs: every wet run with its dry partner gives a point.
 struct Live {

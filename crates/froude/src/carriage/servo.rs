@@ -7,21 +7,21 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_carriage::drag::steady::{SteadySettings, window};
+use froude_carriage::runs::{Runs, column, for_drag, mounted, mounts, read};
 use froude_carriage::servo::chain::Rows;
 use froude_carriage::servo::motor::MotorSide;
 use froude_carriage::servo::report::of_runs as of_several;
-use froude_carriage::servo::two_mass::{FlexibleOptions, FlexibleReport, identify_flexible};
-use froude_carriage::servo::{Chain, Friction, Gear, ServoCoefficient, ServoLog, ServoReport, identify_servo};
-use froude_fit::budget::Uncertain;
+use froude_carriage::servo::two_mass::FlexibleReport;
+use froude_carriage::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo};
+use froude_carriage::two_masses::{motor_of, pulses, servo_log, two_masses};
 use froude_fit::series::mean;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
-use froude_records::run::{AxisConstants, BodyState, Declared, Role, RunLog, import_run};
+use froude_records::run::{BodyState, Declared, Role, RunLog, import_run};
 use froude_records::units::Dimension;
 use froude_report::document::Document;
 
-use super::runs::{Runs, column, for_drag, mounted, mounts, read};
 use crate::Error;
 
 /// What to identify.
@@ -105,24 +105,6 @@ pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
     let html = document(&outcome, &first, job.date.clone()).html()?;
     crate::results::write_page(&out, &html)?;
     Ok(outcome)
-}
-
-/// Columns of a run for the servo's identification.
-fn servo_log(log: &RunLog) -> Result<ServoLog, Error> {
-    let axis = log.meta.carriage.axis.name();
-    let column = |name: &str, dimension| column(log, &format!("{axis}/{name}"), dimension).map(<[f64]>::to_vec);
-    let reference = format!("{axis}/reference_position");
-    Ok(ServoLog {
-        time_s: log.time_s.clone(),
-        position_m: column("position", Dimension::LENGTH)?,
-        command_v: column("command", Dimension::VOLTAGE)?,
-        reference_m: log
-            .channels
-            .contains_key(&reference)
-            .then(|| column("reference_position", Dimension::LENGTH))
-            .transpose()?,
-        load_n: None,
-    })
 }
 
 fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<ServoOutcome, Error> {
@@ -254,52 +236,6 @@ fn of_runs(runs: &Runs) -> Result<ServoOutcome, Error> {
         findings,
         page: PathBuf::new(),
     })
-}
-
-fn motor_of(constants: &AxisConstants) -> MotorSide {
-    MotorSide {
-        torque_constant_n_m_a: constants.torque_constant_n_m_a.value,
-        amplifier_a_v: constants.amplifier_a_v.value,
-        gear_ratio: constants.gear_ratio.value,
-        sprocket_radius_m: constants.sprocket_radius_m.value,
-    }
-}
-
-/// The run that tells the two masses.
-fn pulses(logs: &[RunLog]) -> Option<&RunLog> {
-    logs.iter().find(|l| l.meta.role == Role::Excitation)
-}
-
-/// Two masses and a chain from the first run with pulses; a finding where there is one that does not tell them.
-pub(crate) fn two_masses(logs: &[RunLog]) -> (Option<FlexibleReport>, Option<Finding>) {
-    let Some((log, constants)) = pulses(logs).and_then(|l| l.meta.moving_axis().map(|c| (l, c))) else {
-        return (None, None);
-    };
-    let identified = servo_log(log)
-        .and_then(|columns| Ok(identify_flexible(&columns, &flexible_options(motor_of(constants), constants))?));
-    match identified {
-        Ok(report) => (Some(report), None),
-        Err(error) => (None, Some(Finding::new(Severity::Warning, "two-mass", format!("{}: {error}", log.meta.id)))),
-    }
-}
-
-/// From a command to the force on the rotor: half a tick of the controller and the amplifier's current loop, which a campaign does not
-/// declare; 0.5 to 2 kHz is usual.
-const DELAY_S: Uncertain = Uncertain::new(2e-4, 1e-4);
-
-/// What the campaign declares of the drive.
-fn flexible_options(motor: MotorSide, constants: &AxisConstants) -> FlexibleOptions {
-    let uncertain = |d: &Declared| Uncertain::new(d.value, d.standard_uncertainty);
-    let gear = match (&constants.efficiency_forward, &constants.efficiency_backward) {
-        (Some(forward), Some(backward)) => {
-            Gear::Declared { forward: uncertain(forward), backward: uncertain(backward) }
-        }
-        _ if motor.gear_ratio == 1.0 => Gear::Lossless,
-        _ => Gear::Undeclared,
-    };
-    let part = |d: &Declared| d.standard_uncertainty / d.value;
-    let force_relative = part(&constants.torque_constant_n_m_a).hypot(part(&constants.amplifier_a_v));
-    FlexibleOptions { gear, delay_s: DELAY_S, force_relative, ..FlexibleOptions::new(motor) }
 }
 
 /// Knots over the travel that the runs cover.

@@ -15,18 +15,18 @@ use froude_carriage::tuning::response::{Sweep, plant_response};
 use froude_carriage::tuning::tracking::{Forward, Ramp, Tracking, follow};
 use froude_carriage::tuning::{LoopGains, ResponsePoint, TuningError};
 use froude_control::config::{AxisConfig, CountGains, Gains};
+use froude_records::carriage::plan::{Experiments, resonance, tuning};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
 use froude_records::run::{Declared, Role, RunLog};
 use froude_records::units::Dimension;
 use froude_report::document::Document;
-use froude_rig::campaign::plan::{Experiments, resonance, tuning};
 use froude_rig::campaign::runner::{Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
 
 use super::drive::{DriveJob, Prepared, drive, prepare_with};
-use super::runs::read;
 use crate::Error;
+use froude_carriage::runs::read;
 
 /// Points of a measured response.
 const POINTS: usize = 70;

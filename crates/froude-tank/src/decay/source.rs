@@ -1,24 +1,21 @@
 //! Free decay as a source of a campaign: a folder of logs, one release each.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use crate::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, RunSummary};
+use crate::decay::{envelope, output_error, record};
+use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_identify::runs::{logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
 use froude_records::finding::{Finding, Severity};
-use froude_records::manifest::MANIFEST;
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
 use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role, import_run};
 use froude_records::units::Dimension;
-use froude_tank::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, RunSummary};
-use froude_tank::decay::{envelope, output_error, record};
-
-use crate::Error;
-use crate::carriage::runs::{recorded_in, refuse_others};
-use crate::method::{Found, Method, Need};
 
 /// Envelope and output error of releases.
-pub(crate) struct FreeDecay;
+pub struct FreeDecay;
 
 /// Their names.
 const NAMES: [&str; 2] = [DecayMethod::ALL[0].name(), DecayMethod::ALL[1].name()];
@@ -53,13 +50,11 @@ impl Method for FreeDecay {
         source: &Source,
         asked: &[&'static str],
         progress: &dyn Fn(&str),
-    ) -> Result<Found, Error> {
+    ) -> Result<Found, MethodError> {
         let Some(spec) = &source.decay else {
-            return Err(Error::Nothing(format!(
-                "{}: nothing is declared of what swings: write [source.decay] with axis = \"heave\", inertia and stiffness, each as {{ value = \
-                 \"12 kg\", standard = \"0.5 %\" }}",
-                source.place
-            )));
+            let what = "nothing is declared of what swings: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
+                        \"12 kg\", standard = \"0.5 %\" }";
+            return Err(MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() });
         };
         let setup = setup_of(spec);
         progress("reading the releases");
@@ -74,9 +69,7 @@ impl Method for FreeDecay {
                 DecayMethod::Envelope => envelope(&runs, &setup),
                 DecayMethod::OutputError => output_error(&runs, &setup),
             }
-            .map_err(|error| {
-                Error::Nothing(format!("{}: {}: {error}", source.input.path().display(), method.name()))
-            })?;
+            .map_err(|error| MethodError::input(source.input.path(), format!("{}: {error}", method.name())))?;
             let mut result = record::result(&fit, campaign, source, best == Some(method))?;
             result.files.clone_from(&files);
             findings.append(&mut result.findings);
@@ -190,36 +183,17 @@ struct Releases {
     findings: Vec<Finding>,
 }
 
-/// The logs of other programs in a folder, in the order of their names; none in a folder of results, whose tables are Froude's.
-pub(crate) fn logs_in(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let entries = std::fs::read_dir(folder)
-        .map_err(|source| Error::Nothing(format!("{}: the folder cannot be read: {source}", folder.display())))?;
-    if folder.join(MANIFEST).exists() {
-        return Ok(Vec::new());
-    }
-    let is_log = |path: &PathBuf| {
-        path.extension().is_some_and(|e| ["csv", "parquet"].iter().any(|known| e.eq_ignore_ascii_case(known)))
-    };
-    let mut paths: Vec<PathBuf> = entries.filter_map(Result::ok).map(|e| e.path()).filter(is_log).collect();
-    paths.sort();
-    Ok(paths)
-}
-
 /// Every log in a folder, in the order of the names, with its sidecar where it has one.
-fn read(folder: &Path) -> Result<Releases, Error> {
+fn read(folder: &Path) -> Result<Releases, MethodError> {
     if folder.is_file() {
-        return Err(Error::Nothing(format!(
-            "{}: `runs` is a folder with one log a release; put the logs that are meant into a folder of their own",
-            folder.display()
-        )));
+        let what = "`runs` is a folder with one log a release; put the logs that are meant into a folder of their own";
+        return Err(MethodError::input(folder, what));
     }
     let paths = logs_in(folder)?;
     if paths.is_empty() {
         refuse_others(folder, FREE_DECAY, &recorded_in(folder)?)?;
-        return Err(Error::Nothing(format!(
-            "{}: no releases: put one log each there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)",
-            folder.display()
-        )));
+        let what = "no releases: put one log each there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)";
+        return Err(MethodError::input(folder, what));
     }
     let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     for path in paths {
@@ -238,7 +212,7 @@ fn read(folder: &Path) -> Result<Releases, Error> {
 }
 
 /// A log as a release: its time and the channel that moves.
-fn release(log: &ImportedRun, axis: Motion) -> Result<DecayRun<'_>, Error> {
+fn release(log: &ImportedRun, axis: Motion) -> Result<DecayRun<'_>, MethodError> {
     let (names, unit): (&[&str], Dimension) = if axis.is_rotation() {
         (&["angle"], Dimension::ANGLE)
     } else {
@@ -253,11 +227,11 @@ fn release(log: &ImportedRun, axis: Motion) -> Result<DecayRun<'_>, Error> {
     let Some(position) = found else {
         let head = if axis.is_rotation() { "angle [deg]" } else { "position [m]" };
         let there: Vec<&str> = channels.keys().map(|name| name.trim_start_matches("y/")).collect();
-        return Err(Error::Nothing(format!(
-            "{}: a release needs `{head}`; it has {}: head the column so, or map it with a sidecar",
-            log.log.path.display(),
-            if there.is_empty() { "nothing beside the time".to_owned() } else { there.join(", ") }
-        )));
+        let there = if there.is_empty() { "nothing beside the time".to_owned() } else { there.join(", ") };
+        return Err(MethodError::input(
+            &log.log.path,
+            format!("a release needs `{head}`; it has {there}: head the column so, or map it with a sidecar"),
+        ));
     };
     Ok(DecayRun { id: &log.log.meta.id, time_s: &log.log.time_s, position: &position.values })
 }

@@ -9,14 +9,12 @@ use std::path::{Path, PathBuf};
 use froude_records::RecordError;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
-use froude_records::run::{Doubt, DoubtKind, RunMeta};
+use froude_records::run::{CAMPAIGN_COPY, Doubt, DoubtKind, RunMeta};
 use froude_records::text::counted;
-
-use super::runs::CAMPAIGN_COPY;
 
 /// A log of the set, as far as it tells it from others.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Member {
+pub struct Member {
     /// The log.
     pub path: PathBuf,
     id: String,
@@ -27,6 +25,10 @@ pub(crate) struct Member {
 
 impl Member {
     /// Of a log whose fingerprint was compared, or whose bytes are summed now.
+    ///
+    /// # Errors
+    ///
+    /// A log that cannot be read.
     pub fn of(path: &Path, meta: &RunMeta) -> Result<Self, RecordError> {
         let sha256 = match &meta.log {
             Some(log) => log.sha256.clone(),
@@ -48,13 +50,14 @@ impl Member {
 }
 
 /// Whether a run was put aside, to be driven again: its files have a word more than its name (`045-wet.interrupted-1`).
-pub(crate) fn is_put_aside(log: &Path, meta: &RunMeta) -> bool {
+pub fn is_put_aside(log: &Path, meta: &RunMeta) -> bool {
     let stem = log.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     stem.strip_prefix(&meta.id).is_some_and(|rest| rest.starts_with('.'))
 }
 
 /// A finding for every member that is there before.
-pub(crate) fn doubles(members: &[Member]) -> Vec<Finding> {
+#[must_use]
+pub fn doubles(members: &[Member]) -> Vec<Finding> {
     let mut by_hash: BTreeMap<&str, &Member> = BTreeMap::new();
     let mut by_id: BTreeMap<&str, Vec<&Member>> = BTreeMap::new();
     let mut out = Vec::new();
@@ -90,7 +93,11 @@ pub(crate) fn doubles(members: &[Member]) -> Vec<Finding> {
 }
 
 /// Findings where runs that lie in one folder are not all of the campaign whose copy lies there.
-pub(crate) fn strangers(members: &[Member]) -> Result<Vec<Finding>, RecordError> {
+///
+/// # Errors
+///
+/// A copy of a campaign that cannot be read.
+pub fn strangers(members: &[Member]) -> Result<Vec<Finding>, RecordError> {
     let mut folders: Vec<&Path> = members.iter().filter_map(|m| m.path.parent()).collect();
     folders.sort_unstable();
     folders.dedup();
@@ -148,7 +155,8 @@ fn start(sha256: &str) -> &str {
 }
 
 /// Doubts of many logs as findings, one for each sort.
-pub(crate) fn summed_up(doubts: &[Doubt]) -> Vec<Finding> {
+#[must_use]
+pub fn summed_up(doubts: &[Doubt]) -> Vec<Finding> {
     let sorts = [DoubtKind::NoSidecar, DoubtKind::NoFingerprint, DoubtKind::Renamed, DoubtKind::Edited];
     let mut out = Vec::new();
     for kind in sorts {

@@ -3,25 +3,25 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use froude_carriage::drag::run as drag;
 use froude_hydro::fluid::Water;
+use froude_identify::method::MethodError;
+use froude_identify::runs::{files, of_method, refuse_others};
 use froude_records::RecordError;
 use froude_records::campaign::{BodyAxis, Campaign, read_campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
-    BodyState, Direction, DoubtKind, FREE_DECAY, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
+    BodyState, CAMPAIGN_COPY, Direction, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
 };
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
-use super::set::{Member, doubles, is_put_aside, strangers, summed_up};
-use super::whole::{Complete, beside, folder_of};
-use crate::Error;
-use crate::decay::logs_in;
-use crate::method::readers;
+use crate::drag::run as drag;
 
-/// Name of the campaign's copy in a folder of runs.
-pub const CAMPAIGN_COPY: &str = "campaign.toml";
+pub mod set;
+pub mod whole;
+
+use set::{Member, doubles, is_put_aside, strangers, summed_up};
+use whole::{Complete, beside, folder_of};
 
 /// Complete runs of a folder, and what was left out.
 #[derive(Debug, Clone, Default)]
@@ -75,7 +75,7 @@ impl Runs {
 ///
 /// A path without runs, a run that cannot be read; a run that is there twice, of another campaign than the runs beside it, or
 /// whose log and sidecar were exchanged.
-pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Result<Runs, Error> {
+pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Result<Runs, MethodError> {
     let mut out = Runs { folder: first_folder(paths), ..Runs::default() };
     let (mut members, mut doubts, mut others) = (Vec::new(), Vec::new(), Vec::new());
     let mut complete = Complete::default();
@@ -137,7 +137,7 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
             continue;
         }
         if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Exchanged) {
-            return Err(Error::Nothing(doubt.text.clone()));
+            return Err(MethodError::NoSet { first: doubt.text.clone(), more: 0 });
         }
         if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Damaged) {
             out.findings.push(left_out_for(doubt.finding()));
@@ -160,8 +160,7 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
     set.extend(strangers(&members)?);
     if let Some(first) = set.iter().find(|f| f.severity == Severity::Error) {
         let more = set.iter().filter(|f| f.severity == Severity::Error).count() - 1;
-        let more = if more == 0 { String::new() } else { format!(" ({more} more)") };
-        return Err(Error::Nothing(format!("{}{more}", first.message)));
+        return Err(MethodError::NoSet { first: first.message.clone(), more });
     }
     out.findings.extend(set);
     out.findings.extend(summed_up(&doubts));
@@ -202,11 +201,13 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
             Some(first) => format!("; left out: {}", first.message),
             None => String::new(),
         };
-        return Err(Error::Nothing(format!(
-            "{}: no complete run of the roles {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
-            out.folder.display(),
-            names.join(", ")
-        )));
+        return Err(MethodError::input(
+            &out.folder,
+            format!(
+                "no complete run of the roles {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
+                names.join(", ")
+            ),
+        ));
     }
     if let Some(first) = others.first() {
         let text = format!(
@@ -220,61 +221,8 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
     Ok(out)
 }
 
-/// The method that a run says it belongs to, in words.
-pub(crate) fn of_method(meta: &RunMeta) -> String {
-    if meta.method.is_empty() { "no method that it states".to_owned() } else { format!("the method {}", meta.method) }
-}
-
-/// What every run in a folder says of itself, as far as it can be read.
-pub(crate) fn recorded_in(folder: &Path) -> Result<Vec<RunMeta>, Error> {
-    let read = |log: PathBuf| {
-        read_run_meta(&log.with_extension("toml"))
-            .ok()
-            .or_else(|| Some(RunReader::open(&log).ok()?.read_all().ok()?.meta))
-    };
-    Ok(files(&[folder.to_owned()])?.into_iter().filter_map(read).collect())
-}
-
-/// Refuses a folder without runs of the method that is read (`wanted`) and with others.
-///
-/// # Errors
-///
-/// Runs of another method, or logs of another program where tows are read: which, and what reads them.
-pub(crate) fn refuse_others(folder: &Path, wanted: &str, found: &[RunMeta]) -> Result<(), Error> {
-    let found: Vec<&RunMeta> = found.iter().filter(|meta| meta.method != wanted).collect();
-    let (what, readers) = match found.first() {
-        Some(first) => {
-            let roles: BTreeSet<&str> = found.iter().map(|meta| meta.role.name()).collect();
-            let roles = roles.into_iter().collect::<Vec<_>>().join(", ");
-            let runs = counted(found.len(), "run there is", "runs there are");
-            (format!("{runs} of {} (role {roles})", of_method(first)), readers(&first.method))
-        }
-        None if wanted == TOW && folder.is_dir() => match logs_in(folder)?.len() {
-            0 => return Ok(()),
-            n => (
-                format!(
-                    "{} of other programs (a table of steady runs is what froude identify FILE reads, a servo's log what froude carriage \
-                     identify FILE does)",
-                    counted(n, "log there is", "logs there are")
-                ),
-                readers(FREE_DECAY),
-            ),
-        },
-        None => return Ok(()),
-    };
-    let instead = match readers.as_slice() {
-        [] => "no method of this version reads those".to_owned(),
-        _ if found.is_empty() => format!("a [[source]] with method = {readers:?} reads releases"),
-        _ => format!("a [[source]] with method = {readers:?} reads those"),
-    };
-    Err(Error::Nothing(format!(
-        "{}: {what}, and runs of the method {wanted} are read here: {instead}; else name a folder with runs of {wanted}",
-        folder.display()
-    )))
-}
-
 /// The axis of the body along the travel, on which the runs and their campaign must agree as far as they declare it.
-fn attitude(logs: &[RunLog], campaign: Option<&Campaign>) -> Result<Option<BodyAxis>, Error> {
+fn attitude(logs: &[RunLog], campaign: Option<&Campaign>) -> Result<Option<BodyAxis>, MethodError> {
     let of_run = |log: &RunLog| {
         let sidecar = log.path.with_extension("toml");
         Some((if sidecar.exists() { sidecar } else { log.path.clone() }, "mounted", log.meta.mounted.travel?))
@@ -286,18 +234,21 @@ fn attitude(logs: &[RunLog], campaign: Option<&Campaign>) -> Result<Option<BodyA
     let mut declared = logs.iter().filter_map(of_run).chain(campaign.and_then(of_campaign));
     let Some((first, section, axis)) = declared.next() else { return Ok(None) };
     let Some((path, own_section, other)) = declared.find(|(.., other)| *other != axis) else { return Ok(Some(axis)) };
-    Err(Error::Nothing(format!(
-        "{}: `travel` in [{own_section}] is {:?}; expected {:?}, as [{section}] of {} declares: a body lies one way along its travel. Correct \
-         the one that is wrong, or reduce the runs of each attitude by themselves",
-        path.display(),
-        other.name(),
-        axis.name(),
-        first.display()
-    )))
+    Err(MethodError::input(
+        path,
+        format!(
+            "`travel` in [{own_section}] is {:?}; expected {:?}, as [{section}] of {} declares: a body lies one way along its travel. Correct \
+             the one that is wrong, or reduce the runs of each attitude by themselves",
+            other.name(),
+            axis.name(),
+            first.display()
+        ),
+    ))
 }
 
 /// What made room for another drive of the same run.
-pub(crate) fn put_aside(log: &Path, meta: &RunMeta) -> Finding {
+#[must_use]
+pub fn put_aside(log: &Path, meta: &RunMeta) -> Finding {
     let (id, sidecar) = (&meta.id, log.with_extension("toml"));
     let again = if log.with_file_name(format!("{id}.mcap")).exists() {
         format!("{id} was driven again since")
@@ -322,7 +273,8 @@ fn left_out_for(mut finding: Finding) -> Finding {
 }
 
 /// A run of which only the sidecar is left.
-pub(crate) fn gone(log: &Path, meta: &RunMeta) -> Finding {
+#[must_use]
+pub fn gone(log: &Path, meta: &RunMeta) -> Finding {
     let (severity, became) = match meta.status {
         RunStatus::Complete => (Severity::Error, "was driven to its end".to_owned()),
         RunStatus::Running => (Severity::Warning, "has no end".to_owned()),
@@ -354,47 +306,6 @@ fn first_folder(paths: &[PathBuf]) -> PathBuf {
     if first.is_dir() { first } else { first.parent().map_or_else(PathBuf::new, Path::to_owned) }
 }
 
-/// The logs, sorted by name; of a folder also those that its sidecars say should be there. A sidecar that is named stands for its log.
-pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Error> {
-    let mut out = Vec::new();
-    for path in paths {
-        if path.is_dir() {
-            let entries = std::fs::read_dir(path).map_err(|source| Error::Output { path: path.clone(), source })?;
-            let mut own: Vec<PathBuf> = entries.filter_map(Result::ok).map(|e| e.path()).filter_map(log_of).collect();
-            own.sort();
-            own.dedup();
-            out.append(&mut own);
-        } else if path.exists() {
-            match log_of_sidecar(path) {
-                // `ID.*` names both.
-                Some(log) if paths.contains(&log) => {}
-                Some(log) => out.push(log),
-                None => out.push(path.clone()),
-            }
-        } else {
-            return Err(Error::Nothing(format!("{}: there is no such folder or run", path.display())));
-        }
-    }
-    out.sort();
-    Ok(out)
-}
-
-/// The log that a sidecar belongs to; `None` for any other file.
-fn log_of_sidecar(file: &Path) -> Option<PathBuf> {
-    let log = file.with_extension("mcap");
-    let is_toml = file.extension().is_some_and(|e| e == "toml");
-    (is_toml && (log.exists() || read_run_meta(file).is_ok())).then_some(log)
-}
-
-/// The log that a file of a folder is or belongs to.
-fn log_of(file: PathBuf) -> Option<PathBuf> {
-    match file.extension().map(|e| e.to_string_lossy().into_owned()).as_deref() {
-        Some("mcap") => Some(file),
-        Some("toml") if file.file_name().is_some_and(|name| name != CAMPAIGN_COPY) => Some(file.with_extension("mcap")),
-        _ => None,
-    }
-}
-
 /// Largest number in a channel of a carriage, SI: no carriage goes a thousand kilometres or pulls a meganewton.
 const LARGEST: f64 = 1e6;
 
@@ -403,16 +314,18 @@ const LARGEST: f64 = 1e6;
 /// # Errors
 ///
 /// No such channel, another dimension, or a sample that no carriage has.
-pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&'l [f64], Error> {
+pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&'l [f64], MethodError> {
     let values = log.channel(name, dimension)?;
     match values.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
         None => Ok(values),
-        Some(i) => Err(Error::Nothing(format!(
-            "{}: {name} is {:e} {dimension} at {:.3} s, which no carriage has: the log is damaged, or its unit is wrong",
-            log.path.display(),
-            values[i],
-            log.time_s.get(i).copied().unwrap_or(f64::NAN)
-        ))),
+        Some(i) => Err(MethodError::input(
+            &log.path,
+            format!(
+                "{name} is {:e} {dimension} at {:.3} s, which no carriage has: the log is damaged, or its unit is wrong",
+                values[i],
+                log.time_s.get(i).copied().unwrap_or(f64::NAN)
+            ),
+        )),
     }
 }
 
@@ -421,7 +334,7 @@ pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&
 /// # Errors
 ///
 /// A channel that is missing or of another dimension.
-pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, Error> {
+pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, MethodError> {
     let meta = &log.meta;
     let kind = match meta.role {
         Role::Dry | Role::Wet => drag::RunKind::Tow,
@@ -485,7 +398,7 @@ pub fn mounted(mounts: &[BodyState]) -> String {
 }
 
 /// What rides on the carriage in these runs, each state once.
-pub(super) fn mounts<'a>(logs: impl IntoIterator<Item = &'a RunLog>) -> Vec<BodyState> {
+pub fn mounts<'a>(logs: impl IntoIterator<Item = &'a RunLog>) -> Vec<BodyState> {
     let mut out: Vec<BodyState> = Vec::new();
     for log in logs {
         if !out.contains(&log.meta.mounted.body) {

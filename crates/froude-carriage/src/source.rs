@@ -1,19 +1,19 @@
 //! Runs as a source of a campaign: each method that reduces them gives its observations, its fit and its estimate.
 
-use froude_carriage::drag::coefficient::{Coefficient, Method as CarriageMethod};
+use crate::drag::coefficient::{Coefficient, Method as CarriageMethod};
+use froude_identify::method::{Found, Method, MethodError, Need, lacking};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, Fluid, Identify, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Role, TOW};
 
-use super::drag::{Reduction, reduce, sections};
-use super::runs::{Runs, read};
-use crate::Error;
-use crate::method::{Found, Method, Need, lacking};
+use crate::reduction::page::sections;
+use crate::reduction::{Reduction, reduce};
+use crate::runs::{Runs, read};
 
 /// The five methods of the towing carriage: one reduction, one setup.
-pub(crate) struct Carriage;
+pub struct Carriage;
 
 /// Their names.
 const NAMES: [&str; 5] = {
@@ -48,7 +48,7 @@ impl Method for Carriage {
         source: &Source,
         asked: &[&'static str],
         progress: &dyn Fn(&str),
-    ) -> Result<Found, Error> {
+    ) -> Result<Found, MethodError> {
         let methods: Vec<CarriageMethod> = asked.iter().filter_map(|name| named(name)).collect();
         let mut found = identify(source, &methods, progress)?;
         found.findings.extend(passed_over(campaign, source));
@@ -103,7 +103,7 @@ fn why_not(method: CarriageMethod, runs: &Runs) -> String {
 }
 
 /// Reduces the runs of a source: a result for each method, in the order asked for.
-fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)) -> Result<Found, Error> {
+fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)) -> Result<Found, MethodError> {
     let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
     progress("reading the runs");
     let runs = read(paths, &roles(), campaign.as_deref())?;
@@ -139,7 +139,10 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
     }
     if out.is_empty() {
         let why: String = report.findings.iter().map(|finding| format!("; {}", finding.message)).collect();
-        return Err(Error::Nothing(format!("{folder}: none of the methods asked for can use these runs{why}")));
+        return Err(MethodError::input(
+            source.input.path(),
+            format!("none of the methods asked for can use these runs{why}"),
+        ));
     }
     Ok(Found {
         results: out,
@@ -170,7 +173,8 @@ fn passed_over(campaign: &Campaign, source: &Source) -> Option<Finding> {
 }
 
 /// The logs of runs, each in its role.
-pub(super) fn files_of(runs: &Runs) -> Vec<ReadFile> {
+#[must_use]
+pub fn files_of(runs: &Runs) -> Vec<ReadFile> {
     runs.logs.iter().map(|log| ReadFile::new(log.path.clone(), log.meta.role.name())).collect()
 }
 

@@ -1,10 +1,11 @@
 //! From what is asked for to runs in order.
 
-use froude_records::carriage::{CarriagePlan, Directions, Order};
-use froude_records::run::{Axis, BodyState, Direction, Role};
+use crate::run::{Axis, BodyState, Direction, Role};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
+
+use super::{CarriagePlan, Directions, Order, RigKind};
 
 /// What the operator does before the next runs.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,7 +143,7 @@ pub enum Step {
 /// Way of the jog test, m: a reversed polarity is caught within it.
 const JOG_M: f64 = 0.01;
 /// It ends after this time in any case, s.
-pub(super) const JOG_S: f64 = 1.0;
+pub const JOG_S: f64 = 1.0;
 /// Its command, V: twice breakaway of the paper's rig.
 const JOG_V: f64 = 1.0;
 
@@ -390,11 +391,20 @@ impl Planner<'_> {
     }
 }
 
+/// What the order of the speeds within a half of a pair is drawn from.
+#[must_use]
+pub fn order_seed(rig: &RigKind) -> u64 {
+    match rig {
+        RigKind::Twin { seed, .. } => *seed,
+        RigKind::Serial { .. } => 1,
+    }
+}
+
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use froude_records::Place;
-    use froude_records::carriage::{Calibration, FrictionSweep};
+    use crate::Place;
+    use crate::carriage::{Calibration, FrictionSweep};
 
     pub(crate) fn asked() -> CarriagePlan {
         CarriagePlan {

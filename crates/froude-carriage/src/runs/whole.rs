@@ -7,24 +7,23 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use froude_identify::method::MethodError;
+use froude_identify::runs::files;
 use froude_records::campaign::{Campaign, read_campaign};
+use froude_records::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::sha256_of_file;
-use froude_records::run::{Role, RunMeta, RunStatus, read_run_meta};
+use froude_records::run::{CAMPAIGN_COPY, LAST_RUN, Role, RunMeta, RunStatus, STOPPED_EARLY, read_run_meta};
 use froude_records::text::counted;
-use froude_rig::campaign::plan::{PlannedRun, Step, plan};
 
-use super::drive::{LAST_RUN, STOPPED_EARLY, order_seed};
-use super::runs::{CAMPAIGN_COPY, files};
 use super::set::is_put_aside;
-use crate::Error;
 
 /// Stretches of missing runs that are named.
 const MOST_NAMED: usize = 6;
 
 /// Runs that lie complete in their folders.
 #[derive(Debug, Default)]
-pub(crate) struct Complete {
+pub struct Complete {
     by_folder: BTreeMap<PathBuf, Here>,
 }
 
@@ -48,6 +47,7 @@ impl Complete {
 
     /// What a folder lacks of the plan of its campaign: a warning where that is runs of one of these roles, and a note where a campaign stopped
     /// early and lacks none. Nothing where no plan is known: no copy of the campaign, one that was edited since, or runs of another verb.
+    #[must_use]
     pub fn against_plan(&self, folder: &Path, roles: &[Role]) -> Option<Finding> {
         let copy = folder.join(CAMPAIGN_COPY);
         if !copy.is_file() {
@@ -159,7 +159,7 @@ fn stretches(planned: &[PlannedRun], missing: &[bool]) -> String {
 }
 
 /// Complete runs of these roles that lie beside the named logs, and were not named.
-pub(crate) fn beside(named: &[PathBuf], roles: &[Role]) -> Result<Vec<PathBuf>, Error> {
+pub(crate) fn beside(named: &[PathBuf], roles: &[Role]) -> Result<Vec<PathBuf>, MethodError> {
     let folders: BTreeSet<PathBuf> = named.iter().map(|log| folder_of(log)).collect();
     let mut out = Vec::new();
     for folder in folders {

@@ -3,23 +3,23 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use froude_carriage::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
-use froude_carriage::drag::coefficient::Method;
-use froude_carriage::drag::report::{DragReport, drag_by};
-use froude_carriage::drag::run::{self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget};
+use crate::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
+use crate::drag::coefficient::Method;
+use crate::drag::report::{DragReport, drag_by};
+use crate::drag::run::{self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget};
 use froude_fit::budget::Uncertain;
+use froude_identify::method::MethodError;
 use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::{sha256_of_file, short_key};
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
-use froude_records::run::{AxisConstants, Role, RunLog};
+use froude_records::run::{AxisConstants, Role, RunLog, STOPPED_EARLY};
 use froude_records::text::counted;
 
-use super::drive::STOPPED_EARLY;
-use super::runs::{Runs, density_kg_m3, for_drag};
-use super::servo::two_masses;
-use crate::Error;
+use crate::runs::{Runs, density_kg_m3, for_drag};
+use crate::two_masses::two_masses;
+
+pub mod page;
 
 /// Standard acceleration of gravity, m/s².
 const G_M_S2: f64 = 9.80665;
@@ -34,15 +34,23 @@ const UNDECLARED_GAIN: f64 = 0.01;
 const BALLAST_RELATIVE: f64 = 0.005;
 
 /// Runs of a campaign, reduced by every method that they allow.
-pub(super) struct Reduction {
+pub struct Reduction {
+    /// The runs.
     pub runs: Runs,
+    /// What is declared of rig, body and water.
     pub setup: DragSetup,
+    /// Force per volt from known weights, where there were any.
     pub calibration: Option<Calibration>,
+    /// What each method gave.
     pub report: DragReport,
 }
 
 /// Calibrates where known weights were hung, and reduces by these methods.
-pub(super) fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, Error> {
+///
+/// # Errors
+///
+/// A channel that is missing or that no carriage has, a declaration that the budget needs, and what the methods refuse.
+pub fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, MethodError> {
     let reduced: Vec<DragRun<'_>> =
         runs.logs.iter().map(for_drag).collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect();
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis());
@@ -60,7 +68,7 @@ pub(super) fn reduce(runs: Runs, methods: &[Method]) -> Result<Reduction, Error>
     if let Some(part) = &part {
         setup.name = format!("{}, {}", setup.name, part.of);
     }
-    let mut report = drag_by(&reduced, &setup, methods)?;
+    let mut report = drag_by(&reduced, &setup, methods).map_err(MethodError::refused)?;
     report.findings.extend(undeclared);
     report.findings.extend(part.map(|part| part.finding));
     report.findings.extend(stopped.map(|stop| stop.finding(runs.beside > 0)));
@@ -139,16 +147,16 @@ fn stopped_early(runs: &Runs, reduced: &[DragRun<'_>]) -> Option<EarlyStop> {
 /// # Errors
 ///
 /// Wet runs without ballast of a body whose volume is not declared: nothing says what buoyancy takes off the wheels.
-fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Option<Finding>, Error> {
+fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Option<Finding>, MethodError> {
     let carriage = campaign.and_then(|c| c.carriage.as_ref());
     let is_ballasted = carriage.and_then(|c| c.plan.as_ref()).is_none_or(|p| p.is_ballasted);
     let volume_m3 = campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3);
     if !is_ballasted && volume_m3.is_none() {
-        return Err(Error::Nothing(
+        return Err(MethodError::Undeclared { place: String::new(), what:
             "the wet runs carried no ballast and the campaign declares no volume of the body: nothing says what buoyancy takes off the \
              wheels. Write volume = \"6.283e-3 m^3\" (its own) in [body]; 0 is not assumed"
                 .to_owned(),
-        ));
+        });
     }
     let has_sensor = runs.iter().any(|r| r.force_n.is_some());
     let gain = carriage.and_then(|c| c.rig.force_sensor.as_ref()).and_then(|f| f.gain_standard);
@@ -166,7 +174,7 @@ fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Optio
 
 /// What is declared, from the campaign where there is one, else from what the runs say of their rig.
 #[must_use]
-pub(crate) fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
+pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
     let mut setup = DragSetup::of_the_paper();
     setup.efficiency = Efficiency::Undeclared;
     setup.density_kg_m3 = density_kg_m3(campaign);
@@ -204,12 +212,13 @@ pub(crate) fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>
 }
 
 /// Standard uncertainty of the weights, as a part: that of the heaviest, which tells the most.
-pub(crate) fn weight_relative(calibration: &froude_records::carriage::Calibration) -> f64 {
+pub fn weight_relative(calibration: &froude_records::carriage::Calibration) -> f64 {
     calibration.weight_standard_n / calibration.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max)
 }
 
 /// Calibration from the runs with weights; a finding where there are such runs and they do not calibrate.
-pub(crate) fn calibration_of(
+#[must_use]
+pub fn calibration_of(
     runs: &[DragRun<'_>],
     campaign: Option<&Campaign>,
     setup: &DragSetup,
@@ -222,7 +231,7 @@ pub(crate) fn calibration_of(
 }
 
 /// The same from what such runs showed.
-pub(crate) fn calibration_from(
+pub fn calibration_from(
     readings: &Readings,
     campaign: Option<&Campaign>,
     setup: &DragSetup,
@@ -261,7 +270,7 @@ pub(crate) fn calibration_from(
 }
 
 /// Key of a calibration: of the runs that it was made from. Whoever calibrates with the same runs has the same error.
-fn calibrated_by(runs: &Runs) -> Result<Option<String>, Error> {
+fn calibrated_by(runs: &Runs) -> Result<Option<String>, MethodError> {
     let of = |log: &&RunLog| log.meta.role == Role::Calibration;
     let mut sums = runs.logs.iter().filter(of).map(|log| sha256_of_file(&log.path)).collect::<Result<Vec<_>, _>>()?;
     sums.sort_unstable();
@@ -269,7 +278,7 @@ fn calibrated_by(runs: &Runs) -> Result<Option<String>, Error> {
 }
 
 /// Keys of the errors that other campaigns may have too. Campaigns that declare the same constants drove the same rig, with the same sensor.
-fn keys(runs: &Runs, axis: Option<&AxisConstants>) -> Result<ErrorKeys, Error> {
+fn keys(runs: &Runs, axis: Option<&AxisConstants>) -> Result<ErrorKeys, MethodError> {
     let carriage = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref());
     let used = carriage.map(|c| &c.rig.y.constants).or(axis);
     let sensor = carriage.and_then(|c| c.rig.force_sensor.as_ref()).filter(|sensor| sensor.gain_standard.is_some());
@@ -290,198 +299,4 @@ fn keys(runs: &Runs, axis: Option<&AxisConstants>) -> Result<ErrorKeys, Error> {
         }),
         sensor: sensor.map(|sensor| key("sensor", format!("{sensor:?}"))),
     })
-}
-
-/// What belongs to all methods on the page: the paper's Table IV with its figure, which is the summary; calibration and runs.
-pub(super) fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentSection>) {
-    let Reduction { runs, setup, calibration, report } = reduction;
-    let drag = DocumentSection {
-        title: "Drag by every method".to_owned(),
-        paragraphs: summary(report, setup),
-        tables: vec![methods_table(report)],
-        charts: vec![force_chart(report)],
-    };
-    let mut more = Vec::new();
-    if let Some(c) = calibration {
-        let mut paragraphs = vec![format!(
-            "{} N/V with its interval {} N/V, from {}; the gear's efficiency is {}.",
-            number::short_form(c.force_per_volt.force_per_volt_n.value, c.force_per_volt.force_per_volt_n.standard),
-            number::interval(c.interval_95),
-            counted(c.used, "driving run", "driving runs"),
-            number::short_form(c.efficiency.value, c.efficiency.standard),
-        )];
-        paragraphs.extend(c.notes.iter().cloned());
-        more.push(DocumentSection { title: "Calibration".to_owned(), paragraphs, ..DocumentSection::default() });
-    }
-    let rows = runs
-        .logs
-        .iter()
-        .map(|log| {
-            let m = &log.meta;
-            vec![
-                m.id.clone(),
-                m.role.name().to_owned(),
-                m.carriage.pair.map_or_else(|| "–".to_owned(), |p| p.to_string()),
-                m.carriage.target_speed_m_s.map_or_else(|| "–".to_owned(), |v| number::plain(v, 3)),
-                super::runs::way(m.carriage.direction).to_owned(),
-                number::plain(log.duration_s(), 3),
-            ]
-        })
-        .collect();
-    more.push(DocumentSection {
-        title: "Runs".to_owned(),
-        tables: vec![TextTable {
-            caption: "Complete runs that were read.".to_owned(),
-            head: ["run", "kind", "pair", "speed [m/s]", "way", "length [s]"].map(str::to_owned).to_vec(),
-            rows,
-        }],
-        ..DocumentSection::default()
-    });
-    (drag, more)
-}
-
-/// What the runs say, in sentences.
-fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
-    let mut out = Vec::new();
-    if let Some(c) = report.coefficients.iter().find(|c| Some(c.method) == report.recommended) {
-        let half = c.interval_95.map(|[l, h]| 0.5 * (h - l));
-        let value = half.map_or_else(|| number::plain(c.value, 4), |h| number::plus_minus(c.value, h));
-        out.push(format!("Recommended: {}, D_d = {value} N s²/m² (95 %).", c.method.words()));
-    } else {
-        let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());
-        let why = if has_interval {
-            "neither the force sensor nor the difference of wet and dry runs states an interval here, and those of the models rest on \
-             their own friction"
-        } else {
-            "no method can state an interval from these runs"
-        };
-        out.push(format!("No D_d is recommended: {why}."));
-    }
-    if setup.calibration.is_none() {
-        out.push(
-            "Newtons a volt were not calibrated with known weights: no D_d from motor currents is stated better than the declared \
-             efficiency of the gear and K_T allow."
-                .to_owned(),
-        );
-    }
-    if let Some(d) = &report.detectability {
-        out.push(format!(
-            "One wet-less-dry difference scatters by {} N (dry repeats, {}); {} at a speed {} a drag above {} N.",
-            number::significant(d.difference_n, 2),
-            number::degrees_of_freedom(d.dof),
-            counted(d.differences, "difference", "differences"),
-            if d.differences == 1 { "shows" } else { "show" },
-            number::significant(d.expanded_n, 2),
-        ));
-        out.push(format!(
-            "Over all speeds together the smallest D_d that exceeds its scatter is {} N s²/m².",
-            number::significant(d.smallest_n_s2_m2, 2)
-        ));
-        let speeds = report.coefficients.iter().flat_map(|c| c.points.iter().map(|p| p.speed_m_s.abs()));
-        let slowest = speeds.fold(f64::INFINITY, f64::min);
-        if let Some(c) = report.coefficients.iter().find(|c| c.method == Method::Mcd) {
-            out.extend(d.advice(c.value, slowest));
-        }
-    }
-    if let Some(a) = &report.agreement {
-        out.push(format!(
-            "The wet repeats scatter by {} N where {} N were predicted (p = {}).",
-            number::significant(a.observed_n, 2),
-            number::significant(a.predicted_n, 2),
-            number::p_value(a.p),
-        ));
-    }
-    if let Some(m) = &report.added_mass {
-        let what = match m.ballast_kg {
-            Some(kg) if kg != 0.0 => {
-                format!(
-                    "water that moves along (added mass, water inside; {} kg of ballast taken off)",
-                    number::plain(kg, 3)
-                )
-            }
-            Some(_) => "water that moves along (added mass, water inside)".to_owned(),
-            None => {
-                "what the wet run carries more than the dry one (added mass, water inside, ballast of unknown mass)"
-                    .to_owned()
-            }
-        };
-        out.push(format!(
-            "From the ramps: {what}: {} kg, interval {} kg, {}.",
-            number::short_form(m.mass_kg.value, m.mass_kg.standard),
-            number::interval(m.interval_95),
-            counted(m.runs, "pair of runs", "pairs of runs")
-        ));
-    }
-    out
-}
-
-/// The methods side by side: the paper's Table IV.
-fn methods_table(report: &DragReport) -> TextTable {
-    let rows = report
-        .coefficients
-        .iter()
-        .zip(&report.drag_coefficients)
-        .zip(&report.ratios)
-        .map(|((c, drag), ratio)| {
-            let missing = || number::MISSING.to_owned();
-            vec![
-                c.method.words().to_owned(),
-                number::plain(c.value, 5),
-                c.interval_95.map_or_else(missing, number::interval),
-                c.relative_half_width().map_or_else(missing, number::percent),
-                drag.map_or_else(missing, |(value, _)| number::plain(value, 4)),
-                drag.and_then(|(_, i)| i).map_or_else(missing, number::interval),
-                number::plain(*ratio, 4),
-                c.pairs.to_string(),
-            ]
-        })
-        .collect();
-    TextTable {
-        caption: "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none."
-            .to_owned(),
-        head: ["method", "D_d [N s²/m²]", "95 % interval", "half-width", "C_D [1]", "95 % interval", "ratio", "pairs"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    }
-}
-
-/// Force over speed by method, with the recommended curve: the paper's Figure 2.
-fn force_chart(report: &DragReport) -> Chart {
-    let mut series: Vec<Series> = report
-        .coefficients
-        .iter()
-        .map(|c| Series {
-            name: c.method.name().to_owned(),
-            mark: Mark::Points,
-            x: c.points.iter().map(|p| p.speed_m_s).collect(),
-            y: c.points.iter().map(|p| p.force_n).collect(),
-            ..Series::default()
-        })
-        .collect();
-    if let Some(c) = report.coefficients.iter().find(|c| Some(c.method) == report.recommended) {
-        let fastest = c.points.iter().map(|p| p.speed_m_s).fold(0.0, f64::max);
-        let slowest = c.points.iter().map(|p| p.speed_m_s).fold(0.0, f64::min);
-        let x: Vec<f64> = (0..=100).map(|i| slowest + (fastest - slowest) * f64::from(i) / 100.0).collect();
-        let [low, high] = c.interval_95.unwrap_or([c.value; 2]);
-        let curve = |d: f64| x.iter().map(|v| d * v * v.abs()).collect::<Vec<f64>>();
-        series.push(Series {
-            name: format!("D_d v|v|, {}", c.method.name()),
-            mark: Mark::Line,
-            y: curve(c.value),
-            low: x.iter().map(|v| (low * v * v.abs()).min(high * v * v.abs())).collect(),
-            high: x.iter().map(|v| (low * v * v.abs()).max(high * v * v.abs())).collect(),
-            x,
-        });
-    }
-    Chart {
-        name: "drag".to_owned(),
-        title: "Drag over speed".to_owned(),
-        caption:
-            "Drag of each steady window by method; the line is D_d v|v| of the recommended one with its 95 % band."
-                .to_owned(),
-        x_label: "speed [m/s]".to_owned(),
-        panels: vec![ChartPanel { y_label: "drag [N]".to_owned(), series, ..ChartPanel::default() }],
-        ..Chart::default()
-    }
 }
