@@ -34,6 +34,7 @@ pub mod long;
 pub mod motor;
 pub mod output_error;
 pub mod printed;
+pub mod record;
 mod regression;
 pub mod report;
 pub mod simulate;

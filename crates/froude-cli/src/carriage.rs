@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use froude::Error;
 use froude::carriage::calibrate;
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::carriage::servo::{ServoJob, coefficient_table, effective, flexible_table, identify, repeatability_table};
+use froude::carriage::servo::{ServoJob, coefficient_table, flexible_table, identify, repeatability_table};
 use froude::carriage::tune::{
     candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
 };
 use froude::fit::budget::Uncertain;
 use froude::methods::carriage::drag::calibration::{Jog, encoder_scale};
 use froude::methods::carriage::runs;
+use froude::methods::carriage::servo::report::effective;
 use froude::pipeline::{Input, Job};
 use froude::records::carriage::plan::{PlannedRun, Step};
 use froude::records::page::TextTable;
@@ -292,9 +293,8 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
                    "splits": f.splits.iter().map(|s| json!({"name": s.name, "is_identified": s.is_identified,
                        "share_of_motor": s.is_identified.then_some(s.share_of_motor), "interval_95": s.interval})).collect::<Vec<_>>()})
         });
-        return print::json(
-            &json!({"models": models, "two_mass": flexible, "findings": outcome.findings, "report": outcome.page}),
-        );
+        return print::json(&json!({"models": models, "two_mass": flexible, "findings": outcome.findings,
+                   "estimate": outcome.written.as_ref().map(|w| &w.estimate), "report": outcome.written.as_ref().map(|w| &w.report)}));
     }
     for model in &outcome.models {
         let error = froude::records::number::percent(model.report.relative_force_error);
@@ -318,7 +318,9 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
         print::text_table(&repeatability_table(&outcome.repeatability));
     }
     print::findings(&outcome.findings);
-    say!("\nReport: {}", outcome.page.display());
+    if let Some(written) = &outcome.written {
+        print::written(written);
+    }
     Ok(())
 }
 

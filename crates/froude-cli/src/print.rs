@@ -71,10 +71,15 @@ pub fn outcome(outcome: &Outcome, all: bool) {
         _ => {}
     }
     findings(&outcome.file.findings);
-    if let Some(Written { estimate, report, .. }) = &outcome.written {
-        say!("\nestimates {}", estimate.display());
-        say!("report    {}", report.display());
+    if let Some(written) = &outcome.written {
+        self::written(written);
     }
+}
+
+/// Where record and page lie.
+pub fn written(Written { estimate, report, .. }: &Written) {
+    say!("\nestimates {}", estimate.display());
+    say!("report    {}", report.display());
 }
 
 /// What a method says of all its results: its tables, then its sentences.

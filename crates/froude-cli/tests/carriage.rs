@@ -86,6 +86,24 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     let models = servo["models"].as_array().unwrap();
     assert_eq!(models.len(), 3);
     assert!(servo["two_mass"].is_object(), "{servo}");
+    let record = std::fs::read_to_string(servo["estimate"].as_str().unwrap()).unwrap();
+    let record: Value = serde_json::from_str(&record).unwrap();
+    let laws: Vec<&Value> = record["estimates"].as_array().unwrap().iter().map(|e| &e["law"]["name"]).collect();
+    assert_eq!(laws, ["servo_symmetric", "servo_asymmetric", "servo_over_position", "servo_two_mass"]);
+    let two_mass = &record["estimates"][3];
+    let of = |found: &Value, name: &str| {
+        let all = found["coefficients"].as_array().unwrap();
+        all.iter().find(|c| c["name"] == name).unwrap()["std_blocks"].as_f64().unwrap()
+    };
+    let load = &two_mass["coefficients"]["M"];
+    let (held, said) = (load["standard_uncertainty"].as_f64().unwrap(), of(&servo["two_mass"], "M"));
+    assert!((held / said - 1.0).abs() < 1e-12, "{held} {said}");
+    let part = |key: &str| load[key].as_f64().unwrap();
+    assert!((part("type_a").hypot(part("type_b")) / said - 1.0).abs() < 1e-9, "{load}");
+    assert!(
+        record["estimates"][0]["derived"]["J_eff"]["value"].is_number()
+            && !two_mass["data"].as_array().unwrap().is_empty()
+    );
 }
 
 #[test]
@@ -338,6 +356,55 @@ fn anyones_servo_log_is_identified_with_intervals() {
     assert_eq!(mass["name"], "M");
     assert!((mass["value"].as_f64().unwrap() - 95.1089).abs() < 0.1085, "{mass}");
     assert!(out.join("report.html").exists());
+}
+
+/// The halves of a record are two records of one axis: what they say of it is compared like any other estimates, with the same numbers as on the page.
+#[test]
+fn two_records_of_a_servo_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/emps");
+    let text_of = |name: &str| std::fs::read_to_string(example.join(name)).unwrap();
+    let log = text_of("emps.csv");
+    let (head, rows) = log.split_once('\n').unwrap();
+    let rows: Vec<&str> = rows.lines().collect();
+    let halves = rows.split_at(rows.len() / 2);
+    let mut records = Vec::new();
+    for (name, rows) in [("first", halves.0), ("second", halves.1)] {
+        let csv = folder.path().join(format!("{name}.csv"));
+        std::fs::write(&csv, format!("{head}\n{}\n", rows.join("\n"))).unwrap();
+        std::fs::write(csv.with_extension("toml"), text_of("emps.toml")).unwrap();
+        let found = json(&["carriage", "identify", text(&csv), "--json"]);
+        let path = found["estimate"].as_str().unwrap().to_owned();
+        let record: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        for (model, estimate) in found["models"].as_array().unwrap().iter().zip(record["estimates"].as_array().unwrap())
+        {
+            for said in model["coefficients"].as_array().unwrap() {
+                let name = said["name"].as_str().unwrap().replace('+', "_pos").replace('-', "_neg");
+                let held = &estimate["coefficients"][&name];
+                assert_eq!(
+                    (&said["value"], &said["interval_95"]),
+                    (&held["value"], &held["interval_95"]),
+                    "{said} {held}"
+                );
+            }
+            assert_eq!(
+                estimate["type_a"]["names"].as_array().unwrap().len(),
+                model["coefficients"].as_array().unwrap().len()
+            );
+            assert!(estimate["law"]["outputs"]["drive_force"]["formula"].as_str().unwrap().starts_with("M*v_y_dot + "));
+        }
+        assert_eq!(record["data"]["d1"]["role"], "table");
+        records.push(path);
+    }
+    let out = json(&["compare", &records[0], &records[1], "--json"]);
+    let c = &out["comparison"];
+    let mass = &c["coefficients"][0];
+    assert!(mass["coefficient"] == "M" && mass["e_n"].as_f64().unwrap().abs() < 3.0, "{mass}");
+    let joint = &c["joint"][0];
+    assert!(joint["model"] == "servo_symmetric" && joint["dof"] == 4 && joint["p"].is_number(), "{joint}");
+    assert_eq!(c["verdicts"].as_array().unwrap().len(), 2, "{c}");
+    let itself = json(&["compare", &records[0], &records[0], "--json"]);
+    assert!(itself["comparison"]["coefficients"][0]["e_n"].is_null(), "{itself}");
 }
 
 /// The drag of a carriage is a law like any other: set beside a table's, subtracted as a tare, the truth of a simulation.

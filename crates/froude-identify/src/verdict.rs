@@ -8,11 +8,17 @@ use froude_records::comparison::{Comparison, LargestCoefficient, LargestLoad, Ve
 /// Chance below which a joint statistic says that two estimates differ.
 const SIGNIFICANT: f64 = 0.05;
 
-/// A verdict for each pair of the estimates whose loads are predicted (the recommended ones, where there are several) that has an E_n or a p.
+/// A verdict for each pair that has an E_n or a p: of the estimates whose loads are predicted (the recommended ones, where there are several), or,
+/// where there are no loads, of all that share a coefficient.
 pub(crate) fn verdicts(c: &Comparison) -> Vec<Verdict> {
     let ids = c.load_sources();
-    let pairs = ids.iter().enumerate().flat_map(|(i, a)| ids[i + 1..].iter().map(move |b| [*a, *b]));
-    pairs.filter_map(|pair| verdict(c, pair)).collect()
+    let mut pairs: Vec<[&str; 2]> =
+        ids.iter().enumerate().flat_map(|(i, a)| ids[i + 1..].iter().map(move |b| [*a, *b])).collect();
+    if pairs.is_empty() {
+        pairs = c.coefficients.iter().map(|r| [r.first.source.as_str(), r.second.source.as_str()]).collect();
+        pairs.dedup();
+    }
+    pairs.into_iter().filter_map(|pair| verdict(c, pair)).collect()
 }
 
 fn verdict(c: &Comparison, pair: [&str; 2]) -> Option<Verdict> {
@@ -126,5 +132,12 @@ mod tests {
         assert!(all[0].agree && all[0].coefficient.is_none() && all[0].p.is_none());
         c.loads[0].e_n = Some(f64::NAN);
         assert!(verdicts(&c).is_empty());
+        // Parameters of a drive give no load on a body.
+        c = Comparison {
+            coefficients: vec![coefficient("M", Some(0.2)), coefficient("F_v", None)],
+            ..Comparison::default()
+        };
+        let all = verdicts(&c);
+        assert_eq!((all.len(), all[0].agree), (1, true), "{all:?}");
     }
 }

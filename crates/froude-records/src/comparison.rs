@@ -11,7 +11,7 @@ use crate::finding::Finding;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Comparison {
-    /// Whether the estimates whose loads are predicted agree, pair by pair.
+    /// Whether the estimates whose loads are predicted agree, pair by pair; without loads all that share a coefficient.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub verdicts: Vec<Verdict>,
     /// Coefficient by coefficient, pair by pair; same model and same name only.

@@ -11,6 +11,7 @@ use crate::servo::chain::{Chain, Rows};
 use crate::servo::error::ServoError;
 use crate::servo::interval::{Spread, Whiteness, over_runs, spread, whiteness};
 use crate::servo::log::ServoLog;
+use crate::servo::motor::MotorSide;
 use crate::servo::regression::least_squares;
 
 /// Fewest runs whose scatter is told.
@@ -170,6 +171,31 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
         Err(error @ ServoError::Alone { .. }) => by_blocks(rows, &error.to_string()),
         Err(error) => Err(error),
     }
+}
+
+/// Sums at the motor's shaft (MCD Table II) of a rigid model: J_eff, B_eff, C_eff.
+#[must_use]
+pub fn effective(report: &ServoReport, motor: &MotorSide) -> Vec<ServoCoefficient> {
+    let scale = motor.m_rad();
+    let moved = |from: &str, to: &str, unit: &'static str, factor: f64| {
+        report.coefficient(from).map(|c| ServoCoefficient {
+            name: to.to_owned(),
+            unit,
+            value: factor * c.value,
+            classical_std: factor * c.classical_std,
+            hac_std: factor * c.hac_std,
+            block_std: factor * c.block_std,
+            interval: c.interval.map(|x| factor * x),
+        })
+    };
+    [
+        moved("M", "J_eff", "kg m^2", scale * scale),
+        moved("F_v", "B_eff", "N m s/rad", scale * scale),
+        moved("F_c", "C_eff", "N m", scale),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Spread) -> ServoReport {

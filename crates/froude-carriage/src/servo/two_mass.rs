@@ -48,6 +48,9 @@ use crate::servo::report::ServoCoefficient;
 /// Mean and standard deviation of a fraction of which nothing is known.
 const KNOWS_NOTHING: [f64; 2] = [0.5, 0.288_675_134_594_812_9];
 
+/// Parameters at the chain: two masses, stiffness, damping, sums of viscous and of Coulomb friction.
+pub const CHAIN_PARAMETERS: usize = 6;
+
 /// Parameters of the iteration: logarithms of four, sums of two, fractions of two.
 const PARAMETERS: usize = 8;
 
@@ -147,6 +150,12 @@ pub struct FlexibleReport {
     ///
     /// `block_std` and the interval hold the declared inputs' uncertainties, the other two only scatter.
     pub coefficients: Vec<ServoCoefficient>,
+    /// Covariance of the first [`CHAIN_PARAMETERS`] of them, at the chain, from scatter.
+    pub scatter: Mat<f64>,
+    /// Degrees of freedom of each of these.
+    pub dof: Vec<f64>,
+    /// What the declared inputs and the prior of the splits add to it.
+    pub declared: Mat<f64>,
     /// Splits of friction between motor and load.
     pub splits: Vec<Split>,
     /// The axis with these parameters.
@@ -396,6 +405,9 @@ impl<'a> Record<'a> {
             Split { name, share_of_motor: theta[j], interval, is_identified: is_told(interval) }
         });
         Ok(FlexibleReport {
+            scatter: at_the_chain(&covariance.clustered.covariance, theta),
+            declared: at_the_chain(&covariance.known, theta),
+            dof: (0..CHAIN_PARAMETERS).map(|j| covariance.clustered.dof(&unit_vector(j, 1.0))).collect(),
             coefficients: self.coefficients(theta, &covariance),
             axis: self.axis(theta),
             is_apparent: self.options.gear == Gear::Undeclared,
@@ -539,6 +551,12 @@ impl<'a> Record<'a> {
         })
         .collect()
     }
+}
+
+/// Covariance of the parameters at the chain: the iteration's first four are logarithms of them.
+fn at_the_chain(covariance: &Mat<f64>, theta: &[f64]) -> Mat<f64> {
+    let scale = |j: usize| if j < 4 { theta[j].exp() } else { 1.0 };
+    Mat::from_fn(CHAIN_PARAMETERS, CHAIN_PARAMETERS, |i, j| scale(i) * scale(j) * covariance[(i, j)])
 }
 
 /// Whether an interval of a share says something: inside 0…1, and shorter than half of it.

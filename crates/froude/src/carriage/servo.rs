@@ -10,11 +10,14 @@ use froude_carriage::drag::steady::{SteadySettings, window};
 use froude_carriage::runs::{Runs, column, for_drag, mounted, mounts, read};
 use froude_carriage::servo::chain::Rows;
 use froude_carriage::servo::motor::MotorSide;
-use froude_carriage::servo::report::of_runs as of_several;
+use froude_carriage::servo::record::{self, TWO_MASS};
+use froude_carriage::servo::report::{effective, of_runs as of_several};
 use froude_carriage::servo::two_mass::FlexibleReport;
 use froude_carriage::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo};
 use froude_carriage::two_masses::{motor_of, pulses, servo_log, two_masses};
 use froude_fit::series::mean;
+use froude_identify::source::ReadFile;
+use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
@@ -22,7 +25,11 @@ use froude_records::run::{BodyState, Declared, Role, RunLog, import_run};
 use froude_records::units::Dimension;
 use froude_report::document::Document;
 
+use froude_carriage::source::files_of;
+
 use crate::Error;
+use crate::data_files::DataFiles;
+use crate::results::{self, Written};
 
 /// What to identify.
 #[derive(Debug, Clone)]
@@ -78,11 +85,13 @@ pub struct ServoOutcome {
     pub motor: Option<MotorSide>,
     /// What is doubtful.
     pub findings: Vec<Finding>,
-    /// Where the page lies.
-    pub page: PathBuf,
+    /// The record: an estimate for each model.
+    pub file: EstimateFile,
+    /// Where record and page lie; `None` before they are written.
+    pub written: Option<Written>,
 }
 
-/// Identifies whatever the input allows and writes `report.html`.
+/// Identifies whatever the input allows and writes `estimate.json` and `report.html`.
 ///
 /// # Errors
 ///
@@ -96,14 +105,15 @@ pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
         None => first.with_file_name(format!("{}-servo", first.file_stem().unwrap_or_default().to_string_lossy())),
     };
     let out = job.out.clone().unwrap_or_else(beside);
-    crate::results::can_be_written(&out)?;
+    results::can_be_written(&out)?;
     let mut outcome = match &runs {
         Some(runs) => of_runs(runs)?,
         None => of_table(&first, job.sidecar.as_deref())?,
     };
-    outcome.page = out.join("report.html");
+    outcome.file.findings.clone_from(&outcome.findings);
+    outcome.file.versions = results::versions();
     let html = document(&outcome, &first, job.date.clone()).html()?;
-    crate::results::write_page(&out, &html)?;
+    outcome.written = Some(results::write(&out, &outcome.file, &[], &[], &html)?);
     Ok(outcome)
 }
 
@@ -130,7 +140,13 @@ fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<ServoOutcome, Error> 
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
     let mut findings = told(&models, imported.findings);
     findings.extend(not_fitted);
+    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let estimates = models.iter().map(|m| record::rigid(&name, &m.name, &m.report, gain_n_v, None)).collect();
+    let mut files = vec![ReadFile::new(path.to_owned(), "table")];
+    let sidecar = sidecar.map_or_else(|| path.with_extension("toml"), Path::to_owned);
+    files.extend(sidecar.exists().then(|| ReadFile::new(sidecar, "sidecar")));
     Ok(ServoOutcome {
+        file: recorded(estimates, &files, &|_, role| role == "table")?,
         models,
         rigid_mounts: Vec::new(),
         flexible: None,
@@ -138,8 +154,22 @@ fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<ServoOutcome, Error> 
         repeatability: Vec::new(),
         motor: None,
         findings,
-        page: PathBuf::new(),
+        written: None,
     })
+}
+
+/// A record of these estimates with the files that were read; `observes` says which of them an estimate comes from, by their roles.
+fn recorded(
+    mut estimates: Vec<Estimate>,
+    read: &[ReadFile],
+    observes: &dyn Fn(&Estimate, &str) -> bool,
+) -> Result<EstimateFile, Error> {
+    let named = |path: &Path| path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let mut files = DataFiles::new(&named);
+    for estimate in &mut estimates {
+        estimate.data = files.keys_of(read, |role| observes(estimate, role))?;
+    }
+    Ok(EstimateFile { data: files.into_map(), ..EstimateFile::of(estimates) })
 }
 
 fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
@@ -226,7 +256,17 @@ fn of_runs(runs: &Runs) -> Result<ServoOutcome, Error> {
         findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
     }
     let repeatability = repeatability(&slow, &motor)?;
+    let name = runs.campaign.as_ref().map_or_else(|| runs.results("servo"), |c| PathBuf::from(&c.name));
+    let name = name.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let gain_n_v = motor.force_per_volt_n_v();
+    let rigid = models.iter().map(|m| record::rigid(&name, &m.name, &m.report, gain_n_v, Some(&motor)));
+    let estimates = rigid.chain(flexible.as_ref().map(|report| record::two_mass(&name, report))).collect();
+    let of_slow = slow.first().map(|log| log.meta.role.name());
+    let of_model = |estimate: &Estimate, role: &str| {
+        if estimate.law.name == TWO_MASS { role == Role::Excitation.name() } else { Some(role) == of_slow }
+    };
     Ok(ServoOutcome {
+        file: recorded(estimates, &files_of(runs), &of_model)?,
         models,
         rigid_mounts: mounts(slow.iter().copied()),
         flexible,
@@ -234,7 +274,7 @@ fn of_runs(runs: &Runs) -> Result<ServoOutcome, Error> {
         repeatability,
         motor: Some(motor),
         findings,
-        page: PathBuf::new(),
+        written: None,
     })
 }
 
@@ -412,31 +452,6 @@ pub fn flexible_table(report: &FlexibleReport) -> TextTable {
         }
     }
     table
-}
-
-/// Sums at the motor's shaft (MCD Table II) of a rigid model: J_eff, B_eff, C_eff.
-#[must_use]
-pub fn effective(report: &ServoReport, motor: &MotorSide) -> Vec<ServoCoefficient> {
-    let scale = motor.m_rad();
-    let moved = |from: &str, to: &str, unit: &'static str, factor: f64| {
-        report.coefficient(from).map(|c| ServoCoefficient {
-            name: to.to_owned(),
-            unit,
-            value: factor * c.value,
-            classical_std: factor * c.classical_std,
-            hac_std: factor * c.hac_std,
-            block_std: factor * c.block_std,
-            interval: c.interval.map(|x| factor * x),
-        })
-    };
-    [
-        moved("M", "J_eff", "kg m^2", scale * scale),
-        moved("F_v", "B_eff", "N m s/rad", scale * scale),
-        moved("F_c", "C_eff", "N m", scale),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
 }
 
 fn document(outcome: &ServoOutcome, input: &Path, date: Option<String>) -> Document {

@@ -1,0 +1,250 @@
+//! Models of an axis as estimates: coefficients with their covariance, and what they come to at the motor's shaft.
+//!
+//! The law gives the force of the drive at the chain, ideal gear, on the motion along y:
+//!
+//! | law                   | `drive_force` [N]                                                             |
+//! |-----------------------|-------------------------------------------------------------------------------|
+//! | `servo_symmetric`     | `M v̇ + F_v v + F_c sgn v + offset`                                            |
+//! | `servo_asymmetric`    | the same with `F_v_pos`, `F_c_pos` for v > 0 and `F_v_neg`, `F_c_neg` for v < 0 |
+//! | `servo_over_position` | `F_c` a line between knots over the travel: no formula                         |
+//! | `servo_two_mass`      | motor and load with a chain between them (MCD eq. 2 and 3): no formula          |
+//!
+//! The force per volt of the rigid models is taken as exact: an error of it scales all coefficients alike.
+
+use froude_fit::faer::Mat;
+use froude_fit::propagate::effective_dof;
+use froude_records::estimate::{
+    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, OWN, Output,
+    Range, SharedError, Signs, Status, TypeA,
+};
+use indexmap::IndexMap;
+
+use crate::servo::motor::MotorSide;
+use crate::servo::report::{ServoCoefficient, ServoReport};
+use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport};
+
+/// Name of the law of two masses.
+pub const TWO_MASS: &str = "servo_two_mass";
+
+/// The load that the laws give.
+const LOAD: &str = "drive_force";
+
+/// A rigid model as an estimate of `source`; `friction` names its law, `force_per_volt_n_v` is what made volts into forces.
+#[must_use]
+pub fn rigid(
+    source: &str,
+    friction: &str,
+    report: &ServoReport,
+    force_per_volt_n_v: f64,
+    motor: Option<&MotorSide>,
+) -> Estimate {
+    let method = format!("servo_{}", friction.replace(' ', "_"));
+    let names: Vec<String> = report.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
+    let coefficients = report.coefficients.iter().zip(&names).zip(&report.spread.dof).map(|((c, name), dof)| {
+        let label = (*name != c.name).then(|| c.name.clone());
+        (name.clone(), Coefficient { label, ..coefficient(c, finite(*dof)) })
+    });
+    let formula = formula(&names);
+    let constants = IndexMap::from([("force_per_volt".to_owned(), measured(force_per_volt_n_v, "N/V"))]);
+    let fewest = report.spread.dof.iter().copied().reduce(f64::min).and_then(finite);
+    Estimate {
+        id: format!("{source}/{method}"),
+        source: source.to_owned(),
+        method: MethodUsed {
+            name: method.clone(),
+            version: 1,
+            words: format!("linear least squares of filtered, decimated rows; friction {friction}"),
+        },
+        law: law(&method, formula, constants),
+        coefficients: coefficients.collect(),
+        type_a: type_a(names, &report.spread.covariance, &report.spread.dof, report.spread.pieces()),
+        clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
+        sigma: IndexMap::from([(LOAD.to_owned(), measured(report.sigma_n, "N"))]),
+        dof: IndexMap::from([(LOAD.to_owned(), fewest)]),
+        n_observations: report.n_rows,
+        derived: effective(report, motor),
+        validity: validity(report),
+        diagnostics: Diagnostics {
+            condition_number: report.condition_number,
+            relative_residual: IndexMap::from([(LOAD.to_owned(), report.relative_force_error)]),
+            notes: std::iter::once(
+                "the force per volt is taken as exact: an error of it scales all coefficients alike".to_owned(),
+            )
+            .chain(report.findings.iter().cloned())
+            .collect(),
+            ..Diagnostics::default()
+        },
+        ..on_the_chain()
+    }
+}
+
+/// Two masses with a chain between them as an estimate of `source`.
+#[must_use]
+pub fn two_mass(source: &str, report: &FlexibleReport) -> Estimate {
+    let method = TWO_MASS;
+    let (own, made) = report.coefficients.split_at(CHAIN_PARAMETERS);
+    let names: Vec<String> = own.iter().map(|c| c.name.clone()).collect();
+    // The declared inputs are known, not estimated.
+    let dof = |j: usize| {
+        let parts = [(report.scatter[(j, j)], report.dof[j]), (report.declared[(j, j)], f64::INFINITY)];
+        finite(effective_dof(&parts))
+    };
+    let coefficients = own.iter().enumerate().map(|(j, c)| {
+        let root = |m: &Mat<f64>| m[(j, j)].max(0.0).sqrt();
+        let parts = Coefficient {
+            type_a: Some(root(&report.scatter)),
+            type_b: Some(root(&report.declared)),
+            ..coefficient(c, dof(j))
+        };
+        (c.name.clone(), parts)
+    });
+    let identity = (0..CHAIN_PARAMETERS).map(|i| (0..CHAIN_PARAMETERS).map(|j| f64::from(u8::from(i == j))).collect());
+    let declared = SharedError {
+        name: "declared inputs of the drive (efficiency, drag, delay, force per volt) and the prior of the splits"
+            .to_owned(),
+        quantity: "drive".to_owned(),
+        kind: ErrorKind::B,
+        covariance: rows_of(&report.declared),
+        dof: None,
+        limits: None,
+        sensitivity: identity.collect(),
+    };
+    let derived = made.iter().map(|c| (c.name.clone(), derived(c, String::new())));
+    Estimate {
+        id: format!("{source}/{method}"),
+        source: source.to_owned(),
+        method: MethodUsed {
+            name: method.to_owned(),
+            version: 1,
+            words: "prediction error of the motor's position, two masses and a chain".to_owned(),
+        },
+        law: law(method, None, IndexMap::new()),
+        coefficients: coefficients.collect(),
+        type_a: type_a(names, &report.scatter, &report.dof, "CR2 over stretches of the record".to_owned()),
+        errors: IndexMap::from([(format!("{OWN}drive"), declared)]),
+        n_observations: report.n_rows,
+        derived: derived.collect(),
+        diagnostics: Diagnostics { notes: report.findings.clone(), ..Diagnostics::default() },
+        ..on_the_chain()
+    }
+}
+
+/// What all models of an axis have in common.
+fn on_the_chain() -> Estimate {
+    Estimate {
+        kind: "towing".to_owned(),
+        frame: Frame { words: "y along the travel of the carriage".to_owned(), ..Frame::chain() },
+        signs: Signs(
+            "force of the drive on the carriage at the chain, ideal gear; speed of the carriage along y".to_owned(),
+        ),
+        ..Estimate::default()
+    }
+}
+
+fn law(name: &str, formula: Option<String>, constants: IndexMap<String, Measured>) -> Law {
+    let inputs = [("v_y", "m/s"), ("v_y_dot", "m/s^2")].map(|(name, unit)| (name.to_owned(), unit.to_owned()));
+    Law {
+        name: name.to_owned(),
+        version: 1,
+        inputs: inputs.into(),
+        outputs: IndexMap::from([(LOAD.to_owned(), Output { unit: "N".to_owned(), formula })]),
+        constants,
+    }
+}
+
+/// A name as a formula can have it: a sign becomes a word.
+fn in_formulas(name: &str) -> String {
+    match name.strip_suffix(['+', '-']) {
+        Some(stem) => format!("{stem}_{}", if name.ends_with('+') { "pos" } else { "neg" }),
+        None => name.to_owned(),
+    }
+}
+
+/// The law over v_y and v_y_dot; `None` with a term that no formula gives, as a map over position.
+fn formula(names: &[String]) -> Option<String> {
+    let of = |name: &String| {
+        Some(match name.as_str() {
+            "M" => "M*v_y_dot",
+            "F_v" => "F_v*v_y",
+            "F_c" => "F_c*sign(v_y)",
+            "F_v_pos" => "0.5*F_v_pos*(v_y + abs(v_y))",
+            "F_v_neg" => "0.5*F_v_neg*(v_y - abs(v_y))",
+            "F_c_pos" => "0.5*F_c_pos*(sign(v_y) + 1)",
+            "F_c_neg" => "0.5*F_c_neg*(sign(v_y) - 1)",
+            "offset" => "offset",
+            _ => return None,
+        })
+    };
+    Some(names.iter().map(of).collect::<Option<Vec<_>>>()?.join(" + "))
+}
+
+fn coefficient(c: &ServoCoefficient, dof: Option<f64>) -> Coefficient {
+    Coefficient {
+        label: None,
+        value: Some(c.value),
+        unit: c.unit.to_owned(),
+        status: Status::Free,
+        nuisance: c.name == "offset",
+        standard_uncertainty: finite(c.block_std),
+        type_a: finite(c.block_std),
+        type_b: finite(c.block_std).map(|_| 0.0),
+        interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
+        effective_dof: dof,
+    }
+}
+
+fn derived(c: &ServoCoefficient, formula: String) -> Derived {
+    Derived {
+        formula,
+        value: Some(c.value),
+        unit: c.unit.to_owned(),
+        standard_uncertainty: finite(c.block_std),
+        interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
+    }
+}
+
+/// J_eff, B_eff and C_eff, where the drive is declared.
+fn effective(report: &ServoReport, motor: Option<&MotorSide>) -> IndexMap<String, Derived> {
+    let Some(motor) = motor else { return IndexMap::new() };
+    let ratio = motor.m_rad();
+    let of = |c: ServoCoefficient| {
+        let (from, power) = match c.name.as_str() {
+            "J_eff" => ("M", 2),
+            "B_eff" => ("F_v", 2),
+            _ => ("F_c", 1),
+        };
+        (c.name.clone(), derived(&c, format!("{from}*({ratio:e} m/rad)^{power}")))
+    };
+    crate::servo::report::effective(report, motor).into_iter().map(of).collect()
+}
+
+/// Range of the speeds and accelerations of the rows, from the columns of the regression.
+fn validity(report: &ServoReport) -> IndexMap<String, Range> {
+    let range = |name: &str, key: &str, unit: &str| {
+        let j = report.rows.names.iter().position(|(own, _)| own == name)?;
+        let column = &report.rows.columns[j];
+        let low = column.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (low <= high).then(|| (key.to_owned(), Range { low, high, unit: unit.to_owned() }))
+    };
+    [range("M", "v_y_dot", "m/s^2"), range("F_v", "v_y", "m/s")].into_iter().flatten().collect()
+}
+
+/// Scatter as a record holds it; `None` where it is not finite.
+fn type_a(names: Vec<String>, covariance: &Mat<f64>, dof: &[f64], kind: String) -> Option<TypeA> {
+    let matrix = rows_of(covariance);
+    let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
+    is_finite.then(|| TypeA { names, matrix, dof: dof.iter().map(|d| finite(*d)).collect(), kind })
+}
+
+fn rows_of(m: &Mat<f64>) -> Vec<Vec<f64>> {
+    (0..m.nrows()).map(|i| (0..m.ncols()).map(|j| m[(i, j)]).collect()).collect()
+}
+
+fn finite(x: f64) -> Option<f64> {
+    Some(x).filter(|x| x.is_finite())
+}
+
+fn measured(value: f64, unit: &str) -> Measured {
+    Measured { value, unit: unit.to_owned() }
+}
