@@ -211,9 +211,25 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> Dr
     setup
 }
 
+/// Standard uncertainty of a campaign's weights, as a part; 0.1 % where it declares none, as of shop weights.
+#[must_use]
+pub fn declared_weight_relative(campaign: Option<&Campaign>) -> f64 {
+    let plan = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref());
+    plan.and_then(|p| p.calibration.as_ref()).map_or(1e-3, weight_relative)
+}
+
 /// Standard uncertainty of the weights, as a part: that of the heaviest, which tells the most.
 pub fn weight_relative(calibration: &froude_records::carriage::Calibration) -> f64 {
     calibration.weight_standard_n / calibration.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max)
+}
+
+/// Key of the error of the declared weights: campaigns that declare the same weights hung the same ones.
+#[must_use]
+pub fn weights_key(campaign: Option<&Campaign>) -> Option<String> {
+    let plan = campaign?.carriage.as_ref()?.plan.as_ref()?;
+    let calibration = plan.calibration.as_ref()?;
+    let text = format!("{:?} {:e}", calibration.weights_n, calibration.weight_standard_n);
+    Some(format!("weights/{}", short_key(text.as_bytes())))
 }
 
 /// Calibration from the runs with weights; a finding where there are such runs and they do not calibrate.
@@ -231,6 +247,7 @@ pub fn calibration_of(
 }
 
 /// The same from what such runs showed.
+#[must_use]
 pub fn calibration_from(
     readings: &Readings,
     campaign: Option<&Campaign>,
@@ -241,7 +258,7 @@ pub fn calibration_from(
     }
     let declared =
         campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref()).and_then(|p| p.calibration.as_ref());
-    let weight_relative = declared.map_or(1e-3, weight_relative);
+    let weight_relative = declared_weight_relative(campaign);
     let asked = CalibrationSetup {
         ideal_force_per_volt_n: setup.ideal_force_per_volt_n,
         weight_relative,

@@ -123,7 +123,7 @@ pub enum CarriageJob {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Newtons a volt from known weights over a pulley, polarity from the jogs.
+    /// Force per volt from known weights over a pulley, polarity from the jogs.
     Calibrate {
         /// Folders of runs, or runs (.mcap).
         #[arg(required = true)]
@@ -131,6 +131,9 @@ pub enum CarriageJob {
         /// A campaign other than the copy that lies with the runs.
         #[arg(long)]
         campaign: Option<PathBuf>,
+        /// Folder of the results [default: beside what is named, and called after it: RUNS-calibration].
+        #[arg(long)]
+        out: Option<PathBuf>,
         /// A distance that was measured on the carriage; needs --counted.
         #[arg(long, requires = "counted", value_name = "QUANTITY")]
         measured: Option<String>,

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use froude::Error;
-use froude::carriage::calibrate;
+use froude::carriage::calibrate::{CalibrationJob, calibrate, polarity};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::servo::{ServoJob, coefficient_table, flexible_table, identify, repeatability_table};
 use froude::carriage::tune::{
@@ -26,6 +26,7 @@ use crate::args::{CarriageJob, Experiment};
 use crate::mistaken::{self, Takes};
 use crate::out::say;
 use crate::print;
+use crate::side_by_side::verdicts;
 use crate::stage::Stage;
 
 /// `froude run`.
@@ -253,12 +254,13 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
             let job = Job { out, ..Job::of(Input::Runs { paths: runs.clone(), campaign }) };
             crate::identify(job, is_json, false).map_err(|error| mistaken::DRAG.explain(error, &runs))
         }
-        CarriageJob::Calibrate { runs, campaign, measured, measured_standard, counted } => {
+        CarriageJob::Calibrate { runs, campaign, out, measured, measured_standard, counted } => {
             let explain = |error| mistaken::CALIBRATE.explain(error, &runs);
             if let Some(measured) = measured {
                 scale(&runs, &measured, &measured_standard, &counted).map_err(explain)?;
             }
-            calibration(&runs, campaign, is_json).map_err(explain)
+            let date = Some(crate::today());
+            calibration(&CalibrationJob { runs: runs.clone(), campaign, out, date }, is_json).map_err(explain)
         }
         CarriageJob::Tune(e) => tuning(e, is_json),
         CarriageJob::Resonance(e) => modes(e, is_json),
@@ -324,8 +326,8 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
     Ok(())
 }
 
-fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
-    let outcome = calibrate::calibrate(paths, campaign)?;
+fn calibration(job: &CalibrationJob, is_json: bool) -> Result<(), Error> {
+    let outcome = calibrate(job)?;
     if is_json {
         let calibration = outcome.calibration.as_ref().map(|c| {
             json!({"force_per_volt_n": c.force_per_volt.force_per_volt_n.value,
@@ -338,15 +340,13 @@ fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> R
             .iter()
             .map(|j| json!({"run": j.id, "command_v": j.command_v, "way_m": j.way_m, "is_right": j.verdict == Jog::Right}))
             .collect();
-        return print::json(&json!({"calibration": calibration, "jogs": jogs, "findings": outcome.findings}));
+        let written = outcome.written.as_ref();
+        return print::json(&json!({"calibration": calibration, "jogs": jogs, "findings": outcome.file_findings(),
+                                   "estimate": written.map(|w| &w.estimate), "report": written.map(|w| &w.report)}));
     }
     for j in &outcome.jogs {
-        let told = match j.verdict {
-            Jog::Right => "right".to_owned(),
-            Jog::Reversed { after_m } => format!("REVERSED, seen after {:.2} mm", 1e3 * after_m),
-            Jog::NoMotion { .. } => "not told: it did not move".to_owned(),
-        };
-        say!("{}: {:.2} V moved {:.2} mm: polarity {told}", j.id, j.command_v, 1e3 * j.way_m);
+        let polarity = polarity(&j.verdict);
+        say!("{}: {:.2} V moved {:.2} mm: polarity {polarity}", j.id, j.command_v, 1e3 * j.way_m);
     }
     if let Some(c) = &outcome.calibration {
         use froude::records::number::{interval, short_form};
@@ -368,7 +368,13 @@ fn calibration(paths: &[PathBuf], campaign: Option<PathBuf>, is_json: bool) -> R
             say!("{note}");
         }
     }
-    print::findings(&outcome.findings);
+    if let Some(comparison) = &outcome.file.comparison {
+        verdicts(comparison);
+    }
+    print::findings(outcome.file_findings());
+    if let Some(written) = &outcome.written {
+        print::written(written);
+    }
     Ok(())
 }
 

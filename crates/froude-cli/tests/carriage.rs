@@ -81,6 +81,22 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     let efficiency = known["calibration"]["efficiency"].as_f64().unwrap();
     assert!((efficiency - 0.8).abs() < 0.03, "{known}");
     assert!(known["jogs"].as_array().unwrap().iter().all(|j| j["is_right"] == true), "{known}");
+    let record: Value =
+        serde_json::from_str(&std::fs::read_to_string(known["estimate"].as_str().unwrap()).unwrap()).unwrap();
+    let calibrated = &record["estimates"][0]["coefficients"]["force_per_volt"];
+    let part = |key: &str| calibrated[key].as_f64().unwrap();
+    assert_eq!(calibrated["value"], known["calibration"]["force_per_volt_n"]);
+    assert!((part("type_a").hypot(part("type_b")) / part("standard_uncertainty") - 1.0).abs() < 1e-9, "{calibrated}");
+    let errors = record["estimates"][0]["errors"].as_object().unwrap();
+    assert!(errors.keys().all(|key| key.starts_with("weights/")), "{errors:?}");
+    // The drive declares a gear of 0.8 ± 0.05: the weights say the same, better.
+    let declared = &record["estimates"][1]["coefficients"]["force_per_volt"];
+    assert!(declared["standard_uncertainty"].as_f64().unwrap() > 2.0 * part("standard_uncertainty"), "{declared}");
+    let rows = record["comparison"]["coefficients"].as_array().unwrap();
+    assert!(rows.len() == 1 && rows[0]["e_n"].as_f64().unwrap().abs() < 1.0, "{rows:?}");
+    assert_eq!(record["comparison"]["verdicts"][0]["agree"], true);
+    let page = std::fs::read_to_string(known["report"].as_str().unwrap()).unwrap();
+    assert!(page.contains("Force per volt") && page.contains(" agree within their uncertainties"));
 
     let servo = json(&["carriage", "identify", text(&runs), "--json"]);
     let models = servo["models"].as_array().unwrap();

@@ -22,6 +22,8 @@ use froude_fit::series::mean;
 use froude_fit::{CovarianceKind, Fit, Options, Prior, Problem, fit};
 use froude_records::text::counted;
 
+pub mod record;
+
 use super::error::DragError;
 use super::fsm::reach;
 use super::run::{DragRun, RunKind};
@@ -68,6 +70,8 @@ pub struct Calibration {
     pub efficiency: Uncertain,
     /// Part of the standard uncertainty from the scatter of the runs and the pulley, N/V.
     pub type_a: f64,
+    /// Degrees of freedom of that part.
+    pub type_a_dof: f64,
     /// Pulley's loss: as declared, sharpened by light weights both ways.
     pub pulley_loss: Uncertain,
     /// Whether any run lowered a weight under power.
@@ -206,6 +210,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
         interval_95: [k - combined.expanded, k + combined.expanded],
         efficiency: Uncertain { value: k / ideal, standard: force.standard / ideal, dof: force.dof },
         type_a,
+        type_a_dof: inverse.dof,
         pulley_loss,
         is_pulley_measured,
         friction_n: friction_v * k,

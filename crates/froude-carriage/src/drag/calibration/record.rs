@@ -1,0 +1,129 @@
+//! The force per volt as an estimate: calibrated with known weights, and as the constants of the drive declare it.
+//!
+//! Two calibrations whose campaigns declare the same weights have the error of the weights in common, by its key.
+
+use froude_records::estimate::{
+    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, MethodUsed, OWN, Output, SharedError,
+    Signs, Status, TypeA,
+};
+use indexmap::IndexMap;
+
+use super::Calibration;
+use crate::drag::run::{DragSetup, Efficiency, UNDECLARED_EFFICIENCY};
+
+/// Name of the coefficient and of its law: `drive_force = force_per_volt · command`.
+const FORCE_PER_VOLT: &str = "force_per_volt";
+
+/// The calibration as an estimate of `source`; `weight_relative` is the standard uncertainty of the weights as a part, `weights_key` the key of
+/// that error where the campaign declares them.
+#[must_use]
+pub fn calibrated(source: &str, c: &Calibration, weight_relative: f64, weights_key: Option<String>) -> Estimate {
+    let k = c.force_per_volt.force_per_volt_n;
+    let from_weights = k.value * weight_relative;
+    let weights = SharedError {
+        name: "known weights".to_owned(),
+        quantity: "hung_weight".to_owned(),
+        kind: ErrorKind::B,
+        covariance: vec![vec![from_weights * from_weights]],
+        dof: None,
+        limits: None,
+        sensitivity: vec![vec![1.0]],
+    };
+    let coefficient = Coefficient {
+        label: None,
+        value: Some(k.value),
+        unit: "N/V".to_owned(),
+        status: Status::Free,
+        nuisance: false,
+        standard_uncertainty: Some(k.standard),
+        type_a: Some(c.type_a),
+        type_b: Some(from_weights),
+        interval_95: Some(c.interval_95),
+        effective_dof: finite(k.dof),
+    };
+    let efficiency = Derived {
+        formula: format!("{FORCE_PER_VOLT}/{:e} N/V", k.value / c.efficiency.value),
+        value: Some(c.efficiency.value),
+        unit: "1".to_owned(),
+        standard_uncertainty: Some(c.efficiency.standard),
+        interval_95: Some(c.interval_95.map(|x| x * c.efficiency.value / k.value)),
+    };
+    Estimate {
+        type_a: Some(TypeA {
+            names: vec![FORCE_PER_VOLT.to_owned()],
+            matrix: vec![vec![c.type_a * c.type_a]],
+            dof: vec![finite(c.type_a_dof)],
+            kind: "HC3, the declared loss of the pulley as a prior".to_owned(),
+        }),
+        errors: IndexMap::from([(weights_key.unwrap_or_else(|| format!("{OWN}weights")), weights)]),
+        clusters: Some(Clusters { by: "run".to_owned(), n: c.used }),
+        n_observations: c.used,
+        derived: IndexMap::from([("efficiency".to_owned(), efficiency)]),
+        diagnostics: Diagnostics { notes: c.notes.clone(), ..Diagnostics::default() },
+        recommended: true,
+        reason: Some("known weights say it, gear and chain included".to_owned()),
+        ..estimate(source, "calibration", "least squares of the command over known weights, both ways", coefficient)
+    }
+}
+
+/// What the constants of the drive declare: (n/R) K_T K_amp times the gear's efficiency, which lies anywhere in
+/// [`UNDECLARED_EFFICIENCY`] where nobody declares it.
+#[must_use]
+pub fn declared(source: &str, setup: &DragSetup) -> Estimate {
+    let ideal = setup.ideal_force_per_volt_n;
+    let constants = setup.torque_constant_relative.hypot(setup.speed_scale_relative);
+    let (efficiency, of_gear) = match setup.efficiency {
+        Efficiency::Declared(e) => (e.value, e.standard),
+        Efficiency::Undeclared => {
+            let [low, high] = UNDECLARED_EFFICIENCY;
+            // Uniform between the two (GUM 4.3.7).
+            (0.5 * (low + high), (high - low) / 12.0_f64.sqrt())
+        }
+    };
+    let standard = ideal * of_gear.hypot(efficiency * constants);
+    let coefficient = Coefficient {
+        label: None,
+        value: Some(ideal * efficiency),
+        unit: "N/V".to_owned(),
+        status: Status::Fixed,
+        nuisance: false,
+        standard_uncertainty: Some(standard),
+        type_a: Some(0.0),
+        type_b: Some(standard),
+        interval_95: None,
+        effective_dof: None,
+    };
+    estimate(
+        &format!("{source}, declared"),
+        "declared",
+        "the constants of the drive, as they are declared",
+        coefficient,
+    )
+}
+
+fn estimate(source: &str, method: &str, words: &str, coefficient: Coefficient) -> Estimate {
+    let output = Output { unit: "N".to_owned(), formula: None };
+    Estimate {
+        id: format!("{source}/{FORCE_PER_VOLT}"),
+        source: source.to_owned(),
+        kind: "towing".to_owned(),
+        method: MethodUsed { name: method.to_owned(), version: 1, words: words.to_owned() },
+        frame: Frame { words: "y along the travel of the carriage".to_owned(), ..Frame::chain() },
+        signs: Signs(
+            "force of the drive on the carriage at the chain per volt of its command, driving forward".to_owned(),
+        ),
+        law: Law {
+            name: FORCE_PER_VOLT.to_owned(),
+            version: 1,
+            inputs: IndexMap::from([("command".to_owned(), "V".to_owned())]),
+            outputs: IndexMap::from([("drive_force".to_owned(), output)]),
+            constants: IndexMap::new(),
+        },
+        coefficients: IndexMap::from([(FORCE_PER_VOLT.to_owned(), coefficient)]),
+        ..Estimate::default()
+    }
+}
+
+fn finite(x: f64) -> Option<f64> {
+    Some(x).filter(|x| x.is_finite())
+}
