@@ -8,6 +8,7 @@ use crate::drag::coefficient::Method;
 use crate::drag::report::{DragReport, drag_by};
 use crate::drag::run::{self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget};
 use froude_fit::budget::Uncertain;
+use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_identify::method::MethodError;
 use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
@@ -20,9 +21,6 @@ use crate::runs::{Runs, density_kg_m3, for_drag};
 use crate::two_masses::two_masses;
 
 pub mod page;
-
-/// Standard acceleration of gravity, m/s².
-const G_M_S2: f64 = 9.80665;
 
 /// A calibration that knows newtons a volt to less than this part is none.
 const USELESS: f64 = 0.2;
@@ -205,7 +203,7 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> Dr
     let strut = carriage.and_then(|c| c.plan.as_ref()).and_then(|p| p.strut_drag_n_s2_m2);
     setup.strut_n_s2_m2 = strut.map(|s| Uncertain::new(s.value, s.standard_uncertainty));
     setup.ballast = match carriage.and_then(|c| c.plan.as_ref()).map(|p| p.is_ballasted) {
-        Some(false) => Ballast::Unballasted { unloaded_n: G_M_S2 * displaced_kg.unwrap_or(0.0), rolling: None },
+        Some(false) => Ballast::Unballasted { unloaded_n: GRAVITY_M_S2 * displaced_kg.unwrap_or(0.0), rolling: None },
         _ => Ballast::Matched { carried_kg: displaced_kg.map(|kg| Uncertain::new(kg, BALLAST_RELATIVE * kg)) },
     };
     setup

@@ -41,6 +41,7 @@
 // Matrix loops read like the formula with indices.
 #![allow(clippy::needless_range_loop)]
 
+pub mod autocorrelation;
 mod block;
 pub mod bootstrap;
 pub mod bounded;

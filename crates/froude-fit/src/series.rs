@@ -3,8 +3,9 @@
 //! Samples of a steady force are correlated (friction wanders over tenths of a second), so that n of them are worth only n/(2τ) independent ones, τ
 //! the integrated autocorrelation time in samples.
 //!
-//! **Source.** A. D. Sokal, Monte Carlo Methods in Statistical Mechanics (1997), ch. 3: automatic windowing, τ summed
-//! up to the first lag beyond a few τ. What the subtracted mean hides is put back (our derivation).
+//! **Source.** As [`crate::autocorrelation`].
+
+use crate::autocorrelation::integrated_time_about_mean;
 
 /// A trend is told beyond this many of its standard uncertainties.
 const TREND_TOLD: f64 = 3.0;
@@ -15,10 +16,6 @@ const TAPER_COST: f64 = 0.6875 / 0.5625;
 /// Most blocks that a series is averaged to before its correlation is taken: 500 resolve a correlation time of a
 /// hundredth of the window, below which it does not matter.
 const MOST_BLOCKS: usize = 500;
-/// Lags summed, in autocorrelation times: exp(−4) of an exponential correlation is left out.
-const SOKAL: f64 = 4.0;
-/// A correlation time is enlarged at most by the inverse of this for what the mean hides.
-const LEAST_SHOWN: f64 = 0.25;
 
 /// Mean of a correlated series.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +75,7 @@ pub fn mean(series: &[f64], step_s: f64) -> Mean {
     let m = blocks.len();
     let line = Line::through(&blocks);
     let left: Vec<f64> = blocks.iter().map(|x| x - line.middle).collect();
-    let tau = correlation_blocks(&left);
+    let tau = integrated_time_about_mean(&left);
     // The mean taken off hides 2τ/m of the variance.
     let shown = (1.0 - 2.0 * tau / m as f64).max(0.2);
     let variance = left.iter().map(|x| x * x).sum::<f64>() / (m as f64 * shown);
@@ -124,30 +121,6 @@ pub fn blocked(series: &[f64]) -> (Vec<f64>, usize) {
     let per_block = series.len().div_ceil(MOST_BLOCKS).max(1);
     let blocks = series.chunks_exact(per_block).map(|c| c.iter().sum::<f64>() / per_block as f64).collect();
     (blocks, per_block)
-}
-
-/// Integrated autocorrelation time in blocks, ½ for white noise (Sokal's window).
-///
-/// The mean taken off lowers every product by 2τ/n of the variance; over a window of w lags that hides 2(w − τ)/n of τ,
-/// which is put back. Where the window is only ten times as long as τ, that makes τ right in the mean and wide in scatter.
-fn correlation_blocks(left: &[f64]) -> f64 {
-    let n = left.len();
-    let zero: f64 = left.iter().map(|x| x * x).sum();
-    if zero <= 0.0 {
-        return 0.5;
-    }
-    let (mut tau, mut lags) = (0.5, 0);
-    for lag in 1..n / 2 {
-        let product: f64 = left[lag..].iter().zip(left).map(|(a, b)| a * b).sum();
-        tau += product / zero * n as f64 / (n - lag) as f64;
-        lags = lag;
-        if lag as f64 >= SOKAL * tau {
-            break;
-        }
-    }
-    let tau = tau.max(0.5);
-    let shown = 1.0 - 2.0 * (lags as f64 - (tau - 0.5)) / n as f64;
-    tau / shown.max(LEAST_SHOWN)
 }
 
 /// A straight line through equally spaced values.

@@ -11,7 +11,8 @@
 //! [`Strut`] says when its tare is added. Ballast adds its mass to inertia and wheel load, a hung weight its mass to the inertia only.
 //! The body's water (free-flooding spaces) is carried along but weighs nothing in water.
 
-use crate::parameters::{AxisParameters, GRAVITY_M_S2};
+use crate::parameters::AxisParameters;
+use froude_hydro::similarity::GRAVITY_M_S2;
 
 /// Where the body is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

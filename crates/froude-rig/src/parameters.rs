@@ -22,8 +22,7 @@
 
 use core::f64::consts::PI;
 
-/// Standard gravity, m/s².
-pub const GRAVITY_M_S2: f64 = 9.80665;
+use froude_hydro::similarity::GRAVITY_M_S2;
 
 /// Published J_eff, kg m² (MCD Table II).
 pub const J_EFF_KG_M2: f64 = 1.502e-5;

@@ -1,8 +1,9 @@
 //! The plant against what is known in closed form.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_rig::load::{HungWeight, Load, Mounting, TowedBody};
-use froude_rig::parameters::{AxisParameters, GRAVITY_M_S2};
+use froude_rig::parameters::AxisParameters;
 use froude_rig::plant::{Disturbance, Plant};
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Filters, decimation, spectra and autocorrelation of uniformly sampled records.
+//! Filters, decimation and spectra of uniformly sampled records.
 //!
 //! Knows no physics: columns of numbers at a constant rate go in, columns come out.
 //! Filters that are compared with `scipy` follow its conventions at the ends of a
@@ -13,7 +13,6 @@
 //! | [`differences`]     | central differences                                               | one-sided               |
 //! | [`decimate`]        | zero-phase FIR low-pass, every q-th sample                        | zeros                   |
 //! | [`stream`]          | the same chain a chunk at a time, in bounded memory               | as above                |
-//! | [`autocorrelation`] | autocorrelation, integrated autocorrelation time                  | –                       |
 //! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
 //! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
 //!
@@ -24,7 +23,6 @@
 //! (`froude-fit::diagnostics`, where χ² is).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
-pub mod autocorrelation;
 pub mod blocks;
 pub mod butterworth;
 mod cascade;

@@ -15,12 +15,12 @@
 //!
 //! What neither sees: a model error that is the same in every period moves the estimate and not the interval.
 
+use froude_fit::autocorrelation::{autocorrelation, integrated_time};
 use froude_fit::diagnostics::ljung_box;
 use froude_fit::distribution::coverage_factor;
 use froude_fit::faer::Mat;
 use froude_fit::long_run::{self, automatic_lag};
 use froude_fit::stream::Solution;
-use froude_signal::autocorrelation::{autocorrelation, integrated_time};
 use froude_signal::blocks::MovingBlocks;
 use rayon::prelude::*;
 

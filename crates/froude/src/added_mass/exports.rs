@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_panel::matrix::{AddedMass, congruent};
 use froude_panel::problem::Frame;
 use froude_records::added_mass_files::AddedMassFile;
@@ -11,9 +12,6 @@ use super::body::{BodyJob, BodyOutcome, Case};
 use super::frame::{Axes, Orientation};
 use super::pressure::pressure;
 use crate::Error;
-
-/// Standard acceleration of gravity, m/s².
-pub(super) const G_M_S2: f64 = 9.80665;
 
 /// The pressure on the body, and the files that were asked for; their names in the folder.
 pub(super) fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path) -> Result<Vec<PathBuf>, Error> {
@@ -35,7 +33,7 @@ pub(super) fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path) -> Res
         let (zero, infinite) = (limit(true), limit(false));
         let file = AddedMassFile {
             density_kg_m3: outcome.density_kg_m3,
-            gravity_m_s2: G_M_S2,
+            gravity_m_s2: GRAVITY_M_S2,
             length_m: 1.0,
             bodies: &bodies,
             zero_frequency: zero.as_deref(),

@@ -2,6 +2,7 @@
 //!
 //! Sources: Newman 1977, ch. 6 (ω²d/g); Faltinsen & Timokha 2009, ch. 4 (sloshing).
 
+use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_hydro::sloshing::rectangular_tank_modes_rad_s;
 use froude_mesh::Mesh;
 use froude_records::finding::{Finding, Severity};
@@ -11,8 +12,6 @@ use froude_records::page::TextTable;
 use super::body::Case;
 use super::record::MOTIONS;
 
-/// Standard acceleration of gravity, m/s².
-const G_M_S2: f64 = 9.80665;
 /// ω²d/g below which the lid, and above which φ = 0, is a fair picture.
 const SLOW: f64 = 0.1;
 const FAST: f64 = 10.0;
@@ -73,7 +72,7 @@ pub fn clearance(mesh: &Mesh, [length_m, breadth_m, depth_m]: [f64; 3], surface_
 #[must_use]
 pub fn words(depth_m: Option<f64>, tank_m: Option<[f64; 3]>) -> Vec<String> {
     let Some(depth_m) = depth_m.filter(|d| *d > 0.0) else { return Vec::new() };
-    let at = |number: f64| (number * G_M_S2 / depth_m).sqrt();
+    let at = |number: f64| (number * GRAVITY_M_S2 / depth_m).sqrt();
     let mut out = vec![format!(
         "With d = {} m of water over the body's centre of buoyancy, ω²d/g is {SLOW} at {:.2} rad/s ({:.2} Hz): slower motions are near the rigid lid; it \
          is {FAST} at {:.2} rad/s ({:.2} Hz): faster ones are near φ = 0.",
@@ -84,7 +83,7 @@ pub fn words(depth_m: Option<f64>, tank_m: Option<[f64; 3]>) -> Vec<String> {
         at(FAST) / core::f64::consts::TAU,
     )];
     if let Some([l, b, d]) = tank_m
-        && let Ok([along, across]) = rectangular_tank_modes_rad_s(l, b, d, G_M_S2)
+        && let Ok([along, across]) = rectangular_tank_modes_rad_s(l, b, d, GRAVITY_M_S2)
     {
         out.push(format!(
             "The tank's first sloshing modes are {along:.2} rad/s ({:.2} Hz) along and {across:.2} rad/s ({:.2} Hz) across: near them neither \

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_mesh::Mesh;
 use froude_mesh::measure::Measure;
 use froude_mesh::parts::parts;
@@ -29,7 +30,7 @@ use froude_report::document::Document;
 use indexmap::IndexMap;
 
 use super::body::BodyJob;
-use super::exports::{G_M_S2, of_parts_for_program, words_of_parts};
+use super::exports::{of_parts_for_program, words_of_parts};
 use super::family::{Family, robot};
 use super::frame::{Axes, sentence};
 use super::links::{default_out, no_density};
@@ -525,7 +526,7 @@ fn exports(outcome: &SeveralOutcome, job: &BodyJob, folder: &Path) -> Result<Vec
         let turned = of_parts_for_program(&rows, extension, job);
         let file = AddedMassFile {
             density_kg_m3: outcome.density_kg_m3,
-            gravity_m_s2: G_M_S2,
+            gravity_m_s2: GRAVITY_M_S2,
             length_m: 1.0,
             bodies: &outcome.parts,
             zero_frequency: Some(&turned),
