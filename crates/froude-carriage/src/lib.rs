@@ -4,6 +4,7 @@
 //! model, rigid and as two masses with a chain between them. [`tuning`] measures the frequency response of an axis and chooses its gains.
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod axis;
 pub mod drag;
 pub mod reduction;
 pub mod runs;

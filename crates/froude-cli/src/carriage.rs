@@ -5,11 +5,12 @@ use std::path::PathBuf;
 use froude::Error;
 use froude::carriage::calibrate::{CalibrationJob, calibrate, polarity};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::carriage::servo::{ServoJob, coefficient_table, flexible_table, identify, repeatability_table};
+use froude::carriage::servo::{ServoJob, identify};
 use froude::carriage::tune::{
     candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
 };
 use froude::fit::budget::Uncertain;
+use froude::methods::carriage::axis::page::{coefficient_table, flexible_table, repeatability_table};
 use froude::methods::carriage::drag::calibration::{Jog, encoder_scale};
 use froude::methods::carriage::runs;
 use froude::methods::carriage::servo::report::effective;
@@ -270,7 +271,8 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
 fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
     let bar = crate::spinner();
     bar.set_message("identifying");
-    let outcome = identify(&ServoJob { input, sidecar, out, date: Some(crate::today()) })?;
+    let done = identify(&ServoJob { input, sidecar, out, date: Some(crate::today()) })?;
+    let (outcome, written) = (&done.axis, &done.written);
     bar.finish_and_clear();
     let coefficients = |c: &[froude::methods::carriage::servo::ServoCoefficient]| -> Vec<serde_json::Value> {
         c.iter()
@@ -296,7 +298,7 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
                        "share_of_motor": s.is_identified.then_some(s.share_of_motor), "interval_95": s.interval})).collect::<Vec<_>>()})
         });
         return print::json(&json!({"models": models, "two_mass": flexible, "findings": outcome.findings,
-                   "estimate": outcome.written.as_ref().map(|w| &w.estimate), "report": outcome.written.as_ref().map(|w| &w.report)}));
+                   "estimate": written.estimate, "report": written.report}));
     }
     for model in &outcome.models {
         let error = froude::records::number::percent(model.report.relative_force_error);
@@ -320,9 +322,7 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
         print::text_table(&repeatability_table(&outcome.repeatability));
     }
     print::findings(&outcome.findings);
-    if let Some(written) = &outcome.written {
-        print::written(written);
-    }
+    print::written(written);
     Ok(())
 }
 

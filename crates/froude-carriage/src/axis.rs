@@ -1,0 +1,383 @@
+//! What runs of a carriage, or anyone's log of a servo, say of an axis: rigid models and two masses.
+//!
+//! A carriage's friction sweep and dry runs give inertia and friction (rigid, over position); its pulses give the two masses. A log of another
+//! program (CSV with a sidecar) gives the rigid model, symmetric and asymmetric.
+
+use std::path::{Path, PathBuf};
+
+use froude_fit::series::mean;
+use froude_identify::method::MethodError;
+use froude_identify::source::ReadFile;
+use froude_records::estimate::Estimate;
+use froude_records::finding::{Finding, Severity};
+use froude_records::run::{BodyState, Declared, Role, RunLog, import_run};
+use froude_records::units::Dimension;
+
+use crate::drag::steady::{SteadySettings, window};
+use crate::runs::{Runs, column, for_drag, mounts};
+use crate::servo::chain::Rows;
+use crate::servo::motor::MotorSide;
+use crate::servo::record;
+use crate::servo::report::{effective, of_runs as of_several};
+use crate::servo::two_mass::FlexibleReport;
+use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo};
+use crate::source::files_of;
+use crate::two_masses::{motor_of, pulses, servo_log, two_masses};
+
+pub mod page;
+
+/// One fitted model with its title.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    /// `symmetric`, `asymmetric`, `over position`.
+    pub name: String,
+    /// Its fit.
+    pub report: ServoReport,
+}
+
+/// Repeats at one speed and direction.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Repeatability {
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// +1 or −1.
+    pub direction: f64,
+    /// Mean drive force against the motion, ideal gear, N.
+    pub force_n: f64,
+    /// Its standard deviation from run to run, N; `None` for a single run.
+    pub std_n: Option<f64>,
+    /// Runs.
+    pub runs: usize,
+}
+
+/// What came out.
+#[derive(Debug, Clone)]
+pub struct AxisModels {
+    /// Rigid models.
+    pub models: Vec<Model>,
+    /// What rode on the carriage in the runs that they are fitted to; none of a table.
+    pub rigid_mounts: Vec<BodyState>,
+    /// Two masses, where there are pulses.
+    pub flexible: Option<FlexibleReport>,
+    /// What rode on the carriage in the pulses.
+    pub two_mass_mounts: Vec<BodyState>,
+    /// How well runs repeat.
+    pub repeatability: Vec<Repeatability>,
+    /// The drive, where it is declared.
+    pub motor: Option<MotorSide>,
+    /// An estimate for each model, with the role of the files that it is fitted to.
+    pub estimates: Vec<(Estimate, &'static str)>,
+    /// Files that were read.
+    pub files: Vec<ReadFile>,
+    /// What is doubtful.
+    pub findings: Vec<Finding>,
+}
+
+/// Models of a log of another program, which says by its sidecar what force a volt of the command is.
+///
+/// # Errors
+///
+/// A log that cannot be read, without the force per volt, or that no model can be fitted to.
+pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, MethodError> {
+    let imported = import_run(path, sidecar)?;
+    let log = &imported.log;
+    let gain = log.meta.constants.get("drive_gain").ok_or_else(|| {
+        let what = "the sidecar must say what force a volt of the command is: [constants] drive_gain = \"35.15 N/V\"";
+        MethodError::input(path, what)
+    })?;
+    let gain_n_v = gain.value;
+    let servo = servo_log(log)?;
+    let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
+    let chain = |friction| Chain {
+        // The pinned chain of a record at 1 kHz, scaled with the record's rate.
+        corner_hz: 0.1 * rate_hz,
+        ..Chain::new(gain_n_v, friction)
+    };
+    let asked = [(CONSTANT, Friction::symmetric()), (ASYMMETRIC, Friction::asymmetric())];
+    let fit = |friction| identify_servo(&servo, &chain(friction)).map_err(MethodError::refused);
+    let (models, not_fitted) = each(asked.into_iter().map(|(name, friction)| (name, fit(friction))));
+    let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
+    let mut findings = told(&models, imported.findings);
+    findings.extend(not_fitted);
+    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let rigid = |m: &Model| (record::rigid(&name, &m.name, &m.report, gain_n_v, None), "table");
+    let estimates = models.iter().map(rigid).collect();
+    let mut files = vec![ReadFile::new(path.to_owned(), "table")];
+    let sidecar = sidecar.map_or_else(|| path.with_extension("toml"), Path::to_owned);
+    files.extend(sidecar.exists().then(|| ReadFile::new(sidecar, "sidecar")));
+    Ok(AxisModels {
+        estimates,
+        files,
+        models,
+        rigid_mounts: Vec::new(),
+        flexible: None,
+        two_mass_mounts: Vec::new(),
+        repeatability: Vec::new(),
+        motor: None,
+        findings,
+    })
+}
+
+fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
+    for model in models {
+        for text in &model.report.findings {
+            findings.push(Finding::new(Severity::Warning, "servo", format!("{}: {text}", model.name)));
+        }
+    }
+    findings
+}
+
+/// The models that came out, and a finding and error for each that did not: it costs its own row and no other.
+fn each<'a>(
+    asked: impl Iterator<Item = (&'a str, Result<ServoReport, MethodError>)>,
+) -> (Vec<Model>, Vec<(Finding, MethodError)>) {
+    let (mut models, mut not_fitted) = (Vec::new(), Vec::new());
+    for (name, report) in asked {
+        match report {
+            Ok(report) => models.push(Model { name: name.to_owned(), report }),
+            Err(error) => not_fitted.push((left_out(name, &error), error)),
+        }
+    }
+    (models, not_fitted)
+}
+
+fn left_out(model: &str, why: &MethodError) -> Finding {
+    Finding::new(Severity::Warning, "not-fitted", format!("{model} could not be fitted and is left out: {why}"))
+}
+
+/// The findings where something came out, else the first error.
+fn some_or_error(is_some: bool, not_fitted: Vec<(Finding, MethodError)>) -> Result<Vec<Finding>, MethodError> {
+    let (findings, errors): (Vec<Finding>, Vec<MethodError>) = not_fitted.into_iter().unzip();
+    match errors.into_iter().next() {
+        Some(first) if !is_some => Err(first),
+        _ => Ok(findings),
+    }
+}
+
+/// Kinds of run that tell the servo.
+pub const KINDS: [Role; 3] = [Role::Friction, Role::Dry, Role::Excitation];
+/// Rate at which rows of slow runs are compared, Hz: below the load's mode, so that the rigid model is what moves.
+const ROW_RATE_HZ: f64 = 20.0;
+/// Corner of the position's filter for the rigid model, Hz: the chain's modes lie above it.
+const RIGID_CORNER_HZ: f64 = 3.0;
+/// The model of one Coulomb friction everywhere, and that of a map.
+pub(crate) const CONSTANT: &str = "symmetric";
+const ASYMMETRIC: &str = "asymmetric";
+const OVER_POSITION: &str = "over position";
+/// Distance of the friction map's knots, m, where that takes no more than [`MOST_STRETCHES`].
+const KNOT_M: f64 = 0.25;
+/// Most stretches between knots: on ways longer than 250 m they are longer.
+const MOST_STRETCHES: usize = 1000;
+
+/// Models of what runs of a carriage say of their axis.
+///
+/// # Errors
+///
+/// Runs that do not say what rig they come from, or that no model can be fitted to.
+pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
+    let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis()).ok_or_else(|| {
+        MethodError::input(&runs.folder, "the runs do not say what rig they come from (their .toml has no [rig])")
+    })?;
+    let motor = motor_of(constants);
+    let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.role == Role::Friction).collect();
+    let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.role == Role::Dry).collect() } else { slow };
+    let (mut models, mut not_fitted) = (Vec::new(), Vec::new());
+    if !slow.is_empty() {
+        let map = knots(&slow).map(|knots_m| Friction { knots_m, ..Friction::default() });
+        let asked =
+            [(CONSTANT, Ok(Friction::default())), (ASYMMETRIC, Ok(Friction::asymmetric())), (OVER_POSITION, map)];
+        (models, not_fitted) =
+            each(asked.into_iter().map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
+    }
+    let mut findings = told(&models, runs.findings.clone());
+    findings.extend(varies(&models));
+    let declared = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref()).and_then(|c| c.rig.y.coulomb_n_m);
+    findings.extend(declared.and_then(|d| contradicted(&models, &motor, d)));
+    if !models.is_empty() {
+        findings.push(Finding::new(
+            Severity::Note,
+            "servo",
+            "M and J_eff of runs at constant speed rest on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
+             may be off by a per cent, which their intervals do not hold; take the masses from the pulses"
+                .to_owned(),
+        ));
+    }
+    let (flexible, why_not) = two_masses(&runs.logs);
+    findings.extend(some_or_error(!models.is_empty() || flexible.is_some(), not_fitted)?);
+    findings.extend(why_not);
+    if let Some(report) = &flexible {
+        findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
+    }
+    let repeatability = repeatability(&slow, &motor)?;
+    let of_folder = || {
+        let beside = runs.results("servo");
+        beside.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+    };
+    let name = runs.campaign.as_ref().map_or_else(of_folder, |campaign| campaign.name.clone());
+    let gain_n_v = motor.force_per_volt_n_v();
+    let of_slow = slow.first().map_or("", |log| log.meta.role.name());
+    let rigid = |m: &Model| (record::rigid(&name, &m.name, &m.report, gain_n_v, Some(&motor)), of_slow);
+    let two_mass = |report: &FlexibleReport| (record::two_mass(&name, report), Role::Excitation.name());
+    let estimates = models.iter().map(rigid).chain(flexible.as_ref().map(two_mass)).collect();
+    Ok(AxisModels {
+        estimates,
+        files: files_of(runs),
+        models,
+        rigid_mounts: mounts(slow.iter().copied()),
+        flexible,
+        two_mass_mounts: mounts(pulses(&runs.logs)),
+        repeatability,
+        motor: Some(motor),
+        findings,
+    })
+}
+
+/// Knots over the travel that the runs cover.
+fn knots(logs: &[&RunLog]) -> Result<Vec<f64>, MethodError> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for log in logs {
+        for &y in column(log, &format!("{}/position", log.meta.carriage.axis.name()), Dimension::LENGTH)? {
+            (low, high) = (low.min(y), high.max(y));
+        }
+    }
+    if !(high - low).is_finite() {
+        let what = format!("the runs go from {low} m to {high} m; friction cannot be mapped there");
+        return Err(MethodError::input(logs.first().map_or_else(PathBuf::new, |log| log.path.clone()), what));
+    }
+    Ok(knots_between(low, high))
+}
+
+/// Knots in whole millimetres, so that their names are short; the outer ones just inside, where rows are.
+fn knots_between(low_m: f64, high_m: f64) -> Vec<f64> {
+    let (low, high) = ((1e3 * low_m).ceil() / 1e3, (1e3 * high_m).floor() / 1e3);
+    let n = (((high - low) / KNOT_M).round().max(1.0) as usize).min(MOST_STRETCHES);
+    (0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect()
+}
+
+/// The part of a run in which the reference moves; at rest friction is anything below breakaway and tells nothing.
+fn moving(log: &RunLog) -> Result<Option<RunLog>, MethodError> {
+    let speed = column(log, &format!("{}/reference_velocity", log.meta.carriage.axis.name()), Dimension::SPEED)?;
+    let first = speed.iter().position(|v| *v != 0.0);
+    let last = speed.iter().rposition(|v| *v != 0.0);
+    Ok(first.zip(last).map(|(first, last)| log.between(log.time_s[first], log.time_s[last])))
+}
+
+/// All slow runs as rows of one regression; the run is the piece of evidence.
+fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<ServoReport, MethodError> {
+    let mut chain = Chain::new(motor.force_per_volt_n_v(), friction);
+    let mut record_rate_hz = 0.0;
+    let mut runs: Vec<Rows> = Vec::new();
+    for log in logs {
+        let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
+        record_rate_hz = rate_hz;
+        chain = Chain {
+            corner_hz: RIGID_CORNER_HZ,
+            decimation: (rate_hz / ROW_RATE_HZ).round().max(1.0) as usize,
+            ..chain
+        };
+        let Some(moving) = moving(log)? else { continue };
+        runs.push(chain.rows(&servo_log(&moving)?).map_err(MethodError::refused)?);
+    }
+    if runs.is_empty() {
+        return Err(MethodError::input(
+            logs.first().map_or_else(PathBuf::new, |log| log.path.clone()),
+            "no run with steady motion",
+        ));
+    }
+    let mut report = of_several(runs, &chain).map_err(MethodError::refused)?;
+    report.record_rate_hz = record_rate_hz;
+    Ok(report)
+}
+
+/// Whether a constant friction stands for one that changes along the travel: its interval is then that of a mean, and of no place.
+/// `None` without both models.
+fn varies(models: &[Model]) -> Option<Finding> {
+    let of = |name: &str| models.iter().find(|m| m.name == name).map(|m| &m.report);
+    let constant = of(CONSTANT)?.coefficient("F_c")?;
+    let map: Vec<&ServoCoefficient> =
+        of(OVER_POSITION)?.coefficients.iter().filter(|c| c.name.starts_with("F_c(")).collect();
+    if map.iter().all(|c| c.interval[0] <= constant.value && constant.value <= c.interval[1]) {
+        return Some(Finding::new(
+            Severity::Note,
+            "servo",
+            format!(
+                "friction is not shown to change along the travel: every knot of the map holds F_c = {:.2} N in its interval",
+                constant.value
+            ),
+        ));
+    }
+    let least = map.iter().min_by(|a, b| a.value.total_cmp(&b.value))?;
+    let most = map.iter().max_by(|a, b| a.value.total_cmp(&b.value))?;
+    Some(Finding::new(
+        Severity::Warning,
+        "servo",
+        format!(
+            "friction changes along the travel, from {} = {:.2} N to {} = {:.2} N: F_c = {:.2} N (and C_eff) is its mean over what was \
+             travelled, and its interval says how well the mean repeats, not what friction is at a place; take the map",
+            least.name, least.value, most.name, most.value, constant.value
+        ),
+    ))
+}
+
+/// Identified friction that is not the declared one, by more than bodies and bearings explain.
+fn contradicted(models: &[Model], motor: &MotorSide, declared: Declared) -> Option<Finding> {
+    let report = &models.iter().find(|m| m.name == CONSTANT)?.report;
+    let found = effective(report, motor).into_iter().find(|c| c.name == "C_eff")?;
+    let ratio = found.value / declared.value;
+    (!(0.5..=2.0).contains(&ratio)).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "declared-contradicted",
+            format!(
+                "C_eff is {:.2e} N m here and coulomb_friction is declared as {:.2e} N m: the coast distance and the watch for a stuck encoder \
+                 hang on the declared one. Write the identified one, or look at K_T, the amplifier's gain, gear ratio and counts_per_revolution",
+                found.value, declared.value
+            ),
+        )
+    })
+}
+
+/// Mean force of the steady windows by speed and direction, with the standard deviation over runs.
+fn repeatability(logs: &[&RunLog], motor: &MotorSide) -> Result<Vec<Repeatability>, MethodError> {
+    let mut cells: Vec<(f64, f64, Vec<f64>)> = Vec::new();
+    for log in logs {
+        let Some(run) = for_drag(log)? else { continue };
+        let Ok(w) = window(&run, SteadySettings::default()) else { continue };
+        let force_n = run.direction * motor.force_per_volt_n_v() * mean(w.of(run.command_v), run.step_s()).value;
+        match cells.iter_mut().find(|c| (c.0 - run.target_speed_m_s).abs() < 1e-9 && c.1 == run.direction) {
+            Some(cell) => cell.2.push(force_n),
+            None => cells.push((run.target_speed_m_s, run.direction, vec![force_n])),
+        }
+    }
+    cells.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    Ok(cells
+        .into_iter()
+        .map(|(speed_m_s, direction, forces)| {
+            let n = forces.len() as f64;
+            let force_n = forces.iter().sum::<f64>() / n;
+            let square: f64 = forces.iter().map(|f| (f - force_n).powi(2)).sum();
+            let std_n = (forces.len() > 1).then(|| (square / (n - 1.0)).sqrt());
+            Repeatability { speed_m_s, direction, force_n, std_n, runs: forces.len() }
+        })
+        .collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A map costs the third power of its knots: beyond 250 m there are no more of them.
+    #[test]
+    fn a_friction_map_of_a_long_way_has_no_more_knots() {
+        for (way_m, stretches, longest_m) in
+            [(40.0, 160, 0.25), (250.0, 1000, 0.25), (600.0, 1000, 0.6), (5000.0, 1000, 5.0)]
+        {
+            let knots = knots_between(0.0123, 0.0123 + way_m);
+            assert_eq!(knots.len(), stretches + 1, "{way_m} m");
+            let steps: Vec<f64> = knots.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            assert!(steps.iter().all(|step| (0.9 * longest_m..=1.001 * longest_m + 1e-3).contains(step)), "{way_m} m");
+            assert!(knots[0] >= 0.0123 && knots[stretches] <= 0.0123 + way_m, "inside, where rows are");
+            assert!(knots.iter().all(|knot| (1e3 * knot - (1e3 * knot).round()).abs() < 1e-6), "whole millimetres");
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! An axis on the page and on the terminal: its models in tables, the force of the drive beside that of the model.
+
+use std::ops::Range;
+
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
+
+use super::{AxisModels, CONSTANT, Model, Repeatability};
+use crate::runs::mounted;
+use crate::servo::ServoCoefficient;
+use crate::servo::report::effective;
+use crate::servo::two_mass::FlexibleReport;
+
+/// A section for each model, and how well runs repeat.
+#[must_use]
+pub fn sections(outcome: &AxisModels) -> Vec<DocumentSection> {
+    let mut sections = Vec::new();
+    for model in &outcome.models {
+        let r = &model.report;
+        let mut paragraphs = vec![format!(
+            "{} rows at {} Hz; relative force error {}.",
+            number::count(r.n_rows),
+            number::plain(r.rate_hz, 4),
+            number::percent(r.relative_force_error)
+        )];
+        if let Some(w) = &r.whiteness {
+            paragraphs.push(format!(
+                "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of white-noise least squares are no honest \
+                 intervals unless that p is large; the intervals are those of {}.",
+                w.r1,
+                w.lags,
+                w.ljung_box,
+                number::p_value(w.p),
+                r.spread.pieces()
+            ));
+        }
+        let mut tables = vec![coefficient_table(format!("Rigid model, friction {}.", model.name), &r.coefficients)];
+        if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
+            tables.push(coefficient_table(
+                "The same at the motor's shaft (MCD Table II). A gear that loses part of the torque is in these numbers.".to_owned(),
+                &effective(r, motor),
+            ));
+        }
+        sections.push(DocumentSection {
+            title: format!("Rigid, friction {}{}", model.name, mounted(&outcome.rigid_mounts)),
+            paragraphs,
+            tables,
+            charts: vec![force_chart(model)],
+        });
+    }
+    if let Some(f) = &outcome.flexible {
+        let splits = f.splits.iter().map(|s| {
+            format!(
+                "Split {}: {}.",
+                s.name,
+                if s.is_identified {
+                    format!("{:.2}, interval {}", s.share_of_motor, number::interval(s.interval))
+                } else {
+                    "not identifiable from the motor's side".to_owned()
+                }
+            )
+        });
+        sections.push(DocumentSection {
+            title: format!("Two masses{}", mounted(&outcome.two_mass_mounts)),
+            paragraphs: splits.collect(),
+            tables: vec![flexible_table(f)],
+            charts: Vec::new(),
+        });
+    }
+    if !outcome.repeatability.is_empty() {
+        sections.push(DocumentSection {
+            title: "Repeatability".to_owned(),
+            tables: vec![repeatability_table(&outcome.repeatability)],
+            ..DocumentSection::default()
+        });
+    }
+    sections
+}
+
+/// Coefficients with the published-style standard deviation beside the honest interval.
+#[must_use]
+pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> TextTable {
+    TextTable {
+        caption,
+        head: [
+            "coefficient",
+            "unit",
+            "value",
+            "95 % interval (clusters)",
+            "std (white noise)",
+            "std (HAC)",
+            "std (clusters)",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: coefficients
+            .iter()
+            .map(|c| {
+                let digits = |x: f64| number::significant(x, 2);
+                vec![
+                    c.name.clone(),
+                    c.unit.to_owned(),
+                    number::short_form(c.value, c.block_std),
+                    number::interval(c.interval),
+                    digits(c.classical_std),
+                    digits(c.hac_std),
+                    digits(c.block_std),
+                ]
+            })
+            .collect(),
+    }
+}
+
+/// Two masses; behind a gear of which nobody declared the efficiency every row says that it is apparent.
+#[must_use]
+pub fn flexible_table(report: &FlexibleReport) -> TextTable {
+    let mut table =
+        coefficient_table("Motor, chain and load from motor-side signals.".to_owned(), &report.coefficients);
+    if report.is_apparent {
+        for (row, c) in table.rows.iter_mut().zip(&report.coefficients) {
+            // The rotor lies before the gear, and frequencies do not care.
+            if !matches!(c.name.as_str(), "m" | "J_m" | "f_antiresonance" | "f_resonance") {
+                row[0].push_str(" (apparent, through the gear)");
+            }
+        }
+    }
+    table
+}
+
+/// Repeats by speed and direction.
+#[must_use]
+pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
+    TextTable {
+        caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run."
+            .to_owned(),
+        head: ["speed [m/s]", "way", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
+        rows: cells
+            .iter()
+            .map(|c| {
+                let missing = || number::MISSING.to_owned();
+                vec![
+                    number::plain(c.speed_m_s, 3),
+                    if c.direction > 0.0 { "forward" } else { "backward" }.to_owned(),
+                    number::plain(c.force_n, 4),
+                    c.std_n.map_or_else(missing, |s| number::significant(s, 2)),
+                    c.std_n.map_or_else(missing, |s| number::percent(s / c.force_n.abs())),
+                    c.runs.to_string(),
+                ]
+            })
+            .collect(),
+    }
+}
+
+fn force_chart(model: &Model) -> Chart {
+    let r = &model.report;
+    let predicted: Vec<f64> = r.rows.force_n.iter().zip(&r.residuals_n).map(|(f, e)| f - e).collect();
+    // A line through all runs would run back from the end of each to the start of the next.
+    let series = |name: &str, y: &[f64], mark| -> Vec<Series> {
+        let of_run = |run: &Range<usize>| Series {
+            name: name.to_owned(),
+            mark,
+            x: r.rows.time_s[run.clone()].to_vec(),
+            y: y[run.clone()].to_vec(),
+            ..Series::default()
+        };
+        r.runs.iter().map(of_run).collect()
+    };
+    Chart {
+        name: format!("force-{}", model.name),
+        title: format!("Drive force and model, friction {}", model.name),
+        caption: "Drive force of the command and of the model, and what is left: one line a run, each in its own time."
+            .to_owned(),
+        x_label: "time [s]".to_owned(),
+        panels: vec![
+            ChartPanel {
+                y_label: "force [N]".to_owned(),
+                series: [series("command", &r.rows.force_n, Mark::Line), series("model", &predicted, Mark::Dashed)]
+                    .concat(),
+                ..ChartPanel::default()
+            },
+            ChartPanel {
+                y_label: "residual [N]".to_owned(),
+                series: series("residual", &r.residuals_n, Mark::Line),
+                ..ChartPanel::default()
+            },
+        ],
+        ..Chart::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::servo::chain::Rows;
+    use crate::servo::report::of_runs as of_several;
+    use crate::servo::{Chain, Friction};
+
+    /// Six runs, each in its own time from zero: a line that went through all would run back five times.
+    #[test]
+    fn the_figure_has_one_line_a_run() {
+        let run = |k: u32| {
+            let time_s: Vec<f64> = (0..60).map(|i| 0.1 * f64::from(i)).collect();
+            let speed: Vec<f64> = time_s.iter().map(|t| (t + 0.3 * f64::from(k)).sin()).collect();
+            Rows {
+                rate_hz: 10.0,
+                force_n: speed
+                    .iter()
+                    .zip(&time_s)
+                    .map(|(v, t)| 3.0 * v + v.signum() + 0.01 * (7.0 * t).cos())
+                    .collect(),
+                names: vec![("F_v".to_owned(), "N s/m"), ("F_c".to_owned(), "N")],
+                columns: vec![speed.clone(), speed.iter().map(|v| v.signum()).collect()],
+                time_s,
+            }
+        };
+        let runs: Vec<Rows> = (0..6).map(run).collect();
+        let report = of_several(runs, &Chain::new(35.0, Friction::default())).unwrap();
+        let chart = force_chart(&Model { name: CONSTANT.to_owned(), report });
+        let [force, residual] = chart.panels.as_slice() else { panic!("two panels") };
+        assert_eq!(
+            (force.series.len(), residual.series.len()),
+            (12, 6),
+            "command and model of six runs, and what is left"
+        );
+        for series in force.series.iter().chain(&residual.series) {
+            assert_eq!(series.x.len(), 60, "a run whole");
+            assert!(series.x.windows(2).all(|t| t[0] < t[1]), "time runs forward along each line");
+        }
+        let names: std::collections::BTreeSet<&str> = force.series.iter().map(|s| s.name.as_str()).collect();
+        assert_eq!(names.len(), 2, "one entry of the legend for all commands, one for all models");
+    }
+}
