@@ -19,7 +19,7 @@
 //! | `observed`        | what each method makes of the runs, and how its points scatter  | –                         |
 //! | [`coefficient`]   | D_d by the common fit                                           | GUM, JCGM 101             |
 //! | [`detectability`] | the smallest drag that still and dry repeats can see            | –                         |
-//! | [`calibration`]   | newtons a volt from a known weight; encoder scale; jog          | –                         |
+//! | [`calibration`]   | force per volt from a known weight; encoder scale; jog          | –                         |
 //! | [`added_mass`]    | what the ramps say                                              | –                         |
 //! | [`online`]        | D_d while the campaign runs, and when to stop                   | Bonferroni                |
 //! | [`report`]        | all of it side by side                                          | –                         |

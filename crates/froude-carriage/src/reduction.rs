@@ -22,7 +22,7 @@ use crate::two_masses::two_masses;
 
 pub mod page;
 
-/// A calibration that knows newtons a volt to less than this part is none.
+/// A calibration that knows the force per volt to less than this part is none.
 const USELESS: f64 = 0.2;
 
 /// Standard uncertainty of the gain of a force sensor of which nobody declares it: what a cell in use has, a year after its certificate.

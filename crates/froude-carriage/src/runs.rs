@@ -165,7 +165,7 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
     out.findings.extend(set);
     out.findings.extend(summed_up(&doubts));
     let singles: Vec<PathBuf> = files.iter().filter(|log| !paths.contains(&folder_of(log))).cloned().collect();
-    // A calibration from another folder, beside whole folders of runs, is no part of a campaign: it is asked for its newtons a volt alone.
+    // A calibration from another folder, beside whole folders of runs, is no part of a campaign: it is asked for its force per volt alone.
     let is_borrowed = |log: &PathBuf| {
         let role = out.logs.iter().find(|known| &known.path == log).map(|known| known.meta.role);
         role == Some(Role::Calibration) && paths.iter().any(|path| path.is_dir())

@@ -80,7 +80,7 @@ fn the_records_carry_value_interval_and_budget() {
             .diagnostics
             .notes
             .iter()
-            .any(|n| n.starts_with("newtons a volt, calibrated (type B, shared by campaign)"))
+            .any(|n| n.starts_with("force per volt, calibrated (type B, shared by campaign)"))
     );
     assert_eq!(report.estimates.iter().filter(|e| e.recommended).count(), 1);
 }

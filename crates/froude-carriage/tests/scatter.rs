@@ -30,7 +30,7 @@ struct Trouble {
 fn campaign(pairs: u32, trouble: Trouble, seed: u64) -> (bool, f64) {
     let mut rng = Pcg64::seed_from_u64(seed);
     let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-    // Newtons a volt exact, one: what is tested is the scatter.
+    // Force per volt exact, one: what is tested is the scatter.
     let calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(1.0, 0.0) });
     let setup = DragSetup {
         calibration,

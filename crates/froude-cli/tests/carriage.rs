@@ -524,9 +524,9 @@ fn campaigns_that_share_a_calibration_are_compared_without_its_error() {
         (difference * difference / joint["chi_squared"].as_f64().unwrap(), said[0].1.clone())
     };
     let ((shared, said), (apart, said_apart)) = (variance(&friday), variance(&alone));
-    assert!(said.contains("newtons a volt, calibrated") && said.contains("length of an encoder count"), "{said}");
+    assert!(said.contains("force per volt, calibrated") && said.contains("length of an encoder count"), "{said}");
     assert!(
-        !said_apart.contains("newtons a volt") && said_apart.contains("length of an encoder count"),
+        !said_apart.contains("force per volt") && said_apart.contains("length of an encoder count"),
         "{said_apart}"
     );
     assert!(shared < apart, "{shared} {apart}");

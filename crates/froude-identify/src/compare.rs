@@ -900,7 +900,7 @@ mod tests {
         let estimate = &mut file.estimates[0];
         estimate.coefficients["D"].standard_uncertainty = Some(0.5);
         let error = SharedError {
-            name: "newtons a volt".to_owned(),
+            name: "force per volt".to_owned(),
             quantity: "force_per_volt".to_owned(),
             kind: ErrorKind::B,
             covariance: vec![vec![1e-4]],

@@ -4,7 +4,7 @@
 //! |---------------|---------------------------|------------------------------------------------------------|
 //! | [`drive`]     | `froude run`              | pre-flight, then the campaign on the twin or the real rig      |
 //! | [`servo`]     | `froude carriage identify` | servo parameters from runs, or from anyone's servo log         |
-//! | [`calibrate`] | `froude carriage calibrate` | newtons a volt from known weights, polarity                  |
+//! | [`calibrate`] | `froude carriage calibrate` | force per volt from known weights, polarity                  |
 //! | [`tune`]      | `froude carriage tune`, `resonance` | experiments on the loop: gains, margins, modes, shaper |
 //!
 //! Drag from runs is a job like any other ([`crate::pipeline`]), by [`froude_carriage::source`].

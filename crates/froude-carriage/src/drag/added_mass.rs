@@ -138,7 +138,7 @@ fn mass<'a>(ramps: impl Iterator<Item = &'a Ramp>) -> Option<f64> {
     (bottom > 0.0).then_some(top / bottom)
 }
 
-/// Added mass by motor current difference; `None` without ramps in at least two pairs, or without newtons a volt.
+/// Added mass by motor current difference; `None` without ramps in at least two pairs, or without the force per volt.
 #[must_use]
 pub fn added_mass(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<AddedMass> {
     let tows = |body: BodyState| runs.iter().filter(move |r| r.kind == RunKind::Tow && r.body == body);

@@ -1,4 +1,4 @@
-//! Newtons a volt from a known weight over a pulley, encoder scale from a known distance, polarity from a jog.
+//! Force per volt from a known weight over a pulley, encoder scale from a known distance, polarity from a jog.
 //!
 //! **Setting.** The carriage creeps at one speed both ways; a weight W pulls towards −y through a cord over a pulley. With
 //! s = ±1 the direction of motion, f the carriage's friction and λW the pulley's, the chain must give, along the motion,
@@ -62,11 +62,11 @@ pub struct CalibrationSetup {
 /// Result of the calibration runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Calibration {
-    /// Newtons a volt.
+    /// Force per volt.
     pub force_per_volt: ForcePerVolt,
     /// Its 95 % interval, N/V.
     pub interval_95: [f64; 2],
-    /// Efficiency that it stands for: over the ideal newtons a volt.
+    /// Efficiency that it stands for: over the ideal force per volt.
     pub efficiency: Uncertain,
     /// Part of the standard uncertainty from the scatter of the runs and the pulley, N/V.
     pub type_a: f64,
@@ -94,7 +94,7 @@ struct Reading {
     along_v: f64,
 }
 
-/// Calibrates newtons a volt from runs with known weights (and the same carriage without any).
+/// Calibrates the force per volt from runs with known weights (and the same carriage without any).
 ///
 /// Runs of [`RunKind::Calibration`]; a missing weight counts as none hung.
 ///
@@ -259,7 +259,7 @@ fn notes(
     let efficiency = force.value / ideal;
     let half = coverage_factor(0.95, force.dof) * force.relative();
     let mut out = vec![format!(
-        "{:.4} N a volt ± {:.2} % (95 %): the gear gives {:.1} % of the ideal {ideal:.3} N a volt",
+        "{:.4} N/V ± {:.2} % (95 %): the gear gives {:.1} % of the ideal {ideal:.3} N/V",
         force.value,
         100.0 * half,
         100.0 * efficiency
@@ -405,7 +405,7 @@ mod tests {
     }
 
     /// 3 N of weight against 2.9 N of friction behind the gear, 0.9 N before it: on its way down the weight drives the gear and the
-    /// motor still has to push. Believed, these runs would raise newtons a volt by over 2 %.
+    /// motor still has to push. Believed, these runs would raise the force per volt by over 2 %.
     #[test]
     fn a_weight_that_drives_the_gear_while_the_motor_pushes_is_left_out() {
         let scenario = Scenario { motor_coulomb_n: 0.9, ..quiet() };

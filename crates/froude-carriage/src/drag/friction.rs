@@ -1,6 +1,6 @@
 //! Friction of the carriage over position and speed, from runs without drag.
 //!
-//! In volts of the drive command, as everything is before newtons a volt come in:
+//! In volts of the drive command, as everything is before the force per volt comes in:
 //! v_c = C(y) sgn v + B v + b, with b what a tilted tank or an amplifier's offset adds (only with both directions).
 //! C is one number, or a broken line over position (hat functions on equal knots). Fitted by least squares to means
 //! over cells of one knot spacing of the steady windows, each weighted by its part of the window's tapered mean.

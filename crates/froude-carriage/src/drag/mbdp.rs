@@ -121,7 +121,7 @@ pub fn rigid_force_n(
 
 /// Eq. 2 solved for the resistance, sample by sample, from motor-side signals alone.
 ///
-/// `efficiency` is what `force_per_volt_n` has of the ideal newtons a volt: the motor's own inertia stands before the gear, so that
+/// `efficiency` is what `force_per_volt_n` has of the ideal force per volt: the motor's own inertia stands before the gear, so that
 /// the chain gets η (K v_c − J_m θ̈).
 #[must_use]
 pub fn flexible_force_n(

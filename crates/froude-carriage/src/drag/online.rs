@@ -111,7 +111,7 @@ mod tests {
         }
     }
 
-    /// Newtons a volt known to a part, five looks.
+    /// Force per volt known to a part, five looks.
     fn setup(relative: f64) -> DragSetup {
         let calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(4.8, 4.8 * relative) });
         DragSetup { calibration, looks: 5, ..DragSetup::of_the_paper() }

@@ -373,7 +373,7 @@ fn check(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<(), DragError> {
     }
     let positive = "positive and finite";
     for (what, value) in [
-        ("newtons a volt", setup.force_per_volt_n()),
+        ("force per volt", setup.force_per_volt_n()),
         ("density", setup.density_kg_m3),
         ("reference area", setup.reference_area_m2.unwrap_or(1.0)),
     ] {

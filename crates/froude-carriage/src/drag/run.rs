@@ -165,7 +165,7 @@ pub struct DragSetup {
     pub torque_constant_drift_relative: f64,
     /// What is known about the gear; counts only without a calibration.
     pub efficiency: Efficiency,
-    /// Newtons a volt as calibrated.
+    /// Force per volt as calibrated.
     pub calibration: Option<ForcePerVolt>,
     /// The sensor, if the rig has one.
     pub sensor: SensorBudget,
@@ -241,7 +241,7 @@ impl DragSetup {
         }
     }
 
-    /// Newtons a volt that forces are computed with: calibrated, else ideal times the declared efficiency, else ideal
+    /// Force per volt that forces are computed with: calibrated, else ideal times the declared efficiency, else ideal
     /// (eq. 8 as printed).
     #[must_use]
     pub fn force_per_volt_n(&self) -> f64 {

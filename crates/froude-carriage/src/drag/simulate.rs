@@ -140,7 +140,7 @@ impl Scenario {
         self.coulomb_n * (1.0 + self.bump * (-0.5 * x * x).exp())
     }
 
-    /// True newtons a volt, driving forward.
+    /// True force per volt, driving forward.
     #[must_use]
     pub fn force_per_volt_n(&self) -> f64 {
         self.ideal_force_per_volt_n * self.efficiency

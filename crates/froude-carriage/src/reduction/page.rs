@@ -76,7 +76,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     }
     if setup.calibration.is_none() {
         out.push(
-            "Newtons a volt were not calibrated with known weights: no D_d from motor currents is stated better than the declared \
+            "The force per volt was not calibrated with known weights: no D_d from motor currents is stated better than the declared \
              efficiency of the gear and K_T allow."
                 .to_owned(),
         );

@@ -8,7 +8,7 @@
 //!
 //! | clusters  | runs, or stretches of a record, are independent | CR3 or CR2, with the degrees of freedom of each coefficient   |
 //!
-//! Several runs of a campaign are clusters: friction and newtons a volt change between them, which no block within a run shows. The
+//! Several runs of a campaign are clusters: friction and force per volt change between them, which no block within a run shows. The
 //! interval that is reported of a single record is that of the blocks, with Student's t for as many degrees of freedom as blocks
 //! lie side by side less the coefficients: twenty blocks are twenty pieces of evidence, however many rows they have. Whether
 //! residuals are white is told by their first autocorrelation and by Ljung and Box's test over 25 lags.

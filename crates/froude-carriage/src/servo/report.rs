@@ -130,7 +130,7 @@ pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
 
 /// As [`identify_servo`], from several runs of the same axis: the run is the piece of evidence.
 ///
-/// Friction and newtons a volt change from run to run and stay within one, so that no block within a run shows it. The intervals are
+/// Friction and force per volt change from run to run and stay within one, so that no block within a run shows it. The intervals are
 /// those of whole runs as clusters, with Student's t of each coefficient's own degrees of freedom. With fewer than
 /// five runs, or where one alone decides a coefficient, they are those of blocks, and a finding says so.
 ///
@@ -266,7 +266,7 @@ mod tests {
     use crate::drag::simulate::Scenario;
     use crate::servo::Friction;
 
-    /// Friction 2 % and newtons a volt 0.5 % from run to run, 0.05 N rms that wanders with 0.3 s within one.
+    /// Friction 2 % and force per volt 0.5 % from run to run, 0.05 N rms that wanders with 0.3 s within one.
     fn runs(seed: u64, pairs: u32) -> (Vec<Rows>, Chain, Scenario) {
         let scenario =
             Scenario { bump: 0.0, efficiency: 1.0, friction_m: Some([2.0, 3.0]), pairs, ..Scenario::pinned(0.0) };

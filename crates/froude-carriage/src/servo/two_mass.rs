@@ -12,13 +12,13 @@
 //! ratio of unrecorded force to noise of position, is the one that predicts best.
 //!
 //! **Intervals** are those of stretches of a second as clusters (CR2, Student's t with the degrees of freedom of each coefficient), so that
-//! correlation which the observer leaves is in them. Declared inputs (η, η_b, D, delay, newtons a volt) move
+//! correlation which the observer leaves is in them. Declared inputs (η, η_b, D, delay, force per volt) move
 //! the estimate by one linearised step; their standard uncertainties are added.
 //!
 //! **What the motor cannot tell.** How viscous and Coulomb friction are split between motor and load shows only in the vibration
 //! and in the moments of sticking. The sums are coefficients; the splits are fractions in 0…1 with a prior that knows
 //! nothing (mean ½, standard deviation of a uniform one), and count as identified only when their interval lies inside 0…1 and is
-//! shorter than half of it. Newtons a volt cannot be told from the masses, nor η from the load's mass.
+//! shorter than half of it. The force per volt cannot be told from the masses, nor η from the load's mass.
 //!
 //! # Source
 //!
@@ -93,7 +93,7 @@ pub struct FlexibleOptions {
     pub load_drag_n_s2_m2: Uncertain,
     /// From the command to the force, s.
     pub delay_s: Uncertain,
-    /// Standard uncertainty of newtons a volt, as a part.
+    /// Standard uncertainty of force per volt, as a part.
     pub force_relative: f64,
     /// Longest step of the simulation, s.
     pub step_s: f64,
@@ -498,7 +498,7 @@ impl<'a> Record<'a> {
                 .collect();
             add_outer(&mut out, &times(gram, &score), 1.0);
         }
-        // Newtons a volt scale masses, stiffness and friction alike.
+        // The force per volt scales masses, stiffness and friction alike.
         let scaled = [1.0, 1.0, 1.0, 1.0, theta[4], theta[5], 0.0, 0.0];
         add_outer(&mut out, &scaled, self.options.force_relative);
         Ok(out)

@@ -178,7 +178,7 @@ pub fn plan(asked: &CarriagePlan, start_m: f64, order_seed: u64) -> Vec<Step> {
         };
         planner.run("pulses", Role::Excitation, drive, None);
     }
-    // Friction and newtons a volt are those of the wheel load that is towed: the body rides along, dry.
+    // Friction and force per volt are those of the wheel load that is towed: the body rides along, dry.
     if asked.friction.is_some() || asked.calibration.is_some() {
         planner.mount(BodyState::Dry, 0.0);
     }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 
-const SECTION: &str = "Friction sweeps: 24 runs of one axis, friction 2 % and newtons a volt 0.5 % from run to run";
+const SECTION: &str = "Friction sweeps: 24 runs of one axis, friction 2 % and force per volt 0.5 % from run to run";
 
 /// Six speeds out and back, twice.
 const SWEEPS: u32 = 2;

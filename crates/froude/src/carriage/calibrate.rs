@@ -39,9 +39,9 @@ pub struct Jog {
 /// What came out.
 #[derive(Debug, Clone)]
 pub struct CalibrationOutcome {
-    /// Newtons a volt, where weights were hung.
+    /// Force per volt, where weights were hung.
     pub calibration: Option<Calibration>,
-    /// Ideal newtons a volt of the declared constants.
+    /// Ideal force per volt of the declared constants.
     pub ideal_force_per_volt_n: f64,
     /// Jogs.
     pub jogs: Vec<Jog>,

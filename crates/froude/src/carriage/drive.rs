@@ -433,7 +433,7 @@ impl Live {
         Some(why)
     }
 
-    /// Newtons a volt of the weights, as the report will take them, before the first look.
+    /// Force per volt of the weights, as the report will take them, before the first look.
     fn calibrate(&mut self) {
         if self.is_calibrated {
             return;
