@@ -1,0 +1,131 @@
+//! What a name in a formula stands for.
+
+use super::affine::Affine;
+use super::error::FormulaError;
+use super::program::Op;
+use super::unit::Unit;
+use super::{COEFFICIENT_LIMIT, Dim};
+
+/// Column name of a motion alias: `u v w p q r`.
+#[must_use]
+pub fn channel_of_alias(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "u" => "v_x",
+        "v" => "v_y",
+        "w" => "v_z",
+        "p" => "w_x",
+        "q" => "w_y",
+        "r" => "w_z",
+        _ => return None,
+    })
+}
+
+/// Column name of a load, itself or by its alias: `X Y Z K M N`.
+#[must_use]
+pub fn load_column(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "X" | "f_x" => "f_x",
+        "Y" | "f_y" => "f_y",
+        "Z" | "f_z" => "f_z",
+        "K" | "m_x" => "m_x",
+        "M" | "m_y" => "m_y",
+        "N" | "m_z" => "m_z",
+        _ => return None,
+    })
+}
+
+/// Names of columns that a table may have: never a coefficient by oversight.
+fn is_column_name(name: &str) -> bool {
+    let base = name.strip_suffix("_dot").unwrap_or(name);
+    matches!(
+        base,
+        "v_x"
+            | "v_y"
+            | "v_z"
+            | "w_x"
+            | "w_y"
+            | "w_z"
+            | "speed"
+            | "angle"
+            | "temperature"
+            | "n_links"
+            | "density"
+            | "kinematic_viscosity"
+            | "repeat"
+            | "configuration"
+    ) || base.starts_with("std_")
+}
+
+/// The names of a formula with what they stand for.
+pub(super) struct Resolved<'a> {
+    /// The value of each name, in their order.
+    pub values: Vec<Affine>,
+    /// Columns that are read, in order of first appearance.
+    pub columns: Vec<String>,
+    /// The names that are coefficients, in order of first appearance.
+    pub coefficients: Vec<&'a str>,
+}
+
+/// Finds what each of `names` is; they are in order of first appearance, each once.
+///
+/// # Errors
+///
+/// A name that could be meant otherwise, a constant that is not finite, too many coefficients.
+pub(super) fn resolve<'a>(
+    names: &[&'a str],
+    channels: &dyn Fn(&str) -> Option<Dim>,
+    constants: &[(String, f64, Dim)],
+) -> Result<Resolved<'a>, FormulaError> {
+    let mut out = Resolved { values: Vec::with_capacity(names.len()), columns: Vec::new(), coefficients: Vec::new() };
+    for name in names {
+        let value = out.value_of(name, channels, constants)?;
+        out.values.push(value);
+    }
+    if out.coefficients.len() > COEFFICIENT_LIMIT {
+        return Err(FormulaError::TooManyCoefficients { count: out.coefficients.len() });
+    }
+    Ok(out)
+}
+
+impl<'a> Resolved<'a> {
+    fn value_of(
+        &mut self,
+        name: &'a str,
+        channels: &dyn Fn(&str) -> Option<Dim>,
+        constants: &[(String, f64, Dim)],
+    ) -> Result<Affine, FormulaError> {
+        if let Some((_, value, dim)) = constants.iter().find(|(known, ..)| known == name) {
+            if !value.is_finite() {
+                return Err(FormulaError::NotFinite { part: name.to_owned() });
+            }
+            return Ok(Affine::known_as(name, Op::Number(*value), Unit::of(*dim)));
+        }
+        if name == "pi" {
+            return Ok(Affine::known_as(name, Op::Number(std::f64::consts::PI), Unit::ONE));
+        }
+        if load_column(name).is_some() {
+            return Err(FormulaError::LoadName { name: name.to_owned() });
+        }
+        let aliased = channel_of_alias(name);
+        let column = aliased.filter(|column| channels(column).is_some()).unwrap_or(name);
+        if let Some(dim) = channels(column) {
+            return Ok(Affine::known_as(name, Op::Channel(self.index_of(column)), Unit::of(dim)));
+        }
+        if let Some(column) = aliased {
+            return Err(FormulaError::MissingAlias { name: name.to_owned(), column: column.to_owned() });
+        }
+        if is_column_name(name) {
+            return Err(FormulaError::MissingColumn { name: name.to_owned() });
+        }
+        self.coefficients.push(name);
+        Ok(Affine::coefficient(name))
+    }
+
+    /// The place of a column among those that are read.
+    fn index_of(&mut self, column: &str) -> usize {
+        self.columns.iter().position(|known| known == column).unwrap_or_else(|| {
+            self.columns.push(column.to_owned());
+            self.columns.len() - 1
+        })
+    }
+}
