@@ -7,9 +7,9 @@ use clap::{Parser, Subcommand};
 /// What stands below the help.
 const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input.";
 
-/// Hydrodynamic coefficients that can be trusted, from tank tests and computations.
+/// Froude turns tank tests, tows and potential flow into drag and added-mass coefficients with honest uncertainties, and drives the towing carriage.
 #[derive(Debug, Parser)]
-#[command(name = "froude", version, about, arg_required_else_help = true, after_help = EXIT_CODES)]
+#[command(name = "froude", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
     /// Print the result as JSON on standard output.
     #[arg(long, global = true)]
@@ -23,12 +23,14 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Run the main job on embedded data: real tow-tank runs and the snake robot's twin.
+    #[command(after_help = "Example: froude demo")]
     Demo {
         /// Folder to write; must be empty or new.
         #[arg(default_value = "froude-demo")]
         dir: PathBuf,
     },
     /// Fit every force model asked for, choose, and write estimate.json and report.html.
+    #[command(after_help = "Examples:\n  froude identify campaign.toml\n  froude identify tow.csv --models quadratic")]
     Identify {
         /// A campaign (.toml) or a bare table (.csv, .parquet).
         input: PathBuf,
@@ -43,6 +45,9 @@ pub enum Verb {
         models: Vec<String>,
     },
     /// Set estimate records side by side: coefficients, jointly, and as predicted forces.
+    #[command(
+        after_help = "Example: froude compare monday-results/estimate.json tuesday-results/estimate.json --out both"
+    )]
     Compare {
         /// Records (estimate.json), at least one.
         #[arg(required = true)]
@@ -55,6 +60,7 @@ pub enum Verb {
         out: Option<PathBuf>,
     },
     /// Say what is in a table, campaign, record, run (.mcap) or folder of runs, with units, ranges and every finding.
+    #[command(after_help = "Example: froude inspect tow.csv")]
     Inspect {
         /// The file or folder.
         file: PathBuf,
@@ -63,6 +69,7 @@ pub enum Verb {
         sidecar: Option<PathBuf>,
     },
     /// Write the observation tables that a campaign would give for its chosen true coefficients.
+    #[command(after_help = "Example: froude simulate campaign.toml")]
     Simulate {
         /// The campaign, with its `simulate` section and `source.plan` blocks.
         campaign: PathBuf,
@@ -71,6 +78,7 @@ pub enum Verb {
         replace: bool,
     },
     /// Drive a towing carriage, or its twin, through a campaign: pre-flight, runs, records; goes on where it stopped.
+    #[command(after_help = "Examples:\n  froude run campaign.toml --check\n  froude run campaign.toml")]
     Run {
         /// The campaign, with its `rig` and `carriage` sections.
         campaign: PathBuf,
@@ -85,14 +93,19 @@ pub enum Verb {
         yes: bool,
     },
     /// Added mass from potential flow: of a mesh, of a shape by its dimensions, of the robot with any number of links.
+    #[command(
+        after_help = "Examples:\n  froude added-mass hull.stl --density '1025 kg/m^3'\n  froude added-mass robot.toml --links 1..9"
+    )]
     AddedMass(Box<AddedMassArgs>),
-    /// Know a carriage and read drag from its motor current.
+    /// Calibrate, identify and tune a towing carriage, and find drag from its motor current.
+    #[command(after_help = "Example: froude carriage drag campaign-runs")]
     Carriage {
         /// What to do.
         #[command(subcommand)]
         job: CarriageJob,
     },
     /// Print the JSON Schema of estimate.json.
+    #[command(after_help = "Example: froude schema > estimate.schema.json")]
     Schema,
 }
 
@@ -100,6 +113,7 @@ pub enum Verb {
 #[derive(Debug, Subcommand)]
 pub enum CarriageJob {
     /// Inertia, friction, flexibility and repeatability, from runs or from anyone's servo log (CSV with a sidecar).
+    #[command(after_help = "Examples:\n  froude carriage identify campaign-runs\n  froude carriage identify servo.csv")]
     Identify {
         /// Folders of runs, runs (.mcap), or one log (.csv).
         #[arg(required = true)]
@@ -112,6 +126,7 @@ pub enum CarriageJob {
         out: Option<PathBuf>,
     },
     /// D_d and C_D by force sensor, motor current difference and model, side by side.
+    #[command(after_help = "Example: froude carriage drag campaign-runs")]
     Drag {
         /// Folders of runs, or runs (.mcap).
         #[arg(required = true)]
@@ -124,6 +139,7 @@ pub enum CarriageJob {
         out: Option<PathBuf>,
     },
     /// Force per volt from known weights over a pulley, polarity from the jogs.
+    #[command(after_help = "Example: froude carriage calibrate campaign-runs")]
     Calibrate {
         /// Folders of runs, or runs (.mcap).
         #[arg(required = true)]
@@ -145,8 +161,10 @@ pub enum CarriageJob {
         counted: Vec<String>,
     },
     /// Relay and sweep on the loop: margins on the measured response, proposed gains.
+    #[command(after_help = "Example: froude carriage tune campaign.toml")]
     Tune(Experiment),
     /// Sweep bare, dry and wet: the load's mode, a shaper proposed.
+    #[command(after_help = "Example: froude carriage resonance campaign.toml")]
     Resonance(Experiment),
 }
 

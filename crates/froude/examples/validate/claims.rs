@@ -117,6 +117,58 @@ pub fn with_sections_of(old: &str, new: &str) -> String {
     out.join("\n## ")
 }
 
+/// Title of the section that a page opens with.
+const OVERVIEW: &str = "What holds";
+
+/// A page with one screen before its sections: how many lines of each hold, contradict a source, or miss.
+pub fn with_overview(page: &str) -> String {
+    let mut sections: Vec<&str> = page.split("\n## ").collect();
+    sections.retain(|section| !section.starts_with(OVERVIEW));
+    let Some((head, sections)) = sections.split_first() else { return page.to_owned() };
+    let marks = [Verdict::Pass, Verdict::Finding, Verdict::Measured, Verdict::Skipped, Verdict::Miss].map(mark);
+    let counts = |section: &str| marks.map(|m| section.lines().filter(|l| l.starts_with(&format!("| {m} |"))).count());
+    let mut table = String::new();
+    let mut total = [0; 5];
+    for section in sections {
+        let title = section.lines().next().unwrap_or_default();
+        let own = counts(section);
+        total = std::array::from_fn(|i| total[i] + own[i]);
+        table += &format!("| [{title}](#{}) | {} |\n", anchor(title), own.map(|n| n.to_string()).join(" | "));
+    }
+    let missed: Vec<&str> = sections
+        .iter()
+        .flat_map(|s| s.lines())
+        .filter(|l| l.starts_with(&format!("| {} |", mark(Verdict::Miss))))
+        .collect();
+    let misses = if missed.is_empty() {
+        "No line misses its band.".to_owned()
+    } else {
+        format!("What misses:\n\n| | claim | expected | found |\n| --- | --- | --- | --- |\n{}", missed.join("\n"))
+    };
+    format!(
+        "{}\n\n## {OVERVIEW}\n\n{} lines hold, {} contradict a paper or a data set, {} are measured without a bar, {} were skipped, {} miss. {misses}\n\n\
+         | section | pass | finding | measured | skipped | miss |\n| --- | --: | --: | --: | --: | --: |\n{table}\n## {}",
+        head.trim_end(),
+        total[0],
+        total[1],
+        total[2],
+        total[3],
+        total[4],
+        sections.join("\n## ")
+    )
+}
+
+/// The anchor that mdBook gives a heading: letters and digits in lower case, spaces as dashes, all else left out.
+fn anchor(title: &str) -> String {
+    let of = |c: char| match c {
+        ' ' => Some('-'),
+        '-' | '_' => Some(c),
+        c if c.is_alphanumeric() => Some(c.to_ascii_lowercase()),
+        _ => None,
+    };
+    title.chars().filter_map(of).collect()
+}
+
 fn mark(v: Verdict) -> &'static str {
     match v {
         Verdict::Pass => "pass",

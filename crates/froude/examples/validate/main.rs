@@ -102,7 +102,7 @@ fn main() -> ExitCode {
             let old = std::fs::read_to_string(&page).unwrap_or_default();
             text = claims::with_sections_of(&old, &text);
         }
-        if let Err(error) = std::fs::write(&page, text) {
+        if let Err(error) = std::fs::write(&page, claims::with_overview(&text)) {
             eprintln!("validate: {}: {error}", page.display());
             return ExitCode::FAILURE;
         }
