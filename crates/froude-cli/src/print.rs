@@ -94,7 +94,7 @@ fn summary(section: &DocumentSection) {
 }
 
 fn source(source: &SourceResult) {
-    say!("\n{} ({})", source.name, observations(source.data.rows));
+    say!("\n{} ({})", source.name, observations(source.data.observations()));
     if let Some(r) = &source.recommendation {
         let is_recommended = source.estimates[r.index].recommended;
         say!("  {}: {}", if is_recommended { "recommended" } else { "method" }, r.reason);

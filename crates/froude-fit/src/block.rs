@@ -34,6 +34,8 @@ pub(crate) struct Block {
     pub response: Vec<f64>,
     /// Component of each row, an index into `components`.
     pub row_component: Vec<usize>,
+    /// Observations behind the rows of each component, where these were condensed.
+    pub observations: Option<Vec<usize>>,
     /// `(column, value, standard)` of each prior.
     pub priors: Vec<(usize, f64, f64)>,
     /// `β₀`.
@@ -62,8 +64,11 @@ impl Block {
         beta
     }
 
-    /// Rows of each component of the block.
+    /// Observations of each component of the block.
     pub(crate) fn n_rows_of(&self) -> Vec<usize> {
+        if let Some(observations) = &self.observations {
+            return observations.clone();
+        }
         let mut count = vec![0; self.components.len()];
         for &c in &self.row_component {
             count[c] += 1;
@@ -250,6 +255,8 @@ fn block(
         has_equalities: !equalities.is_empty(),
         columns,
         rows,
+        observations: (!options.observations.is_empty())
+            .then(|| components.iter().map(|&c| options.observations[c]).collect()),
         components,
         scale,
         design,

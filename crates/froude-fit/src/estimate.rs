@@ -109,7 +109,7 @@ fn residual(whitened: &Whitened, gamma: &[f64]) -> Vec<f64> {
 fn degrees_of_freedom(block: &Block, qr: &PivotedQr) -> Vec<f64> {
     let n_priors = block.priors.len();
     if block.components.len() == 1 && n_priors == 0 {
-        return vec![(block.rows.len() - qr.rank) as f64];
+        return vec![block.n_rows_of()[0].saturating_sub(qr.rank) as f64];
     }
     let mut dof: Vec<f64> = block.n_rows_of().iter().map(|&n| n as f64).collect();
     for (i, &c) in block.row_component.iter().enumerate() {
@@ -147,6 +147,7 @@ fn floors(block: &Block) -> Vec<f64> {
 
 /// σ of each component fitted by itself.
 fn separate_sigmas(block: &Block, floor: &[f64]) -> Vec<f64> {
+    let n_rows = block.n_rows_of();
     (0..block.components.len())
         .map(|c| {
             let rows: Vec<usize> = (0..block.rows.len()).filter(|&i| block.row_component[i] == c).collect();
@@ -155,11 +156,8 @@ fn separate_sigmas(block: &Block, floor: &[f64]) -> Vec<f64> {
             let qr = PivotedQr::new(part.as_ref());
             let fitted = mul_vec(part.as_ref(), &qr.solve(&y));
             let rss: f64 = y.iter().zip(fitted).map(|(y, f)| (y - f) * (y - f)).sum();
-            let sigma = if rows.len() > qr.rank {
-                (rss / (rows.len() - qr.rank) as f64).sqrt()
-            } else {
-                norm(&y) / (rows.len() as f64).sqrt()
-            };
+            let n = n_rows[c];
+            let sigma = if n > qr.rank { (rss / (n - qr.rank) as f64).sqrt() } else { norm(&y) / (n as f64).sqrt() };
             sigma.max(floor[c])
         })
         .collect()

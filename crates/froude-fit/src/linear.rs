@@ -398,11 +398,12 @@ fn component(problem: &Problem, options: &Options, part: &Part, k: usize, residu
     let weighted: Vec<f64> = rows.iter().map(|&i| problem.weight_of(i).sqrt() * residuals[i]).collect();
     let size: f64 = rows.iter().map(|&i| problem.weight_of(i) * problem.response[i] * problem.response[i]).sum();
     let rss = dot(&weighted, &weighted);
-    let n = rows.len();
+    let is_condensed = !options.observations.is_empty();
+    let n = if is_condensed { options.observations[c] } else { rows.len() };
     let dof = part.estimate.dof[k];
     let is_rounding = rss <= ROUNDING * ROUNDING * size;
     let is_single = part.block.components.len() == 1;
-    let durbin_watson = if n < 3 || is_rounding { None } else { durbin_watson(&weighted) };
+    let durbin_watson = if n < 3 || is_rounding || is_condensed { None } else { durbin_watson(&weighted) };
     let is_plain = is_single && part.estimate.n_priors == 0;
     let durbin_watson_p =
         durbin_watson.filter(|_| is_plain).and_then(|d| durbin_watson_p(d, part.estimate.qr.q.as_ref()));

@@ -24,6 +24,12 @@ pub struct Options {
     pub covariance: CovarianceKind,
     /// Probability of the intervals, 0.95 by default.
     pub confidence: f64,
+    /// Observations behind the rows of each component: empty, each row is one, or one number per component.
+    ///
+    /// `R` and `Qᵀy` of `[X | y] = Q·R` have the minimiser and the sum of squares of all their rows under any constraint and prior: such
+    /// rows stand for more observations than they are. Clusters condensed one by one keep CR3; HC3, Huber's loss and Durbin–Watson need the
+    /// rows themselves.
+    pub observations: Vec<usize>,
 }
 
 impl Default for Options {
@@ -38,6 +44,7 @@ impl Default for Options {
             loss: Loss::Squares,
             covariance: CovarianceKind::Classical,
             confidence: 0.95,
+            observations: Vec::new(),
         }
     }
 }
@@ -151,6 +158,17 @@ impl Options {
             && !(k > 0.0 && k.is_finite())
         {
             return Err(FitError::Option { option: "Huber's k", value: k, must: "positive and finite" });
+        }
+        if !self.observations.is_empty() {
+            size("observations", self.observations.len(), problem.components.len(), "one per component")?;
+            let needs_rows = match (self.loss, self.covariance) {
+                (Loss::Huber { .. }, _) => Some("Huber's loss"),
+                (_, CovarianceKind::Hc3) => Some("HC3"),
+                _ => None,
+            };
+            if let Some(what) = needs_rows {
+                return Err(FitError::Unsupported { method: "a fit of condensed rows", what });
+            }
         }
         if self.covariance == CovarianceKind::Cr3 && problem.cluster.is_none() {
             return Err(FitError::NoClusters);

@@ -284,7 +284,8 @@ fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dat
         Some((sign, agreeing, all)) => told(
             sign,
             &format!(
-                "with that sign the side force f_y opposes the motion sideways in {agreeing} of {all} rows ({CONVENTION})"
+                "with that sign the side force f_y opposes the motion sideways in {agreeing} of {all} rows{} ({CONVENTION})",
+                if data.sample.is_some() { " of a sample" } else { "" }
             ),
         ),
         None => format!(

@@ -37,6 +37,21 @@ pub struct Dataset {
     pub headers: Vec<String>,
     /// Headers of columns in the file that its sidecar does not name.
     pub left_out: Vec<String>,
+    /// What these rows were drawn from, where they are a sample.
+    pub sample: Option<Drawn>,
+}
+
+/// What is known of all observations of which a data set holds a sample.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drawn {
+    /// How many there are.
+    pub rows: usize,
+    /// Distinct texts of the `group` column.
+    pub clusters: usize,
+    /// Distinct configurations, in order of first appearance.
+    pub configurations: Vec<String>,
+    /// Sum of squares of each load, SI.
+    pub squares: IndexMap<String, f64>,
 }
 
 /// Unit text of a channel; `1` where the table has none of that name.
@@ -115,9 +130,10 @@ impl Dataset {
 
     /// Sets `speed` and `angle` from `v_x`, `v_y`.
     pub fn speed_and_angle_from_velocity(&mut self) {
-        let velocity: Vec<[f64; 2]> = (0..self.rows).map(|i| self.velocity_m_s(i)).collect();
-        self.put("speed", velocity.iter().map(|[x, y]| x.hypot(*y)).collect(), Dimension::SPEED);
-        self.put("angle", velocity.iter().map(|[x, y]| (-y).atan2(*x)).collect(), Dimension::ONE);
+        let along = |name| self.values(name).map_or_else(|| vec![0.0; self.rows], <[f64]>::to_vec);
+        let (v_x, v_y) = (along("v_x"), along("v_y"));
+        self.put("speed", v_x.iter().zip(&v_y).map(|(x, y)| x.hypot(*y)).collect(), Dimension::SPEED);
+        self.put("angle", v_x.iter().zip(&v_y).map(|(x, y)| (-y).atan2(*x)).collect(), Dimension::ONE);
     }
 
     /// Sets a channel.
@@ -146,6 +162,7 @@ impl Dataset {
             line: keep.iter().filter_map(|&i| self.line.get(i).copied()).collect(),
             headers: self.headers.clone(),
             left_out: self.left_out.clone(),
+            sample: self.sample.clone(),
         }
     }
 
@@ -153,6 +170,19 @@ impl Dataset {
     #[must_use]
     pub fn configurations(&self) -> Vec<String> {
         distinct(&self.configuration)
+    }
+
+    /// Observations: the rows, or those that they were drawn from.
+    #[must_use]
+    pub fn observations(&self) -> usize {
+        self.sample.as_ref().map_or(self.rows, |all| all.rows)
+    }
+
+    /// Clusters of the observations; 0 without a `group`.
+    #[must_use]
+    pub fn clusters(&self) -> usize {
+        let of_rows = || self.group.as_ref().map_or(0, |group| distinct(group).len());
+        self.sample.as_ref().map_or_else(of_rows, |all| all.clusters)
     }
 }
 

@@ -66,6 +66,10 @@ pub fn diagnostics(model: &ModelFit, data: &Dataset, score: &Score) -> Result<Di
 
 /// p-value of lack of fit against the repeats of a setting, by component.
 fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f64> {
+    // Repeats of a setting are looked for among rows that are kept.
+    if data.sample.is_some() {
+        return indexmap::IndexMap::new();
+    }
     let groups = lint::repeat_groups(data);
     let n = data.rows;
     let most = groups.iter().copied().max().map_or(0, |m| m + 1);
@@ -198,12 +202,13 @@ fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
                 Severity::Warning,
                 "uneven-scatter",
                 format!(
-                    "{}, {component}: |residual|{} {} with speed (rank correlation {rho:.2}, {:.1} standard errors): {assumed} \
+                    "{}, {component}: |residual|{} {} with speed (rank correlation {rho:.2}, {:.1} standard errors{}): {assumed} \
                      are not what the data show; {advice}",
                     model.law.name,
                     if is_weighted { " over its std" } else { "" },
                     if rho > 0.0 { "grows" } else { "falls" },
                     z.abs(),
+                    if data.sample.is_some() { format!(", in a sample of {}", data.rows) } else { String::new() },
                 ),
             ));
         }

@@ -22,6 +22,7 @@ pub mod dissipation;
 pub mod eiv;
 mod error;
 pub mod formula;
+pub mod large;
 pub mod law;
 pub mod lint;
 pub mod method;

@@ -18,7 +18,7 @@ const ANGLE_CONTRADICTS_RAD: f64 = std::f64::consts::PI / 180.0;
 /// A load below this share of the largest is too small for its sign to say anything.
 pub(crate) const SIGN_MATTERS_ABOVE: f64 = 0.05;
 /// Rows slower than this part of the fastest are at rest: the angle of their velocity is that of noise.
-const AT_REST: f64 = 0.05;
+pub(crate) const AT_REST: f64 = 0.05;
 /// Share of rows at one extreme value that looks like a saturated sensor.
 const SATURATED_SHARE: f64 = 0.02;
 /// A linear and a quadratic term need at least this many distinct speeds.
@@ -38,7 +38,7 @@ const BODY_DRAG_COEFFICIENT: std::ops::RangeInclusive<f64> = 0.02..=4.6;
 /// a streamlined model of 1 cm (1e-5 m²) and a ship then lies outside. A factor of a thousand is mostly not seen.
 const DRAG_AREA_M2: std::ops::RangeInclusive<f64> = 1e-7..=1e3;
 /// Rows at this share of the largest speed or more are near it: there the zero and the bearings matter least.
-const NEAR_LARGEST_SPEED: f64 = 0.9;
+pub(crate) const NEAR_LARGEST_SPEED: f64 = 0.9;
 /// Density where neither campaign nor table says one: fresh water. Sea water differs by 3 %, which no bound notices.
 const DENSITY_UNSTATED_KG_M3: f64 = 1000.0;
 
@@ -56,13 +56,20 @@ const FASTEST_IN_AIR_M_S: f64 = 100.0;
 pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
     let mut findings = Vec::new();
     findings.extend(force_along_motion(data));
-    findings.extend(implausible_speed(data));
-    findings.extend(drag_area(data, campaign.body.as_ref().and_then(|b| b.reference_area_m2)));
     findings.extend(saturation(data));
     findings.extend(angle_in_radians(data));
     findings.extend(distinct_speeds(data));
-    findings.extend(one_sign_of_angle(data));
     findings.extend(repeats(data));
+    findings.extend(of_ends(data, campaign));
+    findings
+}
+
+/// Those that the rows at the ends of the ranges decide.
+pub(crate) fn of_ends(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    findings.extend(implausible_speed(data));
+    findings.extend(drag_area(data, campaign.body.as_ref().and_then(|b| b.reference_area_m2)));
+    findings.extend(one_sign_of_angle(data));
     if let Some(body) = &campaign.body {
         findings.extend(volumes(body));
     }
@@ -134,12 +141,7 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
         let speed = data.values("speed").unwrap_or_default();
         let moving = moving(speed, AT_REST);
         let stated_speed = read("speed");
-        let apart = |i: usize| {
-            // With a speed below zero the body moves the other way than its angle says.
-            let astern = if stated_speed.as_ref().is_some_and(|u| u[i] < 0.0) { PI } else { 0.0 };
-            let by = stated[i] + astern - derived[i];
-            (by - TAU * (by / TAU).round()).abs()
-        };
+        let apart = |i: usize| angles_apart(stated[i], stated_speed.as_ref().map(|u| u[i]), derived[i]);
         let worst = moving.into_iter().rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
         if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > ANGLE_CONTRADICTS_RAD) {
             findings.push(Finding::new(
@@ -160,7 +162,7 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
         }
     }
     if has_velocity && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed")) {
-        let apart = |i: usize| (stated[i].abs() - derived[i].abs()).abs();
+        let apart = |i: usize| speeds_apart(stated[i], derived[i]);
         let worst = (0..data.rows).rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
         let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > 0.01 * scale) {
@@ -177,31 +179,87 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
     findings
 }
 
+/// How far a stated angle lies from that of the velocity, rad.
+pub(crate) fn angles_apart(stated: f64, stated_speed: Option<f64>, derived: f64) -> f64 {
+    // With a speed below zero the body moves the other way than its angle says.
+    let astern = if stated_speed.is_some_and(|u| u < 0.0) { PI } else { 0.0 };
+    let by = stated + astern - derived;
+    (by - TAU * (by / TAU).round()).abs()
+}
+
+/// How far a stated speed lies from that of the velocity, m/s.
+pub(crate) fn speeds_apart(stated: f64, derived: f64) -> f64 {
+    (stated.abs() - derived.abs()).abs()
+}
+
 /// Rows that move faster than a part of the fastest; a speed below zero goes astern.
 pub(crate) fn moving(speed: &[f64], part: f64) -> Vec<usize> {
     let fastest = speed.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
     (0..speed.len()).filter(|&i| speed[i].abs() > part * fastest).collect()
 }
 
+/// Forces with the velocity along the same axis.
+pub(crate) const ALONG: [(&str, &str); 3] = [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")];
+
+/// Rows in which a load points along the motion.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pushed {
+    /// Rows large enough to tell.
+    large: usize,
+    along: usize,
+    /// Line of the first of them.
+    line: usize,
+}
+
+impl Pushed {
+    /// Counts the rows of a load and a motion, of which the largest are known.
+    pub(crate) fn count(&mut self, data: &Dataset, (f, v): (&[f64], &[f64]), [largest_f, largest_v]: [f64; 2]) {
+        for (i, (f, v)) in f.iter().zip(v).enumerate() {
+            if f.abs() > SIGN_MATTERS_ABOVE * largest_f && v.abs() > SIGN_MATTERS_ABOVE * largest_v {
+                self.large += 1;
+                if f * v > 0.0 {
+                    if self.along == 0 {
+                        self.line = data.line.get(i).copied().unwrap_or(0);
+                    }
+                    self.along += 1;
+                }
+            }
+        }
+    }
+}
+
+/// The largest size of some numbers.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
+}
+
 /// Loads along the motion: a drag that pushes.
 fn force_along_motion(data: &Dataset) -> Vec<Finding> {
+    let counted = |(load, motion): (&'static str, &'static str)| {
+        let (f, v) = (data.values(load)?, data.values(motion)?);
+        let mut pushed = Pushed::default();
+        pushed.count(data, (f, v), [largest(f), largest(v)]);
+        Some((load, motion, pushed))
+    };
+    along_motion(&ALONG.into_iter().filter_map(counted).collect::<Vec<_>>(), data.rows, data)
+}
+
+/// What is said of loads along the motion, of so many rows; `data` says which channels there are.
+pub(crate) fn along_motion(
+    counted: &[(&'static str, &'static str, Pushed)],
+    n_rows: usize,
+    data: &Dataset,
+) -> Vec<Finding> {
     let mut findings = Vec::new();
-    for (load, motion) in [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")] {
-        let (Some(f), Some(v)) = (data.values(load), data.values(motion)) else { continue };
-        let largest_f = f.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let largest_v = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let counted =
-            |i: &usize| f[*i].abs() > SIGN_MATTERS_ABOVE * largest_f && v[*i].abs() > SIGN_MATTERS_ABOVE * largest_v;
-        let rows: Vec<usize> = (0..data.rows).filter(counted).collect();
-        let along: Vec<usize> = rows.iter().copied().filter(|&i| f[i] * v[i] > 0.0).collect();
-        if along.is_empty() {
+    for (load, motion, Pushed { large, along, line }) in counted {
+        if *along == 0 {
             continue;
         }
-        let all = along.len() * 2 > rows.len();
-        let of = if rows.len() == data.rows {
-            format!("in {} of {} rows", along.len(), rows.len())
+        let all = along * 2 > *large;
+        let of = if *large == n_rows {
+            format!("in {along} of {large} rows")
         } else {
-            format!("in {} of the {} rows large enough to tell ({} in all)", along.len(), rows.len(), data.rows)
+            format!("in {along} of the {large} rows large enough to tell ({n_rows} in all)")
         };
         findings.push(Finding::new(
             if all { Severity::Error } else { Severity::Warning },
@@ -210,7 +268,7 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
                 format!(
                     "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
                      way round, say sign = -1 for its column{}",
-                    if motion == "v_y" && data.channels.contains_key("angle") {
+                    if *motion == "v_y" && data.channels.contains_key("angle") {
                         "; if the angle counts the other way (beta of a ship's drift test does), say it for the angle's"
                     } else {
                         ""
@@ -218,8 +276,7 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
                 )
             } else {
                 format!(
-                    "{load} points along {motion} {of}, first on line {}; check zero and mounting of these runs",
-                    data.line.get(along[0]).copied().unwrap_or(0)
+                    "{load} points along {motion} {of}, first on line {line}; check zero and mounting of these runs"
                 )
             },
         ));
@@ -317,25 +374,29 @@ fn saturation(data: &Dataset) -> Vec<Finding> {
             ("smallest", f.iter().copied().fold(f64::MAX, f64::min)),
         ] {
             let there = f.iter().filter(|&&x| x == extreme).count();
-            if extreme != 0.0 && there >= 3 && there as f64 > SATURATED_SHARE * f.len() as f64 {
-                findings.push(Finding::new(
-                    Severity::Warning,
-                    "saturation",
-                    format!(
-                        "{load}: {there} rows stand at exactly the {end} value {extreme}; the sensor may be saturated"
-                    ),
-                ));
-            }
+            findings.extend(saturated(load, end, extreme, there, f.len()));
         }
     }
     findings
 }
 
+/// Whether so many rows at the end of a load's range look like a saturated sensor.
+pub(crate) fn saturated(load: &str, end: &str, extreme: f64, there: usize, n_rows: usize) -> Option<Finding> {
+    (extreme != 0.0 && there >= 3 && there as f64 > SATURATED_SHARE * n_rows as f64).then(|| {
+        let text =
+            format!("{load}: {there} rows stand at exactly the {end} value {extreme}; the sensor may be saturated");
+        Finding::new(Severity::Warning, "saturation", text)
+    })
+}
+
 /// Angles so small that they look like radians in a column of degrees.
 fn angle_in_radians(data: &Dataset) -> Option<Finding> {
     let angle = data.values("angle")?;
-    let distinct = distinct_count(angle);
-    let largest = angle.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
+    in_radians(distinct_count(angle), largest(angle))
+}
+
+/// Whether so many angles up to a largest one look like radians.
+pub(crate) fn in_radians(distinct: usize, largest: f64) -> Option<Finding> {
     (distinct >= 5 && largest > 0.0 && largest <= RADIAN_SUSPICION_RAD).then(|| {
         Finding::new(
             Severity::Warning,
@@ -353,7 +414,11 @@ fn angle_in_radians(data: &Dataset) -> Option<Finding> {
 fn distinct_speeds(data: &Dataset) -> Option<Finding> {
     let speed = data.values("speed")?;
     // The laws are odd in the speed: ahead and astern are one.
-    let n = distinct_count(&speed.iter().map(|u| u.abs()).collect::<Vec<_>>());
+    few_speeds(distinct_count(&speed.iter().map(|u| u.abs()).collect::<Vec<_>>()))
+}
+
+/// Whether so many speeds are too few.
+pub(crate) fn few_speeds(n: usize) -> Option<Finding> {
     (n < DISTINCT_SPEEDS_NEEDED).then(|| {
         Finding::new(
             Severity::Warning,
@@ -522,10 +587,15 @@ pub fn drag_coefficient(name: &str, d_n_s2_m2: f64, density_kg_m3: f64, area_m2:
     })
 }
 
+/// Step of a value, a thousandth of the largest of its channel.
+pub(crate) fn step_of(value: f64, largest: f64) -> i64 {
+    (value / largest.max(f64::MIN_POSITIVE) * 1e3).round() as i64
+}
+
 fn distinct_count(values: &[f64]) -> usize {
     // Settings are typed with few digits; a part in 10⁶ of the largest separates them.
     let scale = values.iter().fold(0.0_f64, |m, v| m.max(v.abs())).max(f64::MIN_POSITIVE);
-    let mut sorted: Vec<i64> = values.iter().map(|v| (v / scale * 1e3).round() as i64).collect();
+    let mut sorted: Vec<i64> = values.iter().map(|v| step_of(*v, scale)).collect();
     sorted.sort_unstable();
     sorted.dedup();
     sorted.len()

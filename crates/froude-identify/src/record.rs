@@ -9,7 +9,7 @@ use froude_records::estimate::{
 };
 use indexmap::IndexMap;
 
-use crate::dataset::{Dataset, distinct, unit_text};
+use crate::dataset::{Dataset, unit_text};
 use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
 use crate::regression::{ModelFit, Scatter};
 use crate::seam::{self, Choice, Reduced};
@@ -63,7 +63,7 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         clusters: clusters(model, data),
         dof,
         sigma,
-        n_observations: data.rows,
+        n_observations: data.observations(),
         derived: stated.derived.iter().filter_map(|d| derived(d, &coefficients)).collect(),
         coefficients,
         type_a,
@@ -214,9 +214,7 @@ fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) 
 fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
     match &model.scatter {
         Scatter::Classical | Scatter::Hc3 => None,
-        Scatter::Cluster => {
-            data.group.as_ref().map(|group| Clusters { by: "group".to_owned(), n: distinct(group).len() })
-        }
+        Scatter::Cluster => data.group.as_ref().map(|_| Clusters { by: "group".to_owned(), n: data.clusters() }),
         Scatter::Replicates { sets, .. } => {
             sets.first().map(|set| Clusters { by: set.left_out.to_owned(), n: set.without.len() })
         }

@@ -44,26 +44,10 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
     let mut files = vec![ReadFile::new(path, "table")];
     files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
     let mut findings = Vec::new();
-    let mut data = dataset(&table, source)?;
-    water_or_air(&table, campaign)?;
-    water(&mut data, campaign, &mut findings)?;
-    subtract_zeros(&mut data);
+    let data = observed(&table, campaign, source, &mut findings)?;
     let n_read = data.rows;
-    let mut keep: Vec<usize> = (0..n_read).collect();
-    if let Some(clauses) = &source.keep {
-        keep = kept(clauses, &data, source)?;
-        if keep.len() < n_read {
-            findings.push(Finding::new(
-                Severity::Note,
-                "kept",
-                format!(
-                    "{} of {} `keep`; the others are left out",
-                    keep.len(),
-                    counted(n_read, "observation satisfies", "observations satisfy")
-                ),
-            ));
-        }
-    }
+    let mut keep = kept_rows(&data, source)?;
+    findings.extend(left_out(keep.len(), n_read));
     if keep.is_empty() {
         return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read });
     }
@@ -89,8 +73,35 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
     Ok(Observations { data, n_read, findings, shared_errors, files })
 }
 
+/// All rows of a table as observations: motion, water, zeros subtracted.
+pub(crate) fn observed(
+    table: &Table,
+    campaign: &Campaign,
+    source: &Source,
+    findings: &mut Vec<Finding>,
+) -> Result<Dataset, IdentifyError> {
+    let mut data = dataset(table, source)?;
+    water_or_air(table, campaign)?;
+    water(&mut data, campaign, findings)?;
+    subtract_zeros(&mut data);
+    Ok(data)
+}
+
+/// Rows that `keep` leaves.
+pub(crate) fn kept_rows(data: &Dataset, source: &Source) -> Result<Vec<usize>, IdentifyError> {
+    source.keep.as_ref().map_or_else(|| Ok((0..data.rows).collect()), |clauses| kept(clauses, data, source))
+}
+
+/// What `keep` left out.
+pub(crate) fn left_out(kept: usize, n_read: usize) -> Option<Finding> {
+    (kept < n_read).then(|| {
+        let satisfy = counted(n_read, "observation satisfies", "observations satisfy");
+        Finding::new(Severity::Note, "kept", format!("{kept} of {satisfy} `keep`; the others are left out"))
+    })
+}
+
 /// The loads that a law of the source gives or has; all of them where its laws cannot be made.
-fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset) -> Vec<&'static str> {
+pub(crate) fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset) -> Vec<&'static str> {
     let mut loads = data.loads();
     if let Ok(laws) = source::laws(campaign, source, data) {
         loads.retain(|load| columns::is_in(load, &laws));
@@ -99,7 +110,7 @@ fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset) -> Vec<&'s
 }
 
 /// Refuses a load whose rows stand in two units: their mean is the load of nothing. A load that nothing fits does no harm.
-fn one_unit(table: &Table, data: &Dataset, loads: &[&'static str]) -> Result<(), IdentifyError> {
+pub(crate) fn one_unit(table: &Table, data: &Dataset, loads: &[&'static str]) -> Result<(), IdentifyError> {
     let Some(found) = two_units::found(data, loads) else { return Ok(()) };
     let [large, small] = found.rows;
     let place = |row: usize| {
@@ -299,7 +310,7 @@ fn measured_water(data: &Dataset, name: &str, stated: Option<f64>) -> Option<Fin
 }
 
 /// Zeros before and after each run.
-fn zeros_of<'a>(data: &'a Dataset, load: &str) -> [Option<&'a [f64]>; 2] {
+pub(crate) fn zeros_of<'a>(data: &'a Dataset, load: &str) -> [Option<&'a [f64]>; 2] {
     ["before", "after"].map(|when| data.values(&format!("zero_{when}_{load}")))
 }
 
@@ -324,7 +335,7 @@ fn subtract_zeros(data: &mut Dataset) {
 }
 
 /// How far the zeros moved that were subtracted.
-fn zero_drift(data: &Dataset) -> Vec<Finding> {
+pub(crate) fn zero_drift(data: &Dataset) -> Vec<Finding> {
     let mut findings = Vec::new();
     for load in LOADS {
         let (Some(zero), Some(values)) = (mean_zero(data, load), data.values(load)) else { continue };

@@ -87,6 +87,17 @@ pub struct Settings<'a> {
     pub shared_errors: &'a [SharedError],
     /// Looks that an interval pays for (Bonferroni), 1 or more.
     pub looks: usize,
+    /// All rows of a table that was read in chunks; then `data` holds those at the ends of its ranges.
+    pub condensed: Option<&'a Condensed>,
+}
+
+/// Rows of a law that is linear in its coefficients, condensed to few with the same minimiser and sum of squares.
+#[derive(Debug, Clone)]
+pub struct Condensed {
+    /// Triangles of `[X | y]`, one for each load, or one for each load and cluster.
+    pub problem: fit::Problem,
+    /// Observations of each load.
+    pub observations: Vec<usize>,
 }
 
 impl<'a> Settings<'a> {
@@ -103,6 +114,7 @@ impl<'a> Settings<'a> {
             campaign: "",
             shared_errors: &[],
             looks: 1,
+            condensed: None,
         }
     }
 }
@@ -192,7 +204,10 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     let mut beta = start(law, data, &newtons, specs.len());
     let iterate = law.is_nonlinear() || !setups.names.is_empty();
     let weight = weights(law, data, settings.weight)?;
-    let mut problem = problem(law, data, &specs, &measured, weight.clone(), &setups, &beta)?;
+    let mut problem = match settings.condensed {
+        Some(condensed) => condensed.problem.clone(),
+        None => problem(law, data, &specs, &measured, weight.clone(), &setups, &beta)?,
+    };
     let mut fitted = fit::fit(&problem, &options).map_err(refuse)?;
     if iterate {
         let mut converged = false;
@@ -604,7 +619,7 @@ fn step(fitted: &fit::Fit) -> Vec<f64> {
 
 /// What the record calls the covariance of residuals.
 fn residuals_in_words(data: &Dataset, settings: Settings<'_>) -> String {
-    let clusters = || data.group.as_ref().map_or(0, |g| distinct(g).len());
+    let clusters = || data.clusters();
     let kind = match settings.scatter.of_residuals() {
         fit::CovarianceKind::Classical => "classical".to_owned(),
         fit::CovarianceKind::Hc3 => "HC3".to_owned(),
@@ -634,6 +649,7 @@ fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) ->
         })
         .collect();
     fit::Options {
+        observations: settings.condensed.map(|c| c.observations.clone()).unwrap_or_default(),
         bounds,
         priors: identify
             .prior

@@ -80,6 +80,22 @@ impl Reduced {
             files: Vec::new(),
         }
     }
+
+    /// How its laws are regressed.
+    pub(crate) fn settings<'a>(&'a self, identify: &'a Identify) -> Settings<'a> {
+        Settings {
+            source_name: &self.source,
+            kind: self.kind,
+            identify,
+            weight: self.weight,
+            scatter: &self.scatter,
+            budget: &self.budget,
+            campaign: &self.campaign,
+            shared_errors: &self.errors,
+            looks: self.looks,
+            condensed: None,
+        }
+    }
 }
 
 /// Who says which law is recommended.
@@ -135,29 +151,32 @@ pub struct Derived {
 /// # Errors
 ///
 /// See [`IdentifyError`]; a law that cannot be fitted costs its own row, unless it is the last.
-pub fn fit(mut reduced: Reduced, identify: &Identify, progress: &dyn Fn(&str)) -> Result<SourceResult, IdentifyError> {
-    let mut findings = std::mem::take(&mut reduced.findings);
-    let data = &reduced.data;
-    let settings = Settings {
-        source_name: &reduced.source,
-        kind: reduced.kind,
-        identify,
-        weight: reduced.weight,
-        scatter: &reduced.scatter,
-        budget: &reduced.budget,
-        campaign: &reduced.campaign,
-        shared_errors: &reduced.errors,
-        looks: reduced.looks,
-    };
-    let (mut models, mut failed) = (Vec::new(), Vec::new());
-    for law in &reduced.laws {
+pub fn fit(reduced: Reduced, identify: &Identify, progress: &dyn Fn(&str)) -> Result<SourceResult, IdentifyError> {
+    let fitted = reduced.laws.iter().map(|law| {
         progress(&law.name);
-        match regress(law, data, settings) {
+        regress(law, &reduced.data, reduced.settings(identify)).map_err(|error| (law.name.clone(), error))
+    });
+    let fitted = fitted.collect();
+    conclude(reduced, identify, fitted, progress)
+}
+
+/// Compares the laws that could be fitted, chooses and makes the records.
+pub(crate) fn conclude(
+    mut reduced: Reduced,
+    identify: &Identify,
+    fitted: Vec<Result<ModelFit, (String, IdentifyError)>>,
+    progress: &dyn Fn(&str),
+) -> Result<SourceResult, IdentifyError> {
+    let mut findings = std::mem::take(&mut reduced.findings);
+    let (data, settings) = (&reduced.data, reduced.settings(identify));
+    let (mut models, mut failed) = (Vec::new(), Vec::new());
+    for result in fitted {
+        match result {
             Ok(model) => {
                 findings.extend(model.findings.iter().cloned());
                 models.push(model);
             }
-            Err(error) => failed.push((law.name.clone(), error)),
+            Err(named) => failed.push(named),
         }
     }
     if models.is_empty() {

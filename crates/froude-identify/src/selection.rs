@@ -83,6 +83,9 @@ pub fn aicc_of(model: &ModelFit, data: &Dataset, load: &str) -> Option<f64> {
 
 /// AICc of the statement that a load is zero, with the weights of its `std_*` column where the others have them.
 fn aicc_of_nothing(data: &Dataset, load: &str, is_weighted: bool) -> Option<f64> {
+    if let Some(all) = &data.sample {
+        return fit::select::aicc(all.rows, *all.squares.get(load)?, 0.0).ok().filter(|x| x.is_finite());
+    }
     let f = data.values(load)?;
     let mut weight = vec![1.0; f.len()];
     if let Some(std) = data.values(&format!("std_{load}")).filter(|_| is_weighted) {
@@ -193,6 +196,15 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
             rmse: Vec::new(),
             note: Some("not scorable: the law is not linear in its coefficients".to_owned()),
         };
+    }
+    if let Some(all) = &data.sample {
+        let note = match all.configurations.len() {
+            few @ ..3 => {
+                format!("not scorable: leave-one-configuration-out needs three configurations, there are {few}")
+            }
+            _ => "not scored: no configuration is left out of a table that is read in chunks".to_owned(),
+        };
+        return Score { rmse: Vec::new(), note: Some(note) };
     }
     let groups = labels(&data.configuration);
     let n = data.rows;

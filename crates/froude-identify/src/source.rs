@@ -5,15 +5,16 @@ use std::path::PathBuf;
 use froude_fit::FEWEST_CLUSTERS;
 use froude_hydro::{Body, CrossTerm, DragModel, Link};
 use froude_records::RecordError;
-use froude_records::campaign::{Campaign, Source, SourceKind};
+use froude_records::campaign::{Campaign, Input, Source, SourceKind};
 use froude_records::comparison::NestedTest;
 use froude_records::estimate::{Estimate, Range, ReferencePoint};
 use froude_records::finding::{Finding, Severity};
 use froude_records::nearest::meant;
 use indexmap::IndexMap;
 
-use crate::dataset::{Dataset, distinct};
+use crate::dataset::Dataset;
 use crate::error::IdentifyError;
+use crate::large::{self, Limits};
 use crate::law::{ForceLaw, aliased};
 use crate::lint::moving;
 use crate::reduce::{Observations, reduce};
@@ -92,6 +93,11 @@ pub fn identify_source(
     source: &Source,
     progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
+    if let Input::Table(path) = &source.input
+        && large::is_long(campaign, source, path)
+    {
+        return large::identify_source(campaign, source, Limits::default(), progress);
+    }
     let mut result = fit(reduced(campaign, source)?, &campaign.identify, progress)?;
     // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
     if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
@@ -107,40 +113,38 @@ fn reduced(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyErro
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     findings.extend(lint::observations(&data, campaign));
-    if source.uncertainty.is_empty() {
-        findings.push(Finding::new(
-            Severity::Note,
-            "no-budget",
-            format!(
-                "no uncertainty of an instrument is declared: the intervals hold the scatter of the observations{} and nothing else \
-                 (a calibration error does not show in the scatter)",
-                if shared_errors.is_empty() { "" } else { ", that of the tare" }
-            ),
-        ));
-    }
+    findings.extend(no_budget(source, !shared_errors.is_empty()));
     let laws = laws(campaign, source, &data)?;
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
     let scatter = scatter(campaign, source, &data, &mut findings)?;
+    let out = of_table(campaign, source, data, laws);
+    Ok(Reduced { n_read, scatter, errors: shared_errors, validity, findings, files, ..out })
+}
+
+/// Observations of a table, with what the campaign states of them.
+pub(crate) fn of_table(campaign: &Campaign, source: &Source, data: Dataset, laws: Vec<ForceLaw>) -> Reduced {
     let mut out = Reduced::new(&source.name, source.kind, "table", data, laws);
     // Nobody but the campaign knows the point that moments are about.
     let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
     out.stated.point = ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() };
-    Ok(Reduced {
-        n_read,
-        scatter,
-        budget: source.uncertainty.clone(),
-        campaign: campaign.key.clone(),
-        errors: shared_errors,
-        validity,
-        findings,
-        files,
-        ..out
+    Reduced { budget: source.uncertainty.clone(), campaign: campaign.key.clone(), ..out }
+}
+
+/// That no error of an instrument is declared, where none is.
+pub(crate) fn no_budget(source: &Source, has_tare: bool) -> Option<Finding> {
+    source.uncertainty.is_empty().then(|| {
+        let tare = if has_tare { ", that of the tare" } else { "" };
+        let text = format!(
+            "no uncertainty of an instrument is declared: the intervals hold the scatter of the observations{tare} and nothing else \
+             (a calibration error does not show in the scatter)"
+        );
+        Finding::new(Severity::Note, "no-budget", text)
     })
 }
 
 /// The scatter that the campaign asks for, else what suits the source: residuals of a computation are model error, alike within a configuration.
-fn scatter(
+pub(crate) fn scatter(
     campaign: &Campaign,
     source: &Source,
     data: &Dataset,
@@ -159,7 +163,7 @@ fn scatter(
         None if source.kind != SourceKind::Cfd => return Ok(Scatter::Classical),
         None => {}
     }
-    let clusters = data.group.as_ref().map_or(0, |g| distinct(g).len());
+    let clusters = data.clusters();
     if clusters >= FEWEST_CLUSTERS {
         return Ok(Scatter::Cluster);
     }
@@ -284,7 +288,7 @@ pub fn laws(campaign: &Campaign, source: &Source, data: &Dataset) -> Result<Vec<
 const PAIRS: [(&str, &str); 6] =
     [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z"), ("m_x", "w_x"), ("m_y", "w_y"), ("m_z", "w_z")];
 /// Moments of a body that moves askew: the moment, the velocity along the body and the one across it, and the moment's letter.
-const MOMENTS: [(&str, &str, &str, &str); 2] = [("m_z", "v_x", "v_y", "N"), ("m_y", "v_x", "v_z", "M")];
+pub(crate) const MOMENTS: [(&str, &str, &str, &str); 2] = [("m_z", "v_x", "v_y", "N"), ("m_y", "v_x", "v_z", "M")];
 
 /// Whether there is motion along or about an axis in some row; cos 90° is 6e-17, which is none.
 fn moves(data: &Dataset, channel: &str) -> bool {

@@ -121,14 +121,20 @@ fn first_twice<'a>(mut names: impl Iterator<Item = &'a str>) -> Option<&'a str> 
 pub(crate) struct Room<'a> {
     path: &'a Path,
     taken: u64,
+    most: u64,
 }
 
 impl<'a> Room<'a> {
     /// Most bytes of cells: 268 million numbers. A fit needs some six times as much.
-    const MOST_BYTES: u64 = 2 << 30;
+    pub const MOST_BYTES: u64 = 2 << 30;
 
     pub fn new(path: &'a Path) -> Self {
-        Self { path, taken: 0 }
+        Self::of(path, Self::MOST_BYTES)
+    }
+
+    /// Of so many bytes.
+    pub fn of(path: &'a Path, most: u64) -> Self {
+        Self { path, taken: 0, most }
     }
 
     /// Takes a part of it.
@@ -139,7 +145,7 @@ impl<'a> Room<'a> {
     #[inline]
     pub fn take(&mut self, bytes: u64) -> Result<(), RecordError> {
         self.taken = self.taken.saturating_add(bytes);
-        if self.taken > Self::MOST_BYTES { Err(self.refusal(self.taken)) } else { Ok(()) }
+        if self.taken > self.most { Err(self.refusal(self.taken)) } else { Ok(()) }
     }
 
     #[cold]
@@ -147,7 +153,7 @@ impl<'a> Room<'a> {
         RecordError::TooLarge {
             path: self.path.to_owned(),
             bytes,
-            limit: Self::MOST_BYTES,
+            limit: self.most,
             what: "the cells of a table, unpacked",
         }
     }

@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::Path;
 
-use crate::assemble::{Raw, Room, assemble, number, plan};
+use crate::assemble::{Raw, Room, Want, assemble, number, plan};
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::memory;
 use crate::sidecar::Sidecar;
@@ -48,68 +48,102 @@ pub fn read_csv(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordE
 ///
 /// See [`RecordError`].
 pub fn parse_csv(path: &Path, text: &str, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    let mut records = Records::new(path, text.strip_prefix('\u{feff}').unwrap_or(text));
-    let mut cells = Vec::new();
-    let Some(line) = records.next(&mut cells)? else {
-        return Err(RecordError::Syntax {
-            place: Place::whole(path),
-            problem: "the file is empty; its first line names the columns as `name [unit]`".to_owned(),
-        });
-    };
-    let header_place = Place::line(path, line);
-    let header: Vec<String> = cells.iter().map(|c| unguarded(c.trim()).to_owned()).collect();
-    if let [only] = header.as_slice()
-        && let Some(separator) = [';', '\t'].into_iter().find(|c| only.contains(*c))
-    {
-        let name = if separator == ';' { "`;`" } else { "tabs" };
-        return Err(RecordError::Syntax {
-            place: header_place,
-            problem: format!("the cells are separated by {name}; separate them by commas"),
-        });
-    }
-    let wants = plan(path, &header, sidecar, &header_place)?;
-    let mut raws: Vec<Raw> = wants
-        .iter()
-        .map(|want| if want.is_number() { Raw::Numbers(Vec::new()) } else { Raw::Texts(Vec::new()) })
-        .collect();
-    let is_left_out: Vec<bool> = wants.iter().map(|want| matches!(want, crate::assemble::Want::LeftOut)).collect();
-    let mut lines = Vec::new();
-    let mut room = Room::new(path);
-    while let Some(line) = records.next(&mut cells)? {
-        if cells.len() != header.len() {
-            return Err(RecordError::RaggedRow {
-                place: Place::line(path, line),
-                found: cells.len(),
-                expected: header.len(),
+    let mut records = Records::new(path, text.strip_prefix('\u{feff}').unwrap_or(text), 1);
+    let head = Head::read(&mut records, sidecar)?;
+    let (raws, lines) = head.rows(&mut records)?;
+    head.table(raws, lines)
+}
+
+/// The first row of a table: what its columns are.
+pub(crate) struct Head<'a, 's> {
+    path: &'a Path,
+    sidecar: Option<&'s Sidecar>,
+    place: Place,
+    pub(crate) header: Vec<String>,
+    pub(crate) wants: Vec<Want<'s>>,
+}
+
+impl<'a, 's> Head<'a, 's> {
+    /// Reads it.
+    pub(crate) fn read(records: &mut Records<'a, '_>, sidecar: Option<&'s Sidecar>) -> Result<Self, RecordError> {
+        let path = records.path;
+        let mut cells = Vec::new();
+        let Some(line) = records.next(&mut cells)? else {
+            return Err(RecordError::Syntax {
+                place: Place::whole(path),
+                problem: "the file is empty; its first line names the columns as `name [unit]`".to_owned(),
+            });
+        };
+        let place = Place::line(path, line);
+        let header: Vec<String> = cells.iter().map(|c| unguarded(c.trim()).to_owned()).collect();
+        if let [only] = header.as_slice()
+            && let Some(separator) = [';', '\t'].into_iter().find(|c| only.contains(*c))
+        {
+            let name = if separator == ';' { "`;`" } else { "tabs" };
+            return Err(RecordError::Syntax {
+                place,
+                problem: format!("the cells are separated by {name}; separate them by commas"),
             });
         }
-        for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
-            match raw {
-                Raw::Numbers(values) => {
-                    let advice = || wants[j].advice(path, sidecar);
-                    let value = number(cell.trim(), &header[j], &|| Place::line(path, line), &advice)?;
-                    room.number(values, value)?;
-                }
-                Raw::Texts(_) if is_left_out[j] => {}
-                Raw::Texts(texts) => room.text(texts, unguarded(cell), &|| Place::line(path, line))?,
-            }
-        }
-        memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
+        let wants = plan(path, &header, sidecar, &place)?;
+        Ok(Self { path, sidecar, place, header, wants })
     }
-    assemble(path, &header, &wants, raws, sidecar, &header_place, lines)
+
+    /// All further rows, with the line of each.
+    pub(crate) fn rows(&self, records: &mut Records<'_, '_>) -> Result<(Vec<Raw>, Vec<usize>), RecordError> {
+        let path = self.path;
+        let mut raws: Vec<Raw> = self
+            .wants
+            .iter()
+            .map(|want| if want.is_number() { Raw::Numbers(Vec::new()) } else { Raw::Texts(Vec::new()) })
+            .collect();
+        let is_left_out: Vec<bool> = self.wants.iter().map(|want| matches!(want, Want::LeftOut)).collect();
+        let (mut cells, mut lines) = (Vec::new(), Vec::new());
+        let mut room = Room::new(path);
+        while let Some(line) = records.next(&mut cells)? {
+            if cells.len() != self.header.len() {
+                return Err(RecordError::RaggedRow {
+                    place: Place::line(path, line),
+                    found: cells.len(),
+                    expected: self.header.len(),
+                });
+            }
+            for (j, (cell, raw)) in cells.iter().zip(&mut raws).enumerate() {
+                match raw {
+                    Raw::Numbers(values) => {
+                        let advice = || self.wants[j].advice(path, self.sidecar);
+                        let value = number(cell.trim(), &self.header[j], &|| Place::line(path, line), &advice)?;
+                        room.number(values, value)?;
+                    }
+                    Raw::Texts(_) if is_left_out[j] => {}
+                    Raw::Texts(texts) => room.text(texts, unguarded(cell), &|| Place::line(path, line))?,
+                }
+            }
+            memory::push(&mut lines, line).map_err(|e| RecordError::memory(path, e))?;
+        }
+        Ok((raws, lines))
+    }
+
+    /// The table of some rows.
+    pub(crate) fn table(&self, raws: Vec<Raw>, lines: Vec<usize>) -> Result<Table, RecordError> {
+        assemble(self.path, &self.header, &self.wants, raws, self.sidecar, &self.place, lines)
+    }
 }
 
 /// The rows of a CSV text, one after the other, each with the line on which it begins.
-struct Records<'a> {
-    path: &'a Path,
+pub(crate) struct Records<'p, 'a> {
+    path: &'p Path,
     text: &'a str,
-    at: usize,
-    line: usize,
+    /// Bytes that were read.
+    pub(crate) at: usize,
+    /// The line that is read next.
+    pub(crate) line: usize,
 }
 
-impl<'a> Records<'a> {
-    fn new(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text, at: 0, line: 1 }
+impl<'p, 'a> Records<'p, 'a> {
+    /// The rows of a text that begins on a line.
+    pub(crate) fn new(path: &'p Path, text: &'a str, line: usize) -> Self {
+        Self { path, text, at: 0, line }
     }
 
     fn refuse<T>(&self, line: usize, problem: &str) -> Result<T, RecordError> {

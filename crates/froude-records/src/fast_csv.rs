@@ -244,19 +244,9 @@ impl FastCsv {
     ///
     /// As [`FastCsv::open`].
     pub fn open_with(path: &Path, chunk_bytes: usize) -> Result<Self, FastCsvError> {
-        let read = |error: &std::io::Error| FastCsvError::Read { path: path.to_owned(), reason: error.to_string() };
         let header = |problem| FastCsvError::Header { path: path.to_owned(), problem };
-        let mut reader = Reader {
-            path: path.to_owned(),
-            file: File::open(path).map_err(|error| read(&error))?,
-            chunk_bytes: chunk_bytes.clamp(64, 1 << 30),
-            carry: Vec::new(),
-            next_line: 1,
-            summary: Summary::default(),
-            has_ended: false,
-        };
-        let mut start = Vec::new();
-        reader.fill(&mut start)?;
+        let mut reader = Reader::open(path, chunk_bytes)?;
+        let mut start = reader.beginning()?;
         let Some(end) = memchr(b'\n', &start) else {
             return Err(if reader.has_ended { header("there is no line end") } else { reader.too_long() });
         };
@@ -278,8 +268,7 @@ impl FastCsv {
                 });
             }
         }
-        reader.carry = start.split_off(end + 1);
-        reader.next_line = 2;
+        reader.go_on(start.split_off(end + 1), 2);
         let slots = (0..headers.len()).map(Some).collect();
         Ok(Self { reader, layout: Layout { selected: headers.len(), headers, slots } })
     }
@@ -372,9 +361,9 @@ fn name_of(header: &str) -> &str {
 
 /// Memory for one chunk.
 #[derive(Debug, Default)]
-struct Memory {
+pub(crate) struct Memory {
     /// Whole lines, then zeros.
-    text: Vec<u8>,
+    pub(crate) text: Vec<u8>,
     /// Where every cell ends.
     ends: Vec<u32>,
     /// Column after column.
@@ -383,15 +372,17 @@ struct Memory {
 
 /// The lines of a chunk.
 #[derive(Debug, Clone, Copy)]
-struct Lines {
+pub(crate) struct Lines {
     index: u64,
-    first: u64,
-    count: usize,
+    pub(crate) first: u64,
+    pub(crate) count: usize,
+    /// Their bytes, without the zeros behind them.
+    pub(crate) bytes: usize,
 }
 
 /// The file, cut into chunks of whole lines.
 #[derive(Debug)]
-struct Reader {
+pub(crate) struct Reader {
     path: PathBuf,
     file: File,
     chunk_bytes: usize,
@@ -403,6 +394,33 @@ struct Reader {
 }
 
 impl Reader {
+    /// Opens a file that is to be read `chunk_bytes` at a time.
+    pub(crate) fn open(path: &Path, chunk_bytes: usize) -> Result<Self, FastCsvError> {
+        let read = |error: std::io::Error| FastCsvError::Read { path: path.to_owned(), reason: error.to_string() };
+        Ok(Self {
+            path: path.to_owned(),
+            file: File::open(path).map_err(read)?,
+            chunk_bytes: chunk_bytes.clamp(64, 1 << 30),
+            carry: Vec::new(),
+            next_line: 1,
+            summary: Summary::default(),
+            has_ended: false,
+        })
+    }
+
+    /// The beginning of the file, up to a chunk.
+    pub(crate) fn beginning(&mut self) -> Result<Vec<u8>, FastCsvError> {
+        let mut start = Vec::new();
+        self.fill(&mut start)?;
+        Ok(start)
+    }
+
+    /// Goes on with what is left of the beginning, from a line on.
+    pub(crate) fn go_on(&mut self, rest: Vec<u8>, line: u64) {
+        self.carry = rest;
+        self.next_line = line;
+    }
+
     /// Reads until `text` has a chunk's bytes or the file ends.
     fn fill(&mut self, text: &mut Vec<u8>) -> Result<(), FastCsvError> {
         let missing = self.chunk_bytes.saturating_sub(text.len());
@@ -417,7 +435,7 @@ impl Reader {
     }
 
     /// The next whole lines, followed by padding; None at the end.
-    fn next(&mut self, text: &mut Vec<u8>) -> Result<Option<Lines>, FastCsvError> {
+    pub(crate) fn next(&mut self, text: &mut Vec<u8>) -> Result<Option<Lines>, FastCsvError> {
         text.clear();
         text.append(&mut self.carry);
         if !self.has_ended {
@@ -443,8 +461,12 @@ impl Reader {
             return Ok(None);
         }
         text.truncate(end);
-        let lines =
-            Lines { index: self.summary.chunks, first: self.next_line, count: memchr_iter(b'\n', text).count() };
+        let lines = Lines {
+            index: self.summary.chunks,
+            first: self.next_line,
+            count: memchr_iter(b'\n', text).count(),
+            bytes: end,
+        };
         text.resize(end.next_multiple_of(16) + PADDING, 0);
         self.next_line += lines.count as u64;
         self.summary.chunks += 1;
@@ -474,7 +496,7 @@ fn end_of_line_before(text: &[u8]) -> Option<usize> {
 
 /// Which column goes where.
 #[derive(Debug)]
-struct Layout {
+pub(crate) struct Layout {
     headers: Vec<String>,
     /// For every column of the file its place among the selected.
     slots: Vec<Option<usize>>,
@@ -482,8 +504,23 @@ struct Layout {
 }
 
 impl Layout {
+    /// Columns of which some are read, in their order.
+    pub(crate) fn of(headers: &[String], is_read: &[bool]) -> Self {
+        let mut selected = 0;
+        let slots = is_read.iter().map(|&is_read| {
+            selected += usize::from(is_read);
+            is_read.then(|| selected - 1)
+        });
+        Self { slots: slots.collect(), headers: headers.to_vec(), selected }
+    }
+
     /// Turns the lines in `memory` into columns.
-    fn parse<'a>(&self, path: &Path, memory: &'a mut Memory, lines: &Lines) -> Result<Vec<&'a [f64]>, FastCsvError> {
+    pub(crate) fn parse<'a>(
+        &self,
+        path: &Path,
+        memory: &'a mut Memory,
+        lines: &Lines,
+    ) -> Result<Vec<&'a [f64]>, FastCsvError> {
         let Memory { text, ends, numbers } = memory;
         let (rows, width) = (lines.count, self.headers.len());
         numbers.resize(self.selected * rows, 0.0);

@@ -24,6 +24,7 @@ mod campaign_toml;
 pub mod carriage;
 mod carriage_toml;
 mod checksum;
+pub mod chunks;
 pub mod comparison;
 pub mod csv_table;
 mod error;

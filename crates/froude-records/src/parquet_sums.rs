@@ -14,29 +14,51 @@ pub(crate) const KEY: &str = "froude.sha256";
 
 /// Sum of a column as it stands in the file: its header, and its numbers or texts before units and signs are applied.
 pub(crate) fn of_column(header: &str, cells: &Raw) -> String {
-    let mut sum = Sha256::new();
-    let mut text = |text: &str| {
-        sum.update((text.len() as u64).to_le_bytes());
-        sum.update(text.as_bytes());
-    };
-    text(header);
-    match cells {
-        Raw::Texts(texts) => {
-            for cell in texts {
-                text(cell);
-            }
-        }
-        Raw::Numbers(numbers) => {
-            // In pieces: a call for each number would cost more than its hash.
-            let mut piece = Vec::with_capacity(8 * 512);
-            for numbers in numbers.chunks(512) {
-                piece.clear();
-                for number in numbers {
-                    piece.extend_from_slice(&number.to_le_bytes());
+    let mut sum = Sum::new(header);
+    sum.add(cells);
+    sum.finish()
+}
+
+/// The same, taken in piece by piece.
+pub(crate) struct Sum(Sha256);
+
+impl Sum {
+    /// Of a column without cells.
+    pub(crate) fn new(header: &str) -> Self {
+        let mut sum = Self(Sha256::new());
+        sum.text(header);
+        sum
+    }
+
+    fn text(&mut self, text: &str) {
+        self.0.update((text.len() as u64).to_le_bytes());
+        self.0.update(text.as_bytes());
+    }
+
+    /// Takes cells in.
+    pub(crate) fn add(&mut self, cells: &Raw) {
+        match cells {
+            Raw::Texts(texts) => {
+                for cell in texts {
+                    self.text(cell);
                 }
-                sum.update(&piece);
+            }
+            Raw::Numbers(numbers) => {
+                // In pieces: a call for each number would cost more than its hash.
+                let mut piece = Vec::with_capacity(8 * 512);
+                for numbers in numbers.chunks(512) {
+                    piece.clear();
+                    for number in numbers {
+                        piece.extend_from_slice(&number.to_le_bytes());
+                    }
+                    self.0.update(&piece);
+                }
             }
         }
     }
-    hexadecimal(&sum.finalize())
+
+    /// Hexadecimal.
+    pub(crate) fn finish(self) -> String {
+        hexadecimal(&self.0.finalize())
+    }
 }

@@ -17,15 +17,16 @@ use parquet::column::page::{Page, PageMetadata, PageReader};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl, get_column_reader};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::{KeyValue, ParquetMetaData};
+use parquet::file::metadata::{ColumnChunkMetaData, KeyValue, ParquetMetaData, RowGroupMetaData};
 use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{ChunkReader, FileReader as _, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader as _, Length as _, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
 use crate::assemble::{Raw, Room, Want, assemble, plan};
+use crate::chunks::CHUNK_ROWS;
 use crate::error::{Place, RecordError, reason};
-use crate::parquet_sums;
+use crate::parquet_sums::{self, Sum};
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::write::Prepared;
@@ -39,6 +40,9 @@ const LARGEST_BYTES: i64 = 2 << 30;
 /// Largest file.
 const LARGEST_FILE: u64 = 2 << 30;
 
+/// A file that is read in chunks unpacks to so many times its size at most: more is not measured, and would take hours.
+const MOST_UNPACKED: u64 = 200;
+
 /// What a column of numbers unpacks to at most: so much a row, as numbers or as a dictionary with its places, and so much beside.
 const BYTES_A_ROW: i64 = 24;
 const BYTES_BESIDE: i64 = 1 << 20;
@@ -49,12 +53,16 @@ const BYTES_BESIDE: i64 = 1 << 20;
 ///
 /// See [`RecordError`]; a file that is cut off is [`RecordError::Damaged`].
 pub fn read_parquet(path: &Path, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
+    parse_parquet(path, open(path)?, sidecar)
+}
+
+fn open(path: &Path) -> Result<File, RecordError> {
     let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
     let file = File::open(path).map_err(failed)?;
     if file.metadata().map_err(failed)?.is_dir() {
         return Err(RecordError::Read { path: path.to_owned(), reason: "it is a folder".to_owned() });
     }
-    parse_parquet(path, file, sidecar)
+    Ok(file)
 }
 
 /// The same from anything that holds a Parquet file; `path` is for messages.
@@ -67,49 +75,143 @@ pub fn parse_parquet<R: ChunkReader + 'static>(
     source: R,
     sidecar: Option<&Sidecar>,
 ) -> Result<Table, RecordError> {
-    // A damaged file can make the decoder panic: that is a damaged file, not our end.
-    catch_unwind(AssertUnwindSafe(|| read(path, source, sidecar))).unwrap_or_else(|_| {
+    caught(path, || read(path, source, sidecar))
+}
+
+/// A damaged file can make the decoder panic: that is a damaged file, not our end.
+fn caught<T>(path: &Path, read: impl FnOnce() -> Result<T, RecordError>) -> Result<T, RecordError> {
+    catch_unwind(AssertUnwindSafe(read)).unwrap_or_else(|_| {
         Err(RecordError::Damaged { path: path.to_owned(), reason: "its pages contradict its footer".to_owned() })
     })
 }
 
 fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidecar>) -> Result<Table, RecordError> {
-    let damaged = |e: ParquetError| RecordError::Damaged { path: path.to_owned(), reason: in_words(&e) };
     let length = source.len();
     if length > LARGEST_FILE {
         let what = "a Parquet table";
         return Err(RecordError::TooLarge { path: path.to_owned(), bytes: length, limit: LARGEST_FILE, what });
     }
-    let reader = SerializedFileReader::new(source).map_err(damaged)?;
-    check_sizes(path, reader.metadata(), length)?;
-    let whole = Place::whole(path);
-    let fields = reader.metadata().file_metadata().schema().get_fields();
-    let header: Vec<String> = fields.iter().map(|f| f.name().trim().to_owned()).collect();
-    let wants = plan(path, &header, sidecar, &whole)?;
-    let mut raws = Vec::with_capacity(fields.len());
-    for (field, name) in fields.iter().zip(&header) {
-        raws.push(raw_of(field).ok_or_else(|| RecordError::ColumnKind {
-            place: whole.clone(),
-            column: name.clone(),
-            found: "neither numbers nor text",
-            expected: "numbers or text",
-        })?);
-    }
-    if fields.is_empty() {
-        return Err(RecordError::NoRows { path: path.to_owned() });
-    }
+    let opened = Opened::new(path, source, sidecar)?;
+    check_memory(path, opened.reader.metadata())?;
     // Nothing is unpacked for cells that would not be kept: a kilobyte can stand for as many rows as a footer cares to count.
-    let rows = u64::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0);
-    let of = |raw: &Raw| if matches!(raw, Raw::Numbers(_)) { size_of::<f64>() } else { size_of::<String>() } as u64;
-    let kept = wants.iter().zip(&raws).filter(|(want, _)| !matches!(want, Want::LeftOut));
-    Room::new(path).take(kept.map(|(_, raw)| of(raw)).sum::<u64>().saturating_mul(rows))?;
+    let rows = u64::try_from(opened.reader.metadata().file_metadata().num_rows()).unwrap_or(0);
+    Room::new(path).take(opened.bytes_a_row().saturating_mul(rows))?;
     let mut room = Room::new(path);
-    let descriptions = reader.metadata().file_metadata().schema_descr_ptr();
+    let mut sums = opened.sums();
+    let mut raws = opened.empty()?;
     let mut first_row = 1;
-    for g in 0..reader.num_row_groups() {
-        let group = reader.get_row_group(g).map_err(damaged)?;
+    for g in 0..opened.reader.num_row_groups() {
+        first_row += opened.group(g, first_row, &mut raws, &mut room)?;
+    }
+    opened.add(&mut sums, &raws);
+    opened.check_sums(sums)?;
+    opened.table(raws, (1..first_row).collect())
+}
+
+/// Rows of a Parquet table, as its footer counts them.
+pub(crate) fn n_rows(path: &Path) -> Result<usize, RecordError> {
+    let file = open(path)?;
+    let reader = caught(path, || reader(path, file))?;
+    Ok(usize::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0))
+}
+
+/// Hands on a table a chunk of rows at a time; a row group is unpacked at once.
+pub(crate) fn for_each_chunk<E: From<RecordError>>(
+    path: &Path,
+    sidecar: Option<&Sidecar>,
+    each: &mut dyn FnMut(Table) -> Result<(), E>,
+) -> Result<(), E> {
+    let file = open(path)?;
+    let length = file.len();
+    let opened = caught(path, || Opened::new(path, file, sidecar))?;
+    let rows = u64::try_from(opened.reader.metadata().file_metadata().num_rows()).unwrap_or(0);
+    let most = Room::MOST_BYTES.max(length.saturating_mul(MOST_UNPACKED));
+    Room::of(path, most).take(opened.bytes_a_row().saturating_mul(rows))?;
+    let mut sums = opened.sums();
+    let mut first_row = 1;
+    for g in 0..opened.reader.num_row_groups() {
+        let mut raws = opened.empty()?;
+        let n = caught(path, || opened.group(g, first_row, &mut raws, &mut Room::new(path)))?;
+        opened.add(&mut sums, &raws);
+        for start in (0..n).step_by(CHUNK_ROWS) {
+            let rows = start..(start + CHUNK_ROWS).min(n);
+            let part = |raw: &Raw| match raw {
+                Raw::Numbers(numbers) => Raw::Numbers(numbers.get(rows.clone()).unwrap_or_default().to_vec()),
+                Raw::Texts(texts) => Raw::Texts(texts.get(rows.clone()).unwrap_or_default().to_vec()),
+            };
+            let lines = (first_row + rows.start..first_row + rows.end).collect();
+            each(opened.table(raws.iter().map(part).collect(), lines)?)?;
+        }
+        first_row += n;
+    }
+    opened.check_sums(sums)?;
+    if first_row == 1 { Err(RecordError::NoRows { path: path.to_owned() }.into()) } else { Ok(()) }
+}
+
+fn reader<R: ChunkReader + 'static>(path: &Path, source: R) -> Result<SerializedFileReader<R>, RecordError> {
+    SerializedFileReader::new(source).map_err(|e| RecordError::Damaged { path: path.to_owned(), reason: in_words(&e) })
+}
+
+/// A Parquet file whose footer was read and believed.
+struct Opened<'a, R: ChunkReader + 'static> {
+    path: &'a Path,
+    sidecar: Option<&'a Sidecar>,
+    reader: SerializedFileReader<R>,
+    header: Vec<String>,
+    wants: Vec<Want<'a>>,
+}
+
+impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
+    fn new(path: &'a Path, source: R, sidecar: Option<&'a Sidecar>) -> Result<Self, RecordError> {
+        let length = source.len();
+        let reader = reader(path, source)?;
+        check_sizes(path, reader.metadata(), length)?;
+        let fields = reader.metadata().file_metadata().schema().get_fields();
+        let header: Vec<String> = fields.iter().map(|f| f.name().trim().to_owned()).collect();
+        let wants = plan(path, &header, sidecar, &Place::whole(path))?;
+        let opened = Self { path, sidecar, reader, header, wants };
+        opened.empty()?;
+        if opened.header.is_empty() {
+            return Err(RecordError::NoRows { path: path.to_owned() });
+        }
+        Ok(opened)
+    }
+
+    fn fields(&self) -> &[Arc<Type>] {
+        self.reader.metadata().file_metadata().schema().get_fields()
+    }
+
+    /// Its columns without cells.
+    fn empty(&self) -> Result<Vec<Raw>, RecordError> {
+        let of = |(field, name): (&Arc<Type>, &String)| {
+            raw_of(field).ok_or_else(|| RecordError::ColumnKind {
+                place: Place::whole(self.path),
+                column: name.clone(),
+                found: "neither numbers nor text",
+                expected: "numbers or text",
+            })
+        };
+        self.fields().iter().zip(&self.header).map(of).collect()
+    }
+
+    /// Bytes of the cells of a row that are kept.
+    fn bytes_a_row(&self) -> u64 {
+        let of = |field: &Arc<Type>| match raw_of(field) {
+            Some(Raw::Numbers(_)) => size_of::<f64>() as u64,
+            _ => size_of::<String>() as u64,
+        };
+        let kept = self.wants.iter().zip(self.fields()).filter(|(want, _)| !matches!(want, Want::LeftOut));
+        kept.map(|(_, field)| of(field)).sum()
+    }
+
+    /// Reads a row group behind what is there; how many rows it has.
+    fn group(&self, g: usize, first_row: usize, raws: &mut [Raw], room: &mut Room<'_>) -> Result<usize, RecordError> {
+        let damaged = |e: ParquetError| RecordError::Damaged { path: self.path.to_owned(), reason: in_words(&e) };
+        let descriptions = self.reader.metadata().file_metadata().schema_descr_ptr();
+        let group = self.reader.get_row_group(g).map_err(damaged)?;
         let n_rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        for (j, want) in wants.iter().enumerate() {
+        Room::new(self.path).take(self.bytes_a_row().saturating_mul(n_rows as u64))?;
+        for (j, want) in self.wants.iter().enumerate() {
             if matches!(want, Want::LeftOut) {
                 continue;
             }
@@ -118,42 +220,50 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
             let pages = Box::new(Checked { pages, left });
             let column = get_column_reader(descriptions.column(j), pages);
             let is_unsigned = matches!(
-                fields[j].get_basic_info().logical_type_ref(),
+                self.fields()[j].get_basic_info().logical_type_ref(),
                 Some(LogicalType::Integer(integer)) if !integer.is_signed
             );
-            let advice = || want.advice(path, sidecar);
-            let cells = Cells { path, column: &header[j], advice: &advice, first_row, n_rows };
-            cells.read(column, is_unsigned, &mut raws[j], &mut room)?;
+            let advice = || want.advice(self.path, self.sidecar);
+            let cells = Cells { path: self.path, column: &self.header[j], advice: &advice, first_row, n_rows };
+            cells.read(column, is_unsigned, &mut raws[j], room)?;
         }
-        first_row += n_rows;
+        Ok(n_rows)
     }
-    check_sums(path, reader.metadata(), &header, &wants, &raws)?;
-    assemble(path, &header, &wants, raws, sidecar, &whole, (1..first_row).collect())
-}
 
-/// Holds every column that was read against its checksum, where the file has any.
-fn check_sums(
-    path: &Path,
-    metadata: &ParquetMetaData,
-    header: &[String],
-    wants: &[Want<'_>],
-    raws: &[Raw],
-) -> Result<(), RecordError> {
-    let entries = metadata.file_metadata().key_value_metadata();
-    let Some(entry) = entries.and_then(|all| all.iter().find(|entry| entry.key == parquet_sums::KEY)) else {
-        return Ok(());
-    };
-    let sums: Vec<&str> = entry.value.as_deref().unwrap_or_default().split(' ').collect();
-    let damaged = |reason: String| Err(RecordError::Damaged { path: path.to_owned(), reason });
-    if sums.len() != header.len() {
-        return damaged(format!("it has checksums of {} columns and {} columns", sums.len(), header.len()));
+    fn table(&self, raws: Vec<Raw>, rows: Vec<usize>) -> Result<Table, RecordError> {
+        assemble(self.path, &self.header, &self.wants, raws, self.sidecar, &Place::whole(self.path), rows)
     }
-    for (((header, want), raw), sum) in header.iter().zip(wants).zip(raws).zip(sums) {
-        if !matches!(want, Want::LeftOut) && parquet_sums::of_column(header, raw) != sum {
-            return damaged(format!("column {header} is not what was written: its checksum is another"));
+
+    /// The stated checksum of every column that is read beside its own, begun; none where the file has none.
+    fn sums(&self) -> Option<(&str, Vec<Sum>)> {
+        let entries = self.reader.metadata().file_metadata().key_value_metadata();
+        let entry = entries?.iter().find(|entry| entry.key == parquet_sums::KEY)?;
+        Some((entry.value.as_deref().unwrap_or_default(), self.header.iter().map(|h| Sum::new(h)).collect()))
+    }
+
+    fn add(&self, sums: &mut Option<(&str, Vec<Sum>)>, raws: &[Raw]) {
+        for ((sum, want), raw) in sums.iter_mut().flat_map(|(_, sums)| sums).zip(&self.wants).zip(raws) {
+            if !matches!(want, Want::LeftOut) {
+                sum.add(raw);
+            }
         }
     }
-    Ok(())
+
+    /// Holds every column that was read against its checksum.
+    fn check_sums(&self, sums: Option<(&str, Vec<Sum>)>) -> Result<(), RecordError> {
+        let Some((stated, found)) = sums else { return Ok(()) };
+        let stated: Vec<&str> = stated.split(' ').collect();
+        let damaged = |reason: String| Err(RecordError::Damaged { path: self.path.to_owned(), reason });
+        if stated.len() != self.header.len() {
+            return damaged(format!("it has checksums of {} columns and {} columns", stated.len(), self.header.len()));
+        }
+        for (((header, want), stated), found) in self.header.iter().zip(&self.wants).zip(stated).zip(found) {
+            if !matches!(want, Want::LeftOut) && found.finish() != stated {
+                return damaged(format!("column {header} is not what was written: its checksum is another"));
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Pages whose claims are held against their bytes before the decoder allocates for them.
@@ -319,21 +429,8 @@ impl Cells<'_> {
 /// Sizes that the footer claims, held against the file, before anything is allocated for them.
 fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), RecordError> {
     let rows = metadata.file_metadata().num_rows();
-    if rows > MOST_ROWS {
-        return Err(RecordError::Syntax {
-            place: Place::whole(path),
-            problem: format!("the table has {rows} rows; at most {MOST_ROWS} are read into memory"),
-        });
-    }
     let damaged =
         || RecordError::Damaged { path: path.to_owned(), reason: "its footer names bytes beyond its end".to_owned() };
-    let too_large = |bytes: i64| RecordError::TooLarge {
-        path: path.to_owned(),
-        bytes: bytes.unsigned_abs(),
-        limit: LARGEST_BYTES.unsigned_abs(),
-        what: "the pages of a table, unpacked",
-    };
-    let mut decompressed = 0_i64;
     let mut counted = 0_i64;
     for group in metadata.row_groups() {
         counted = counted.saturating_add(group.num_rows());
@@ -363,7 +460,6 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
                     ),
                 });
             }
-            decompressed = decompressed.saturating_add(chunk.uncompressed_size());
         }
     }
     if rows < 0 || counted != rows {
@@ -372,8 +468,27 @@ fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(
             reason: format!("its footer counts {rows} rows, its row groups {counted}"),
         });
     }
-    if decompressed > LARGEST_BYTES {
-        return Err(too_large(decompressed));
+    Ok(())
+}
+
+/// What a table that is read into memory as a whole may have.
+fn check_memory(path: &Path, metadata: &ParquetMetaData) -> Result<(), RecordError> {
+    let rows = metadata.file_metadata().num_rows();
+    if rows > MOST_ROWS {
+        return Err(RecordError::Syntax {
+            place: Place::whole(path),
+            problem: format!("the table has {rows} rows; at most {MOST_ROWS} are read into memory"),
+        });
+    }
+    let chunks = metadata.row_groups().iter().flat_map(RowGroupMetaData::columns);
+    let bytes = chunks.map(ColumnChunkMetaData::uncompressed_size).fold(0, i64::saturating_add);
+    if bytes > LARGEST_BYTES {
+        return Err(RecordError::TooLarge {
+            path: path.to_owned(),
+            bytes: bytes.unsigned_abs(),
+            limit: LARGEST_BYTES.unsigned_abs(),
+            what: "the pages of a table, unpacked",
+        });
     }
     Ok(())
 }

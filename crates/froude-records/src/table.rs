@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
+use crate::sidecar::Sidecar;
 use crate::units::{Dimension, Unit};
 use crate::write::Prepared;
 use crate::{csv_table, parquet_table, plausible, sidecar};
@@ -166,21 +167,39 @@ impl Table {
 ///
 /// See [`RecordError`]: every message names file, line and column.
 pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
+    let mapping = mapping(path, sidecar)?;
+    match Format::of(path)? {
+        Format::Csv => csv_table::read_csv(path, mapping.as_ref()),
+        Format::Parquet => parquet_table::read_parquet(path, mapping.as_ref()),
+    }
+}
+
+/// The sidecar of a table: the one given, or the `.toml` of the same name beside it.
+pub(crate) fn mapping(path: &Path, sidecar: Option<&Path>) -> Result<Option<Sidecar>, RecordError> {
     let beside = path.with_extension("toml");
-    let sidecar = match sidecar {
-        Some(given) => Some(given.to_owned()),
-        None if beside.is_file() && sidecar::is_sidecar(&beside) => Some(beside),
-        None => None,
-    };
-    let mapping = sidecar.as_deref().map(sidecar::read_sidecar).transpose()?;
-    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    let mut table = match ending.as_deref() {
-        Some("csv") => csv_table::read_csv(path, mapping.as_ref())?,
-        Some("parquet") => parquet_table::read_parquet(path, mapping.as_ref())?,
-        _ => return Err(RecordError::Extension { path: path.to_owned() }),
-    };
-    table.sidecar = sidecar;
-    Ok(table)
+    match sidecar {
+        Some(given) => sidecar::read_sidecar(given).map(Some),
+        None if beside.is_file() && sidecar::is_sidecar(&beside) => sidecar::read_sidecar(&beside).map(Some),
+        None => Ok(None),
+    }
+}
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Format {
+    Csv,
+    Parquet,
+}
+
+impl Format {
+    /// By the ending of its name.
+    pub(crate) fn of(path: &Path) -> Result<Self, RecordError> {
+        match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
+            Some("csv") => Ok(Self::Csv),
+            Some("parquet") => Ok(Self::Parquet),
+            _ => Err(RecordError::Extension { path: path.to_owned() }),
+        }
+    }
 }
 
 /// Writes a table in the format that its name ends in, `.csv` or `.parquet`, up to taking its place.

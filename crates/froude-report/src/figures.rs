@@ -130,6 +130,13 @@ fn distinct<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     texts.into_iter().filter(|t| seen.insert(*t)).collect()
 }
 
+/// What a caption says of points that are a sample.
+fn drawn_by_chance(section: &SourceSection) -> String {
+    section
+        .sample_of
+        .map_or_else(String::new, |n| format!(" The points are a sample, drawn by chance, of {n} observations."))
+}
+
 /// Every `n`th of many, so that at most `limit` stay.
 fn thinned<T: Copy>(all: &[T], limit: usize) -> Vec<T> {
     let step = all.len().div_ceil(limit.max(1)).max(1);

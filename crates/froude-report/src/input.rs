@@ -78,6 +78,8 @@ pub struct SourceSection {
     pub estimates: Vec<Estimate>,
     /// Observations with the prediction of the recommended model.
     pub points: Vec<Point>,
+    /// How many observations `points` were drawn from by chance; `None` where they are all.
+    pub sample_of: Option<usize>,
     /// Model lines to be drawn through the observations.
     pub curves: Vec<Curve>,
     /// Contributions to the uncertainty of each coefficient.

@@ -263,6 +263,7 @@ fn hostile_names_are_escaped_everywhere() {
             kind: h(),
             facts: vec![(h(), h())],
             estimates: vec![e.clone()],
+            sample_of: None,
             points: vec![Point { configuration: h(), component: h(), unit: h(), measured: 1.0, ..Point::default() }],
             curves: vec![Curve {
                 configuration: h(),

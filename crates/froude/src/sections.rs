@@ -51,7 +51,7 @@ pub fn report(
         let lines: Vec<InputFile> = readers
             .map(|s| InputFile {
                 n_rows: Some(s.n_read),
-                n_used: Some(s.data.rows),
+                n_used: Some(s.data.observations()),
                 source: Some(s.name.clone()),
                 ..line.clone()
             })
@@ -75,7 +75,7 @@ pub fn report(
 }
 
 fn subtitle(sources: &[SourceResult], published: &[Estimate]) -> String {
-    let observations: usize = sources.iter().map(|s| s.data.rows).sum();
+    let observations: usize = sources.iter().map(|s| s.data.observations()).sum();
     if sources.is_empty() {
         return format!("{} side by side", counted(published.len(), "estimate", "estimates"));
     }
@@ -222,6 +222,7 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
         not_fitted: source.not_fitted.iter().map(|n| (n.model.clone(), n.why.clone())).collect(),
         tests: source.tests.clone(),
         recommendation: source.recommendation.as_ref().map_or_else(String::new, |r| r.reason.clone()),
+        sample_of: source.data.sample.as_ref().map(|all| all.rows),
         ..SourceSection::default()
     };
     if let Some(model) = chosen.and_then(|i| source.models.get(i)) {
@@ -237,9 +238,10 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
 
 fn facts(source: &SourceResult) -> Vec<(String, String)> {
     let mut out = vec![
-        ("Observations".to_owned(), format!("{} used of {} read", source.data.rows, source.n_read)),
+        ("Observations".to_owned(), format!("{} used of {} read", source.data.observations(), source.n_read)),
         ("Configurations".to_owned(), {
-            let names = source.data.configurations();
+            let of_rows = || source.data.configurations();
+            let names = source.data.sample.as_ref().map_or_else(of_rows, |all| all.configurations.clone());
             if names.iter().all(String::is_empty) { "one, not named".to_owned() } else { names.join(", ") }
         }),
     ];

@@ -6,6 +6,7 @@
 mod bounds;
 mod closed_forms;
 mod components;
+mod condensed;
 mod constraints;
 mod covariance;
 mod coverage;

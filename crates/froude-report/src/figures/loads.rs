@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, evenly, recommended, thinned};
+use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, drawn_by_chance, evenly, recommended, thinned};
 use crate::canvas::{Align, Canvas, Ink, shortened};
 use crate::input::{Against, Curve, Point, SourceSection};
 use crate::plot::{
@@ -417,7 +417,7 @@ fn draw_loads(look: &Look, contents: &[Content], index: usize, n_figures: usize)
     let title = format!("{}: {} against {word}{part}", look.section.name, look.component);
     Drawing {
         slug: format!("{}-{}-against-{word}", look.section.name, look.component),
-        caption: load_caption(look, contents, is_shared, &part),
+        caption: load_caption(look, contents, is_shared, &part) + &drawn_by_chance(look.section),
         title,
         canvas,
     }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, evenly, recommended, thinned};
+use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, drawn_by_chance, evenly, recommended, thinned};
 use crate::canvas::{Align, Canvas, shortened};
 use crate::input::{Point, SourceSection};
 use crate::plot::{
@@ -140,6 +140,7 @@ fn draw_residuals(
     if is_thinned {
         caption.push_str(" Points are thinned evenly.");
     }
+    caption.push_str(&drawn_by_chance(section));
     Drawing {
         slug: format!("{}-residuals", section.name),
         title: format!("{}: residuals{part}", section.name),

@@ -373,6 +373,7 @@ fn section(
         budget: best.as_ref().map(|e| budget("f4", e)).unwrap_or_default(),
         estimates,
         points,
+        sample_of: None,
         curves,
         selection: selection(configurations.len() > 2),
         tests: tests(),

@@ -1,0 +1,319 @@
+//! Tables of more rows than are kept in memory: the same answers from passes over the rows.
+//!
+//! A law that is linear in its coefficients needs of its rows no more than the triangle of `[X | y]`: coefficients, bounds, priors, F tests,
+//! AICc, classical and cluster-robust covariance follow from it as from the rows. So the table is read four times, a chunk at a time:
+//!
+//! 1. how many rows, the ends of every channel, a sample ([`facts`]);
+//! 2. the ends among the rows that move, and what the lints count;
+//! 3. the triangles of every law ([`fold`]);
+//! 4. Durbin–Watson and the largest leverage, from the residuals.
+//!
+//! **From all rows:** coefficients, uncertainties, selection, ranges, the lints of motion, loads and signs. **From the sample,** and said so:
+//! figures, the table of observations, uneven scatter, two units in a load. **Not looked for,** and said so: identical copies (unless a
+//! column rises from row to row), repeats of a setting and with them lack of fit, prediction of left-out configurations. **Refused,** with
+//! the reason: what needs all rows at once.
+
+mod facts;
+mod fold;
+mod rows;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use froude_records::campaign::{AngleOffset, Campaign, Source};
+use froude_records::chunks::{for_each_chunk, has_more_rows};
+use froude_records::finding::{Finding, Severity};
+use froude_records::table::Table;
+
+use crate::dataset::{Dataset, Drawn};
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+use crate::reduce::{fitted_loads, kept_rows, left_out, observed, one_unit, zero_drift};
+use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
+use crate::seam::{Reduced, conclude};
+use crate::source::{ReadFile, SourceResult, check_budget, laws, no_budget, of_table, scatter};
+use crate::{columns, diagnosis, dissipation, lint, validity};
+use facts::{Chunk, Facts, Seconds};
+use fold::{Fold, Residuals, numbered};
+use rows::table_of;
+
+/// Most rows that are kept in memory: with all laws and figures a row takes 1.8 kB and 0.1 ms.
+pub const MOST_KEPT: usize = 200_000;
+/// Most rows that are kept all the same where something is asked for that needs all of them at once: some 4 GB and minutes.
+const MOST_AT_ONCE: usize = 2_000_000;
+/// Rows of the sample: enough for every figure, and a rank correlation of 0.02 is two standard errors.
+const SAMPLE: usize = 10_000;
+/// Most clusters: each keeps a triangle for every law and load.
+pub(crate) const MOST_CLUSTERS: usize = 10_000;
+/// Most configurations of a body in one table.
+pub(crate) const MOST_CONFIGURATIONS: usize = 10_000;
+
+/// Sizes of what is kept.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// Rows of the sample.
+    pub sample: usize,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { sample: SAMPLE }
+    }
+}
+
+/// Identifies one source whose table is read in chunks.
+///
+/// # Errors
+///
+/// As [`identify_source`](crate::source::identify_source), and what was asked for that needs all rows at once.
+pub(crate) fn identify_source(
+    campaign: &Campaign,
+    source: &Source,
+    limits: Limits,
+    progress: &dyn Fn(&str),
+) -> Result<SourceResult, IdentifyError> {
+    if let Some(what) = at_once(campaign, source) {
+        return Err(refused_above(MOST_AT_ONCE, source, what));
+    }
+    progress("the ranges of a long table");
+    let mut facts = Facts::new(limits.sample);
+    each(campaign, source, &mut |chunk| facts.take(chunk, source))?;
+    if facts.n_used == 0 {
+        return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read });
+    }
+    let mut seconds = Seconds::default();
+    each(campaign, source, &mut |chunk| {
+        seconds.take(chunk, &facts, campaign);
+        Ok(())
+    })?;
+    let few = Few::of(&facts, &seconds, campaign, source)?;
+    let reduced = reduced(campaign, source, &facts, &seconds, &few)?;
+    progress("all rows of a long table");
+    let fitted = regressed(campaign, source, &facts, &few, &reduced)?;
+    let (fitted, leverage) = with_residuals(campaign, source, fitted, &reduced.data)?;
+    let mut result = conclude(reduced, &campaign.identify, fitted, progress)?;
+    for ((estimate, model), leverage) in result.estimates.iter_mut().zip(&result.models).zip(leverage) {
+        let diagnostics = &mut estimate.diagnostics;
+        diagnostics.largest_leverage = leverage;
+        if diagnostics.largest_power_w.is_some() {
+            let power = dissipation::largest_power_w(&model.law, &few.ends, model.law_coefficients())?;
+            diagnostics.largest_power_w = Some(power);
+        }
+        if let (Some(density), Some(mean)) = (facts.density(), estimate.refers_to.get_mut("density")) {
+            mean.value = density;
+        }
+    }
+    if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
+        let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
+        result.findings.extend(found.into_iter().map(|f| f.of_source(&source.name)));
+    }
+    Ok(result)
+}
+
+/// Reads the table once.
+fn each(
+    campaign: &Campaign,
+    source: &Source,
+    take: &mut dyn FnMut(&Chunk) -> Result<(), IdentifyError>,
+) -> Result<(), IdentifyError> {
+    for_each_chunk(source.input.path(), source.sidecar.as_deref(), &mut |table| {
+        take(&Chunk::of(table, campaign, source)?)
+    })
+}
+
+/// Whether a table is read in chunks: one of many rows, and one that asks for what needs all of them at once only where it is too long for that.
+pub(crate) fn is_long(campaign: &Campaign, source: &Source, path: &Path) -> bool {
+    let most = if at_once(campaign, source).is_some() { MOST_AT_ONCE } else { MOST_KEPT };
+    has_more_rows(path, most)
+}
+
+/// What a table that is read in chunks cannot be asked for, with the way out.
+pub(crate) fn refusal(source: &Source, what: &str) -> IdentifyError {
+    refused_above(MOST_KEPT, source, what)
+}
+
+fn refused_above(most: usize, source: &Source, what: &str) -> IdentifyError {
+    IdentifyError::Campaign {
+        place: source.input.path().display().to_string(),
+        what: format!(
+            "the table has more than {most} rows and is read in chunks, which does not go with {what}; do without, or give fewer rows: \
+             means over steady stretches, or every tenth row"
+        ),
+    }
+}
+
+/// What a campaign asks for that needs all rows at once, and why.
+fn at_once(campaign: &Campaign, source: &Source) -> Option<&'static str> {
+    let identify = &campaign.identify;
+    let is_hc3 = identify.covariance.as_deref().is_some_and(|kind| kind.eq_ignore_ascii_case("hc3"));
+    let asked = [
+        (source.tare.is_some(), "tare (its error differs from row to row)"),
+        (!source.uncertainty.is_empty(), "[[source.uncertainty]] (its errors go through every row)"),
+        (identify.errors_in_variables, "errors_in_variables (each row has a true speed of its own)"),
+        (identify.huber.is_some(), "huber (its weights are iterated row by row)"),
+        (identify.angle_offset == AngleOffset::Estimate, "angle_offset = \"estimate\" (it is iterated over the rows)"),
+        (is_hc3, "covariance = \"HC3\" (each row weighs by its residual); \"cluster\" goes with it"),
+        (!identify.cross_validation.is_empty(), "cross_validation (its blocks are fitted by themselves)"),
+        (identify.wild_bootstrap.is_some(), "wild_bootstrap (it draws the residuals of all rows)"),
+    ];
+    asked.into_iter().find(|(is_asked, _)| *is_asked).map(|(_, what)| what)
+}
+
+/// The few rows that stand for all where these are judged.
+struct Few {
+    table: Table,
+    /// Observations of the table, and the row of each.
+    ends: Dataset,
+    keep: Vec<usize>,
+    sample: Dataset,
+    findings: Vec<Finding>,
+}
+
+impl Few {
+    fn of(facts: &Facts, seconds: &Seconds, campaign: &Campaign, source: &Source) -> Result<Self, IdentifyError> {
+        let nothing = || IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read };
+        let like = facts.like.as_ref().ok_or_else(nothing)?;
+        let table = table_of(like, facts.rows().chain(seconds.rows()));
+        let mut findings = Vec::new();
+        let all = observed(&table, campaign, source, &mut findings)?;
+        let keep = kept_rows(&all, source)?;
+        let drawn = Drawn {
+            rows: facts.n_used,
+            clusters: if source.group.is_some() { facts.groups.len() } else { 0 },
+            configurations: facts.configurations.iter().cloned().collect(),
+            squares: facts.squares.clone(),
+        };
+        let ends = Dataset { sample: Some(drawn), ..all.subset(&keep) };
+        let lines: std::collections::BTreeSet<usize> = facts.sample().iter().map(|row| row.line()).collect();
+        let of_sample: Vec<usize> = (0..ends.rows).filter(|&i| lines.contains(&ends.line[i])).collect();
+        let sample = ends.subset(&of_sample);
+        Ok(Self { table, ends, keep, sample, findings })
+    }
+}
+
+/// The source as it is handed over the seam: a sample of its rows, and what all of them say.
+fn reduced(
+    campaign: &Campaign,
+    source: &Source,
+    facts: &Facts,
+    seconds: &Seconds,
+    few: &Few,
+) -> Result<Reduced, IdentifyError> {
+    let Few { table, ends, keep, sample, .. } = few;
+    let mut findings = few.findings.clone();
+    findings.extend(left_out(facts.n_used, facts.n_read));
+    findings.extend(zero_drift(ends));
+    findings.extend(lint::motion_contradictions(table, keep, ends));
+    one_unit(table, sample, &fitted_loads(campaign, source, ends))?;
+    let (validity, found) = validity::ranges(ends, campaign);
+    findings.extend(found);
+    findings.extend(seconds.findings(facts, ends));
+    findings.extend(lint::of_ends(ends, campaign));
+    findings.extend(no_budget(source, false));
+    let laws = laws(campaign, source, ends)?;
+    check_budget(source, ends)?;
+    findings.extend(columns::unused(ends, campaign, source, &laws));
+    if let Some(load) =
+        laws.iter().flat_map(|law| &law.responses).find(|load| ends.channels.contains_key(&format!("std_{load}")))
+    {
+        return Err(refusal(source, &format!("std_{load} (the weights of all rows are scaled to each other)")));
+    }
+    let scatter = scatter(campaign, source, ends, &mut findings)?;
+    if scatter == Scatter::Hc3 {
+        return Err(refusal(
+            source,
+            "HC3, which suits computations without five clusters (each row weighs by its residual)",
+        ));
+    }
+    findings.push(in_chunks(facts, sample));
+    let mut files = vec![ReadFile::new(source.input.path().to_owned(), "table")];
+    files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
+    let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
+    let out = of_table(campaign, source, sample.clone(), laws);
+    Ok(Reduced { n_read: facts.n_read, scatter, validity, findings, files, ..out })
+}
+
+/// What is said of a table that was read in chunks.
+fn in_chunks(facts: &Facts, sample: &Dataset) -> Finding {
+    let copies = if facts.has_no_copies() { "" } else { "identical copies of rows, " };
+    Finding::new(
+        Severity::Note,
+        "read-in-chunks",
+        format!(
+            "more than {MOST_KEPT} rows: the coefficients, their uncertainties and the ranges are those of all {} observations; figures, \
+             the table of observations, uneven scatter and units that change within a load are judged from {} of them, drawn by chance; \
+             not looked for are {copies}repeats of a setting and lack of fit",
+            facts.n_used, sample.rows
+        ),
+    )
+}
+
+/// A law that was fitted, or the name of one that was not.
+type Fitted = Result<ModelFit, (String, IdentifyError)>;
+
+/// Every law, fitted to all rows.
+fn regressed(
+    campaign: &Campaign,
+    source: &Source,
+    facts: &Facts,
+    few: &Few,
+    reduced: &Reduced,
+) -> Result<Vec<Fitted>, IdentifyError> {
+    let is_clustered = reduced.scatter == Scatter::Cluster;
+    let begin = |law| linear(law, source).map(|law| Fold::new(law, &source.name, is_clustered));
+    let mut folds: Vec<Result<Fold<'_>, IdentifyError>> = reduced.laws.iter().map(begin).collect();
+    each(campaign, source, &mut |chunk| {
+        let group = chunk.data.group.as_deref().unwrap_or_default();
+        let clusters = if is_clustered { numbered(&facts.groups, group) } else { Vec::new() };
+        for fold in &mut folds {
+            if let Ok(so_far) = fold
+                && let Err(error) = so_far.take(&chunk.data, &clusters)
+            {
+                *fold = Err(error);
+            }
+        }
+        Ok(())
+    })?;
+    let settings = reduced.settings(&campaign.identify);
+    let fit = |law: &ForceLaw, condensed: &Condensed| {
+        regress(law, &few.ends, Settings { condensed: Some(condensed), ..settings })
+    };
+    let finish = |(fold, law): (Result<Fold<'_>, IdentifyError>, &ForceLaw)| {
+        let model = fold.and_then(Fold::finish).and_then(|condensed| fit(law, &condensed));
+        model.map_err(|error| (law.name.clone(), error))
+    };
+    Ok(folds.into_iter().zip(&reduced.laws).map(finish).collect())
+}
+
+/// A law, if it is linear in its coefficients.
+fn linear<'a>(law: &'a ForceLaw, source: &Source) -> Result<&'a ForceLaw, IdentifyError> {
+    if !law.is_nonlinear() {
+        return Ok(law);
+    }
+    Err(IdentifyError::NoFit {
+        source_name: source.name.clone(),
+        model: law.name.clone(),
+        why: format!(
+            "it is not linear in its coefficients, and would be iterated over a table of more than {MOST_KEPT} rows, which is read in \
+             chunks; give fewer rows, or a law with a given exponent (quadratic)"
+        ),
+    })
+}
+
+/// The models with what the residuals of all rows say, and the largest leverage of each.
+fn with_residuals(
+    campaign: &Campaign,
+    source: &Source,
+    mut fitted: Vec<Fitted>,
+    sample: &Dataset,
+) -> Result<(Vec<Fitted>, Vec<Option<f64>>), IdentifyError> {
+    let models: Vec<&mut ModelFit> = fitted.iter_mut().filter_map(|model| model.as_mut().ok()).collect();
+    let mut residuals: Vec<Residuals> = models.iter().map(|model| Residuals::new(model)).collect();
+    each(campaign, source, &mut |chunk| {
+        models.iter().zip(&mut residuals).try_for_each(|(model, residuals)| residuals.take(model, &chunk.data))
+    })?;
+    let into = |(model, residuals): (&mut ModelFit, Residuals)| residuals.into_model(model, sample);
+    let leverage = models.into_iter().zip(residuals).map(into).collect::<Result<_, _>>()?;
+    Ok((fitted, leverage))
+}

@@ -1,0 +1,324 @@
+//! What all rows of a long table say without a fit: how many there are, the ends of their ranges, what the lints count.
+//!
+//! A lint looks at few rows: the fastest, the most turned, those with the largest loads. The first pass finds the ends of every channel, the
+//! second those among rows that move or move fast, which only the first can tell. On these rows the lints themselves are run.
+
+use std::rc::Rc;
+
+use froude_records::campaign::{Campaign, Source};
+use froude_records::finding::Finding;
+use froude_records::table::{ColumnData, Table};
+use froude_records::units::Dimension;
+use indexmap::{IndexMap, IndexSet};
+
+use super::rows::{End, Ends, Row, Sample, without_rows};
+use super::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
+use crate::dataset::{Dataset, LOADS};
+use crate::error::IdentifyError;
+use crate::lint::{self, Pushed};
+use crate::reduce::{kept_rows, observed, zeros_of};
+use crate::source::MOMENTS;
+use crate::validity::{self, AT_REST, off_axis, per_observation};
+
+/// A chunk of a table: its rows, and the observations that are kept of them.
+pub(super) struct Chunk {
+    pub(super) table: Table,
+    pub(super) data: Dataset,
+    /// Row of the table of each observation.
+    keep: Vec<usize>,
+}
+
+impl Chunk {
+    pub(super) fn of(table: Table, campaign: &Campaign, source: &Source) -> Result<Self, IdentifyError> {
+        let all = observed(&table, campaign, source, &mut Vec::new())?;
+        let keep = kept_rows(&all, source)?;
+        let data = if keep.len() < all.rows { all.subset(&keep) } else { all };
+        Ok(Self { table, data, keep })
+    }
+
+    /// Numbers of the observations, each with its row of the table.
+    fn placed<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.keep.iter().copied().zip(values.iter().copied())
+    }
+
+    /// A column of the table as it was read.
+    fn read(&self, name: &str) -> Option<&[f64]> {
+        self.table.columns.iter().find(|c| c.name == name).and_then(|c| match &c.data {
+            ColumnData::Number { si, .. } => Some(si.as_slice()),
+            ColumnData::Text(_) => None,
+        })
+    }
+
+    fn has_velocity(&self) -> bool {
+        self.read("v_x").is_some() || self.read("v_y").is_some()
+    }
+}
+
+/// Columns of the table that a campaign may replace.
+const OF_WATER: [&str; 3] = ["density", "kinematic_viscosity", "temperature"];
+
+/// The first pass.
+pub(super) struct Facts {
+    /// Columns of the table.
+    pub(super) like: Option<Table>,
+    pub(super) n_read: usize,
+    pub(super) n_used: usize,
+    channels: Vec<(String, Dimension)>,
+    ends: IndexMap<String, Ends>,
+    sample: Sample,
+    /// Last value of each column of numbers that has risen from row to row.
+    rising: IndexMap<String, f64>,
+    pub(super) configurations: IndexSet<String>,
+    pub(super) groups: IndexSet<String>,
+    pub(super) squares: IndexMap<String, f64>,
+    density: f64,
+}
+
+impl Facts {
+    pub(super) fn new(sample: usize) -> Self {
+        Self {
+            like: None,
+            n_read: 0,
+            n_used: 0,
+            channels: Vec::new(),
+            ends: IndexMap::new(),
+            sample: Sample::of(sample),
+            rising: IndexMap::new(),
+            configurations: IndexSet::new(),
+            groups: IndexSet::new(),
+            squares: IndexMap::new(),
+            density: 0.0,
+        }
+    }
+
+    pub(super) fn take(&mut self, chunk: &Chunk, source: &Source) -> Result<(), IdentifyError> {
+        let Chunk { table, data, keep } = chunk;
+        let channels = || data.channels.iter().map(|(name, channel)| (name.clone(), channel.dimension)).collect();
+        if self.like.is_none() {
+            self.like = Some(without_rows(table));
+            self.channels = channels();
+            let numbers = table.columns.iter().filter(|c| matches!(c.data, ColumnData::Number { .. }));
+            self.rising = numbers.map(|c| (c.name.clone(), f64::NEG_INFINITY)).collect();
+        } else if self.channels != channels() {
+            // Links are read from names, viscosity from temperatures: what some rows have, others may lack.
+            return Err(refusal(
+                source,
+                "rows that do not all say the same quantities (configurations HkLT beside others, air beside water)",
+            ));
+        }
+        self.n_read += table.n_rows;
+        self.n_used += data.rows;
+        for name in OF_WATER {
+            if let Some(values) = chunk.read(name) {
+                self.ends.entry(format!("read {name}")).or_default().take(values.iter().copied().enumerate(), table);
+            }
+        }
+        for (name, channel) in &data.channels {
+            let ends = self.ends.entry(name.clone()).or_default();
+            ends.take(chunk.placed(&channel.values), table);
+        }
+        for load in LOADS {
+            if let [Some(before), Some(after)] = zeros_of(data, load) {
+                let drift: Vec<f64> = before.iter().zip(after).map(|(b, a)| a - b).collect();
+                self.ends.entry(format!("drift of {load}")).or_default().take(chunk.placed(&drift), table);
+            }
+            if let Some(values) = data.values(load) {
+                let sum = self.squares.entry(load.to_owned()).or_insert(0.0);
+                *sum = values.iter().fold(*sum, |sum, f| sum + f * f);
+            }
+        }
+        if data.channels.contains_key("v_z") {
+            let across = across(data, "v_x", "v_z");
+            self.ends.entry("across v_z".to_owned()).or_default().take(chunk.placed(&across), table);
+        }
+        if let Some(density) = data.values("density") {
+            self.density = density.iter().fold(self.density, |sum, rho| sum + rho);
+        }
+        self.rising.retain(|name, last| {
+            let values = chunk.read(name).unwrap_or_default();
+            keep.iter().all(|&i| values.get(i).is_some_and(|x| *x > std::mem::replace(last, *x)))
+        });
+        for &i in keep {
+            self.sample.take(table, i);
+        }
+        add(&mut self.configurations, &data.configuration, MOST_CONFIGURATIONS, source, "configurations")?;
+        add(&mut self.groups, data.group.as_deref().unwrap_or_default(), MOST_CLUSTERS, source, "clusters of `group`")
+    }
+
+    /// Whether no row can be a copy of another: a column rises from each to the next.
+    pub(super) fn has_no_copies(&self) -> bool {
+        !self.rising.is_empty()
+    }
+
+    /// Mean density, where there is one.
+    pub(super) fn density(&self) -> Option<f64> {
+        self.ends.contains_key("density").then(|| self.density / self.n_used as f64)
+    }
+
+    pub(super) fn sample(&self) -> &[Rc<Row>] {
+        self.sample.rows()
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Rc<Row>> {
+        self.ends.values().flat_map(Ends::rows).chain(self.sample())
+    }
+
+    fn largest(&self, name: &str) -> f64 {
+        self.ends.get(name).map_or(0.0, Ends::largest)
+    }
+
+    /// Loads of which many rows stand at one end.
+    pub(super) fn saturation(&self) -> Vec<Finding> {
+        let mut out = Vec::new();
+        for load in LOADS {
+            let Some(ends) = self.ends.get(load) else { continue };
+            let mut say = |word: &str, end: Option<&End>| {
+                out.extend(end.and_then(|end| lint::saturated(load, word, end.value, end.count, self.n_used)));
+            };
+            say("largest", ends.most());
+            say("smallest", ends.least());
+        }
+        out
+    }
+}
+
+/// Distinct texts, up to so many.
+fn add(
+    to: &mut IndexSet<String>,
+    texts: &[String],
+    most: usize,
+    source: &Source,
+    what: &str,
+) -> Result<(), IdentifyError> {
+    let mut last: Option<&String> = None;
+    for text in texts {
+        if last != Some(text) && !to.contains(text) {
+            to.insert(text.clone());
+        }
+        last = Some(text);
+    }
+    if to.len() > most { Err(refusal(source, &format!("more than {most} {what}"))) } else { Ok(()) }
+}
+
+/// Speed in the plane of two axes.
+fn across(data: &Dataset, x: &str, y: &str) -> Vec<f64> {
+    let (u, v) = (data.values(x).unwrap_or_default(), data.values(y).unwrap_or_default());
+    u.iter().zip(v).map(|(u, v)| u.hypot(*v)).collect()
+}
+
+/// Steps of a channel that some row has, from that of its largest size below zero to that above.
+#[derive(Default)]
+struct Steps(Vec<bool>);
+
+impl Steps {
+    fn take(&mut self, values: impl Iterator<Item = f64>, largest: f64) {
+        let most = lint::step_of(largest, largest);
+        self.0.resize(usize::try_from(2 * most + 1).unwrap_or(1), false);
+        for x in values {
+            let step = usize::try_from(lint::step_of(x, largest) + most).ok();
+            if let Some(has) = step.and_then(|step| self.0.get_mut(step)) {
+                *has = true;
+            }
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.0.iter().filter(|has| **has).count()
+    }
+}
+
+/// The second pass.
+#[derive(Default)]
+pub(super) struct Seconds {
+    ends: IndexMap<String, Ends>,
+    pushed: Vec<(&'static str, &'static str, Pushed)>,
+    speeds: Steps,
+    angles: Steps,
+}
+
+impl Seconds {
+    pub(super) fn take(&mut self, chunk: &Chunk, facts: &Facts, campaign: &Campaign) {
+        let Chunk { table, data, keep } = chunk;
+        let mut put = |name: &str, numbers: &mut dyn Iterator<Item = (usize, f64)>| {
+            self.ends.entry(name.to_owned()).or_default().take(numbers, table);
+        };
+        let fastest = facts.largest("speed");
+        if let Some(speed) = data.values("speed") {
+            let faster = |part: f64| (0..data.rows).filter(move |&i| speed[i].abs() > part * fastest);
+            if let Some(angle) = data.values("angle") {
+                put("angle", &mut faster(AT_REST).map(|i| (keep[i], angle[i])));
+                let none = vec![0.0; data.rows];
+                let along = |name| data.values(name).unwrap_or(&none);
+                let (v_x, v_y) = (along("v_x"), along("v_y"));
+                let off: Vec<(usize, f64)> = faster(AT_REST).map(|i| (keep[i], off_axis([v_x[i], v_y[i]]))).collect();
+                put("off axis", &mut off.iter().copied());
+                put("askew", &mut off.iter().map(|(i, angle)| (*i, (2.0 * angle).sin())));
+            }
+            if let Some(v_x) = data.values(validity::ALONG) {
+                put("along", &mut faster(AT_REST).map(|i| (keep[i], v_x[i])));
+            }
+            if chunk.has_velocity() {
+                let stated_speed = chunk.read("speed");
+                if let (Some(stated), Some(derived)) = (chunk.read("angle"), data.values("angle")) {
+                    let apart =
+                        |i: usize| lint::angles_apart(stated[keep[i]], stated_speed.map(|u| u[keep[i]]), derived[i]);
+                    put("angles apart", &mut faster(lint::AT_REST).map(|i| (keep[i], apart(i))));
+                }
+                if let Some(stated) = stated_speed {
+                    put(
+                        "speeds apart",
+                        &mut (0..data.rows).map(|i| (keep[i], lint::speeds_apart(stated[keep[i]], speed[i]))),
+                    );
+                }
+            }
+            for load in ["f_x", "f_y", "f_z"] {
+                if let Some(f) = data.values(load) {
+                    put(&format!("near {load}"), &mut faster(lint::NEAR_LARGEST_SPEED).map(|i| (keep[i], f[i])));
+                }
+            }
+            self.speeds.take(speed.iter().map(|u| u.abs()), fastest);
+        }
+        if let Some(angle) = data.values("angle") {
+            let largest = facts.largest("angle");
+            self.angles.take(angle.iter().copied(), largest);
+        }
+        for (moment, along, athwart, _) in MOMENTS {
+            if let (true, Some(u), Some(v)) =
+                (data.channels.contains_key(moment), data.values(along), data.values(athwart))
+            {
+                let largest = if athwart == "v_z" { facts.largest("across v_z") } else { fastest };
+                let askew = (0..data.rows).filter(|&i| v[i].abs() > 1e-9 * largest);
+                put(&format!("angle of {athwart}"), &mut askew.map(|i| (keep[i], v[i].abs().atan2(u[i]))));
+            }
+        }
+        for (name, values) in per_observation(data, campaign) {
+            put(name, &mut chunk.placed(&values));
+        }
+        if self.pushed.is_empty() {
+            let both = lint::ALONG.into_iter().filter(|(load, motion)| has(data, load) && has(data, motion));
+            self.pushed = both.map(|(load, motion)| (load, motion, Pushed::default())).collect();
+        }
+        for (load, motion, pushed) in &mut self.pushed {
+            if let (Some(f), Some(v)) = (data.values(load), data.values(motion)) {
+                pushed.count(data, (f, v), [facts.largest(load), facts.largest(motion)]);
+            }
+        }
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = &Rc<Row>> {
+        self.ends.values().flat_map(Ends::rows)
+    }
+
+    /// The lints that count rows; `data` says which channels there are.
+    pub(super) fn findings(&self, facts: &Facts, data: &Dataset) -> Vec<Finding> {
+        let mut out = lint::along_motion(&self.pushed, facts.n_used, data);
+        out.extend(facts.saturation());
+        out.extend(has(data, "angle").then(|| lint::in_radians(self.angles.count(), facts.largest("angle"))).flatten());
+        out.extend(has(data, "speed").then(|| lint::few_speeds(self.speeds.count())).flatten());
+        out
+    }
+}
+
+fn has(data: &Dataset, channel: &str) -> bool {
+    data.channels.contains_key(channel)
+}

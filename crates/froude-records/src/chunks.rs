@@ -1,0 +1,232 @@
+//! Tables of more rows than one wants to keep: the same table, some rows at a time.
+//!
+//! Every chunk is a [`Table`] with the columns, units, checks and messages of [`read_table`](crate::table::read_table); memory is a chunk's,
+//! whatever the file's length. A CSV of numbers alone is read eight digits at a time; a chunk with text, quotes or an error is read cell by
+//! cell, which says what is wrong. A Parquet file is unpacked a row group at a time.
+//!
+//! Not as there: a line break within a quoted cell ends the chunk's row, and is refused.
+
+use std::fs::File;
+use std::io::Read as _;
+use std::path::Path;
+
+use crate::assemble::{Raw, Want};
+use crate::csv_table::{Head, Records};
+use crate::error::{Place, RecordError, utf8};
+use crate::fast_csv::{FastCsvError, Layout, Lines, Memory, Reader};
+use crate::parquet_table;
+use crate::sidecar::Sidecar;
+use crate::table::{Format, Table, mapping};
+
+/// Bytes of CSV read at a time: some 10,000 rows, whose columns stay in the caches.
+const CHUNK_BYTES: usize = 1 << 20;
+/// Rows of a chunk of Parquet.
+pub(crate) const CHUNK_ROWS: usize = 1 << 14;
+
+/// Reads a table, `.csv` or `.parquet`, a chunk of rows at a time, through `sidecar` or the `.toml` of the same name beside it.
+///
+/// # Errors
+///
+/// The first [`RecordError`] in the order of the file, or what `each` returns.
+pub fn for_each_chunk<E: From<RecordError>>(
+    path: &Path,
+    sidecar: Option<&Path>,
+    each: &mut dyn FnMut(Table) -> Result<(), E>,
+) -> Result<(), E> {
+    let mapping = mapping(path, sidecar)?;
+    match Format::of(path)? {
+        Format::Csv => csv(path, mapping.as_ref(), each),
+        Format::Parquet => parquet_table::for_each_chunk(path, mapping.as_ref(), each),
+    }
+}
+
+/// Whether a table has more rows than `limit`; lines of a CSV count as rows. False where it cannot be read: reading it says why.
+#[must_use]
+pub fn has_more_rows(path: &Path, limit: usize) -> bool {
+    // What is no file can be read but once.
+    if !path.is_file() {
+        return false;
+    }
+    match Format::of(path) {
+        Ok(Format::Csv) => has_more_lines(path, limit).unwrap_or(false),
+        Ok(Format::Parquet) => parquet_table::n_rows(path).is_ok_and(|rows| rows > limit),
+        Err(_) => false,
+    }
+}
+
+fn has_more_lines(path: &Path, limit: usize) -> std::io::Result<bool> {
+    let mut file = File::open(path)?;
+    let mut buffer = vec![0; CHUNK_BYTES];
+    let mut lines = 0;
+    // The first line names the columns.
+    while lines <= limit + 1 {
+        match file.read(&mut buffer) {
+            Ok(0) => return Ok(false),
+            Ok(n) => lines += memchr::memchr_iter(b'\n', &buffer[..n]).count(),
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+        }
+    }
+    Ok(true)
+}
+
+fn csv<E: From<RecordError>>(
+    path: &Path,
+    sidecar: Option<&Sidecar>,
+    each: &mut dyn FnMut(Table) -> Result<(), E>,
+) -> Result<(), E> {
+    let failed = |error| E::from(told(path, error));
+    let mut reader = Reader::open(path, CHUNK_BYTES).map_err(failed)?;
+    let mut start = reader.beginning().map_err(failed)?;
+    if start.starts_with(b"\xef\xbb\xbf") {
+        start.drain(..3);
+    }
+    // The headers are whole; a letter of a later row may be cut in two.
+    let end = memchr::memrchr(b'\n', &start).map_or(start.len(), |end| end + 1);
+    let mut records = Records::new(path, utf8(path, &start[..end])?, 1);
+    let head = Head::read(&mut records, sidecar)?;
+    let (at, line) = (records.at, records.line);
+    reader.go_on(start.split_off(at), line as u64);
+    let is_read: Vec<bool> = head.wants.iter().map(|want| !matches!(want, Want::LeftOut)).collect();
+    let is_plain = head.wants.iter().zip(&is_read).all(|(want, is_read)| want.is_number() || !is_read);
+    let layout = is_plain.then(|| Layout::of(&head.header, &is_read));
+    let mut memory = Memory::default();
+    let mut has_rows = false;
+    while let Some(lines) = reader.next(&mut memory.text).map_err(failed)? {
+        has_rows = true;
+        each(chunk(path, &head, layout.as_ref(), &is_read, &mut memory, &lines)?)?;
+    }
+    if has_rows { Ok(()) } else { Err(RecordError::NoRows { path: path.to_owned() }.into()) }
+}
+
+/// A chunk of lines as a table.
+fn chunk(
+    path: &Path,
+    head: &Head<'_, '_>,
+    layout: Option<&Layout>,
+    is_read: &[bool],
+    memory: &mut Memory,
+    lines: &Lines,
+) -> Result<Table, RecordError> {
+    let first = usize::try_from(lines.first).unwrap_or(usize::MAX);
+    // A line that begins with `#` is refused, also where its first cell is not read.
+    let is_free = memchr::memchr(b'#', &memory.text[..lines.bytes]).is_none();
+    if let Some(layout) = layout.filter(|_| is_free)
+        && let Ok(columns) = layout.parse(path, memory, lines)
+    {
+        let mut columns = columns.into_iter();
+        let raw = |is_read: &bool| {
+            let column = if *is_read { columns.next() } else { None };
+            column.map_or_else(|| Raw::Texts(Vec::new()), |column| Raw::Numbers(column.to_vec()))
+        };
+        return head.table(is_read.iter().map(raw).collect(), (first..first + lines.count).collect());
+    }
+    let text = std::str::from_utf8(&memory.text[..lines.bytes]).map_err(|error| {
+        let before = memchr::memchr_iter(b'\n', &memory.text[..error.valid_up_to()]).count();
+        let problem = "the text is not UTF-8; save the file as UTF-8".to_owned();
+        RecordError::Syntax { place: Place::line(path, first + before), problem }
+    })?;
+    let (raws, lines) = head.rows(&mut Records::new(path, text, first))?;
+    head.table(raws, lines)
+}
+
+/// What keeps the lines from being read, in the words of tables.
+fn told(path: &Path, error: FastCsvError) -> RecordError {
+    let syntax = |line: u64, problem: String| RecordError::Syntax {
+        place: Place::line(path, usize::try_from(line).unwrap_or(usize::MAX)),
+        problem,
+    };
+    match error {
+        FastCsvError::Blank { line, .. } => syntax(line, "the line is blank; delete it".to_owned()),
+        FastCsvError::LineTooLong { line, limit, .. } => {
+            syntax(line, format!("the line is longer than {limit} bytes; is this a CSV file?"))
+        }
+        FastCsvError::Read { path, reason } => RecordError::Read { path, reason },
+        other => RecordError::Read { path: path.to_owned(), reason: other.to_string() },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::{ColumnData, read_table};
+
+    /// All chunks of a table put together.
+    fn together(path: &Path) -> Result<(Table, usize), RecordError> {
+        let (mut all, mut n): (Option<Table>, usize) = (None, 0);
+        for_each_chunk(path, None, &mut |chunk| {
+            n += 1;
+            let Some(all) = &mut all else {
+                all = Some(chunk);
+                return Ok(());
+            };
+            for (column, more) in all.columns.iter_mut().zip(chunk.columns) {
+                match (&mut column.data, more.data) {
+                    (ColumnData::Number { si, .. }, ColumnData::Number { si: more, .. }) => si.extend(more),
+                    (ColumnData::Text(texts), ColumnData::Text(more)) => texts.extend(more),
+                    _ => panic!("a column changes its kind"),
+                }
+            }
+            all.n_rows += chunk.n_rows;
+            all.line_of_row.extend(chunk.line_of_row);
+            Ok::<(), RecordError>(())
+        })?;
+        Ok((all.unwrap(), n))
+    }
+
+    /// A file of some megabytes whose row `i` is `row(i)`.
+    fn written(folder: &Path, header: &str, row: impl Fn(usize) -> String) -> std::path::PathBuf {
+        let path = folder.join("long.csv");
+        let rows: String = (0..60_000).map(|i| row(i) + "\n").collect();
+        std::fs::write(&path, format!("\u{feff}{header}\n{rows}\n\n")).unwrap();
+        path
+    }
+
+    #[test]
+    fn chunks_put_together_are_the_table() {
+        let folder = tempfile::tempdir().unwrap();
+        let number = |i: usize| format!("{:.6}", (i as f64 * 0.37).sin());
+        for (header, text) in
+            [("angle [deg],speed [m/s],f_x [mN]", ""), ("angle [deg],speed [m/s],f_x [mN],run", ",\"a, ä\"")]
+        {
+            let path = written(folder.path(), header, |i| {
+                format!("{},{}, -{} {text}", i % 90, number(i), number(i).trim_start_matches('-'))
+            });
+            let (all, n) = together(&path).unwrap();
+            assert!(n > 1, "{n}");
+            assert_eq!(all, read_table(&path, None).unwrap());
+            let parquet = folder.path().join("long.parquet");
+            crate::parquet_table::write_parquet(&all, &parquet).unwrap();
+            let (from_parquet, n) = together(&parquet).unwrap();
+            assert!(n > 1, "{n}");
+            assert_eq!(from_parquet, read_table(&parquet, None).unwrap());
+            assert!(
+                has_more_rows(&path, 59_999) && has_more_rows(&parquet, 59_999) && !has_more_rows(&parquet, 60_000)
+            );
+        }
+    }
+
+    #[test]
+    fn a_sidecar_holds_for_every_chunk() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = written(folder.path(), "U,F,note", |i| format!("{i},{},#{i}", 2 * i));
+        let mapping = "schema = 1\n[columns]\nU = { name = \"speed\", unit = \"mm/s\" }\n\
+                       F = { name = \"f_x\", scale = \"0.5*speed*speed\", sign = -1 }\n[constants]\n";
+        let mapping = mapping.replace("0.5*speed*speed", "0.5*rho*speed*speed*A");
+        let constants = "rho = \"1000 kg/m^3\"\nA = \"0.01 m^2\"\n";
+        std::fs::write(path.with_extension("toml"), mapping + constants).unwrap();
+        assert_eq!(together(&path).unwrap().0, read_table(&path, None).unwrap());
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_as_of_a_table_that_is_read_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        for bad in ["1,", "1,x", "1", "1,2,3", "1,inf", "", "# 1,2", "1,1e99", "1,\"2"] {
+            let path = written(folder.path(), "speed [m/s],f_x [N]", |i| {
+                if i == 55_000 { bad.to_owned() } else { format!("{},{:.9}", i % 10, i as f64 / 7.0) }
+            });
+            let [whole, chunks] = [read_table(&path, None).unwrap_err(), together(&path).unwrap_err()];
+            assert_eq!(whole.to_string(), chunks.to_string(), "{bad:?}");
+        }
+    }
+}
