@@ -3,9 +3,9 @@
 //! A law that is linear in its coefficients needs of its rows no more than the triangle of `[X | y]`: coefficients, bounds, priors, F tests,
 //! AICc, classical and cluster-robust covariance follow from it as from the rows. So the table is read four times, a chunk at a time:
 //!
-//! 1. how many rows, the ends of every channel, a sample ([`facts`]);
+//! 1. how many rows, the ends of every channel, a sample (`facts`);
 //! 2. the ends among the rows that move, and what the lints count;
-//! 3. the triangles of every law ([`fold`]);
+//! 3. the triangles of every law (`fold`);
 //! 4. Durbin–Watson and the largest leverage, from the residuals.
 //!
 //! **From all rows:** coefficients, uncertainties, selection, ranges, the lints of motion, loads and signs. **From the sample,** and said so:

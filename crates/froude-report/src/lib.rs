@@ -5,7 +5,7 @@
 //! method, data with fingerprints, findings, coefficient tables as papers print
 //! them, loads with model and 95 % band, residuals, uncertainty budget, model
 //! selection, validity, sources side by side. [`figures()`] gives the same figures
-//! as SVG documents of their own. [`number`] writes numbers with the digits that
+//! as SVG documents of their own. [`froude_records::number`] writes numbers with the digits that
 //! their uncertainty allows; the tables of the program use it too.
 //!
 //! The input is plain records with public fields ([`Report`], [`SourceSection`],

@@ -2,7 +2,6 @@
 //!
 //! | module        | what                                                                        |
 //! |---------------|-----------------------------------------------------------------------------|
-//! | [`plan`]      | from the schedule to runs in order, with the operator's steps in between       |
 //! | [`preflight`] | travel, coast, speed, command, current and heating of every run, before it moves |
 //! | [`lock`]      | one drive at a time into a folder                                               |
 //! | [`runner`]    | drives and records one run after the other; stops                              |

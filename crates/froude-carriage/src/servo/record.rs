@@ -2,7 +2,7 @@
 //!
 //! The law gives the force of the drive at the chain, ideal gear, on the motion along y:
 //!
-//! | law                   | `drive_force` [N]                                                             |
+//! | law                   | `drive_force` , N                                                                |
 //! |-----------------------|-------------------------------------------------------------------------------|
 //! | `servo_symmetric`     | `M v̇ + F_v v + F_c sgn v + offset`                                            |
 //! | `servo_asymmetric`    | the same with `F_v_pos`, `F_c_pos` for v > 0 and `F_v_neg`, `F_c_neg` for v < 0 |
@@ -187,7 +187,7 @@ fn coefficient(c: &ServoCoefficient, dof: Option<f64>) -> Coefficient {
         nuisance: c.name == "offset",
         standard_uncertainty: finite(c.block_std),
         type_a: finite(c.block_std),
-        type_b: finite(c.block_std).map(|_| 0.0),
+        type_b: None,
         interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
         effective_dof: dof,
     }

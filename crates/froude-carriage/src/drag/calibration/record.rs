@@ -3,8 +3,8 @@
 //! Two calibrations whose campaigns declare the same weights have the error of the weights in common, by its key.
 
 use froude_records::estimate::{
-    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, MethodUsed, OWN, Output, SharedError,
-    Signs, Status, TypeA,
+    Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, MethodUsed, OWN, Output, SharedError, Signs,
+    Status, TypeA,
 };
 use indexmap::IndexMap;
 
@@ -56,7 +56,6 @@ pub fn calibrated(source: &str, c: &Calibration, weight_relative: f64, weights_k
             kind: "HC3, the declared loss of the pulley as a prior".to_owned(),
         }),
         errors: IndexMap::from([(weights_key.unwrap_or_else(|| format!("{OWN}weights")), weights)]),
-        clusters: Some(Clusters { by: "run".to_owned(), n: c.used }),
         n_observations: c.used,
         derived: IndexMap::from([("efficiency".to_owned(), efficiency)]),
         diagnostics: Diagnostics { notes: c.notes.clone(), ..Diagnostics::default() },
