@@ -221,12 +221,14 @@ pub fn weight_relative(calibration: &froude_records::carriage::Calibration) -> f
     calibration.weight_standard_n / calibration.weights_n.iter().copied().fold(f64::MIN_POSITIVE, f64::max)
 }
 
-/// Key of the error of the declared weights: campaigns that declare the same weights hung the same ones.
+/// Key of the error of the declared weights: campaigns that declare the same weights on a carriage of the same size hung the same ones.
 #[must_use]
 pub fn weights_key(campaign: Option<&Campaign>) -> Option<String> {
-    let plan = campaign?.carriage.as_ref()?.plan.as_ref()?;
-    let calibration = plan.calibration.as_ref()?;
-    let text = format!("{:?} {:e}", calibration.weights_n, calibration.weight_standard_n);
+    let carriage = campaign?.carriage.as_ref()?;
+    let calibration = carriage.plan.as_ref()?.calibration.as_ref()?;
+    let axis = &carriage.rig.y;
+    let size = (axis.travel_m, axis.constants.sprocket_radius_m.value, axis.constants.counts_per_revolution);
+    let text = format!("{:?} {:e} {size:?}", calibration.weights_n, calibration.weight_standard_n);
     Some(format!("weights/{}", short_key(text.as_bytes())))
 }
 

@@ -62,17 +62,17 @@ impl Default for Limits {
     }
 }
 
-/// Identifies one source whose table is read in chunks.
+/// Identifies one source whose table is read in chunks; `None` where its rows turn out to be needed at once, and are few enough for that.
 ///
 /// # Errors
 ///
-/// As [`identify_source`](crate::source::identify_source), and what was asked for that needs all rows at once.
+/// As [`identify_source`](crate::source::identify_source), and what was asked for that needs more rows at once than are kept.
 pub(crate) fn identify_source(
     campaign: &Campaign,
     source: &Source,
     limits: Limits,
     progress: &dyn Fn(&str),
-) -> Result<SourceResult, IdentifyError> {
+) -> Result<Option<SourceResult>, IdentifyError> {
     if let Some(what) = at_once(campaign, source) {
         return Err(refused_above(MOST_AT_ONCE, source, what));
     }
@@ -89,6 +89,10 @@ pub(crate) fn identify_source(
     })?;
     let few = Few::of(&facts, &seconds, campaign, source)?;
     let reduced = reduced(campaign, source, &facts, &seconds, &few)?;
+    if let Some(what) = weighs_all(&reduced) {
+        let is_kept = facts.n_read <= MOST_AT_ONCE;
+        return if is_kept { Ok(None) } else { Err(refused_above(MOST_AT_ONCE, source, &what)) };
+    }
     progress("all rows of a long table");
     let fitted = regressed(campaign, source, &facts, &few, &reduced)?;
     let (fitted, leverage) = with_residuals(campaign, source, fitted, &reduced.data)?;
@@ -108,7 +112,17 @@ pub(crate) fn identify_source(
         let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
         result.findings.extend(found.into_iter().map(|f| f.of_source(&source.name)));
     }
-    Ok(result)
+    Ok(Some(result))
+}
+
+/// What of the table itself, and not of the campaign, needs all rows at once.
+fn weighs_all(reduced: &Reduced) -> Option<String> {
+    let mut loads = reduced.laws.iter().flat_map(|law| &law.responses);
+    if let Some(load) = loads.find(|load| reduced.data.channels.contains_key(&format!("std_{load}"))) {
+        return Some(format!("std_{load} (the weights of all rows are scaled to each other)"));
+    }
+    let is_hc3 = reduced.scatter == Scatter::Hc3;
+    is_hc3.then(|| "HC3, which suits computations without five clusters (each row weighs by its residual)".to_owned())
 }
 
 /// Reads the table once.
@@ -158,6 +172,12 @@ fn at_once(campaign: &Campaign, source: &Source) -> Option<&'static str> {
         (identify.wild_bootstrap.is_some(), "wild_bootstrap (it draws the residuals of all rows)"),
     ];
     asked.into_iter().find(|(is_asked, _)| *is_asked).map(|(_, what)| what)
+}
+
+/// Whether the laws are the defaults, and not those of the campaign.
+fn nobody_asked(campaign: &Campaign, source: &Source) -> bool {
+    let identify = &campaign.identify;
+    source.models.is_empty() && identify.models.is_empty() && identify.user_models.is_empty()
 }
 
 /// The few rows that stand for all where these are judged.
@@ -211,21 +231,13 @@ fn reduced(
     findings.extend(seconds.findings(facts, ends));
     findings.extend(lint::of_ends(ends, campaign));
     findings.extend(no_budget(source, false));
-    let laws = laws(campaign, source, ends)?;
+    let mut laws = laws(campaign, source, ends)?;
+    if nobody_asked(campaign, source) {
+        laws.retain(|law| !law.is_nonlinear());
+    }
     check_budget(source, ends)?;
     findings.extend(columns::unused(ends, campaign, source, &laws));
-    if let Some(load) =
-        laws.iter().flat_map(|law| &law.responses).find(|load| ends.channels.contains_key(&format!("std_{load}")))
-    {
-        return Err(refusal(source, &format!("std_{load} (the weights of all rows are scaled to each other)")));
-    }
     let scatter = scatter(campaign, source, ends, &mut findings)?;
-    if scatter == Scatter::Hc3 {
-        return Err(refusal(
-            source,
-            "HC3, which suits computations without five clusters (each row weighs by its residual)",
-        ));
-    }
     findings.push(in_chunks(facts, sample));
     let mut files = vec![ReadFile::new(source.input.path().to_owned(), "table")];
     files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
@@ -237,14 +249,23 @@ fn reduced(
 /// What is said of a table that was read in chunks.
 fn in_chunks(facts: &Facts, sample: &Dataset) -> Finding {
     let copies = if facts.has_no_copies() { "" } else { "identical copies of rows, " };
+    let all = facts.n_used;
+    let judged = if sample.rows < all {
+        format!(
+            "; figures, the table of observations, uneven scatter and units that change within a load are judged from {} of them, drawn \
+             at random",
+            sample.rows
+        )
+    } else {
+        String::new()
+    };
     Finding::new(
         Severity::Note,
         "read-in-chunks",
         format!(
-            "more than {MOST_KEPT} rows: the coefficients, their uncertainties and the ranges are those of all {} observations; figures, \
-             the table of observations, uneven scatter and units that change within a load are judged from {} of them, drawn by chance; \
-             not looked for are {copies}repeats of a setting and lack of fit",
-            facts.n_used, sample.rows
+            "the table has {} rows, more than {MOST_KEPT}: the coefficients, their uncertainties and the ranges are those of all {all} \
+             observations{judged}; not looked for are {copies}repeats of a setting and lack of fit",
+            facts.n_read
         ),
     )
 }

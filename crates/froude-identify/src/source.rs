@@ -95,8 +95,9 @@ pub fn identify_source(
 ) -> Result<SourceResult, IdentifyError> {
     if let Input::Table(path) = &source.input
         && large::is_long(campaign, source, path)
+        && let Some(result) = large::identify_source(campaign, source, Limits::default(), progress)?
     {
-        return large::identify_source(campaign, source, Limits::default(), progress);
+        return Ok(result);
     }
     let mut result = fit(reduced(campaign, source)?, &campaign.identify, progress)?;
     // What is wrong with one of many models belongs to that model; the report shows the recommended one's.

@@ -72,7 +72,7 @@ fn written(folder: &Path, source: &str, identify: &str) -> Campaign {
 
 fn both(campaign: &Campaign) -> [SourceResult; 2] {
     let source = &campaign.sources[0];
-    [in_memory(campaign, source, &|_| {}).unwrap(), identify_source(campaign, source, SMALL, &|_| {}).unwrap()]
+    [in_memory(campaign, source, &|_| {}).unwrap(), identify_source(campaign, source, SMALL, &|_| {}).unwrap().unwrap()]
 }
 
 /// What is not judged in chunks, or from the sample.
@@ -159,7 +159,7 @@ fn a_parquet_table_gives_what_the_csv_gives() {
     let of = |path: PathBuf| {
         let mut campaign = campaign.clone();
         campaign.sources[0].input = froude_records::campaign::Input::Table(path);
-        identify_source(&campaign, &campaign.sources[0], SMALL, &|_| {}).unwrap()
+        identify_source(&campaign, &campaign.sources[0], SMALL, &|_| {}).unwrap().unwrap()
     };
     let [csv, parquet] = [of(folder.path().join("record.csv")), of(parquet)];
     assert_eq!(csv.estimates, parquet.estimates);
@@ -170,7 +170,7 @@ fn refused(source: &str, identify: &str) -> String {
     let campaign = written(folder.path(), source, identify);
     match identify_source(&campaign, &campaign.sources[0], SMALL, &|_| {}) {
         Err(error @ IdentifyError::Campaign { .. }) => error.to_string(),
-        other => panic!("{:?}", other.map(|r| r.n_read)),
+        other => panic!("{:?}", other.map(|r| r.map(|r| r.n_read))),
     }
 }
 
@@ -185,10 +185,24 @@ fn what_needs_all_rows_at_once_is_refused_with_the_way_out() {
 }
 
 #[test]
+fn a_table_that_weighs_its_rows_is_kept_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let is_kept = |source: &str, identify: &str| {
+        let campaign = written(folder.path(), source, identify);
+        identify_source(&campaign, &campaign.sources[0], SMALL, &|_| {}).unwrap().is_none()
+    };
+    assert!(!is_kept("table = \"record.csv\"", ""));
+    let path = folder.path().join("weighted.csv");
+    let of = |line: &str| format!("{line},{}\n", if line.starts_with("time") { "std_f_x [N]" } else { "0.1" });
+    std::fs::write(&path, record().lines().map(of).collect::<String>()).unwrap();
+    assert!(is_kept("table = \"weighted.csv\"", "models = [\"linear_quadratic\"]"));
+}
+
+#[test]
 fn a_power_law_costs_its_own_row() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = written(folder.path(), "table = \"record.csv\"", "models = [\"quadratic\", \"power_law\"]");
-    let result = identify_source(&campaign, &campaign.sources[0], SMALL, &|_| {}).unwrap();
+    let result = identify_source(&campaign, &campaign.sources[0], SMALL, &|_| {}).unwrap().unwrap();
     assert_eq!(result.models.len(), 1);
     assert!(result.not_fitted[0].why.contains("not linear in its coefficients"), "{:?}", result.not_fitted);
 }
