@@ -55,7 +55,7 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
         return Ok(outcome.whole()?);
     }
     say!(
-        "\n{} driven, {} there already, {} left out. Runs in {}",
+        "\n{} driven, {} already there, {} left out. Runs in {}",
         counted(outcome.driven, "run", "runs"),
         counted(outcome.resumed, "was", "were"),
         outcome.spared,
@@ -131,12 +131,12 @@ fn preflight(prepared: &Prepared) {
     };
     print::text_table(&table);
     say!(
-        "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
+        "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs show it)."
     );
     if !prepared.is_shaped() {
         say!(
             "The reference is not shaped (shaped_mode): after each ramp the load swings on the chain, and runs in which it then drives the gear \
-             are left out of what the motor's current tells. froude carriage resonance finds the mode."
+             are left out of the evaluation by motor current. froude carriage resonance finds the mode."
         );
     }
     if let Some(few) = few_pairs(prepared, detectable_n) {
@@ -165,7 +165,7 @@ fn few_pairs(prepared: &Prepared, detectable_n: f64) -> Option<String> {
         .collect();
     (!few.is_empty()).then(|| {
         format!(
-            "To see the drag at each speed by itself it takes more: {} (out and back count as two). D_d rests on the fast runs and does \
+            "To detect the drag at each speed separately, more runs are needed: {} (out and back count as two). D_d depends on the fast runs and does \
              not need them.",
             few.join("; ")
         )
@@ -391,7 +391,7 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     let kinds = [Role::Calibration, Role::Jog];
     let read = runs::read(paths, &kinds, None)?;
     let Some(axis) = read.logs.iter().find_map(|log| log.meta.moving_axis()) else {
-        return Err(Error::Nothing("the runs do not say what rig they come from".to_owned()));
+        return Err(Error::Nothing("the runs do not state which rig they come from".to_owned()));
     };
     let radius_mm = 1e3 * axis.sprocket_radius_m.value;
     say!(

@@ -250,7 +250,7 @@ fn source_facts(s: &SourceFacts) {
         say!("{}", columns(&s.columns));
     }
     if s.input == "table" && s.budget.is_empty() {
-        say!("  budget: none; without [[source.uncertainty]] the uncertainties hold the scatter alone");
+        say!("  budget: none; without [[source.uncertainty]] the uncertainties include the scatter only");
     }
     if !s.budget.is_empty() {
         let mut out = table(&["budget", "standard", "shared by", "dof", "name"]);

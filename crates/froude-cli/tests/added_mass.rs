@@ -802,7 +802,7 @@ fn advice(wrong: &str) -> &'static str {
     if wrong.contains("cross or touch") || wrong.contains("lies inside") || wrong.contains("lie inside") {
         return "";
     }
-    "\n  froude added-mass m.obj --repair repaired.obj writes a mesh with what can be decided put right"
+    "\n  froude added-mass m.obj --repair repaired.obj writes a mesh with the unambiguous faults corrected"
 }
 
 fn cube(side_m: f64) -> Mesh {
@@ -942,7 +942,7 @@ fn a_frame_that_cannot_be_is_refused_with_what_to_do() {
     let told = |args: &[&str], message: &str| refuses(&files, &[args, &WATER[..]].concat(), message);
     told(
         &["m.obj", "--up", "-x"],
-        "--forward x and --up -x lie along one axis of the mesh: say both, two different ones",
+        "--forward x and --up -x lie along one axis of the mesh: give both, two different ones",
     );
     for args in [
         &["e.toml", "--up", "z"][..],

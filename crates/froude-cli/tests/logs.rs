@@ -42,7 +42,7 @@ fn a_log_that_is_gone_is_told_and_driven_again() {
     let log = &bench.logs("dry")[1];
     std::fs::remove_file(log).unwrap();
     let told = format!(
-        "the log {} is gone: its sidecar says that {} was driven to its end; copy it back, or froude run drives it again",
+        "the log {} is gone: its sidecar says that {} was completed; copy it back, or froude run drives it again",
         text(log),
         id(log)
     );

@@ -103,7 +103,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         let points = keep(all, Method::Fsm, told);
         let errors = unseen_drift(&points, &self.wet, setup, &mut told.findings).into_iter().collect();
         let least = Floor {
-            name: "noise and zeros of the runs (the pairs agree better than these allow)".to_owned(),
+            name: "noise and zeros of the runs (the pairs scatter less than these predict)".to_owned(),
             variance: vec![each_alone(&points, |p| p.standard_n).powi(2)],
             dof: points.iter().map(|p| p.effective_n).sum(),
         };
@@ -150,7 +150,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         let Some(friction) = identify(None) else {
             if !frictional.is_empty() {
                 let why = if is_mapped {
-                    "the dry runs do not pass every stretch of the tow"
+                    "the dry runs do not cover the whole tow"
                 } else {
                     "no dry run has a steady window"
                 };
@@ -197,7 +197,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         let phantom = slope(&of_nothing).filter(|phantom| phantom.abs() > chance);
         let left = phantom.map(|phantom| {
             let squares: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
-            let name = "friction where it was not identified, left as it is";
+            let name = "friction outside the range where it was identified, not corrected";
             SharedError::of_load(name, setup.load(), &squares, phantom.abs(), f64::INFINITY)
         });
         let sets = if by_pairs.is_empty() { repeats(&points).into_iter().collect() } else { by_pairs };
@@ -255,7 +255,7 @@ fn scatter(sets: Vec<Replicates>) -> Scatter {
 fn of_dry_repeats(promised: &Detectability, part: f64, points: &[Point], setup: &DragSetup) -> Floor {
     let (rest, dof) = promised.floor_n_s2_m2;
     Floor {
-        name: "scatter of the dry repeats (the pairs agree better than these allow)".to_owned(),
+        name: "scatter of the dry repeats (the pairs scatter less than these predict)".to_owned(),
         variance: vec![(part * rest).hypot(on_drag(points, setup)).powi(2)],
         dof,
     }
@@ -295,12 +295,12 @@ fn unseen_drift(
         "zero-on-one-side",
         format!(
             "fsm: {} no still window on one side of the tow; the declared drift of ± {half_n:.2} N moves D_d by \
-             up to {:.2} N s^2/m^2. Stand still for two seconds before and after",
+             up to {:.2} N s^2/m^2. Keep the carriage at rest for two seconds before and after each tow",
             counted(open, "wet run has", "wet runs have"),
             moved.abs(),
         ),
     ));
-    let name = "drift of the sensor that no still window shows";
+    let name = "drift of the sensor not seen in a still window";
     Some(SharedError::between(name, setup.load(), &vec![1.0; points.len()], [-half_n, half_n]))
 }
 

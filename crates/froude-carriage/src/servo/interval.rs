@@ -217,7 +217,7 @@ pub(crate) fn over_blocks(
 ) -> Result<OverBlocks, ServoError> {
     let is_long = options.block_s >= SHORTEST_BLOCK_S;
     if !is_long {
-        let must = "blocks last 1 s or more, else they do not hold the correlation of a servo";
+        let must = "blocks must last 1 s or more: shorter ones do not contain the correlation of a servo";
         return Err(ServoError::Setting { what: "block (s)", found: options.block_s, must });
     }
     let block = (options.block_s * rate_hz).ceil() as usize;

@@ -155,7 +155,7 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
     let by_blocks = |rows: Rows, why: &str| -> Result<ServoReport, ServoError> {
         let mut report = ServoReport { runs: ranges.clone(), ..of_rows(rows, chain)? };
         report.findings.push(format!(
-            "the intervals do not hold what changes from run to run: {why}; they are those of blocks within the runs"
+            "the intervals do not include what changes from run to run: {why}; they are those of blocks within the runs"
         ));
         Ok(report)
     };

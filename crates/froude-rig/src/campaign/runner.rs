@@ -313,7 +313,7 @@ impl Outcome {
     }
 }
 
-/// Drives a whole plan. Runs that lie complete in the folder are not driven again; anything else that lies there of a run is put aside
+/// Drives a whole plan. Runs that lie complete in the folder are not driven again; anything else that lies there of a run is set aside
 /// as `ID.interrupted-N`, and the run driven anew.
 ///
 /// # Errors

@@ -199,7 +199,7 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
         masses.iter().filter(|m| (m.interval_95[0]..=m.interval_95[1]).contains(&scenario.added_mass_kg)).count();
     claims.holds(
         SECTION,
-        &format!("{head}: water that moves along, from the ramps"),
+        &format!("{head}: added mass plus entrained water, from the ramps"),
         &format!("{} kg within 1 %; at least {low} covered", scenario.added_mass_kg),
         format!("{mean:.3} kg in the mean, {hits} of {} covered", masses.len()),
         (mean / scenario.added_mass_kg - 1.0).abs() < 0.01 && hits as u64 >= low,

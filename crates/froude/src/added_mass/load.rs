@@ -146,7 +146,7 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         }
         if is_repairable {
             wrong.push(format!(
-                "  froude added-mass {}{} --repair repaired.obj writes a mesh with what can be decided put right",
+                "  froude added-mass {}{} --repair repaired.obj writes a mesh with the unambiguous faults corrected",
                 job.input.display(),
                 job.unit_m.map_or_else(String::new, |m| format!(" --unit \"{m} m\""))
             ));

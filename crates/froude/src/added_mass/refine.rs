@@ -21,7 +21,7 @@ pub struct Wanted {
     pub frame: Frame,
     /// Largest numerical uncertainty: of a diagonal entry as part of itself, of another as part of √(A_ii A_jj).
     pub tolerance: f64,
-    /// Panels at most.
+    /// Largest number of panels.
     pub most_panels: usize,
     /// Memory at most, bytes; `None`: four fifths of what is free when each mesh begins.
     pub memory_bytes: Option<f64>,
