@@ -184,7 +184,7 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
         }
         return Ok(());
     }
-    // The same sentence for many runs is told once, with how many.
+    // The same sentence for many runs is printed once, with their number.
     let mut told: Vec<(&str, &str, usize)> = Vec::new();
     for o in &prepared.objections {
         match told.iter_mut().find(|t| t.1 == o.text) {
@@ -222,7 +222,7 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
     Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
 }
 
-/// More different objections than this are told by kind.
+/// More different objections than this are reported by kind.
 const MOST_SENTENCES: usize = 10;
 
 fn preflight_json(prepared: &Prepared) -> serde_json::Value {

@@ -724,7 +724,7 @@ fn one_mesh_has_no_uncertainty_and_none_is_made_up() {
     for sentence in [
         "One mesh only: there is no numerical uncertainty; three meshes give one.",
         "There is no finer one: the next mesh has 256 panels, and 64 are allowed (--most-panels).",
-        "is not told: panels or memory do not allow a second mesh.",
+        "is not stated: panels or memory do not allow a second mesh.",
     ] {
         assert!(text.contains(sentence), "{sentence}: {text}");
     }
@@ -821,7 +821,7 @@ fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
     refuses_mesh(
         &changed(|m| _ = m.panels.pop()),
         "  4 edges have one panel only, the first from [1.0, 0.0, 0.0] to [1.0, 1.0, 0.0] m: the surface is open there\n  where it looks closed and is not, corners lie within edges of \
-         neighbours (T-junctions): let the drawing program mesh it anew",
+         neighbours (T-junctions): let the CAD program mesh it again",
     );
     refuses_mesh(
         &changed(|m| m.panels.iter_mut().for_each(|p| *p = p.turned())),
@@ -829,7 +829,7 @@ fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
     );
     refuses_mesh(
         &changed(|m| m.panels[2] = m.panels[2].turned()),
-        "  4 edges are passed twice in one direction, the first from [0.0, 0.0, 0.0] to [1.0, 0.0, 0.0] m: neighbours are oriented against each other",
+        "  4 edges are traversed twice in the same direction, the first from [0.0, 0.0, 0.0] to [1.0, 0.0, 0.0] m: neighbours are oriented against each other",
     );
     // Here no repair helps.
     refuses(
@@ -891,7 +891,7 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
     refuses(
         &small,
         &[&["m.obj", "--most-panels", "5"], &WATER[..]].concat(),
-        "the coarsest mesh has 6 panels, and 5 are allowed; write --most-panels 96, for the numerical uncertainty asks for three meshes, or 6 for a value without",
+        "the coarsest mesh has 6 panels, and 5 are allowed; write --most-panels 96, because the numerical uncertainty needs three meshes, or 6 for a value without",
     );
 }
 

@@ -44,7 +44,7 @@ pub fn note(model: &ModelFit, resamples: usize) -> Result<String, Finding> {
         parts.push(format!("{} [{low:.4}, {high:.4}] {} (zero: p = {:.4})", spec.name, spec.unit, result.p));
     }
     Ok(format!(
-        "95 % intervals of the scatter alone (the budget is not in them) by {resamples} wild cluster resamples over {clusters} \
+        "95 % intervals of the scatter alone (without the budget) by {resamples} wild cluster resamples over {clusters} \
          clusters, bounds left out: {}",
         parts.join(", ")
     ))

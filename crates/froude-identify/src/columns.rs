@@ -97,7 +97,7 @@ pub fn unused(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[Forc
         findings.push(Finding::new(
             Severity::Note,
             "column-not-used",
-            format!("in no law and in nothing else that was asked for: {}", listed(&others)),
+            format!("used by no law and by nothing else that was asked for: {}", listed(&others)),
         ));
     }
     findings.extend(left_out(data));
@@ -227,7 +227,7 @@ fn doubt(
         let loads: IndexSet<&str> = laws.iter().flat_map(|law| &law.responses).map(String::as_str).collect();
         let of = loads.into_iter().collect::<Vec<_>>().join(", ");
         format!(
-            "{name} goes from {low:.4} to {high:.4} {dimension} and no law has it: the fit of {of} takes it for zero; write a law with \
+            "{name} goes from {low:.4} to {high:.4} {dimension} and appears in no law: the fit of {of} treats it as zero; write a law with \
              it ([[identify.model]]), or keep the rows where it is zero"
         )
     })

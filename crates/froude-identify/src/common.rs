@@ -212,15 +212,15 @@ pub(crate) fn findings(all: &[Common<'_>]) -> Vec<Finding> {
     let mut out = Vec::new();
     if !names.is_empty() {
         let text = format!(
-            "{a} and {b} have errors in common, by their keys: {}; what both feel alike is taken out of E_n and χ²",
+            "{a} and {b} have errors in common, by their keys: {}; what affects both alike is removed from E_n and χ²",
             list(names)
         );
         out.push(Finding::new(Severity::Note, "errors-in-common", text));
     }
     if !contradicted.is_empty() {
         let text = format!(
-            "{a} and {b} state different uncertainties of what they call the same error ({}): it is not taken out, and E_n and χ² \
-             are not to be trusted; reduce both with one declaration",
+            "{a} and {b} state different uncertainties of what they call the same error ({}): it is not removed, and E_n and χ² \
+             cannot be trusted; reduce both with one declaration",
             list(contradicted)
         );
         out.push(Finding::new(Severity::Warning, "errors-contradict", text));

@@ -226,7 +226,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             findings.push(Finding::new(
                 Severity::Warning,
                 "not-converged",
-                format!("model {}: the iteration did not settle within {MOST_ITERATIONS} steps", law.name),
+                format!("model {}: the iteration did not converge within {MOST_ITERATIONS} steps", law.name),
             ));
         }
     }
@@ -317,7 +317,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     let variances = (0..specs.len()).map(|j| covariance[(j, j)]);
     if let Some(number) = coefficients.iter().copied().chain(of_fit).chain(variances).find(|x| !x.is_finite()) {
         return Err(no_fit(format!(
-            "its numbers leave what a computer holds ({number}): look for a value of absurd size in the table or in [identify]"
+            "its numbers exceed the range of floating point ({number}): look for an absurdly large value in the table or in [identify]"
         )));
     }
     Ok(ModelFit {
@@ -344,7 +344,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
 /// Why the iteration of a power law left all bounds.
 fn ran_away(law: &ForceLaw, data: &Dataset, newtons: &[f64]) -> String {
     let crate::law::Kind::PowerLaw { channel, .. } = &law.kind else {
-        return "its iteration leaves what a computer holds".to_owned();
+        return "its iteration exceeds the range of floating point".to_owned();
     };
     let speeds = data.values(channel).unwrap_or_default();
     let moving = speeds.iter().filter(|v| **v != 0.0).count();
@@ -352,12 +352,12 @@ fn ran_away(law: &ForceLaw, data: &Dataset, newtons: &[f64]) -> String {
     let load = law.responses.first().map_or("the load", String::as_str);
     if 2 * opposed < moving {
         return format!(
-            "{load} opposes {channel} in {opposed} of the {moving} rows that move, and a power law is a resistance: look at the sign of \
+            "{load} opposes {channel} in {opposed} of the {moving} rows that move, and a power law is a resistance: check the sign of \
              {load}, or leave this law out"
         );
     }
     format!(
-        "its iteration runs away: exponent and factor of {load} are not told by these rows; use speeds further apart, or a law with a given \
+        "its iteration diverges: exponent and factor of {load} are not determined by these rows; use speeds further apart, or a law with a given \
          exponent (quadratic)"
     )
 }
@@ -707,7 +707,7 @@ fn contradicted_priors(
                 "prior-contradicted",
                 format!(
                     "{}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior says {:.4} ± {:.4} {unit}: \
-                     {apart:.1} standard uncertainties apart; the fit between them is an answer to neither",
+                     {apart:.1} standard uncertainties apart; the fit between them agrees with neither",
                     law.name,
                     specs[prior.index].name,
                     prior.value,

@@ -73,7 +73,7 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
                 Severity::Warning,
                 "wave-making",
                 format!(
-                    "U/√(g h) reaches {worst:.2}, h being the submergence: the drag contains wave making, which a deeply submerged \
+                    "U/√(g h) reaches {worst:.2}, h being the submergence: the drag includes wave-making resistance, which a deeply submerged \
                      body does not have"
                 ),
             ));
@@ -83,7 +83,7 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
                 Severity::Warning,
                 "blockage",
                 format!(
-                    "the body takes {:.1} % of the tank's section: the water speeds up around it, and the drag is not that of open water",
+                    "the body blocks {:.1} % of the tank's cross-section: the flow speeds up around it, and the drag is not that of open water",
                     100.0 * worst
                 ),
             ));

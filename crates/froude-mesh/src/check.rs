@@ -71,7 +71,7 @@ pub enum Trouble {
     },
     /// Neighbours that run the same way along an edge.
     #[error(
-        "{} passed twice in one direction, the first from {from:?} to {to:?} m: neighbours are oriented against each other", counted(*count, "edge is", "edges are")
+        "{} traversed twice in the same direction, the first from {from:?} to {to:?} m: neighbours are oriented against each other", counted(*count, "edge is", "edges are")
     )]
     Turned {
         /// How many.
@@ -324,7 +324,7 @@ mod tests {
         assert!(told(|m| m.vertices[3][1] = f64::NAN).starts_with("vertex 3 has the coordinates"));
         assert!(told(|m| m.panels[0] = Panel::triangle(0, 1, 999)).contains("the vertex 999, and there are 26"));
         assert!(told(|m| _ = m.panels.pop()).starts_with("3 edges have one panel only"));
-        assert!(told(|m| m.panels[9] = m.panels[9].turned()).contains("4 edges are passed twice in one direction"));
+        assert!(told(|m| m.panels[9] = m.panels[9].turned()).contains("4 edges are traversed twice in the same direction"));
         assert!(told(|m| m.panels.push(m.panels[9])).contains("is there twice (also as 9)"));
         assert!(told(|m| m.panels.iter_mut().for_each(|p| *p = p.turned())).starts_with("the surface is inside out"));
         assert!(told(|m| m.vertices.iter_mut().for_each(|v| (v[1], v[2]) = (0.0, 0.0))).contains("has no area"));

@@ -1,7 +1,7 @@
 //! Panels that go through one another, touch where they share no vertex, or are folded onto a neighbour.
 //!
 //! Each panel is one or two triangles. Two triangles meet when an edge of one has a point in common with the other; the signs of the
-//! determinants that decide it are exact, so that no tolerance is needed and what touches is told as well. Of two triangles with one
+//! determinants that decide it are exact, so that no tolerance is needed and what touches is reported as well. Of two triangles with one
 //! common corner, the opposite edges must not meet the other. Two with a common edge meet elsewhere only when they are folded onto one
 //! another; there the angle between them is compared with [`FOLD_RAD`]. Vertices at one point count as one here, so that a seam that is
 //! not welded is no crossing.
@@ -249,7 +249,7 @@ impl Tree {
         self.nodes.len() - 1
     }
 
-    /// Calls for each two triangles whose boxes meet, until told to stop.
+    /// Calls for each two triangles whose boxes meet, until asked to stop.
     fn each_pair(&self, mut f: impl FnMut(usize, usize) -> bool) {
         let mut open = vec![(0, 0)];
         while let Some((a, b)) = open.pop() {

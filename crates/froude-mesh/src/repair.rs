@@ -1,4 +1,4 @@
-//! Repairs that change no shape, each told: vertices merged, panels without area and copies taken out, panels turned.
+//! Repairs that change no shape, each reported: vertices merged, panels without area and copies taken out, panels turned.
 //!
 //! Holes are not closed, and what cannot be known is not decided: the outside of an open surface, and of one inside another.
 //!
@@ -54,7 +54,7 @@ pub enum Repair {
         count: usize,
     },
     /// Panels turned to run as their neighbours do.
-    #[error("{} turned to run as most of their neighbours, first at {at:?} m", counted(*count, "panel", "panels"))]
+    #[error("{} turned to match most of their neighbours, first at {at:?} m", counted(*count, "panel", "panels"))]
     Turned {
         /// How many.
         count: usize,
@@ -375,7 +375,7 @@ mod tests {
             "1 panel without area taken out, first at [-1.0, 0.0, 0.0] m".to_owned(),
             format!("1 copy of a panel taken out, first at {copied}"),
             "1 vertex that no panel uses taken out".to_owned(),
-            format!("1 panel turned to run as most of their neighbours, first at {turned}"),
+            format!("1 panel turned to match most of their neighbours, first at {turned}"),
         ];
         assert_eq!(told(&repairs), expected);
     }

@@ -178,7 +178,7 @@ fn need(s: &Section<'_>, key: &'static str) -> Result<f64, RecordError> {
         Some(value) if !(least..=most).contains(&length_m) => Err(s.wrong(
             key,
             value,
-            format!("is {length_m} m; lengths of a body are from {least} m to {most} m: look at its unit"),
+            format!("is {length_m} m; lengths of a body are from {least} m to {most} m: check its unit"),
         )),
         _ => Ok(length_m),
     }

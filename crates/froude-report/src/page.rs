@@ -597,7 +597,7 @@ fn notes(estimates: &[Estimate], with_cross_validation: bool) -> Markup {
             e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (name, n))
         })
         .collect();
-    // The same sentence of several models is told once.
+    // The same sentence of several models is printed once.
     let mut told: Vec<(Vec<&str>, &str)> = Vec::new();
     for (model, note) in rows {
         match told.iter_mut().find(|(_, n)| *n == note) {

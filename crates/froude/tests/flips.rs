@@ -35,7 +35,7 @@ fn next(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// How many flips were told, changed nothing, and were taken for data.
+/// How many flips were reported, changed nothing, and were taken for data.
 #[derive(Debug, Default, PartialEq)]
 struct Tally {
     told: usize,

@@ -49,7 +49,7 @@ pub struct ForcePerVolt {
 /// What is declared about a calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CalibrationSetup {
-    /// (n/R)·K_T·K_amp, N/V: the efficiency is told against it.
+    /// (n/R)·K_T·K_amp, N/V: the efficiency is stated relative to it.
     pub ideal_force_per_volt_n: f64,
     /// Standard uncertainty of the weights, as a part (mass, gravity, buoyancy in air).
     pub weight_relative: f64,

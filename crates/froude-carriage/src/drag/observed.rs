@@ -53,7 +53,7 @@ impl Elsewhere {
     }
 }
 
-/// What is told on the way.
+/// What is reported along the way.
 #[derive(Debug, Default)]
 pub(super) struct Told {
     /// Runs that gave no point.
@@ -309,7 +309,7 @@ fn unseen_drift(
 enum Cluster {
     /// A dry tow: with its pair.
     Pair(u32),
-    /// A friction run: with its repeat of all speeds, or alone where repeats are not told apart.
+    /// A friction run: with its repeat of all speeds, or alone where repeats are not distinguished.
     Sweep(u32),
 }
 

@@ -17,7 +17,7 @@ use froude_identify::IdentifyError;
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;
-/// A constant force beside the drag is told when it exceeds this many standard uncertainties of its own …
+/// A constant force beside the drag is reported when it exceeds this many standard uncertainties of its own …
 const OFFSET_TOLD: f64 = 3.0;
 /// … and moves D_d by more than this part of it.
 const OFFSET_MATTERS: f64 = 0.005;
@@ -52,7 +52,7 @@ pub struct DragReport {
 /// # Errors
 ///
 /// [`DragError`] for columns of unequal length, samples that are not finite, impossible declarations, no wet run. A run
-/// without a usable window is no error: it is left out and told.
+/// without a usable window is no error: it is left out and reported.
 pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport, DragError> {
     drag_by(runs, setup, &Method::ALL)
 }

@@ -14,7 +14,7 @@ use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::least_squares;
 
-/// Fewest runs whose scatter is told.
+/// Fewest runs whose scatter is stated.
 const FEWEST_RUNS: usize = 5;
 
 /// One identified coefficient.

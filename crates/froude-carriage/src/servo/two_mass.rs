@@ -18,7 +18,7 @@
 //! **What the motor cannot tell.** How viscous and Coulomb friction are split between motor and load shows only in the vibration
 //! and in the moments of sticking. The sums are coefficients; the splits are fractions in 0…1 with a prior that knows
 //! nothing (mean ½, standard deviation of a uniform one), and count as identified only when their interval lies inside 0…1 and is
-//! shorter than half of it. The force per volt cannot be told from the masses, nor η from the load's mass.
+//! shorter than half of it. The force per volt cannot be distinguished from the masses, nor η from the load's mass.
 //!
 //! # Source
 //!

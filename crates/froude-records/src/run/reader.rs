@@ -336,7 +336,7 @@ impl<R: Read + Seek> RunReader<R> {
                 (Some(_), None) => self.doubt(
                     DoubtKind::Exchanged,
                     &format!(
-                        "is a whole log, and not the one that {sidecar} was written for (its SHA-256 is another): they are of two drives; \
+                        "is a whole log, and not the one that {sidecar} was written for (its SHA-256 is another): they come from two drives; \
                          put the files that belong together side by side"
                     ),
                 ),

@@ -163,7 +163,7 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
             Ok(table) => tables.push(table),
             Err(why) => {
                 notes
-                    .push(format!("How far a smooth body with these corners lies from the facets is not told: {why}."));
+                    .push(format!("The faceting error, smooth body minus polyhedron, is not stated: {why}."));
             }
         }
     }

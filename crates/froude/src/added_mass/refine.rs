@@ -1,4 +1,4 @@
-//! Finer and finer until the tolerance holds, told beforehand what it takes.
+//! Finer and finer until the tolerance is met, with the cost stated beforehand.
 
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
@@ -208,7 +208,7 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
     Ok((mesh.mesh.clone(), whole(&wanted.mirrors)))
 }
 
-/// Refines until the tolerance holds, or panels, memory or members end; `told` hears of every step before it starts.
+/// Refines until the tolerance is met, or panels, memory or members end; `told` hears of every step before it starts.
 ///
 /// # Errors
 ///
@@ -304,7 +304,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
 fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
     let (coarsest, third) = (family.panels(0)?, family.panels(2)?);
     Ok(Error::Nothing(format!(
-        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
+        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, because the numerical uncertainty needs \
          three meshes, or {coarsest} for a value without",
         wanted.most_panels
     )))

@@ -149,7 +149,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         let told = if worst.is_finite() {
             format!("is {:.1} %", 100.0 * worst)
         } else {
-            "cannot be told from one mesh".to_owned()
+            "cannot be estimated from one mesh".to_owned()
         };
         let message = format!(
             "the largest numerical uncertainty of an entry, as part of the diagonal, {told} where {:.1} % was asked for: no finer mesh is made \
@@ -308,12 +308,12 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
 fn parts_of(job: &BodyJob) -> Result<Several, Error> {
     let loaded = load(job)?;
     let Family::Mesh(mesh) = loaded.family else {
-        return Err(Error::Nothing(format!("{}: --apart takes a mesh of several closed parts", job.input.display())));
+        return Err(Error::Nothing(format!("{}: --apart is for a mesh of several closed parts", job.input.display())));
     };
     let found = parts(&mesh);
     if found.len() < 2 {
         return Err(Error::Nothing(format!(
-            "{}: the mesh hangs together, it has one part; leave --apart out",
+            "{}: the mesh is connected and has one part; leave --apart out",
             job.input.display()
         )));
     }
@@ -403,7 +403,7 @@ fn diagonal_table(parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>]
     }
 }
 
-/// Parts of which all pairs are told.
+/// Parts of which all pairs are reported.
 const MOST_PARTS: usize = 12;
 
 fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> Option<TextTable> {

@@ -426,7 +426,7 @@ impl<'a> Bench<'a> {
                     ));
                 }
             }
-            _ => out.push("the response shows no two masses, so the ramps could not be foreseen".to_owned()),
+            _ => out.push("the response shows no two masses, so the ramps could not be predicted".to_owned()),
         }
         out
     }
@@ -450,7 +450,7 @@ fn against_margins(m: &Margins) -> Vec<String> {
             phase.to_degrees(),
             demand.phase_rad.to_degrees()
         )),
-        None => out.push("no crossover: the loop holds nothing".to_owned()),
+        None => out.push("no crossover: the loop gain stays below 1".to_owned()),
         Some(_) => {}
     }
     if let Some(gain) = m.gain.filter(|&g| g < demand.gain) {
@@ -555,7 +555,7 @@ pub fn tune_sentences(outcome: &TuneOutcome) -> Vec<String> {
             ));
             if outcome.candidates[0].objections.is_empty() {
                 out.push(
-                    "The gains as configured keep all that is asked for as well: there is no need to change them."
+                    "The gains as configured also meet every requirement: there is no need to change them."
                         .to_owned(),
                 );
             }
