@@ -97,7 +97,7 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
     let fit = |friction| identify_servo(&servo, &chain(friction)).map_err(MethodError::refused);
     let (models, not_fitted) = each(asked.into_iter().map(|(name, friction)| (name, fit(friction))));
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
-    let mut findings = told(&models, imported.findings);
+    let mut findings = reported(&models, imported.findings);
     findings.extend(not_fitted);
     let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let rigid = |m: &Model| (record::rigid(&name, &m.name, &m.report, gain_n_v, None), "table");
@@ -118,7 +118,7 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
     })
 }
 
-fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
+fn reported(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
     for model in models {
         for text in &model.report.findings {
             findings.push(Finding::new(Severity::Warning, "servo", format!("{}: {text}", model.name)));
@@ -189,7 +189,7 @@ pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
         (models, not_fitted) =
             each(asked.into_iter().map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
     }
-    let mut findings = told(&models, runs.findings.clone());
+    let mut findings = reported(&models, runs.findings.clone());
     findings.extend(varies(&models));
     let declared = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref()).and_then(|c| c.rig.y.coulomb_n_m);
     findings.extend(declared.and_then(|d| contradicted(&models, &motor, d)));

@@ -364,7 +364,8 @@ fn forecasts(loaded: &Loaded, steps: &[(usize, Forecast)]) {
         })
         .collect();
     table(&TextTable {
-        caption: "What each mesh would require; the computation ends with the first that meets the tolerance.".to_owned(),
+        caption: "What each mesh would require; the computation ends with the first that meets the tolerance."
+            .to_owned(),
         head: ["panels", "unknowns", "time", "memory [MB]"].map(str::to_owned).to_vec(),
         rows,
     });

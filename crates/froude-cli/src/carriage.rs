@@ -108,8 +108,8 @@ fn preflight(prepared: &Prepared) {
         head: [
             "kind",
             "speed [m/s]",
-            "way",
-            "takes [s]",
+            "direction",
+            "duration [s]",
             "steady [s]",
             "command [V]",
             "rms current [A]",
@@ -185,11 +185,11 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
         return Ok(());
     }
     // The same sentence for many runs is printed once, with their number.
-    let mut told: Vec<(&str, &str, usize)> = Vec::new();
+    let mut sentences: Vec<(&str, &str, usize)> = Vec::new();
     for o in &prepared.objections {
-        match told.iter_mut().find(|t| t.1 == o.text) {
+        match sentences.iter_mut().find(|t| t.1 == o.text) {
             Some(t) => t.2 += 1,
-            None => told.push((&o.id, &o.text, 0)),
+            None => sentences.push((&o.id, &o.text, 0)),
         }
     }
     let more = |n: usize, one: &str, many: &str| match n {
@@ -197,8 +197,8 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
         n => format!(" (and {})", counted(n, one, many)),
     };
     let mut lines: Vec<String> =
-        told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "more run", "more runs"))).collect();
-    if told.len() > MOST_SENTENCES {
+        sentences.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "more run", "more runs"))).collect();
+    if sentences.len() > MOST_SENTENCES {
         // One cause makes a sentence for every run: the first of each kind tells it.
         let mut kinds: Vec<(&str, &Objection, usize)> = Vec::new();
         for o in &prepared.objections {
@@ -313,8 +313,9 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
         say!("\nTwo masses, from the motor's side{}", runs::mounted(&outcome.two_mass_mounts));
         print::text_table(&flexible_table(f));
         for s in &f.splits {
-            let told = if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };
-            say!("  {}: {told}", s.name);
+            let share =
+                if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };
+            say!("  {}: {share}", s.name);
         }
     }
     if !outcome.repeatability.is_empty() {

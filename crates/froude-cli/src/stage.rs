@@ -24,7 +24,8 @@ use signal_hook::flag;
 /// Words that may wait for a slow terminal; more are dropped.
 const WORDS: usize = 256;
 /// What is said before the first question about a rig that is none.
-const TWIN: &str = "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes confirms every step.\n";
+const TWIN: &str =
+    "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes confirms every step.\n";
 /// How often a wait looks up.
 const LOOK_UP: Duration = Duration::from_millis(50);
 

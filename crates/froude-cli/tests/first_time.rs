@@ -70,7 +70,9 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
         ),
         (
             vec!["inspect", &body],
-            format!("{body} is a body file; froude inspect takes {of_files}. To compute with it: froude added-mass {body}"),
+            format!(
+                "{body} is a body file; froude inspect takes {of_files}. To compute with it: froude added-mass {body}"
+            ),
         ),
         (
             vec!["inspect", &results],
@@ -257,7 +259,8 @@ fn a_question_has_its_line_for_itself_and_the_twin_says_that_it_is_one() {
     }
     // The bar was there, and is again after the answer.
     assert!(questions[2].contains("/13"), "{:?}", questions[2]);
-    let hint = "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes confirms every step.";
+    let hint =
+        "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes confirms every step.";
     assert_eq!(shown.matches(hint).count(), 1, "{shown}");
 }
 

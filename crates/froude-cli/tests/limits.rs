@@ -303,7 +303,6 @@ fn three_hundred_estimates_are_compared_and_not_one_more() {
     record["estimates"] = of(300).collect();
     reads("e.json", record.to_string(), &["compare", "e.json"]);
     record["estimates"] = of(301).collect();
-    let told =
-        "froude: 301 estimates are not compared: at most 300 are; name fewer records, or fewer models in them";
+    let told = "froude: 301 estimates are not compared: at most 300 are; name fewer records, or fewer models in them";
     refuses("e.json", record.to_string(), &["compare", "e.json"], told);
 }

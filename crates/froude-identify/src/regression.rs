@@ -288,7 +288,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     };
     // Where replicates tell no scatter nothing does: the residuals of one of them are not asked.
     let is_known = |c: &fit::FitCoefficient| match &replicates {
-        Some(told) => told.is_some() && c.value.is_some(),
+        Some(part) => part.is_some() && c.value.is_some(),
         None => c.standard.is_some(),
     };
     let first = replicates.clone().flatten().unwrap_or_else(|| scatter(&fitted));

@@ -225,8 +225,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     if let (Some(value), false) = (s.get("decay"), is_decay) {
-        let problem =
-            "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
+        let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
     Ok(Source {
@@ -539,7 +538,8 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
         return Err(RecordError::Value {
             place: s.place(),
             key: "standard_uncertainty".to_owned(),
-            problem: "must be larger than zero; a value without uncertainty is not a prior; fix it with `fixed`".to_owned(),
+            problem: "must be larger than zero; a value without uncertainty is not a prior; fix it with `fixed`"
+                .to_owned(),
         });
     }
     Ok(out)

@@ -37,7 +37,8 @@ pub fn sections(outcome: &AxisModels) -> Vec<DocumentSection> {
         let mut tables = vec![coefficient_table(format!("Rigid model, friction {}.", model.name), &r.coefficients)];
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
             tables.push(coefficient_table(
-                "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers.".to_owned(),
+                "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers."
+                    .to_owned(),
                 &effective(r, motor),
             ));
         }
@@ -133,7 +134,7 @@ pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
     TextTable {
         caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run."
             .to_owned(),
-        head: ["speed [m/s]", "way", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
+        head: ["speed [m/s]", "direction", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
         rows: cells
             .iter()
             .map(|c| {

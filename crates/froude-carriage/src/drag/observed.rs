@@ -55,7 +55,7 @@ impl Elsewhere {
 
 /// What is reported along the way.
 #[derive(Debug, Default)]
-pub(super) struct Told {
+pub(super) struct Reported {
     /// Runs that gave no point.
     pub rejected: Vec<(Method, Rejected)>,
     pub findings: Vec<Finding>,
@@ -88,20 +88,20 @@ impl<'r, 'a> Tows<'r, 'a> {
     }
 
     /// The points of a method; `None` where there are no runs for it.
-    pub fn observed(&self, method: Method, setup: &DragSetup, told: &mut Told) -> Option<Observed> {
+    pub fn observed(&self, method: Method, setup: &DragSetup, reported: &mut Reported) -> Option<Observed> {
         match method {
-            Method::Fsm => self.wet.iter().any(|r| r.force_n.is_some()).then(|| self.sensed(setup, told)),
-            Method::Mcd => (!self.dry.is_empty()).then(|| self.differences(setup, told)),
+            Method::Fsm => self.wet.iter().any(|r| r.force_n.is_some()).then(|| self.sensed(setup, reported)),
+            Method::Mcd => (!self.dry.is_empty()).then(|| self.differences(setup, reported)),
             Method::MbdpFlexible if setup.flexible.is_none() => None,
-            Method::MbdpConstant | Method::MbdpMapped | Method::MbdpFlexible => self.modelled(method, setup, told),
+            Method::MbdpConstant | Method::MbdpMapped | Method::MbdpFlexible => self.modelled(method, setup, reported),
         }
     }
 
     /// The force sensor. Its scatter is no less than what noise and zeros within the runs must give.
-    fn sensed(&self, setup: &DragSetup, told: &mut Told) -> Observed {
+    fn sensed(&self, setup: &DragSetup, reported: &mut Reported) -> Observed {
         let all = self.wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
-        let points = keep(all, Method::Fsm, told);
-        let errors = unseen_drift(&points, &self.wet, setup, &mut told.findings).into_iter().collect();
+        let points = keep(all, Method::Fsm, reported);
+        let errors = unseen_drift(&points, &self.wet, setup, &mut reported.findings).into_iter().collect();
         let least = Floor {
             name: "noise and zeros of the runs (the pairs scatter less than these predict)".to_owned(),
             variance: vec![each_alone(&points, |p| p.standard_n).powi(2)],
@@ -111,7 +111,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         Observed { scatter: scatter(sets), errors, ..Observed::of(Method::Fsm, points, setup) }
     }
 
-    fn differences(&self, setup: &DragSetup, told: &mut Told) -> Observed {
+    fn differences(&self, setup: &DragSetup, reported: &mut Reported) -> Observed {
         let k = setup.force_per_volt_n();
         let all = self.wet.iter().map(|w| match self.dry.iter().find(|d| d.is_partner_of(w)) {
             Some(d) => mcd::point(w, d, k, setup.steady),
@@ -121,14 +121,14 @@ impl<'r, 'a> Tows<'r, 'a> {
                 speed_m_s: w.target_speed_m_s * w.direction,
             }),
         });
-        let points = keep(all, Method::Mcd, told);
+        let points = keep(all, Method::Mcd, reported);
         let promised = self.promised(&points, setup);
         Observed::of_differences(points, promised.as_ref(), setup)
     }
 
     /// MBDP. Its type A has the scatter of the pairs, the friction identified anew without each of them, and that of the friction runs, each of
     /// their repeats left out in turn.
-    fn modelled(&self, method: Method, setup: &DragSetup, told: &mut Told) -> Option<Observed> {
+    fn modelled(&self, method: Method, setup: &DragSetup, reported: &mut Reported) -> Option<Observed> {
         let is_mapped = method != Method::MbdpConstant;
         let frictional: Vec<&DragRun<'_>> = match (is_mapped, self.sweeps.is_empty()) {
             (true, _) => self.dry.iter().chain(&self.sweeps).copied().collect(),
@@ -155,7 +155,7 @@ impl<'r, 'a> Tows<'r, 'a> {
                     "no dry run has a steady window"
                 };
                 let text = format!("{}: left out: {why}", method.name());
-                told.findings.push(Finding::new(Severity::Note, "no-friction", text));
+                reported.findings.push(Finding::new(Severity::Note, "no-friction", text));
             }
             return None;
         };
@@ -166,7 +166,7 @@ impl<'r, 'a> Tows<'r, 'a> {
             }
             None => mbdp::point(run, &friction, k, setup.steady),
         };
-        let points = keep(self.wet.iter().map(|w| point(w)), method, told);
+        let points = keep(self.wet.iter().map(|w| point(w)), method, reported);
         let groups = pairs(&points);
         let without = |skip: Cluster| {
             let without = identify(Some(skip))?;
@@ -262,12 +262,12 @@ fn of_dry_repeats(promised: &Detectability, part: f64, points: &[Point], setup: 
 }
 
 /// The points that came out; the others are noted.
-fn keep(all: impl Iterator<Item = Result<Point, Rejected>>, method: Method, told: &mut Told) -> Vec<Point> {
+fn keep(all: impl Iterator<Item = Result<Point, Rejected>>, method: Method, reported: &mut Reported) -> Vec<Point> {
     let mut out = Vec::new();
     for point in all {
         match point {
             Ok(point) => out.push(point),
-            Err(why) => told.rejected.push((method, why)),
+            Err(why) => reported.rejected.push((method, why)),
         }
     }
     out

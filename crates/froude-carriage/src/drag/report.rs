@@ -9,7 +9,7 @@ use super::added_mass::{AddedMass, added_mass};
 use super::coefficient::{Coefficient, Method, Point, coefficient};
 use super::detectability::{Agreement, Detectability, agreement, zero_change};
 use super::error::DragError;
-use super::observed::{Told, Tows};
+use super::observed::{Reported, Tows};
 use super::record;
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
 use super::steady::Rejected;
@@ -68,18 +68,18 @@ pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> R
     if tows.wet.is_empty() {
         return Err(DragError::NoWetRuns { n: runs.len() });
     }
-    let mut told = Told::default();
+    let mut reported = Reported::default();
     let mut coefficients: Vec<Coefficient> = Vec::new();
     for method in Method::ALL.into_iter().filter(|method| methods.contains(method)) {
-        let Some(observed) = tows.observed(method, setup, &mut told) else { continue };
+        let Some(observed) = tows.observed(method, setup, &mut reported) else { continue };
         let elsewhere = observed.elsewhere;
-        if let Some(mut c) = or_told(method, coefficient(observed, setup), &mut told.findings) {
-            told.findings.append(&mut c.result.findings);
-            told.findings.extend(elsewhere.map(|elsewhere| elsewhere.finding(method, c.value)));
+        if let Some(mut c) = or_reported(method, coefficient(observed, setup), &mut reported.findings) {
+            reported.findings.append(&mut c.result.findings);
+            reported.findings.extend(elsewhere.map(|elsewhere| elsewhere.finding(method, c.value)));
             coefficients.push(c);
         }
     }
-    Ok(judge(runs, setup, coefficients, methods.contains(&Method::Mcd).then_some(&tows), told))
+    Ok(judge(runs, setup, coefficients, methods.contains(&Method::Mcd).then_some(&tows), reported))
 }
 
 /// The methods beside each other: which is the best, whether they agree among themselves and with what the dry repeats promised.
@@ -90,9 +90,9 @@ fn judge(
     setup: &DragSetup,
     mut coefficients: Vec<Coefficient>,
     tows: Option<&Tows<'_, '_>>,
-    told: Told,
+    reported: Reported,
 ) -> DragReport {
-    let Told { rejected, mut findings } = told;
+    let Reported { rejected, mut findings } = reported;
     let by = |method: Method| coefficients.iter().find(|c| c.method == method);
     let reference = by(Method::Fsm).or(by(Method::Mcd)).or(coefficients.first()).map(|c| c.value);
     let differences = by(Method::Mcd).map_or(&[][..], |c| &c.points);
@@ -151,7 +151,7 @@ fn judge(
 }
 
 /// A method that cannot be fitted costs its own row and says so.
-fn or_told(
+fn or_reported(
     method: Method,
     fitted: Result<Option<Coefficient>, IdentifyError>,
     findings: &mut Vec<Finding>,
@@ -315,7 +315,11 @@ fn swings(rejected: &[(Method, Rejected)]) -> Option<Finding> {
         String::new()
     };
     first.map(|why| {
-        Finding::new(Severity::Warning, "load-swings", format!("left out of the evaluation by motor current{more}: {why}"))
+        Finding::new(
+            Severity::Warning,
+            "load-swings",
+            format!("left out of the evaluation by motor current{more}: {why}"),
+        )
     })
 }
 

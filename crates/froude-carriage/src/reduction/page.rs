@@ -49,7 +49,7 @@ pub fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentSection>
         title: "Runs".to_owned(),
         tables: vec![TextTable {
             caption: "Complete runs that were read.".to_owned(),
-            head: ["run", "kind", "pair", "speed [m/s]", "way", "length [s]"].map(str::to_owned).to_vec(),
+            head: ["run", "kind", "pair", "speed [m/s]", "direction", "length [s]"].map(str::to_owned).to_vec(),
             rows,
         }],
         ..DocumentSection::default()
@@ -111,10 +111,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     if let Some(m) = &report.added_mass {
         let what = match m.ballast_kg {
             Some(kg) if kg != 0.0 => {
-                format!(
-                    "added mass plus entrained water ({} kg of ballast subtracted)",
-                    number::plain(kg, 3)
-                )
+                format!("added mass plus entrained water ({} kg of ballast subtracted)", number::plain(kg, 3))
             }
             Some(_) => "added mass plus entrained water".to_owned(),
             None => {

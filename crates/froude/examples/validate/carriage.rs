@@ -374,13 +374,13 @@ fn unballasted(claims: &mut Claims, seeds: usize) {
         );
     }
     let silent = campaigns(&scenario, seeds, |_| {});
-    let told = silent.iter().filter(|r| r.findings.iter().any(|f| f.code == "constant-beside-drag")).count();
+    let reported = silent.iter().filter(|r| r.findings.iter().any(|f| f.code == "constant-beside-drag")).count();
     claims.holds(
         SECTION,
         "dry runs not ballasted and nobody said so: the report sees a constant force beside the drag",
         "more than 90 % of the campaigns",
-        format!("{told} of {seeds}"),
-        told as f64 > 0.9 * seeds as f64,
+        format!("{reported} of {seeds}"),
+        reported as f64 > 0.9 * seeds as f64,
     );
 }
 

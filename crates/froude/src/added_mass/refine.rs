@@ -208,13 +208,13 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
     Ok((mesh.mesh.clone(), whole(&wanted.mirrors)))
 }
 
-/// Refines until the tolerance is met, or panels, memory or members end; `told` hears of every step before it starts.
+/// Refines until the tolerance is met, or panels, memory or members end; `progress` hears of every step before it starts.
 ///
 /// # Errors
 ///
 /// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
 /// panels than are allowed.
-pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
+pub fn refine(family: &Family, wanted: &Wanted, progress: &dyn Fn(&str)) -> Result<Refined, Error> {
     let length_m = extent(&family.member(0)?.mesh.mesh);
     let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
     let is_foreign = matches!(family, Family::Mesh(_));
@@ -250,7 +250,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             stopped = Some(why);
             break;
         }
-        told(&format!(
+        progress(&format!(
             "{panels} panels, {} unknowns: some {} and {:.0} MB",
             forecast.unknowns,
             duration(forecast.seconds),

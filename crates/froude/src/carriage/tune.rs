@@ -555,8 +555,7 @@ pub fn tune_sentences(outcome: &TuneOutcome) -> Vec<String> {
             ));
             if outcome.candidates[0].objections.is_empty() {
                 out.push(
-                    "The gains as configured also meet every requirement: there is no need to change them."
-                        .to_owned(),
+                    "The gains as configured also meet every requirement: there is no need to change them.".to_owned(),
                 );
             }
         }

@@ -92,12 +92,7 @@ pub fn declared(source: &str, setup: &DragSetup) -> Estimate {
         interval_95: None,
         effective_dof: None,
     };
-    estimate(
-        &format!("{source}, declared"),
-        "declared",
-        "the constants of the drive as declared",
-        coefficient,
-    )
+    estimate(&format!("{source}, declared"), "declared", "the constants of the drive as declared", coefficient)
 }
 
 fn estimate(source: &str, method: &str, words: &str, coefficient: Coefficient) -> Estimate {
