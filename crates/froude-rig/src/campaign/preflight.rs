@@ -699,7 +699,7 @@ mod tests {
             ),
             "{text}"
         );
-        let enough_m = between(text, "1.55 s are needed, ", " m of way in all");
+        let enough_m = between(text, "1.55 s are needed, ", " m of travel in all");
         assert!(kinds(&way(enough_m), "550mm_s").is_empty());
         let less = way(enough_m - 0.02);
         assert!(less.iter().any(|o| o.text.starts_with("only 1.5")), "{less:?}");
