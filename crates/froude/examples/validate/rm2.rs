@@ -86,7 +86,7 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
         .find(|f| f.code == "serial-correlation" && f.source.as_deref() == Some("bearing torque"));
     claims.holds(
         SECTION,
-        "the report says that its naive interval is not honest",
+        "the report says that its classical interval is too narrow",
         "a finding",
         reported.map_or("no finding".to_owned(), |f| f.message.clone()),
         reported.is_some(),
