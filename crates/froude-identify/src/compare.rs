@@ -106,6 +106,13 @@ pub const MOST_COMPARED: usize = 300;
 /// Compares every pair of estimates of the same model, and predicts forces by the recommended ones.
 ///
 /// More than [`MOST_COMPARED`] are not compared; the only finding says so.
+///
+/// E_n = (a − b)/U(a − b) for each coefficient and each predicted load, χ² = dᵀ(C_a + C_b − C_ab − C_abᵀ)⁻¹d for all coefficients of a pair together;
+/// both are dimensionless, values and uncertainties have the units of the records.
+///
+/// # Source
+///
+/// ISO 13528:2022, 9.7 (E_n); JCGM 100:2008 (GUM), 5.2.2 (common errors) and G.4.1 (degrees of freedom).
 #[must_use]
 pub fn compare(all: &[Named<'_>]) -> Comparison {
     let mut out = Comparison::default();

@@ -172,6 +172,8 @@ impl Unevenness {
 /// Rank correlation of the residuals of a load with speed; `None` below [`FEWEST_FOR_SCATTER`] rows.
 ///
 /// With std columns a row may scatter as much as they say: what must be even is r·√w.
+///
+/// ρ is Spearman's rank correlation of |r|·√w with |U|, dimensionless; z = ρ·√(n − 1) is ρ in standard errors of an uncorrelated sample.
 #[must_use]
 pub fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Unevenness> {
     let n = data.rows;
@@ -216,7 +218,9 @@ fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
     out
 }
 
-/// Spearman's rank correlation (average ranks are not needed: residuals do not tie).
+/// Spearman's rank correlation, −1 to 1, with average ranks for ties; 0 where one of them is constant.
+///
+/// `a` and `b` have the same length, in any units.
 #[must_use]
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
     let ranks = |v: &[f64]| -> Vec<f64> {

@@ -158,6 +158,12 @@ impl ModelFit {
     }
 
     /// Standard uncertainty of the predicted response for one row of regressors.
+    ///
+    /// √(xᵀCx) with C the combined covariance of the coefficients; N or N m for a `row` x in SI, as [`ForceLaw::regressors`] gives it.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), 5.2.2.
     #[must_use]
     pub fn prediction_std(&self, row: &[f64]) -> f64 {
         let mut variance = 0.0;
@@ -172,9 +178,17 @@ impl ModelFit {
 
 /// Fits `law` to `data`.
 ///
+/// Least squares of each load by orthogonal factorisation, weighted, bounded and constrained as [`Settings`] states; covariance = type A of the scatter + type B of the
+/// budget. Channels, coefficients and residuals are in SI.
+///
 /// # Errors
 ///
 /// What the law, the fit or the budget finds wrong.
+///
+/// # Source
+///
+/// Golub & Van Loan, Matrix Computations, ch. 5 (factorisation); JCGM 100:2008 (GUM), 5.2 and G.4.1 (budget); MacKinnon & White (1985) (HC3);
+/// Bell & McCaffrey (2002) (CR3).
 pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result<ModelFit, IdentifyError> {
     let newtons = law.measured(data)?;
     let no_fit = |why: String| IdentifyError::NoFit {

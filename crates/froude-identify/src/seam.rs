@@ -148,6 +148,8 @@ pub struct Derived {
 
 /// Fits every law, compares and chooses, and makes the records; `progress` receives each law before it is fitted.
 ///
+/// Observations and coefficients are in SI; the formulas are those of [`regress`] and [`recommend`].
+///
 /// # Errors
 ///
 /// See [`IdentifyError`]; a law that cannot be fitted costs its own row, unless it is the last.

@@ -85,6 +85,8 @@ pub struct NotFitted {
 
 /// Identifies one source that has a table; `progress` receives each model before it is fitted.
 ///
+/// Everything is in SI after [`crate::reduce::reduce`]; the formulas are those of [`crate::seam::fit`].
+///
 /// # Errors
 ///
 /// See [`IdentifyError`].
