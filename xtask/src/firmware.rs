@@ -23,9 +23,9 @@ pub fn firmware(root: &Path, is_full: bool) -> Result<(), String> {
         return Err(format!("images:\n{}", String::from_utf8_lossy(&built.stderr)));
     }
     let provoked = tools.build(&folder, &["--bin", "carriage-realview", "--features", "reachable-panic"])?;
-    let told = String::from_utf8_lossy(&provoked.stderr);
-    if provoked.status.success() || !told.contains(PANIC) {
-        return Err(format!("an image with a reachable panic was linked:\n{told}"));
+    let reported = String::from_utf8_lossy(&provoked.stderr);
+    if provoked.status.success() || !reported.contains(PANIC) {
+        return Err(format!("an image with a reachable panic was linked:\n{reported}"));
     }
     println!("xtask: a reachable panic does not link");
     let release = folder.join("target").join(TARGET).join("release");

@@ -82,7 +82,7 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
     let imported = import_run(path, sidecar)?;
     let log = &imported.log;
     let gain = log.meta.constants.get("drive_gain").ok_or_else(|| {
-        let what = "the sidecar must say what force a volt of the command is: [constants] drive_gain = \"35.15 N/V\"";
+        let what = "the sidecar must say the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
         MethodError::input(path, what)
     })?;
     let gain_n_v = gain.value;
@@ -97,7 +97,7 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
     let fit = |friction| identify_servo(&servo, &chain(friction)).map_err(MethodError::refused);
     let (models, not_fitted) = each(asked.into_iter().map(|(name, friction)| (name, fit(friction))));
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
-    let mut findings = told(&models, imported.findings);
+    let mut findings = reported(&models, imported.findings);
     findings.extend(not_fitted);
     let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let rigid = |m: &Model| (record::rigid(&name, &m.name, &m.report, gain_n_v, None), "table");
@@ -118,7 +118,7 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
     })
 }
 
-fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
+fn reported(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
     for model in models {
         for text in &model.report.findings {
             findings.push(Finding::new(Severity::Warning, "servo", format!("{}: {text}", model.name)));
@@ -176,7 +176,7 @@ const MOST_STRETCHES: usize = 1000;
 /// Runs that do not say what rig they come from, or that no model can be fitted to.
 pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis()).ok_or_else(|| {
-        MethodError::input(&runs.folder, "the runs do not say what rig they come from (their .toml has no [rig])")
+        MethodError::input(&runs.folder, "the runs do not state which rig they come from (their .toml has no [rig])")
     })?;
     let motor = motor_of(constants);
     let slow: Vec<&RunLog> = runs.logs.iter().filter(|l| l.meta.role == Role::Friction).collect();
@@ -189,7 +189,7 @@ pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
         (models, not_fitted) =
             each(asked.into_iter().map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
     }
-    let mut findings = told(&models, runs.findings.clone());
+    let mut findings = reported(&models, runs.findings.clone());
     findings.extend(varies(&models));
     let declared = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref()).and_then(|c| c.rig.y.coulomb_n_m);
     findings.extend(declared.and_then(|d| contradicted(&models, &motor, d)));
@@ -198,7 +198,7 @@ pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
             Severity::Note,
             "servo",
             "M and J_eff of runs at constant speed rest on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
-             may be off by a per cent, which their intervals do not hold; take the masses from the pulses"
+             may be off by one per cent, which their intervals do not include; take the masses from the pulses"
                 .to_owned(),
         ));
     }
@@ -301,7 +301,7 @@ fn varies(models: &[Model]) -> Option<Finding> {
             Severity::Note,
             "servo",
             format!(
-                "friction is not shown to change along the travel: every knot of the map holds F_c = {:.2} N in its interval",
+                "no change of friction along the travel is detected: at every knot of the map F_c = {:.2} N lies in its interval",
                 constant.value
             ),
         ));
@@ -312,8 +312,8 @@ fn varies(models: &[Model]) -> Option<Finding> {
         Severity::Warning,
         "servo",
         format!(
-            "friction changes along the travel, from {} = {:.2} N to {} = {:.2} N: F_c = {:.2} N (and C_eff) is its mean over what was \
-             travelled, and its interval says how well the mean repeats, not what friction is at a place; take the map",
+            "friction changes along the travel, from {} = {:.2} N to {} = {:.2} N: F_c = {:.2} N (and C_eff) is its mean over the distance \
+             travelled, and its interval states how well the mean repeats, not the friction at one position; use the map",
             least.name, least.value, most.name, most.value, constant.value
         ),
     ))
@@ -329,8 +329,8 @@ fn contradicted(models: &[Model], motor: &MotorSide, declared: Declared) -> Opti
             Severity::Warning,
             "declared-contradicted",
             format!(
-                "C_eff is {:.2e} N m here and coulomb_friction is declared as {:.2e} N m: the coast distance and the watch for a stuck encoder \
-                 hang on the declared one. Write the identified one, or look at K_T, the amplifier's gain, gear ratio and counts_per_revolution",
+                "C_eff is {:.2e} N m here and coulomb_friction is declared as {:.2e} N m: the coast distance and the check for a stuck encoder \
+                 depend on the declared value. Declare the identified value, or check K_T, the amplifier's gain, gear ratio and counts_per_revolution",
                 found.value, declared.value
             ),
         )

@@ -99,7 +99,7 @@ fn part_of(runs: &Runs) -> Option<PartOf> {
         .map(|folder| folder.display().to_string())
         .collect();
     let text = format!(
-        "{named} of the {all} runs that lie there and tell drag {} named: this is no result of the campaign, and its record is called \
+        "{named} of the {all} runs in the folder that determine drag {} named: this is not the result of the campaign, and its record is called \
          {of:?}. froude carriage drag {} takes them all",
         if named == 1 { "was" } else { "were" },
         folders.join(" "),
@@ -119,8 +119,8 @@ impl EarlyStop {
         let Self { found, planned } = self;
         let when = if is_part { String::new() } else { format!("after {found} of {planned} pairs ") };
         let text = format!(
-            "the campaign stopped {when}because its interval was short enough; chance makes some intervals short, so that all \
-             intervals here hold over {} (Bonferroni)",
+            "the campaign stopped {when}because its interval was narrow enough; some intervals are narrow by chance, so all intervals \
+             here hold simultaneously over {} (Bonferroni)",
             counted(planned, "look", "looks")
         );
         Finding::new(Severity::Note, "stopped-early", text)
@@ -144,15 +144,15 @@ fn stopped_early(runs: &Runs, reduced: &[DragRun<'_>]) -> Option<EarlyStop> {
 ///
 /// # Errors
 ///
-/// Wet runs without ballast of a body whose volume is not declared: nothing says what buoyancy takes off the wheels.
+/// Wet runs without ballast of a body whose volume is not declared: the wheel load that buoyancy removes is not known.
 fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Option<Finding>, MethodError> {
     let carriage = campaign.and_then(|c| c.carriage.as_ref());
     let is_ballasted = carriage.and_then(|c| c.plan.as_ref()).is_none_or(|p| p.is_ballasted);
     let volume_m3 = campaign.and_then(|c| c.body.as_ref()).and_then(|b| b.volume_m3);
     if !is_ballasted && volume_m3.is_none() {
         return Err(MethodError::Undeclared { place: String::new(), what:
-            "the wet runs carried no ballast and the campaign declares no volume of the body: nothing says what buoyancy takes off the \
-             wheels. Write volume = \"6.283e-3 m^3\" (its own) in [body]; 0 is not assumed"
+            "the wet runs carried no ballast and the campaign declares no volume of the body: the wheel load that buoyancy removes is not \
+             known. Write volume = \"6.283e-3 m^3\" (its own) in [body]; 0 is not assumed"
                 .to_owned(),
         });
     }
@@ -274,8 +274,8 @@ pub fn calibration_from(
                 Severity::Error,
                 "calibration-impossible",
                 format!(
-                    "the known weights say a gear of efficiency {} ± {}: not used. Look whether the weight hung all the way (floor), at the \
-                     weights declared, K_T, the amplifier's gain and the sprocket's radius",
+                    "the known weights give a gear efficiency of {} ± {}: not used. Check that the weight hung free over the whole travel (floor), the \
+                     declared weights, K_T, the amplifier's gain and the sprocket's radius",
                     number::significant(c.efficiency.value, 3),
                     number::significant(c.efficiency.standard, 2)
                 ),

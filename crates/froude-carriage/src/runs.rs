@@ -237,8 +237,8 @@ fn attitude(logs: &[RunLog], campaign: Option<&Campaign>) -> Result<Option<BodyA
     Err(MethodError::input(
         path,
         format!(
-            "`travel` in [{own_section}] is {:?}; expected {:?}, as [{section}] of {} declares: a body lies one way along its travel. Correct \
-             the one that is wrong, or reduce the runs of each attitude by themselves",
+            "`travel` in [{own_section}] is {:?}; expected {:?}, as [{section}] of {} declares: a body has one orientation along its travel. Correct \
+             the one that is wrong, or reduce the runs of each orientation separately",
             other.name(),
             axis.name(),
             first.display()
@@ -256,10 +256,10 @@ pub fn put_aside(log: &Path, meta: &RunMeta) -> Finding {
         format!("froude run drives {id} again")
     };
     let text = if log.exists() {
-        format!("{} was put aside, and is left out; {again}", log.display())
+        format!("{} was set aside, and is left out; {again}", log.display())
     } else {
         format!(
-            "{} was put aside and its log is not there: nothing can be read of that drive, and the file may be deleted; {again}",
+            "{} was set aside and its log is missing: nothing of that drive can be read, and the file may be deleted; {again}",
             sidecar.display()
         )
     };
@@ -276,7 +276,7 @@ fn left_out_for(mut finding: Finding) -> Finding {
 #[must_use]
 pub fn gone(log: &Path, meta: &RunMeta) -> Finding {
     let (severity, became) = match meta.status {
-        RunStatus::Complete => (Severity::Error, "was driven to its end".to_owned()),
+        RunStatus::Complete => (Severity::Error, "was completed".to_owned()),
         RunStatus::Running => (Severity::Warning, "has no end".to_owned()),
         status => (Severity::Warning, format!("is {}", status.name())),
     };
@@ -293,7 +293,7 @@ fn left_out(meta: &RunMeta) -> String {
     let id = &meta.id;
     match (meta.status, meta.note.as_str()) {
         (RunStatus::Running, "") => format!(
-            "{id} has no end and was left out: it was interrupted without notice (program killed, power lost), or is being driven now; \
+            "{id} was never closed and was left out: it was interrupted without notice (program killed, power lost), or is being driven now; \
              froude run drives it again"
         ),
         (status, "") => format!("{id} is {} and was left out; froude run drives it again", status.name()),
@@ -321,7 +321,7 @@ pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&
         Some(i) => Err(MethodError::input(
             &log.path,
             format!(
-                "{name} is {:e} {dimension} at {:.3} s, which no carriage has: the log is damaged, or its unit is wrong",
+                "{name} is {:e} {dimension} at {:.3} s, which no carriage reaches: the log is damaged, or its unit is wrong",
                 values[i],
                 log.time_s.get(i).copied().unwrap_or(f64::NAN)
             ),
@@ -442,8 +442,8 @@ mod tests {
         assert_eq!(of([x, x], x), Ok(x));
         let told = |file: &str, section: &str| {
             Err(format!(
-                "{file}: `travel` in [{section}] is \"y\"; expected \"x\", as [mounted] of 045-wet.mcap declares: a body lies one way along \
-                 its travel. Correct the one that is wrong, or reduce the runs of each attitude by themselves"
+                "{file}: `travel` in [{section}] is \"y\"; expected \"x\", as [mounted] of 045-wet.mcap declares: a body has one orientation along \
+                 its travel. Correct the one that is wrong, or reduce the runs of each orientation separately"
             ))
         };
         assert_eq!(of([x, y], None), told("046-wet.mcap", "mounted"));
@@ -454,7 +454,7 @@ mod tests {
     fn a_run_that_was_never_closed_says_what_became_of_it() {
         let mut meta = RunMeta { id: "084-wet".to_owned(), status: RunStatus::Running, ..RunMeta::default() };
         let told = left_out(&meta);
-        assert!(told.contains("has no end and was left out: it was interrupted without notice"), "{told}");
+        assert!(told.contains("was never closed and was left out: it was interrupted without notice"), "{told}");
         meta.status = RunStatus::Interrupted;
         "stopped by the operator".clone_into(&mut meta.note);
         assert!(left_out(&meta).ends_with("is interrupted and was left out: stopped by the operator"));

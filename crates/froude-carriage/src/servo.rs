@@ -1,6 +1,6 @@
 //! Identification of a servo axis from its own command and encoder: inertia, friction, flexibility.
 //!
-//! **Setting.** One axis along a line, driven by a motor in current mode; the command is what the drive is told, the
+//! **Setting.** One axis along a line, driven by a motor in current mode; the command is what the drive receives, the
 //! force at the chain is `force_per_volt_n_v` times it. No force sensor. Models of rising detail:
 //!
 //! | model                 | module           | equation                                                             |

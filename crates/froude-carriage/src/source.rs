@@ -133,7 +133,7 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
             Severity::Warning,
             "no-campaign-of-runs",
             format!(
-                "{folder}: no copy of their campaign lies with the runs: fresh water at 20 degC is taken, no area, and of the rig what the runs say"
+                "{folder}: no copy of their campaign lies with the runs: fresh water at 20 degC is assumed, no area, and the rig as the runs state it"
             ),
         ));
     }
@@ -163,7 +163,7 @@ fn passed_over(campaign: &Campaign, source: &Source) -> Option<Finding> {
     (!sections.is_empty()).then(|| {
         let text = format!(
             "{} of this campaign {} not used for the runs in {}: water, rig and plan are those of the campaign that they were driven by, and the \
-             methods say how they are fitted",
+             methods determine how they are fitted",
             sections.join(" and "),
             if sections.len() == 1 { "is" } else { "are" },
             source.input.path().display()

@@ -3,7 +3,7 @@
 //! | module       | what                                                              | source                        |
 //! |--------------|-------------------------------------------------------------------|-------------------------------|
 //! | [`response`] | frequency response of the drive from a sweep in the closed loop     | Ljung 1999, ch. 13 (joint i/o) |
-//! | [`margins`]  | gain, phase and delay margin, largest sensitivity                   | Åström & Hägglund 2006, ch. 4 |
+//! | [`margins`]  | gain, phase and delay margin, maximum sensitivity                   | Åström & Hägglund 2006, ch. 4 |
 //! | [`relay`]    | ultimate gain and period from a relay's limit cycle                 | Åström & Hägglund 2006, ch. 8 |
 //! | [`gains`]    | gains by loop shaping on the measured response; Ziegler–Nichols beside | the same, ch. 6            |
 //! | [`tracking`] | following error and speed of a ramp on the identified two masses     | MCD eq. 2, eq. 6; simulated |
@@ -127,7 +127,7 @@ pub enum TuningError {
     },
     /// No crossover on the measured response meets the margins.
     #[error(
-        "no crossover between {low_hz:.2} and {high_hz:.2} Hz keeps a phase margin of {phase_deg:.0}° and a largest \
+        "no crossover between {low_hz:.2} and {high_hz:.2} Hz keeps a phase margin of {phase_deg:.0}° and a maximum \
          sensitivity of {sensitivity:.1}, with the whole loop inside; measure over a wider band, or ask for less"
     )]
     NoCrossover {

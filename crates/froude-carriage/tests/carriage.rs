@@ -110,8 +110,8 @@ fn without_calibration_eq_8_is_a_quarter_too_high_and_says_why() {
     assert!(mcd.interval_95.unwrap()[0] < 20.0 && mcd.interval_95.unwrap()[1] >= mcd.value);
     assert_eq!(
         message(&result, "not-calibrated"),
-        "nothing is calibrated and no gear efficiency is declared: eq. 8 and 9 are taken as printed, which gives F/η (25 % too \
-         much at η = 0.8); the intervals reach over efficiencies from 0.6 to 1. Hang a known weight over a pulley"
+        "the drive is not calibrated and no gear efficiency is declared: eq. 8 and 9 are used as printed, which gives F/η (25 % too \
+         much at η = 0.8); the intervals cover efficiencies from 0.6 to 1. Calibrate with a known weight over a pulley"
     );
     assert_eq!(result.recommended, Some(Method::Fsm));
     // A declared efficiency moves the value and bounds what is claimed.
@@ -194,7 +194,7 @@ fn dry_repeats_alone_say_what_can_be_seen() {
     assert_eq!(
         advice,
         format!(
-            "below {limit:.3} m/s your drag is under its uncertainty: tow faster or repeat {repeats} times at 0.020 m/s (a repeat is one \
+            "below {limit:.3} m/s the drag is smaller than its expanded uncertainty: tow faster or repeat {repeats} times at 0.020 m/s (a repeat is one \
              wet-less-dry difference; a pair out and back gives two)"
         )
     );

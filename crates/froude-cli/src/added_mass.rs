@@ -243,7 +243,7 @@ fn orientation(forward: Option<MeshAxis>, up: Option<MeshAxis>) -> Result<Option
     let (forward, up) = (forward.map_or(Direction::X, direction), up.map_or(Direction::Z, direction));
     let lies = Orientation::new(forward, up).ok_or_else(|| {
         Error::Nothing(format!(
-            "--forward {forward} and --up {up} lie along one axis of the mesh: say both, two different ones"
+            "--forward {forward} and --up {up} lie along one axis of the mesh: give both, two different ones"
         ))
     })?;
     Ok(Some(lies))
@@ -284,7 +284,7 @@ fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Erro
         say!("  {line}");
     }
     if done.repairs.is_empty() {
-        say!("  nothing to put right");
+        say!("  nothing to correct");
     }
     say!("{}: {}, in metres", target.display(), froude::records::text::counted(done.panels, "panel", "panels"));
     for line in &done.left {
@@ -292,7 +292,7 @@ fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Erro
     }
     if !done.left.is_empty() {
         return Err(Error::Nothing(format!(
-            "{}: written, and not fit for use yet; unite bodies that cross (a boolean union), and close holes, where the mesh was drawn",
+            "{}: written, but not yet fit for use; unite bodies that cross (a boolean union), and close holes, where the mesh was drawn",
             target.display()
         )));
     }
@@ -364,7 +364,8 @@ fn forecasts(loaded: &Loaded, steps: &[(usize, Forecast)]) {
         })
         .collect();
     table(&TextTable {
-        caption: "What each mesh would take; the computation ends with the first that holds the tolerance.".to_owned(),
+        caption: "What each mesh would require; the computation ends with the first that meets the tolerance."
+            .to_owned(),
         head: ["panels", "unknowns", "time", "memory [MB]"].map(str::to_owned).to_vec(),
         rows,
     });

@@ -44,7 +44,7 @@ pub enum Verb {
         #[arg(long, value_delimiter = ',')]
         models: Vec<String>,
     },
-    /// Set estimate records side by side: coefficients, jointly, and as predicted forces.
+    /// Compare estimate records: single coefficients, all of them jointly, and the predicted forces.
     #[command(
         after_help = "Example: froude compare monday-results/estimate.json tuesday-results/estimate.json --out both"
     )]
@@ -59,7 +59,7 @@ pub enum Verb {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Say what is in a table, campaign, record, run (.mcap) or folder of runs, with units, ranges and every finding.
+    /// Show what a table, campaign, record, run (.mcap) or folder of runs contains, with units, ranges and every finding.
     #[command(after_help = "Example: froude inspect tow.csv")]
     Inspect {
         /// The file or folder.
@@ -68,7 +68,7 @@ pub enum Verb {
         #[arg(long)]
         sidecar: Option<PathBuf>,
     },
-    /// Write the observation tables that a campaign would give for its chosen true coefficients.
+    /// Write the observation tables that a campaign would give for chosen true coefficients.
     #[command(after_help = "Example: froude simulate campaign.toml")]
     Simulate {
         /// The campaign, with its `simulate` section and `source.plan` blocks.
@@ -77,7 +77,7 @@ pub enum Verb {
         #[arg(long)]
         replace: bool,
     },
-    /// Drive a towing carriage, or its twin, through a campaign: pre-flight, runs, records; goes on where it stopped.
+    /// Drive a towing carriage, or its twin, through a campaign: pre-flight, runs, records; resumes where it stopped.
     #[command(after_help = "Examples:\n  froude run campaign.toml --check\n  froude run campaign.toml")]
     Run {
         /// The campaign, with its `rig` and `carriage` sections.
@@ -85,19 +85,19 @@ pub enum Verb {
         /// Folder of the runs [default: CAMPAIGN-runs beside the campaign].
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Only the pre-flight: nothing moves, nothing is written.
+        /// Run the pre-flight only: nothing moves, nothing is written.
         #[arg(long)]
         check: bool,
-        /// Take the operator's steps as done, on the twin only; without it a person confirms at the terminal.
+        /// Confirm the operator's steps without asking, on the twin only; otherwise a person confirms them at the terminal.
         #[arg(long)]
         yes: bool,
     },
-    /// Added mass from potential flow: of a mesh, of a shape by its dimensions, of the robot with any number of links.
+    /// Added mass from potential flow, of a mesh, a shape given by its dimensions, or the robot with any number of links.
     #[command(
         after_help = "Examples:\n  froude added-mass hull.stl --density '1025 kg/m^3'\n  froude added-mass robot.toml --links 1..9"
     )]
     AddedMass(Box<AddedMassArgs>),
-    /// Calibrate, identify and tune a towing carriage, and find drag from its motor current.
+    /// Characterise a towing carriage: calibrate, identify and tune it, and find drag from its motor current.
     #[command(after_help = "Example: froude carriage drag campaign-runs")]
     Carriage {
         /// What to do.
@@ -112,7 +112,7 @@ pub enum Verb {
 /// What `froude carriage` does.
 #[derive(Debug, Subcommand)]
 pub enum CarriageJob {
-    /// Inertia, friction, flexibility and repeatability, from runs or from anyone's servo log (CSV with a sidecar).
+    /// Identify inertia, friction, flexibility and repeatability, from runs or from any servo log (CSV with a sidecar).
     #[command(after_help = "Examples:\n  froude carriage identify campaign-runs\n  froude carriage identify servo.csv")]
     Identify {
         /// Folders of runs, runs (.mcap), or one log (.csv).
@@ -125,7 +125,7 @@ pub enum CarriageJob {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// D_d and C_D by force sensor, motor current difference and model, side by side.
+    /// Compare D_d and C_D by force sensor, motor current difference and model.
     #[command(after_help = "Example: froude carriage drag campaign-runs")]
     Drag {
         /// Folders of runs, or runs (.mcap).
@@ -138,7 +138,7 @@ pub enum CarriageJob {
         #[arg(long)]
         out: Option<PathBuf>,
     },
-    /// Force per volt from known weights over a pulley, polarity from the jogs.
+    /// Find force per volt from known weights over a pulley, and polarity from the jogs.
     #[command(after_help = "Example: froude carriage calibrate campaign-runs")]
     Calibrate {
         /// Folders of runs, or runs (.mcap).
@@ -156,14 +156,14 @@ pub enum CarriageJob {
         /// Standard uncertainty of the measured distance.
         #[arg(long, default_value = "0.5 mm", value_name = "QUANTITY")]
         measured_standard: String,
-        /// The same distance as the counts give it, once for each traverse (two at least), separated by commas.
+        /// The same distance according to the encoder counts, once for each traverse (two at least), separated by commas.
         #[arg(long, requires = "measured", value_name = "QUANTITY", value_delimiter = ',')]
         counted: Vec<String>,
     },
-    /// Relay and sweep on the loop: margins on the measured response, proposed gains.
+    /// Run relay and sweep on the loop: margins on the measured response, proposed gains.
     #[command(after_help = "Example: froude carriage tune campaign.toml")]
     Tune(Experiment),
-    /// Sweep bare, dry and wet: the load's mode, a shaper proposed.
+    /// Sweep the carriage bare, dry and wet: find the load's mode, and propose an input shaper.
     #[command(after_help = "Example: froude carriage resonance campaign.toml")]
     Resonance(Experiment),
 }
@@ -176,7 +176,7 @@ pub struct Experiment {
     /// Folder of the runs and the report.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Take the operator's steps as done, on the twin only; without it a person confirms at the terminal.
+    /// Confirm the operator's steps without asking, on the twin only; otherwise a person confirms them at the terminal.
     #[arg(long)]
     pub yes: bool,
 }
@@ -192,13 +192,13 @@ pub struct AddedMassArgs {
     /// Density of the water, with its unit [default: the body file's].
     #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
     pub density: Option<String>,
-    /// Axes of the result: x forward in all of them, ned and fossen with y to starboard and z down, enu with y to port and z up [default: those of the mesh].
+    /// Axes of the result, x forward in all: ned and fossen have y to starboard and z down, enu has y to port and z up [default: those of the mesh].
     #[arg(long, value_enum)]
     pub axes: Option<BodyAxes>,
-    /// The point that moments are about: cg (of the body file), cb (centre of buoyancy), or "0 m, 0 m, -0.2 m" in the axes of the mesh [default: its origin].
+    /// Reference point of the moments: cg (of the body file), cb (centre of buoyancy), or "0 m, 0 m, -0.2 m" in the axes of the mesh [default: its origin].
     #[arg(long, value_name = "cg|cb|X, Y, Z", allow_hyphen_values = true)]
     pub at: Option<String>,
-    /// Unit of a mesh that says none: m, mm, cm, in.
+    /// Unit of a mesh whose file states none: m, mm, cm, in.
     #[arg(long)]
     pub unit: Option<String>,
     /// Axis of the mesh that points forward [default: x].
@@ -216,34 +216,34 @@ pub struct AddedMassArgs {
     /// Largest numerical uncertainty of an entry: "1 %".
     #[arg(long, default_value = "1 %", value_name = "QUANTITY", allow_hyphen_values = true)]
     pub tolerance: String,
-    /// Panels at most.
+    /// Largest number of panels.
     #[arg(long, default_value_t = 120_000)]
     pub most_panels: usize,
-    /// Height of the water's surface over the origin of the mesh; both limits of frequency are computed.
+    /// Height of the water's surface above the origin of the mesh; the zero- and infinite-frequency limits are computed.
     #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
     pub surface: Option<String>,
     /// A closed tank, length along x, breadth along y, depth of water, with the origin of the mesh in its middle: "1.5 m x 0.9 m x 1 m"; with --surface.
     #[arg(long, value_name = "L x B x D")]
     pub tank: Option<String>,
-    /// Angle of the joints about z: the chain's link-by-link matrix.
+    /// Angle of every joint about z; gives the link-by-link matrix of the bent chain.
     #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
     pub joint_angle: Option<String>,
-    /// The link-by-link matrix of the straight chain.
+    /// Give the link-by-link matrix of the straight chain.
     #[arg(long)]
     pub chain: bool,
-    /// Take the parts of a mesh that do not hang together as bodies of their own.
+    /// Treat the disconnected parts of a mesh as separate bodies.
     #[arg(long)]
     pub apart: bool,
     /// Files to write beside the record: wamit, capytaine, csv.
     #[arg(long, value_enum, value_delimiter = ',')]
     pub export: Vec<Export>,
-    /// Only check the mesh and say what each resolution would take.
+    /// Only check the mesh and state what each resolution would require.
     #[arg(long)]
     pub check: bool,
-    /// Write a mesh with what can be decided put right to this file (.obj or .stl), and compute nothing.
+    /// Write a mesh with the unambiguous faults corrected to this file (.obj or .stl); nothing is computed.
     #[arg(long, value_name = "FILE")]
     pub repair: Option<PathBuf>,
-    /// Vertices closer than this are one, in a repair [default: a millionth of the mesh's extent].
+    /// Merge vertices closer than this, in a repair [default: a millionth of the mesh's extent].
     #[arg(long, value_name = "QUANTITY")]
     pub weld: Option<String>,
     /// Folder of the results [default: INPUT-added-mass beside the input].

@@ -55,7 +55,7 @@ pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_j
         return Ok(outcome.whole()?);
     }
     say!(
-        "\n{} driven, {} there already, {} left out. Runs in {}",
+        "\n{} driven, {} already there, {} left out. Runs in {}",
         counted(outcome.driven, "run", "runs"),
         counted(outcome.resumed, "was", "were"),
         outcome.spared,
@@ -108,8 +108,8 @@ fn preflight(prepared: &Prepared) {
         head: [
             "kind",
             "speed [m/s]",
-            "way",
-            "takes [s]",
+            "direction",
+            "duration [s]",
             "steady [s]",
             "command [V]",
             "rms current [A]",
@@ -131,12 +131,12 @@ fn preflight(prepared: &Prepared) {
     };
     print::text_table(&table);
     say!(
-        "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs tell)."
+        "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs show it)."
     );
     if !prepared.is_shaped() {
         say!(
             "The reference is not shaped (shaped_mode): after each ramp the load swings on the chain, and runs in which it then drives the gear \
-             are left out of what the motor's current tells. froude carriage resonance finds the mode."
+             are left out of the evaluation by motor current. froude carriage resonance finds the mode."
         );
     }
     if let Some(few) = few_pairs(prepared, detectable_n) {
@@ -165,7 +165,7 @@ fn few_pairs(prepared: &Prepared, detectable_n: f64) -> Option<String> {
         .collect();
     (!few.is_empty()).then(|| {
         format!(
-            "To see the drag at each speed by itself it takes more: {} (out and back count as two). D_d rests on the fast runs and does \
+            "To detect the drag at each speed separately, more runs are needed: {} (out and back count as two). D_d depends on the fast runs and does \
              not need them.",
             few.join("; ")
         )
@@ -184,12 +184,12 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
         }
         return Ok(());
     }
-    // The same sentence for many runs is told once, with how many.
-    let mut told: Vec<(&str, &str, usize)> = Vec::new();
+    // The same sentence for many runs is printed once, with their number.
+    let mut sentences: Vec<(&str, &str, usize)> = Vec::new();
     for o in &prepared.objections {
-        match told.iter_mut().find(|t| t.1 == o.text) {
+        match sentences.iter_mut().find(|t| t.1 == o.text) {
             Some(t) => t.2 += 1,
-            None => told.push((&o.id, &o.text, 0)),
+            None => sentences.push((&o.id, &o.text, 0)),
         }
     }
     let more = |n: usize, one: &str, many: &str| match n {
@@ -197,8 +197,8 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
         n => format!(" (and {})", counted(n, one, many)),
     };
     let mut lines: Vec<String> =
-        told.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "more run", "more runs"))).collect();
-    if told.len() > MOST_SENTENCES {
+        sentences.iter().map(|(id, text, n)| format!("  {id}{}: {text}", more(*n, "more run", "more runs"))).collect();
+    if sentences.len() > MOST_SENTENCES {
         // One cause makes a sentence for every run: the first of each kind tells it.
         let mut kinds: Vec<(&str, &Objection, usize)> = Vec::new();
         for o in &prepared.objections {
@@ -222,7 +222,7 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
     Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
 }
 
-/// More different objections than this are told by kind.
+/// More different objections than this are reported by kind.
 const MOST_SENTENCES: usize = 10;
 
 fn preflight_json(prepared: &Prepared) -> serde_json::Value {
@@ -313,8 +313,9 @@ fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is
         say!("\nTwo masses, from the motor's side{}", runs::mounted(&outcome.two_mass_mounts));
         print::text_table(&flexible_table(f));
         for s in &f.splits {
-            let told = if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };
-            say!("  {}: {told}", s.name);
+            let share =
+                if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };
+            say!("  {}: {share}", s.name);
         }
     }
     if !outcome.repeatability.is_empty() {
@@ -391,7 +392,7 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     let kinds = [Role::Calibration, Role::Jog];
     let read = runs::read(paths, &kinds, None)?;
     let Some(axis) = read.logs.iter().find_map(|log| log.meta.moving_axis()) else {
-        return Err(Error::Nothing("the runs do not say what rig they come from".to_owned()));
+        return Err(Error::Nothing("the runs do not state which rig they come from".to_owned()));
     };
     let radius_mm = 1e3 * axis.sprocket_radius_m.value;
     say!(

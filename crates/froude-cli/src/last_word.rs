@@ -33,7 +33,7 @@ fn sentence(fault: &str) -> String {
             .to_owned();
     }
     format!(
-        "the program has a fault and stopped: {fault}. Results that were not finished are not written. Please send this message, the \
+        "the program stopped on an internal error: {fault}. Results that were not finished are not written. Please send this message, the \
          command, and the files that it was given to {}/issues (froude {})",
         env!("CARGO_PKG_REPOSITORY"),
         env!("CARGO_PKG_VERSION")
@@ -124,7 +124,7 @@ mod tests {
             let fault = LATEST.lock().unwrap().clone();
             assert!(fault.starts_with(&format!("{words} (crates/froude-cli/src/last_word.rs, line ")), "{fault}");
             let told = sentence(&fault);
-            assert!(told.starts_with("the program has a fault and stopped: at the "), "{told}");
+            assert!(told.starts_with("the program stopped on an internal error: at the "), "{told}");
             assert!(told.ends_with("/issues (froude 0.1.0)") && !told.contains('\n'), "{told}");
         }
         let _ = std::panic::take_hook();

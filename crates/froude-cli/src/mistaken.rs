@@ -108,18 +108,18 @@ impl Takes {
                     format!("Drive it first: froude run {shown}")
                 }
             }
-            Kind::Drive => format!("What drives it: froude run {shown}"),
-            Kind::Campaign => format!("What fits it: froude identify {shown}"),
-            Kind::Body | Kind::Mesh => format!("What reads it: froude added-mass {shown}"),
+            Kind::Drive => format!("To drive it: froude run {shown}"),
+            Kind::Campaign => format!("To fit it: froude identify {shown}"),
+            Kind::Body | Kind::Mesh => format!("To compute with it: froude added-mass {shown}"),
             Kind::TableSidecar => {
                 let tables = ["csv", "parquet"].map(|extension| path.with_extension(extension));
                 let table = tables.iter().find(|table| table.exists()).unwrap_or(&tables[0]).display();
-                format!("It says what the columns of {table} are; name that: froude inspect {table}")
+                format!("It describes the columns of {table}; name the table instead: froude inspect {table}")
             }
-            Kind::RunSidecar | Kind::Run => format!("What shows it: froude inspect {shown}"),
-            Kind::Table | Kind::Record => format!("What shows what is in it: froude inspect {shown}"),
+            Kind::RunSidecar | Kind::Run => format!("To see it: froude inspect {shown}"),
+            Kind::Table | Kind::Record => format!("To see what is in it: froude inspect {shown}"),
             Kind::Runs => {
-                format!("What reduces it: froude carriage drag {shown}; what is in it: froude inspect {shown}")
+                format!("To reduce it: froude carriage drag {shown}; to see what is in it: froude inspect {shown}")
             }
             Kind::Results => {
                 let record = path.join("estimate.json");
@@ -134,7 +134,7 @@ impl Takes {
                 }
             }
             Kind::Folder if is_of_runs => {
-                "No run lies in it; froude run CAMPAIGN drives them, and says where they lie".to_owned()
+                "It holds no run; froude run CAMPAIGN drives them and prints where they are".to_owned()
             }
             Kind::Folder => "Name a file in it".to_owned(),
         }

@@ -250,7 +250,7 @@ fn source_facts(s: &SourceFacts) {
         say!("{}", columns(&s.columns));
     }
     if s.input == "table" && s.budget.is_empty() {
-        say!("  budget: none; without [[source.uncertainty]] the uncertainties hold the scatter alone");
+        say!("  budget: none; without [[source.uncertainty]] the uncertainties include the scatter only");
     }
     if !s.budget.is_empty() {
         let mut out = table(&["budget", "standard", "shared by", "dof", "name"]);
@@ -430,8 +430,16 @@ mod tests {
 
     fn preflight() -> TextTable {
         let texts = |cells: &[&str]| cells.iter().map(|c| (*c).to_owned()).collect::<Vec<_>>();
-        let head =
-            ["kind", "speed [m/s]", "way", "takes [s]", "steady [s]", "command [V]", "rms current [A]", "coast [m]"];
+        let head = [
+            "kind",
+            "speed [m/s]",
+            "direction",
+            "duration [s]",
+            "steady [s]",
+            "command [V]",
+            "rms current [A]",
+            "coast [m]",
+        ];
         let row = ["excitation", "0.100", "backward", "123.4", "112.3", "12.34", "1.23", "0.123"];
         let named = ["calibration 10 N", "measured response", "backward", "123.4", "112.3", "12.34", "1.23", "0.123"];
         TextTable { caption: String::new(), head: texts(&head), rows: vec![texts(&row), texts(&named)] }

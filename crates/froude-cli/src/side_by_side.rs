@@ -11,7 +11,7 @@ use froude::report::verdict::verdict_words;
 use crate::out::say;
 use crate::print::{cell, right, sentence, table};
 
-/// Widest table; a wider one is wrapped or told in blocks.
+/// Widest table; a wider one is wrapped or printed in blocks.
 const MOST_CHARACTERS: u16 = 118;
 /// Widest head of a force column; a longer name is wrapped.
 const MOST_OF_A_HEAD: usize = 28;

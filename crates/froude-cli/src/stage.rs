@@ -1,4 +1,4 @@
-//! What stands around a drive: who may stop it, who confirms, and who is told.
+//! What stands around a drive: who may stop it, who confirms, and who is informed.
 //!
 //! The carriage is driven by a thread that knows none of this. Everything for the terminal goes to a thread that writes it as the
 //! terminal takes it: who drives and records never waits for standard error, and a line that nobody reads is no failure.
@@ -24,7 +24,8 @@ use signal_hook::flag;
 /// Words that may wait for a slow terminal; more are dropped.
 const WORDS: usize = 256;
 /// What is said before the first question about a rig that is none.
-const TWIN: &str = "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes takes every step as done.\n";
+const TWIN: &str =
+    "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes confirms every step.\n";
 /// How often a wait looks up.
 const LOOK_UP: Duration = Duration::from_millis(50);
 
@@ -34,7 +35,7 @@ pub struct Stage {
     pub switch: StopSwitch,
     /// Who confirms.
     pub person: Person,
-    /// Who is told.
+    /// Who is informed.
     pub bar: Bar,
 }
 
@@ -47,7 +48,7 @@ impl Stage {
     pub fn set(prepared: &Prepared, yes: bool, runs: usize) -> Result<Self, Error> {
         if yes && !prepared.is_twin() {
             return Err(Error::Nothing(
-                "--yes is for the twin: on a real rig somebody must stand there and confirm each step".to_owned(),
+                "--yes is for the twin: at a real rig a person must be present and confirm each step".to_owned(),
             ));
         }
         if !yes && !std::io::stdin().is_terminal() {

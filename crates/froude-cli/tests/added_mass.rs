@@ -724,7 +724,7 @@ fn one_mesh_has_no_uncertainty_and_none_is_made_up() {
     for sentence in [
         "One mesh only: there is no numerical uncertainty; three meshes give one.",
         "There is no finer one: the next mesh has 256 panels, and 64 are allowed (--most-panels).",
-        "is not told: panels or memory do not allow a second mesh.",
+        "is not stated: panels or memory do not allow a second mesh.",
     ] {
         assert!(text.contains(sentence), "{sentence}: {text}");
     }
@@ -802,7 +802,7 @@ fn advice(wrong: &str) -> &'static str {
     if wrong.contains("cross or touch") || wrong.contains("lies inside") || wrong.contains("lie inside") {
         return "";
     }
-    "\n  froude added-mass m.obj --repair repaired.obj writes a mesh with what can be decided put right"
+    "\n  froude added-mass m.obj --repair repaired.obj writes a mesh with the unambiguous faults corrected"
 }
 
 fn cube(side_m: f64) -> Mesh {
@@ -821,7 +821,7 @@ fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
     refuses_mesh(
         &changed(|m| _ = m.panels.pop()),
         "  4 edges have one panel only, the first from [1.0, 0.0, 0.0] to [1.0, 1.0, 0.0] m: the surface is open there\n  where it looks closed and is not, corners lie within edges of \
-         neighbours (T-junctions): let the drawing program mesh it anew",
+         neighbours (T-junctions): let the CAD program mesh it again",
     );
     refuses_mesh(
         &changed(|m| m.panels.iter_mut().for_each(|p| *p = p.turned())),
@@ -829,7 +829,7 @@ fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
     );
     refuses_mesh(
         &changed(|m| m.panels[2] = m.panels[2].turned()),
-        "  4 edges are passed twice in one direction, the first from [0.0, 0.0, 0.0] to [1.0, 0.0, 0.0] m: neighbours are oriented against each other",
+        "  4 edges are traversed twice in the same direction, the first from [0.0, 0.0, 0.0] to [1.0, 0.0, 0.0] m: neighbours are oriented against each other",
     );
     // Here no repair helps.
     refuses(
@@ -891,7 +891,7 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
     refuses(
         &small,
         &[&["m.obj", "--most-panels", "5"], &WATER[..]].concat(),
-        "the coarsest mesh has 6 panels, and 5 are allowed; write --most-panels 96, for the numerical uncertainty asks for three meshes, or 6 for a value without",
+        "the coarsest mesh has 6 panels, and 5 are allowed; write --most-panels 96, because the numerical uncertainty needs three meshes, or 6 for a value without",
     );
 }
 
@@ -942,7 +942,7 @@ fn a_frame_that_cannot_be_is_refused_with_what_to_do() {
     let told = |args: &[&str], message: &str| refuses(&files, &[args, &WATER[..]].concat(), message);
     told(
         &["m.obj", "--up", "-x"],
-        "--forward x and --up -x lie along one axis of the mesh: say both, two different ones",
+        "--forward x and --up -x lie along one axis of the mesh: give both, two different ones",
     );
     for args in [
         &["e.toml", "--up", "z"][..],

@@ -191,7 +191,7 @@ fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported(
     let methods: Vec<&str> =
         record["estimates"].as_array().unwrap().iter().filter_map(|e| e["method"]["name"].as_str()).collect();
     assert!(methods.contains(&"mcd") && !methods.contains(&"fsm"), "{methods:?}");
-    // Whoever asks for it is told what is lacking; the water of a campaign is not that of its runs.
+    // Whoever asks for it learns what is lacking; the water of a campaign is not that of its runs.
     let asked = "schema = 1\nname = \"c\"\n[fluid]\ndensity = \"1025 kg/m^3\"\n[[source]]\nname = \"c\"\nkind = \"towing\"\nruns = \
                  \"campaign-runs\"\nmethod = [\"mcd\", \"fsm\"]\n";
     std::fs::write(folder.path().join("c.toml"), asked).unwrap();
@@ -330,7 +330,7 @@ fn the_gains_that_tuning_recommends_drive_the_campaign() {
     assert!(outcome["driven"].as_u64().unwrap() > 20, "{outcome}");
 }
 
-/// What tuning once proposed: a loop that lets the motor swing on its chain cannot even home, and is told so.
+/// What tuning once proposed: a loop that lets the motor swing on its chain cannot even home, and the message says so.
 #[test]
 fn a_loop_softer_than_its_chain_faults_in_homing_and_not_in_the_run_after_it() {
     let folder = tempfile::tempdir().unwrap();

@@ -65,12 +65,14 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
         (
             vec!["carriage", "drag", &record],
             format!(
-                "{record} is a record; froude carriage drag takes {of_runs}. What shows what is in it: froude inspect {record}"
+                "{record} is a record; froude carriage drag takes {of_runs}. To see what is in it: froude inspect {record}"
             ),
         ),
         (
             vec!["inspect", &body],
-            format!("{body} is a body file; froude inspect takes {of_files}. What reads it: froude added-mass {body}"),
+            format!(
+                "{body} is a body file; froude inspect takes {of_files}. To compute with it: froude added-mass {body}"
+            ),
         ),
         (
             vec!["inspect", &results],
@@ -82,20 +84,20 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
         (
             vec!["inspect", text(&empty)],
             format!(
-                "{} is a folder; froude inspect takes {of_files}. No run lies in it; froude run CAMPAIGN drives them, and says where they lie",
+                "{} is a folder; froude inspect takes {of_files}. It holds no run; froude run CAMPAIGN drives them and prints where they are",
                 text(&empty)
             ),
         ),
         (
             vec!["inspect", sidecar],
             format!(
-                "{sidecar} is the sidecar of a table; froude inspect takes {of_files}. It says what the columns of {table} are; name that: \
+                "{sidecar} is the sidecar of a table; froude inspect takes {of_files}. It describes the columns of {table}; name the table instead: \
                  froude inspect {table}"
             ),
         ),
         (
             vec!["inspect", hull],
-            format!("{hull} is a mesh; froude inspect takes {of_files}. What reads it: froude added-mass {hull}"),
+            format!("{hull} is a mesh; froude inspect takes {of_files}. To compute with it: froude added-mass {hull}"),
         ),
         (
             vec!["identify", runs],
@@ -107,19 +109,19 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
         (
             vec!["run", &body],
             format!(
-                "{body} is a body file; froude run takes a campaign with [rig] and [carriage] (.toml). What reads it: froude added-mass {body}"
+                "{body} is a body file; froude run takes a campaign with [rig] and [carriage] (.toml). To compute with it: froude added-mass {body}"
             ),
         ),
         (
             vec!["compare", campaign],
             format!(
-                "{campaign} is a campaign; froude compare takes records (estimate.json). What drives it: froude run {campaign}"
+                "{campaign} is a campaign; froude compare takes records (estimate.json). To drive it: froude run {campaign}"
             ),
         ),
         (
             vec!["added-mass", campaign],
             format!(
-                "{campaign} is a campaign; froude added-mass takes a body file (.toml) or a closed mesh (.stl, .obj, …). What drives it: froude run {campaign}"
+                "{campaign} is a campaign; froude added-mass takes a body file (.toml) or a closed mesh (.stl, .obj, …). To drive it: froude run {campaign}"
             ),
         ),
     ] {
@@ -257,7 +259,8 @@ fn a_question_has_its_line_for_itself_and_the_twin_says_that_it_is_one() {
     }
     // The bar was there, and is again after the answer.
     assert!(questions[2].contains("/13"), "{:?}", questions[2]);
-    let hint = "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes takes every step as done.";
+    let hint =
+        "This is the twin, a simulated rig: nothing real moves. It asks as the rig would; --yes confirms every step.";
     assert_eq!(shown.matches(hint).count(), 1, "{shown}");
 }
 
@@ -266,7 +269,7 @@ fn one_is_said_as_one() {
     let bench = Bench::new();
     let wet = &bench.logs("wet")[0];
     let said = printed(&["carriage", "drag", text(wet)]);
-    assert!(said.contains("[few-pairs] fsm: 1 pair; nothing tells their scatter, and no interval is stated"), "{said}");
+    assert!(said.contains("[few-pairs] fsm: 1 pair; their scatter is not known, and no interval is stated"), "{said}");
     let jog = &bench.logs("calibration")[0];
     let told = refusal(&["carriage", "drag", text(jog)]);
     assert_eq!(told, "froude: no wet run among 1 run: drag needs tows with the body in the water\n");

@@ -153,7 +153,7 @@ fn a_body_is_between_a_grain_and_a_kilometre() {
     }
     let told = |m: &str| {
         format!(
-            "froude: body.toml:7:15: `semi_axis_x` is {m} m; lengths of a body are from 0.00001 m to 1000 m: look at its unit"
+            "froude: body.toml:7:15: `semi_axis_x` is {m} m; lengths of a body are from 0.00001 m to 1000 m: check its unit"
         )
     };
     refuses("body.toml", body("1e9 mm"), &args, &told("1000000"));
@@ -303,7 +303,6 @@ fn three_hundred_estimates_are_compared_and_not_one_more() {
     record["estimates"] = of(300).collect();
     reads("e.json", record.to_string(), &["compare", "e.json"]);
     record["estimates"] = of(301).collect();
-    let told =
-        "froude: 301 estimates are not set side by side: at most 300 are; name fewer records, or fewer models in them";
+    let told = "froude: 301 estimates are not compared: at most 300 are; name fewer records, or fewer models in them";
     refuses("e.json", record.to_string(), &["compare", "e.json"], told);
 }

@@ -42,7 +42,7 @@ fn a_log_that_is_gone_is_told_and_driven_again() {
     let log = &bench.logs("dry")[1];
     std::fs::remove_file(log).unwrap();
     let told = format!(
-        "the log {} is gone: its sidecar says that {} was driven to its end; copy it back, or froude run drives it again",
+        "the log {} is gone: its sidecar says that {} was completed; copy it back, or froude run drives it again",
         text(log),
         id(log)
     );
@@ -252,7 +252,7 @@ fn a_sidecar_that_was_edited_says_how_the_edit_is_adopted() {
     assert_ne!(edited, written);
     std::fs::write(&sidecar, &edited).unwrap();
     let told = format!(
-        "froude: {}:3:12: what the file says is not what this checksum was written for: the file was edited or damaged. Copy it \
+        "froude: {}:3:12: the content is not what this checksum was written for: the file was edited or damaged. Copy it \
          again from where it was written; to adopt an edit, delete this line\n",
         text(&sidecar)
     );
@@ -307,7 +307,7 @@ fn a_record_that_was_edited_is_refused_and_one_without_a_checksum_is_read() {
     let (key, value) = written.split_once("\"value\": ").map(|(_, rest)| ("\"value\": ", &rest[..6])).unwrap();
     std::fs::write(&record, written.replacen(&format!("{key}{value}"), &format!("{key}1{value}"), 1)).unwrap();
     let told = format!(
-        "froude: {}:3: what the file says is not what this checksum was written for: the file was edited or damaged. Copy it again \
+        "froude: {}:3: the content is not what this checksum was written for: the file was edited or damaged. Copy it again \
          from where it was written; to adopt an edit, delete this line\n",
         text(&record)
     );

@@ -417,7 +417,7 @@ fn no_column_is_dropped_in_silence() {
     assert_eq!(
         noted,
         [
-            "in no law and in nothing else that was asked for: `r [rad/s]` (if the motion: w_x, w_y or w_z), `std_speed [m/s]` (weights are \
+            "used by no law and by nothing else that was asked for: `r [rad/s]` (if the motion: w_x, w_y or w_z), `std_speed [m/s]` (weights are \
           standard deviations of fitted loads; of another channel, declare it in [[source.uncertainty]]), `current [A]`, `remark` (text)"
         ]
     );
@@ -624,7 +624,7 @@ fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() 
         told[0].0 == "warning"
             && told[0].1.starts_with(
                 "the tare tare.csv/quadratic was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side \
-                 force stays in f_y: of a strut that drags alike from all sides up to 2.4"
+                 force stays in f_y: for a strut whose drag is the same from all sides up to 2.4"
             )
             && told[0].1.ends_with(
                 "tow the strut alone at the angles of the test, fit these runs with models = [\"strut\"] (f_x and f_y) and subtract that record"
@@ -724,8 +724,8 @@ fn a_tare_that_gives_a_side_force_is_a_warning_at_drift_if_it_was_towed_straight
         assert!(
             told.len() == 1
                 && told[0].1.starts_with(
-                    "the tare t/askew was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side force there is \
-                     another one: of a strut that drags alike from all sides by up to 2.6"
+                    "the tare t/askew was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side force differs \
+                     there: for a strut whose drag is the same from all sides by up to 2.6"
                 ),
             "{head}: {told:?}"
         );

@@ -95,7 +95,7 @@ fn drag(runs: &Path) -> Value {
     serde_json::from_slice(&out.stdout).unwrap()
 }
 
-/// Logs and sidecars by name; those put aside only with `aside`.
+/// Logs and sidecars by name; those set aside only with `aside`.
 fn files(folder: &Path, aside: bool) -> BTreeMap<String, Vec<u8>> {
     std::fs::read_dir(folder)
         .unwrap()
@@ -184,7 +184,7 @@ fn a_campaign_that_is_killed_again_and_again_comes_to_its_end() {
         for (name, content) in &before {
             assert_eq!(now.get(name), Some(content), "{name} was touched by kill {killed}");
         }
-        // What is finished or put aside stays as it is; the run that was killed is put aside by the next command.
+        // What is finished or set aside stays as it is; the run that was killed is set aside by the next command.
         let finished = complete(&out);
         before = now
             .into_iter()
@@ -199,7 +199,7 @@ fn a_campaign_that_is_killed_again_and_again_comes_to_its_end() {
     assert_eq!(complete(&out).len(), n);
     let now = files(&out, true);
     assert!(before.iter().all(|(name, content)| now.get(name) == Some(content)));
-    println!("{killed} kills, {} files put aside", now.keys().filter(|k| k.contains(".interrupted-")).count());
+    println!("{killed} kills, {} files set aside", now.keys().filter(|k| k.contains(".interrupted-")).count());
     let (at_once, resumed) = (coefficients(&drag(&whole)), coefficients(&drag(&out)));
     assert!(!at_once.is_empty());
     for ((model, d, u), (other, resumed_d, _)) in at_once.iter().zip(&resumed) {

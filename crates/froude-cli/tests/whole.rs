@@ -50,7 +50,7 @@ fn one_run_has_a_result_of_its_own_name_and_recommends_nothing() {
         (&false.into(), &Value::Null)
     );
     let told = format!(
-        "1 of the 15 runs that lie there and tell drag was named: this is no result of the campaign, and its record is called {:?}. froude \
+        "1 of the 15 runs in the folder that determine drag was named: this is not the result of the campaign, and its record is called {:?}. froude \
          carriage drag {} takes them all",
         id(wet),
         text(&bench.runs)
@@ -128,14 +128,14 @@ fn a_campaign_that_was_not_driven_to_its_end_says_what_is_missing() {
         delete(&logs[i]);
     }
     let told = format!(
-        "12 of 17 planned runs are there complete; missing: {}, {}, {} to {} (3 runs). froude run with the same campaign drives what is missing",
+        "12 of 17 planned runs are complete; missing: {}, {}, {} to {} (3 runs). froude run with the same campaign drives what is missing",
         ids[1], ids[9], ids[14], ids[16]
     );
     let expected = [("warning".to_owned(), told.clone())];
     assert_eq!(findings_of(&bench.inspect(), unfinished), expected);
     assert_eq!(findings_of(&bench.drag(), unfinished), expected);
     let page = std::fs::read_to_string(bench.folder.path().join("campaign-runs-drag/report.html")).unwrap();
-    assert!(page.contains("12 of 17 planned runs are there complete"), "it is in the report");
+    assert!(page.contains("12 of 17 planned runs are complete"), "it is in the report");
     for args in [["carriage", "drag", text(&bench.runs)].as_slice(), &["inspect", text(&bench.runs)]] {
         assert!(printed(args).contains(&format!("warning  [campaign-unfinished] {told}")), "{args:?}");
     }
@@ -148,7 +148,7 @@ fn a_campaign_that_was_not_driven_to_its_end_says_what_is_missing() {
     assert!(
         findings_of(&bench.inspect(), unfinished)[0]
             .1
-            .starts_with("16 of 17 planned runs are there complete; missing: 001-jog")
+            .starts_with("16 of 17 planned runs are complete; missing: 001-jog")
     );
     // A run that is damaged is not there.
     std::fs::write(&logs[3], b"nothing").unwrap();
@@ -161,7 +161,7 @@ fn a_campaign_that_was_not_driven_to_its_end_says_what_is_missing() {
     assert_eq!(findings_of(&bench.drag(), "campaign-changed").len(), 1);
     std::fs::write(&copy, "schema = 1\nnme = \"x\"\n").unwrap();
     let told = findings_of(&bench.inspect(), "campaign-unreadable");
-    let begins = format!("what was planned is not known: {}:2:1: unknown key `nme`", text(&copy));
+    let begins = format!("the plan is not known: {}:2:1: unknown key `nme`", text(&copy));
     assert!(told[0].1.starts_with(&begins), "{told:?}");
 }
 
@@ -191,7 +191,7 @@ fn a_campaign_that_stopped_by_its_rule_is_not_unfinished() {
     logs.sort();
     delete(&logs[10]);
     delete(&logs[20]);
-    let told = format!("19 of 29 planned runs are there complete; missing: {}, {}.", id(&logs[10]), id(&logs[20]));
+    let told = format!("19 of 29 planned runs are complete; missing: {}, {}.", id(&logs[10]), id(&logs[20]));
     for found in [json(&["inspect", text(&runs), "--json"]), drag(&[&runs])] {
         assert!(findings_of(&found, "campaign-unfinished")[0].1.starts_with(&told), "{found}");
     }
@@ -207,7 +207,7 @@ fn what_is_left_of_a_run_that_was_put_aside_is_called_that() {
     let aside = bench.runs.join(format!("{}.interrupted-1.toml", id(wet)));
     let told = |again: &str| {
         format!(
-            "{} was put aside and its log is not there: nothing can be read of that drive, and the file may be deleted; {again}",
+            "{} was set aside and its log is missing: nothing of that drive can be read, and the file may be deleted; {again}",
             text(&aside)
         )
     };
@@ -218,13 +218,13 @@ fn what_is_left_of_a_run_that_was_put_aside_is_called_that() {
         assert_eq!(findings_of(&found, "run-gone"), []);
     }
     assert_eq!(refusal(&["inspect", text(&aside)]), format!("froude: {since}\n"));
-    assert!(bench.inspect()["facts"].to_string().contains("17 complete; 1 more was put aside"));
+    assert!(bench.inspect()["facts"].to_string().contains("17 complete; 1 more was set aside"));
 
     // With its log, and before the run is driven again.
     let log = aside.with_extension("mcap");
     std::fs::rename(wet, &log).unwrap();
     std::fs::remove_file(wet.with_extension("toml")).unwrap();
-    let told = format!("{} was put aside, and is left out; froude run drives {} again", text(&log), id(wet));
+    let told = format!("{} was set aside, and is left out; froude run drives {} again", text(&log), id(wet));
     assert_eq!(findings_of(&bench.drag(), "run-left-out"), [("note".to_owned(), told)]);
 }
 

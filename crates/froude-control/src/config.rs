@@ -1,4 +1,4 @@
-//! What the controller is told about the rig. Checked once, in [`crate::Controller`]'s `new`.
+//! The controller's configuration of the rig. Checked once, in [`crate::Controller`]'s `new`.
 
 use core::fmt;
 

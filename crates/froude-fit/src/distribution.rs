@@ -47,7 +47,7 @@ pub fn coverage_factor(confidence: f64, dof: f64) -> f64 {
         return f64::NAN;
     };
     let tail = 0.5 * (1.0 - confidence);
-    // Far out the tail is (dof/x²)^(dof/2), within a factor of four to the dof: where that is told, x is no number any more.
+    // Far out the tail is (dof/x²)^(dof/2), within a factor of four to the dof: where that matters, x is no longer representable.
     if 0.5 * dof.ln() - (2.0 * tail).ln() / dof > INFINITE_ABOVE.ln() {
         return f64::INFINITY;
     }

@@ -170,7 +170,7 @@ pub enum FitError {
     /// Too few clusters for an interval that means anything.
     #[error(
         "component {component:?} has {found} clusters; cluster-robust covariance (CR3) is \
-         refused below {needed}, where its interval is not honest"
+         refused below {needed}, where its interval is unreliable"
     )]
     TooFewClusters {
         /// The component.

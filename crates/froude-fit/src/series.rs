@@ -7,7 +7,7 @@
 
 use crate::autocorrelation::integrated_time_about_mean;
 
-/// A trend is told beyond this many of its standard uncertainties.
+/// A trend is reported beyond this many of its standard uncertainties.
 const TREND_TOLD: f64 = 3.0;
 /// Part of a window at each end over which the weights of its mean rise and fall …
 const TAPERED: f64 = 0.25;

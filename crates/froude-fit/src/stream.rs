@@ -183,8 +183,8 @@ pub enum StreamError {
 
     /// Too few clusters for an interval that means anything.
     #[error(
-        "{found} clusters; cluster-robust covariance is refused below {needed}, where its \
-         interval is not honest"
+        "{found} clusters; cluster-robust covariance is refused below {needed}, where \
+         its interval is unreliable"
     )]
     TooFewClusters {
         /// How many there are.

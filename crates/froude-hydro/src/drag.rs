@@ -6,7 +6,7 @@
 //! those of the fluid on the body, so a resisting force is negative for a
 //! positive velocity.
 //! **Units.** N, m/s, kg/m; a coefficient is `[-]`, or `[m/s]` when it belongs to a
-//! linear term (the paper prints those as dimensionless, with an unspoken 1 m/s).
+//! linear term (the paper prints those as dimensionless, with an implied 1 m/s).
 //!
 //! With `q(v) = v|v|`, `n = k + 2` modules and
 //! `G_T = ½ρπ·½(a+b)·2l`, `G_N = ½ρ·2a·2l`, `G_HTx = ½ρπab`, `G_HTy = ½ρA_HT`, `G_XY = ρal`:

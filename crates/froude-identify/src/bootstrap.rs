@@ -15,9 +15,15 @@ const SEED: u64 = 1;
 
 /// The interval and p-value of every determined coefficient, in words, or a finding that says why there is none.
 ///
+/// The units of the interval are those of the coefficient.
+///
 /// # Errors
 ///
 /// A finding: no clusters, fewer than five, a prior, Huber's loss, a law that is not linear.
+///
+/// # Source
+///
+/// Cameron, Gelbach & Miller (2008); Webb (2023); see [`froude_fit::wild`].
 pub fn note(model: &ModelFit, resamples: usize) -> Result<String, Finding> {
     let refuse = |why: String| {
         Finding::new(Severity::Warning, "no-wild-bootstrap", format!("{}: no wild bootstrap: {why}", model.law.name))
@@ -44,7 +50,7 @@ pub fn note(model: &ModelFit, resamples: usize) -> Result<String, Finding> {
         parts.push(format!("{} [{low:.4}, {high:.4}] {} (zero: p = {:.4})", spec.name, spec.unit, result.p));
     }
     Ok(format!(
-        "95 % intervals of the scatter alone (the budget is not in them) by {resamples} wild cluster resamples over {clusters} \
+        "95 % intervals of the scatter alone (without the budget) by {resamples} wild cluster resamples over {clusters} \
          clusters, bounds left out: {}",
         parts.join(", ")
     ))

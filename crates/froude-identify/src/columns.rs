@@ -97,7 +97,7 @@ pub fn unused(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[Forc
         findings.push(Finding::new(
             Severity::Note,
             "column-not-used",
-            format!("in no law and in nothing else that was asked for: {}", listed(&others)),
+            format!("used by no law and by nothing else that was asked for: {}", listed(&others)),
         ));
     }
     findings.extend(left_out(data));
@@ -227,7 +227,7 @@ fn doubt(
         let loads: IndexSet<&str> = laws.iter().flat_map(|law| &law.responses).map(String::as_str).collect();
         let of = loads.into_iter().collect::<Vec<_>>().join(", ");
         format!(
-            "{name} goes from {low:.4} to {high:.4} {dimension} and no law has it: the fit of {of} takes it for zero; write a law with \
+            "{name} goes from {low:.4} to {high:.4} {dimension} and appears in no law: the fit of {of} treats it as zero; write a law with \
              it ([[identify.model]]), or keep the rows where it is zero"
         )
     })
@@ -272,7 +272,7 @@ fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dat
     let (low, high) = range(values);
     let unit = header.split_once('[').map_or("deg", |(_, unit)| unit.trim_end_matches(']').trim());
     let beside = beside_v_x(data);
-    let told = |sign: f64, because: &str| {
+    let advised = |sign: f64, because: &str| {
         let how = if sign > 0.0 {
             format!("head it `angle [{unit}]`{beside}")
         } else {
@@ -281,7 +281,7 @@ fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dat
         format!("if it is the angle of the test, {how}: {because}")
     };
     let what = match side_force_says(values, data) {
-        Some((sign, agreeing, all)) => told(
+        Some((sign, agreeing, all)) => advised(
             sign,
             &format!(
                 "with that sign the side force f_y opposes the motion sideways in {agreeing} of {all} rows{} ({CONVENTION})",
@@ -318,16 +318,16 @@ fn side_force_says(angle_rad: &[f64], data: &Dataset) -> Option<(f64, usize, usi
     let largest = side.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
     // Astern, with a speed below zero, the flow comes from the other side.
     let is_astern = |i: usize| data.values("speed").is_some_and(|u| u[i] < 0.0);
-    let told: Vec<bool> = angle_rad
+    let is_same: Vec<bool> = angle_rad
         .iter()
         .zip(side)
         .enumerate()
         .filter(|(_, (a, f))| a.sin().abs() > STRAIGHT_RAD && f.abs() > SIGN_MATTERS_ABOVE * largest)
         .map(|(i, (a, f))| (a.sin() * f > 0.0) != is_astern(i))
         .collect();
-    let positive = told.iter().filter(|same| **same).count();
-    let agreed = |n: usize| n as f64 >= AGREED * told.len() as f64;
-    match told.len() {
+    let positive = is_same.iter().filter(|same| **same).count();
+    let agreed = |n: usize| n as f64 >= AGREED * is_same.len() as f64;
+    match is_same.len() {
         0 => None,
         all if agreed(positive) => Some((1.0, positive, all)),
         all if agreed(all - positive) => Some((-1.0, all - positive, all)),

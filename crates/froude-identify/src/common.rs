@@ -44,6 +44,13 @@ impl<'a> Number<'a> {
     }
 
     /// A number made from the coefficients; `slope` is its derivative by each.
+    ///
+    /// The standard uncertainty is that of the linear law of propagation, u² = xᵀAx + Σ sᵀCs with x = ∂value/∂β and s = Sᵀx, in the unit of the value; its
+    /// effective degrees of freedom are Welch and Satterthwaite's.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), 5.2.2 and G.4.1.
     pub fn of_number(estimate: &'a Estimate, value: Option<f64>, slope: impl Fn(&str) -> f64) -> Self {
         let Some(scatter) = &estimate.type_a else {
             return Self { estimate, slopes: Vec::new(), stated: Stated { value, ..Stated::default() } };
@@ -164,6 +171,12 @@ impl<'a> Common<'a> {
     }
 
     /// Fewest effective degrees of freedom that one of the coefficients has in what is its own.
+    ///
+    /// For the denominator of F(m, ν) of the joint χ²; infinite where no record states any. Dimensionless.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), G.4.1.
     pub fn least_dof(&self, estimates: [&Estimate; 2], names: &[&String]) -> f64 {
         let alone = |key: &str| !self.is_common(key);
         let dof = |(estimate, name): (&Estimate, &String)| {
@@ -178,6 +191,13 @@ impl<'a> Common<'a> {
     }
 
     /// Expanded (95 %) uncertainty of a difference, towards zero.
+    ///
+    /// U² = U_a² + U_b² + U_c², each the arm of its 95 % interval that points to the other value; in the unit of the numbers. `difference` is a − b, of which
+    /// only the sign is read.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), 5.2.2 (common errors); ISO 13528:2022, 9.7 (E_n).
     pub fn expanded_difference(&self, [a, b]: [&Number<'_>; 2], difference: f64) -> f64 {
         // The first is larger: its lower arm and the other's upper one point to each other.
         let [of_a, of_b] = if difference > 0.0 { [0, 1] } else { [1, 0] };
@@ -196,6 +216,12 @@ impl<'a> Common<'a> {
     }
 
     /// Covariance between a coefficient of the first and one of the second.
+    ///
+    /// Σ S_a C S_bᵀ over the errors with one key, in the product of the units of both; 0 where the records have no error in common.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), 5.2.2 and F.1.2.
     pub fn covariance(&self, [first, second]: [&str; 2]) -> f64 {
         let row = |side: usize, name: &str| self.names[side].iter().position(|n| n == name);
         let (Some(i), Some(j)) = (row(0, first), row(1, second)) else { return 0.0 };
@@ -212,15 +238,15 @@ pub(crate) fn findings(all: &[Common<'_>]) -> Vec<Finding> {
     let mut out = Vec::new();
     if !names.is_empty() {
         let text = format!(
-            "{a} and {b} have errors in common, by their keys: {}; what both feel alike is taken out of E_n and χ²",
+            "{a} and {b} have errors in common, by their keys: {}; what affects both alike is removed from E_n and χ²",
             list(names)
         );
         out.push(Finding::new(Severity::Note, "errors-in-common", text));
     }
     if !contradicted.is_empty() {
         let text = format!(
-            "{a} and {b} state different uncertainties of what they call the same error ({}): it is not taken out, and E_n and χ² \
-             are not to be trusted; reduce both with one declaration",
+            "{a} and {b} state different uncertainties of what they call the same error ({}): it is not removed, and E_n and χ² \
+             cannot be trusted; reduce both with one declaration",
             list(contradicted)
         );
         out.push(Finding::new(Severity::Warning, "errors-contradict", text));

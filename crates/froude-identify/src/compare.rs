@@ -106,6 +106,13 @@ pub const MOST_COMPARED: usize = 300;
 /// Compares every pair of estimates of the same model, and predicts forces by the recommended ones.
 ///
 /// More than [`MOST_COMPARED`] are not compared; the only finding says so.
+///
+/// E_n = (a − b)/U(a − b) for each coefficient and each predicted load, χ² = dᵀ(C_a + C_b − C_ab − C_abᵀ)⁻¹d for all coefficients of a pair together;
+/// both are dimensionless, values and uncertainties have the units of the records.
+///
+/// # Source
+///
+/// ISO 13528:2022, 9.7 (E_n); JCGM 100:2008 (GUM), 5.2.2 (common errors) and G.4.1 (degrees of freedom).
 #[must_use]
 pub fn compare(all: &[Named<'_>]) -> Comparison {
     let mut out = Comparison::default();
@@ -176,7 +183,7 @@ pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> 
         Severity::Warning,
         "nothing-compared",
         format!(
-            "nothing could be set side by side: no two estimates have the same model, and fewer than two give forces over a common range of \
+            "nothing could be compared: no two estimates have the same model, and fewer than two give forces over a common range of \
              speed; there are {}{more}",
             each.join(", ")
         ),
@@ -200,9 +207,9 @@ pub fn left_out(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
             1.. if alike.iter().any(|other| !has_likes(all, n, other)) => {
                 "the other sources' estimates by its model have no coefficient in common with it"
             }
-            1.. => "its method is set beside its like",
+            1.. => "its method is compared with its own kind only",
             0 if gives_forces(n.estimate) => {
-                "no other source has its model, and forces are those of the recommended ones"
+                "no other source has its model, and forces are compared for recommended models only"
             }
             0 => "no other source has its model, and it gives no force along or across from a steady motion",
         };
@@ -215,14 +222,14 @@ pub fn left_out(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
     let more = alone.len().saturating_sub(MOST_NAMED);
     let more = if more > 0 { format!("; and {more} more") } else { String::new() };
     let alone: Vec<String> = alone.into_iter().take(MOST_NAMED).collect();
-    Some(Finding::new(Severity::Note, "beside-no-other", format!("beside no other stand {}{more}", alone.join("; "))))
+    Some(Finding::new(Severity::Note, "beside-no-other", format!("compared with no other: {}{more}", alone.join("; "))))
 }
 
 /// Why so many estimates are not compared.
 #[must_use]
 pub fn too_many(estimates: usize) -> String {
     format!(
-        "{estimates} estimates are not set side by side: at most {MOST_COMPARED} are; name fewer records, or fewer models in them"
+        "{estimates} estimates are not compared: at most {MOST_COMPARED} are; name fewer records, or fewer models in them"
     )
 }
 
@@ -563,8 +570,8 @@ fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
             Severity::Warning,
             "density-differs",
             format!(
-                "{} was measured in water of {} {}, {} in {} {}: coefficients with kg or N in their unit, and the forces that they give, go \
-                 with the density; scale one of them before comparing",
+                "{} was measured in water of {} {}, {} in {} {}: coefficients with kg or N in their unit, and the forces that they give, are proportional \
+                 to the density; scale one of them before comparing",
                 a.id, x.value, x.unit, b.id, y.value, y.unit
             ),
         )
@@ -582,7 +589,7 @@ fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
         Severity::Warning,
         "axes-not-tied",
         format!(
-            "{} is along the chain of its carriage, {} in body axes: their f_x are set side by side as if the body had been towed along its x \
+            "{} is along the chain of its carriage, {} in body axes: their f_x are compared as if the body had been towed along its x \
              axis; if it was towed across it, they are two forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign; of runs that are driven already, in \
              a campaign that `froude carriage drag --campaign` names",
             chain.id, body.id

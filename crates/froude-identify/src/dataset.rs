@@ -99,6 +99,8 @@ impl Dataset {
     /// A copy in which `name` of every row is moved by `shift[row]`, with what hangs on it.
     ///
     /// A shift of `speed` or `angle` moves the velocity, one of `v_x` or `v_y` moves speed and angle.
+    ///
+    /// `shift` has one entry per row, in SI units of the channel (m/s, rad, N, …).
     #[must_use]
     pub fn shifted(&self, name: &str, shift: &[f64]) -> Self {
         let mut moved = self.clone();
@@ -116,6 +118,12 @@ impl Dataset {
     }
 
     /// Sets `v_x`, `v_y` from `speed` and `angle` (zero where the table has none).
+    ///
+    /// v = (U cos θ, −U sin θ), m/s, with θ in rad.
+    ///
+    /// # Source
+    ///
+    /// USR eq. 5 with ẋ = (U, 0) and no current.
     pub fn velocity_from_speed_and_angle(&mut self) {
         let Some(speed) = self.values("speed").map(<[f64]>::to_vec) else { return };
         let angle = self.values("angle").map_or_else(|| vec![0.0; self.rows], <[f64]>::to_vec);
@@ -129,6 +137,8 @@ impl Dataset {
     }
 
     /// Sets `speed` and `angle` from `v_x`, `v_y`.
+    ///
+    /// U = √(v_x² + v_y²), m/s, and θ = atan2(−v_y, v_x), rad, in (−π, π].
     pub fn speed_and_angle_from_velocity(&mut self) {
         let along = |name| self.values(name).map_or_else(|| vec![0.0; self.rows], <[f64]>::to_vec);
         let (v_x, v_y) = (along("v_x"), along("v_y"));
@@ -137,6 +147,8 @@ impl Dataset {
     }
 
     /// Sets a channel.
+    ///
+    /// `values` are in SI, one per row.
     pub fn put(&mut self, name: &str, values: Vec<f64>, dimension: Dimension) {
         self.channels.insert(name.to_owned(), Channel { values, dimension });
     }

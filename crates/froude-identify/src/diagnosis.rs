@@ -80,7 +80,7 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
     }
 }
 
-/// What a reader has to be told about this fit.
+/// What a reader has to know about this fit.
 #[must_use]
 pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagnostics) -> Vec<Finding> {
     let name = &model.law.name;
@@ -92,7 +92,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
                 Severity::Warning,
                 "serial-correlation",
                 format!(
-                    "{name}, {component}: residuals of successive rows go together (Durbin–Watson {dw:.2}, 2 when independent): \
+                    "{name}, {component}: residuals of successive rows are correlated (Durbin–Watson {dw:.2}, 2 when independent): \
                      the stated interval assumes independence and is too narrow; use covariance = \"cluster\" over blocks of runs, \
                      or a model that follows the drift"
                 ),
@@ -119,7 +119,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
             out.push(Finding::new(
                 Severity::Warning,
                 "lack-of-fit",
-                format!("{name}, {component}: the misfit is larger than repeats of the same setting scatter (p = {p:.1e}): the model is wrong somewhere in the range"),
+                format!("{name}, {component}: the lack of fit is larger than the scatter of repeats of the same setting (p = {p:.1e}): the model is wrong somewhere in the range"),
             ));
         }
     }
@@ -172,6 +172,8 @@ impl Unevenness {
 /// Rank correlation of the residuals of a load with speed; `None` below [`FEWEST_FOR_SCATTER`] rows.
 ///
 /// With std columns a row may scatter as much as they say: what must be even is r·√w.
+///
+/// ρ is Spearman's rank correlation of |r|·√w with |U|, dimensionless; z = ρ·√(n − 1) is ρ in standard errors of an uncorrelated sample.
 #[must_use]
 pub fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Unevenness> {
     let n = data.rows;
@@ -216,7 +218,9 @@ fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
     out
 }
 
-/// Spearman's rank correlation (average ranks are not needed: residuals do not tie).
+/// Spearman's rank correlation, −1 to 1, with average ranks for ties; 0 where one of them is constant.
+///
+/// `a` and `b` have the same length, in any units.
 #[must_use]
 pub fn rank_correlation(a: &[f64], b: &[f64]) -> f64 {
     let ranks = |v: &[f64]| -> Vec<f64> {

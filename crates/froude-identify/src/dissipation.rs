@@ -16,6 +16,8 @@ const ROUNDING: f64 = 1e-12;
 /// Velocities over ±(largest speed), down to a thousandth of it, for the shortest and the longest configuration.
 ///
 /// The force is affine in the number of links, so what holds at both ends holds between them.
+///
+/// Speeds in m/s, angles in rad; 184 directions by 31 levels (see [`VelocityGrid`]).
 #[must_use]
 pub fn grid(data: &Dataset) -> Dataset {
     let largest = data.values("speed").map_or(0.0, |u| u.iter().fold(0.0_f64, |m, u| m.max(u.abs())));
@@ -37,6 +39,8 @@ pub fn grid(data: &Dataset) -> Dataset {
 }
 
 /// Largest power f·v delivered to the body over the grid, W: at most zero where the law resists everywhere.
+///
+/// P = f_x·v_x + f_y·v_y with forces in N and velocities in m/s. `coefficients` are in SI, in the order of the law. A grid proves nothing between its points.
 ///
 /// # Errors
 ///
@@ -65,6 +69,8 @@ pub fn largest_power_w(law: &ForceLaw, data: &Dataset, coefficients: &[f64]) -> 
 }
 
 /// Rows `power(v)·β ≤ 0` over the grid, for `p` coefficients (offsets take no part).
+///
+/// A row holds Σ v_r ∂f_r/∂β_j at one velocity, W per unit of coefficient j in SI.
 ///
 /// # Errors
 ///

@@ -26,6 +26,12 @@ pub fn is_input_error(entry: &BudgetEntry) -> bool {
 }
 
 /// Standard deviations of speed and angle per row, from the budget; `None` without any.
+///
+/// `rows × 2`: m/s and rad. A relative entry is multiplied by |value| of the row; several entries of one quantity add as variances.
+///
+/// # Source
+///
+/// JCGM 100:2008 (GUM), 5.1.2.
 #[must_use]
 pub fn input_standard(data: &Dataset, budget: &[BudgetEntry]) -> Option<Mat<f64>> {
     let mut out = Mat::zeros(data.rows, INPUTS.len());
@@ -150,9 +156,15 @@ impl InputModel for LawOfInputs<'_> {
 
 /// Fits a linear law with uncertain speed and angle.
 ///
+/// Minimises Σ (y_i − f(q_i + e_i; β))²/σ² + Σ e_iᵀC_i⁻¹e_i with q = (speed, angle). `standard` is `rows × 2` (m/s, rad); loads are in N or N m.
+///
 /// # Errors
 ///
 /// What the regression refuses.
+///
+/// # Source
+///
+/// Boggs & Rogers (1990), Orthogonal distance regression, Contemporary Mathematics 112.
 pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma) -> Result<OdrFit, FitError> {
     let n = data.rows;
     let value = |name: &str, i: usize| data.values(name).map_or(0.0, |v| v[i]);

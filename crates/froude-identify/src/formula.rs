@@ -140,6 +140,8 @@ impl Formula {
     /// belongs to `coefficients[j]`. A channel without a value counts as NaN; of `out`
     /// as many are written as it holds. A regressor outside a function's domain
     /// (`sqrt`, `ln` of a negative number) is NaN.
+    ///
+    /// For f = Σ β_j x_j, `out[j]` is x_j = ∂f/∂β_j, in SI units of the load over those of coefficient j.
     pub fn regressor(&self, values: &[f64], out: &mut [f64]) {
         let mut stack = Vec::with_capacity(16);
         for (value, program) in out.iter_mut().zip(&self.programs) {

@@ -67,6 +67,10 @@ pub struct ForceLaw {
 
 impl ForceLaw {
     /// One of f1 … f6 for a body.
+    ///
+    /// # Source
+    ///
+    /// USR eq. 9 to 14, with the corrections listed in [`froude_hydro::drag`].
     #[must_use]
     pub fn drag(model: DragModel, body: Body, cross_term: CrossTerm) -> Self {
         Self {
@@ -129,6 +133,8 @@ impl ForceLaw {
     }
 
     /// The power law along the axis of a load (`f_x` goes with `v_x`).
+    ///
+    /// F = −k·sgn(v)·(|v|/v_ref)ⁿ with v_ref = 1 m/s (1 rad/s for a moment); k in N (N m), n dimensionless.
     #[must_use]
     pub fn power_law(response: &str, channel: &str, in_logarithms: bool) -> Self {
         let axis = response.replace("f_", "").replace("m_", "r");
@@ -178,6 +184,8 @@ impl ForceLaw {
 
     /// Derivatives of every response by every coefficient: rows stacked response by response,
     /// `responses·rows × coefficients`. For linear laws this is the design matrix and `at` is not read.
+    ///
+    /// Entries are in SI units of the response (N, N m) over those of the coefficient; `at` holds the coefficients in SI, in the order of the law.
     ///
     /// # Errors
     ///
@@ -243,6 +251,8 @@ impl ForceLaw {
     }
 
     /// The responses for given coefficients, stacked response by response.
+    ///
+    /// In SI units of the responses (N, N m); `at` holds the coefficients in SI, in the order of the law.
     ///
     /// # Errors
     ///

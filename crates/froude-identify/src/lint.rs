@@ -52,6 +52,8 @@ const FASTEST_M_S: f64 = 40.0;
 const FASTEST_IN_AIR_M_S: f64 = 100.0;
 
 /// Every lint that looks at observations alone.
+///
+/// A finding for each doubt; an empty list says that none of these checks found anything.
 #[must_use]
 pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -267,9 +269,9 @@ pub(crate) fn along_motion(
             if all {
                 format!(
                     "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
-                     way round, say sign = -1 for its column{}",
+                     way round, write sign = -1 for its column{}",
                     if *motion == "v_y" && data.channels.contains_key("angle") {
-                        "; if the angle counts the other way (beta of a ship's drift test does), say it for the angle's"
+                        "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write it for the angle's"
                     } else {
                         ""
                     }
@@ -290,7 +292,7 @@ fn implausible_speed(data: &Dataset) -> Option<Finding> {
     let i = (0..data.rows).max_by(|&i, &j| speed[i].abs().total_cmp(&speed[j].abs()))?;
     let is_air = data.values("density").is_some_and(|d| AIR_KG_M3.contains(&d[i]));
     let (most, than) = if is_air {
-        (FASTEST_IN_AIR_M_S, "than tests with these laws go, which know no compressible air (Mach 0.3 is 100 m/s)")
+        (FASTEST_IN_AIR_M_S, "than these laws allow, which neglect compressibility (Mach 0.3 is 100 m/s)")
     } else {
         (FASTEST_M_S, "than any towing carriage (20 to 30 m/s)")
     };
@@ -334,8 +336,8 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
             Severity::Warning,
             "unphysical-drag-coefficient",
             format!(
-                "line {}: {load} = {f:.3e} N at {:.3} m/s on {reference:.3e} m^2 is C_D = {:.2e}: no body has that (0.04 to 2.3 is the \
-                 range of shapes); check the units of `{}` and of the speed, and the reference area",
+                "line {}: {load} = {f:.3e} N at {:.3} m/s on {reference:.3e} m^2 is C_D = {:.2e}: no body has such a value (shapes range from \
+                 0.04 to 2.3); check the units of `{}` and of the speed, and the reference area",
                 data.line.get(i).copied().unwrap_or(i + 1),
                 speed[i],
                 area_m2 / reference,
@@ -384,7 +386,7 @@ fn saturation(data: &Dataset) -> Vec<Finding> {
 pub(crate) fn saturated(load: &str, end: &str, extreme: f64, there: usize, n_rows: usize) -> Option<Finding> {
     (extreme != 0.0 && there >= 3 && there as f64 > SATURATED_SHARE * n_rows as f64).then(|| {
         let text =
-            format!("{load}: {there} rows stand at exactly the {end} value {extreme}; the sensor may be saturated");
+            format!("{load}: {there} rows lie exactly at the {end} value {extreme}; the sensor may be saturated");
         Finding::new(Severity::Warning, "saturation", text)
     })
 }
@@ -423,7 +425,7 @@ pub(crate) fn few_speeds(n: usize) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "few-speeds",
-            format!("{n} distinct speeds: a linear and a quadratic term cannot be told apart with fewer than {DISTINCT_SPEEDS_NEEDED}"),
+            format!("{n} distinct speeds: a linear and a quadratic term cannot be distinguished with fewer than {DISTINCT_SPEEDS_NEEDED}"),
         )
     })
 }
@@ -437,7 +439,7 @@ fn one_sign_of_angle(data: &Dataset) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "one-sign-of-angle",
-            "only one sign of the angle was run: an offset between sensor and body looks exactly like C_XY_II \
+            "only one sign of the angle was run: an offset between sensor and body is indistinguishable from C_XY_II \
              (1 deg moves it by some 0.1 for two links and 0.3 for nine); run ±θ pairs and set angle_offset = \"estimate\""
                 .to_owned(),
         )
@@ -454,7 +456,7 @@ fn repeats(data: &Dataset) -> Option<Finding> {
         Finding::new(
             Severity::Note,
             "no-repeats",
-            "no setting was repeated: lack of fit cannot be told from scatter".to_owned(),
+            "no setting was repeated: lack of fit cannot be distinguished from scatter".to_owned(),
         )
     })
 }
@@ -549,7 +551,7 @@ fn volume_steps(points: &[(f64, f64)], link_m3: Option<f64>) -> Vec<Finding> {
             Severity::Warning,
             "volumes-do-not-add-up",
             format!(
-                "the volume grows by {median:.4e} m^3 a link (median), but by {}: these configurations are not the same body with a link more",
+                "the volume grows by {median:.4e} m^3 a link (median), but by {}: these configurations are not the same body with one more link",
                 odd.join(", ")
             ),
         ));
@@ -572,6 +574,12 @@ fn volume_steps(points: &[(f64, f64)], link_m3: Option<f64>) -> Vec<Finding> {
 /// A drag coefficient on a stated frontal area that no body has.
 ///
 /// `d_n_s2_m2` is the quadratic coefficient D of F = D·v|v|; C_D = D/(½ρA).
+///
+/// Density in kg/m³, area in m². Range of known shapes 0.04 to 2.3, here with a factor of two.
+///
+/// # Source
+///
+/// Hoerner (1965), Fluid-dynamic drag, ch. 3.
 #[must_use]
 pub fn drag_coefficient(name: &str, d_n_s2_m2: f64, density_kg_m3: f64, area_m2: f64) -> Option<Finding> {
     let c_d = d_n_s2_m2 / (0.5 * density_kg_m3 * area_m2);
@@ -580,8 +588,8 @@ pub fn drag_coefficient(name: &str, d_n_s2_m2: f64, density_kg_m3: f64, area_m2:
             Severity::Warning,
             "unphysical-drag-coefficient",
             format!(
-                "{name} = {d_n_s2_m2:.4} N s^2/m^2 on {area_m2:.4} m^2 is C_D = {c_d:.4}: no body has that \
-                 (0.04 to 2.3 is the range of shapes); check the unit of {name} and the reference area"
+                "{name} = {d_n_s2_m2:.4} N s^2/m^2 on {area_m2:.4} m^2 is C_D = {c_d:.4}: no body has such \
+                 a value (shapes range from 0.04 to 2.3); check the unit of {name} and the reference area"
             ),
         )
     })

@@ -1,6 +1,6 @@
 //! From a source's table to observations: motion, water, zeros, tare, what is kept.
 //!
-//! Every step that changes a number or drops a row is told as a finding.
+//! Every step that changes a number or drops a row is reported as a finding.
 
 use crate::dataset::{Channel, Dataset, LOADS};
 use crate::error::IdentifyError;
@@ -258,7 +258,7 @@ fn water(data: &mut Dataset, campaign: &Campaign, findings: &mut Vec<Finding>) -
             Severity::Note,
             "measured-over-stated",
             format!(
-                "the table's temperatures are the water's, where density or viscosity is taken from one; \
+                "density and viscosity, where they follow from a temperature, use the table's temperatures; \
                  temperature = {stated:.2} degC of [fluid] is not used"
             ),
         ));

@@ -158,6 +158,12 @@ impl ModelFit {
     }
 
     /// Standard uncertainty of the predicted response for one row of regressors.
+    ///
+    /// √(xᵀCx) with C the combined covariance of the coefficients; N or N m for a `row` x in SI, as [`ForceLaw::regressors`] gives it.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), 5.2.2.
     #[must_use]
     pub fn prediction_std(&self, row: &[f64]) -> f64 {
         let mut variance = 0.0;
@@ -172,9 +178,17 @@ impl ModelFit {
 
 /// Fits `law` to `data`.
 ///
+/// Least squares of each load by orthogonal factorisation, weighted, bounded and constrained as [`Settings`] states; covariance = type A of the scatter + type B of the
+/// budget. Channels, coefficients and residuals are in SI.
+///
 /// # Errors
 ///
 /// What the law, the fit or the budget finds wrong.
+///
+/// # Source
+///
+/// Golub & Van Loan, Matrix Computations, ch. 5 (factorisation); JCGM 100:2008 (GUM), 5.2 and G.4.1 (budget); MacKinnon & White (1985) (HC3);
+/// Bell & McCaffrey (2002) (CR3).
 pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result<ModelFit, IdentifyError> {
     let newtons = law.measured(data)?;
     let no_fit = |why: String| IdentifyError::NoFit {
@@ -226,7 +240,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
             findings.push(Finding::new(
                 Severity::Warning,
                 "not-converged",
-                format!("model {}: the iteration did not settle within {MOST_ITERATIONS} steps", law.name),
+                format!("model {}: the iteration did not converge within {MOST_ITERATIONS} steps", law.name),
             ));
         }
     }
@@ -288,7 +302,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     };
     // Where replicates tell no scatter nothing does: the residuals of one of them are not asked.
     let is_known = |c: &fit::FitCoefficient| match &replicates {
-        Some(told) => told.is_some() && c.value.is_some(),
+        Some(part) => part.is_some() && c.value.is_some(),
         None => c.standard.is_some(),
     };
     let first = replicates.clone().flatten().unwrap_or_else(|| scatter(&fitted));
@@ -317,7 +331,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     let variances = (0..specs.len()).map(|j| covariance[(j, j)]);
     if let Some(number) = coefficients.iter().copied().chain(of_fit).chain(variances).find(|x| !x.is_finite()) {
         return Err(no_fit(format!(
-            "its numbers leave what a computer holds ({number}): look for a value of absurd size in the table or in [identify]"
+            "its numbers exceed the range of floating point ({number}): look for an absurdly large value in the table or in [identify]"
         )));
     }
     Ok(ModelFit {
@@ -344,7 +358,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
 /// Why the iteration of a power law left all bounds.
 fn ran_away(law: &ForceLaw, data: &Dataset, newtons: &[f64]) -> String {
     let crate::law::Kind::PowerLaw { channel, .. } = &law.kind else {
-        return "its iteration leaves what a computer holds".to_owned();
+        return "its iteration exceeds the range of floating point".to_owned();
     };
     let speeds = data.values(channel).unwrap_or_default();
     let moving = speeds.iter().filter(|v| **v != 0.0).count();
@@ -352,12 +366,12 @@ fn ran_away(law: &ForceLaw, data: &Dataset, newtons: &[f64]) -> String {
     let load = law.responses.first().map_or("the load", String::as_str);
     if 2 * opposed < moving {
         return format!(
-            "{load} opposes {channel} in {opposed} of the {moving} rows that move, and a power law is a resistance: look at the sign of \
+            "{load} opposes {channel} in {opposed} of the {moving} rows that move, and a power law is a resistance: check the sign of \
              {load}, or leave this law out"
         );
     }
     format!(
-        "its iteration runs away: exponent and factor of {load} are not told by these rows; use speeds further apart, or a law with a given \
+        "its iteration diverges: exponent and factor of {load} are not determined by these rows; use speeds further apart, or a law with a given \
          exponent (quadratic)"
     )
 }
@@ -707,7 +721,7 @@ fn contradicted_priors(
                 "prior-contradicted",
                 format!(
                     "{}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior says {:.4} ± {:.4} {unit}: \
-                     {apart:.1} standard uncertainties apart; the fit between them is an answer to neither",
+                     {apart:.1} standard uncertainties apart; the fit between them agrees with neither",
                     law.name,
                     specs[prior.index].name,
                     prior.value,

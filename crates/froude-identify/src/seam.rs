@@ -146,7 +146,9 @@ pub struct Derived {
     pub unit: String,
 }
 
-/// Fits every law, compares and chooses, and makes the records; `progress` is told each law before it is fitted.
+/// Fits every law, compares and chooses, and makes the records; `progress` receives each law before it is fitted.
+///
+/// Observations and coefficients are in SI; the formulas are those of [`regress`] and [`recommend`].
 ///
 /// # Errors
 ///

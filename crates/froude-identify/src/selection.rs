@@ -62,6 +62,13 @@ pub struct Recommendation {
 ///
 /// With weights w the likelihood has a factor ∏√w. Fits of loads and of their logarithms weigh the same `std_*` column
 /// differently, and would not be comparable without it.
+///
+/// n ln(RSS/n) + 2K + 2K(K+1)/(n − K − 1) per load, summed over the loads; K counts σ. The Jacobian adds 2 Σ ln|F|, F in N or N m. Only differences
+/// between models of the same rows have a meaning; below 2 they are no evidence. `None` for an exact fit, a robust loss, or n ≤ K + 1.
+///
+/// # Source
+///
+/// Hurvich & Tsai (1989), Biometrika 76; Burnham & Anderson (2002), section 2.6.
 #[must_use]
 pub fn aicc(model: &ModelFit, data: &Dataset) -> Option<f64> {
     model.law.responses.iter().map(|load| aicc_of(model, data, load)).sum()
@@ -101,6 +108,9 @@ fn aicc_of_nothing(data: &Dataset, load: &str, is_weighted: bool) -> Option<f64>
 }
 
 /// F tests of every nested pair among the fitted models.
+///
+/// F = (RSS_simple − RSS_general)/m / (RSS_general/ν), compared with F(m, ν): m restrictions, ν degrees of freedom of the general model. Both fits are without
+/// bounds. The restrictions of f1 to f6 are those of [`DragModel::restrictions_in`].
 #[must_use]
 pub fn nested_tests(models: &[ModelFit], data: &Dataset) -> Vec<NestedTest> {
     let mut out = Vec::new();
@@ -189,6 +199,8 @@ fn drag_restrictions(simple: DragModel, general: DragModel, setting: &Setting) -
 }
 
 /// Leave-one-configuration-out score of a model.
+///
+/// The root mean square of measured less predicted, per load, in N or N m: each configuration is predicted by a fit to the others. The note says why there is no score.
 #[must_use]
 pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
     if model.law.is_nonlinear() {
@@ -235,6 +247,9 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
 }
 
 /// Fits inside a declared range, predicts outside.
+///
+/// Per load the root mean square error outside the range in N or N m, the same over the root mean square of the load, and the largest relative error among loads above half of the
+/// largest. `None` for a law that is not linear, for an unknown column, or where nothing lies inside or outside.
 #[must_use]
 pub fn range_block(model: &ModelFit, data: &Dataset, block: &RangeBlock) -> Option<BlockScore> {
     // The problem of a non-linear law holds its last linear step, not the loads.
@@ -290,6 +305,13 @@ fn p_value(p: f64) -> String {
 }
 
 /// The model that the data support.
+///
+/// Of the determined models whose summed AICc lies within 2 of the smallest, the one with the fewest coefficients, unless an F test at 1 % rejects it inside the leading model.
+/// `None` without a determined model.
+///
+/// # Source
+///
+/// Burnham & Anderson (2002), section 2.6 (differences of AICc).
 #[must_use]
 pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> Option<Recommendation> {
     let determined = |m: &ModelFit| m.fit.coefficients.iter().all(|c| c.status != fit::Status::Undetermined);

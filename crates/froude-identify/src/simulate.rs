@@ -135,6 +135,8 @@ pub fn truth(campaign: &Campaign, data: &Dataset) -> Result<(ForceLaw, Vec<f64>)
 ///
 /// `stream` separates the sources of a campaign; the same seed and stream give the same table.
 ///
+/// The sensor adds, in this order: misalignment δ (f_x cos δ + f_y sin δ, f_y cos δ − f_x sin δ), bias, drift, noise, resolution. SI units.
+///
 /// # Errors
 ///
 /// See [`planned`] and [`truth`].

@@ -83,7 +83,9 @@ pub struct NotFitted {
     pub why: String,
 }
 
-/// Identifies one source that has a table; `progress` is told each model before it is fitted.
+/// Identifies one source that has a table; `progress` receives each model before it is fitted.
+///
+/// Everything is in SI after [`crate::reduce::reduce`]; the formulas are those of [`crate::seam::fit`].
 ///
 /// # Errors
 ///
@@ -137,8 +139,8 @@ pub(crate) fn no_budget(source: &Source, has_tare: bool) -> Option<Finding> {
     source.uncertainty.is_empty().then(|| {
         let tare = if has_tare { ", that of the tare" } else { "" };
         let text = format!(
-            "no uncertainty of an instrument is declared: the intervals hold the scatter of the observations{tare} and nothing else \
-             (a calibration error does not show in the scatter)"
+            "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{tare} and nothing else \
+             (a calibration error does not appear in the scatter)"
         );
         Finding::new(Severity::Note, "no-budget", text)
     })
@@ -416,7 +418,7 @@ fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, IdentifyError> {
     let rows = moving(data.values("speed").unwrap_or_default(), AT_REST);
     let angles: Vec<f64> = rows.into_iter().map(|i| off_axis(data.velocity_m_s(i))).collect();
     let is_askew = angles.iter().any(|angle| (2.0 * angle).sin() > 1e-9);
-    // The lift is told by its forward part; sideways it has nearly the shape of the drag.
+    // The lift is determined by its forward part; sideways it has nearly the shape of the drag.
     let has_lift = is_askew && are_apart(angles.into_iter()) && data.channels.contains_key("f_x");
     let [along, across] = if has_lift {
         ["-D_xU*v_x*abs(speed) + X_vv*v_y*v_y*sign(v_x)", "-D_yU*v_y*abs(speed) - X_vv*abs(v_x)*v_y"]

@@ -27,9 +27,15 @@ const MATTERS_ABOVE: f64 = 0.005;
 ///
 /// The tare is a record made by an earlier fit; its coefficients' covariance becomes a shared error.
 ///
+/// y ← y − X_T β_T in N or N m, and C_B ← C_B + S X_T C_T X_Tᵀ Sᵀ: all rows share the error of the tare.
+///
 /// # Errors
 ///
 /// An unreadable record, one with no matching estimate, or a law that the table cannot evaluate.
+///
+/// # Source
+///
+/// JCGM 100:2008 (GUM), 5.2.2 and F.1.2 (a common error correlates all rows).
 pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Vec<SharedError>, Vec<Finding>), IdentifyError> {
     let file: EstimateFile = read_estimates(&tare.record)?;
     let estimate = crate::select::one_estimate(&file, tare.select.as_deref(), &tare.record)?;

@@ -50,6 +50,9 @@ pub struct SharedError {
 
 impl SharedError {
     /// A normal error that goes into a load by a number in each row.
+    ///
+    /// Row i moves by `direction[i]`·e, e normal with standard uncertainty `standard`; their product is in N or N m. `dof` are the degrees of freedom of `standard`,
+    /// infinite where it is known exactly.
     #[must_use]
     pub fn of_load(name: &str, load: &str, direction: &[f64], standard: f64, dof: f64) -> Self {
         Self {
@@ -66,6 +69,12 @@ impl SharedError {
     }
 
     /// An error between two limits that goes into a load by a number in each row.
+    ///
+    /// Row i moves by `direction[i]`·e with e uniform between `low` and `high`. The load is not corrected for the mean of e, so u² = mean² + (half-width)²/3.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), 4.3.7 (rectangular distribution) and F.2.4.5 (uncorrected mean).
     #[must_use]
     pub fn between(name: &str, load: &str, direction: &[f64], [low, high]: [f64; 2]) -> Self {
         let limits = Some([low, high]);
@@ -79,6 +88,8 @@ impl SharedError {
     }
 
     /// Standard uncertainties of a load, row by row and independent: part of the scatter.
+    ///
+    /// `standard` in N or N m, one per row.
     #[must_use]
     pub fn of_each_row(name: &str, load: &str, standard: &[f64]) -> Self {
         Self { shared: "run", is_of_each_row: true, ..Self::of_load(name, load, standard, 1.0, f64::INFINITY) }
@@ -101,9 +112,16 @@ pub struct Linearised<'a> {
 /// The contribution of every entry of the budget and of every shared error. `campaign` is the key of the campaign that declares the budget;
 /// empty where none does.
 ///
+/// Entry by entry C_B = Σ_g (S·J)_g (S·J)_gᵀ over the groups g of rows that share one error, with S = ∂β/∂y of the fit and J = −∂(Xβ)/∂q per standard uncertainty of
+/// the quantity q; entries of the covariance have the product of the units of two coefficients.
+///
 /// # Errors
 ///
 /// A quantity that is no channel of the observations.
+///
+/// # Source
+///
+/// JCGM 100:2008 (GUM), 5.1.2, 5.2.2 and F.1.2.
 pub fn contributions(
     fit: Linearised<'_>,
     budget: &[BudgetEntry],
@@ -298,6 +316,12 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, Identi
 }
 
 /// The scatter of the observations as the first part of the budget.
+///
+/// Type A: the covariance of the fit, in the product of the units of two coefficients.
+///
+/// # Source
+///
+/// JCGM 100:2008 (GUM), 2.3.2.
 #[must_use]
 pub fn scatter(fit: &fit::Fit) -> Part {
     Part {
@@ -313,6 +337,12 @@ pub fn scatter(fit: &fit::Fit) -> Part {
 }
 
 /// Two-sided 95 % quantile of Student's t.
+///
+/// k = t(0.975, `dof`), dimensionless; 1.96 for infinite `dof`.
+///
+/// # Source
+///
+/// JCGM 100:2008 (GUM), G.3.
 #[must_use]
 pub fn coverage_factor(dof: f64) -> f64 {
     froude_fit::distribution::coverage_factor(0.95, dof)
@@ -322,6 +352,8 @@ pub fn coverage_factor(dof: f64) -> f64 {
 ///
 /// `refit` fits perturbed observations and gives the coefficients. Seeded: draw `d` uses stream `d`,
 /// so the answer does not depend on the number of threads. Returns the covariance of the draws that fitted.
+///
+/// `p × p`, in the product of the units of two coefficients. `None` without a draw that fitted, or where a quantity of the budget is not a channel.
 pub fn monte_carlo(
     data: &Dataset,
     budget: &[BudgetEntry],

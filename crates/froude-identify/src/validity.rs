@@ -73,7 +73,7 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
                 Severity::Warning,
                 "wave-making",
                 format!(
-                    "U/√(g h) reaches {worst:.2}, h being the submergence: the drag contains wave making, which a deeply submerged \
+                    "U/√(g h) reaches {worst:.2}, h being the submergence: the drag includes wave-making resistance, which a deeply submerged \
                      body does not have"
                 ),
             ));
@@ -83,7 +83,7 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
                 Severity::Warning,
                 "blockage",
                 format!(
-                    "the body takes {:.1} % of the tank's section: the water speeds up around it, and the drag is not that of open water",
+                    "the body blocks {:.1} % of the tank's cross-section: the flow speeds up around it, and the drag is not that of open water",
                     100.0 * worst
                 ),
             ));
@@ -102,6 +102,12 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
 /// | `Fr_submergence` | U/√(g h) | `tank.submergence` |
 /// | `KC` | 2π a/L | `body.reference_length`, columns `amplitude` and `period` |
 /// | `blockage` | A/(w d) | `body.reference_area`, `tank.width`, `tank.depth` |
+///
+/// All dimensionless. U is the speed in m/s, L, d and h are lengths in m, ν in m²/s, a the amplitude in m.
+///
+/// # Source
+///
+/// Froude (1874); Keulegan & Carpenter (1958).
 #[must_use]
 pub fn per_observation(data: &Dataset, campaign: &Campaign) -> Vec<(&'static str, Vec<f64>)> {
     let mut out = Vec::new();
@@ -138,6 +144,8 @@ pub fn per_observation(data: &Dataset, campaign: &Campaign) -> Vec<(&'static str
 /// C_D = −f·v/(½ρU³A) of every row on `body.reference_area`: the force against the motion, before any model.
 ///
 /// For planar motion; `None` without the area, the density or f_x, and where the table has v_z.
+///
+/// f in N, v and U in m/s, ρ in kg/m³, A in m²; dimensionless. NaN or infinite where a row is at rest.
 #[must_use]
 pub fn drag_coefficient(data: &Dataset, campaign: &Campaign) -> Option<Vec<f64>> {
     if data.channels.contains_key("v_z") {

@@ -195,7 +195,7 @@ fn a_force_along_the_motion_counts_the_rows_that_are_large_enough_to_tell() {
     assert_eq!(
         finding(&result, "force-along-motion").unwrap(),
         "f_x points along v_x in 10 of the 10 rows large enough to tell (12 in all): a drag must oppose the motion; if the \
-         sensor is mounted the other way round, say sign = -1 for its column"
+         sensor is mounted the other way round, write sign = -1 for its column"
     );
 }
 
@@ -266,7 +266,7 @@ fn a_measured_density_is_used_unless_one_is_stated_and_then_it_is_told() {
     assert_eq!(finding(&bare, "stated-over-measured"), None);
     assert_eq!(
         finding(&bare, "measured-over-stated").unwrap(),
-        "the table's temperatures are the water's, where density or viscosity is taken from one; temperature = 20.00 degC of \
+        "density and viscosity, where they follow from a temperature, use the table's temperatures; temperature = 20.00 degC of \
          [fluid] is not used"
     );
 }

@@ -1,7 +1,7 @@
 //! Order of arrival: what was lost, repeated or late.
 //!
 //! Every frame of one end carries the next 16-bit number. A number ahead of the newest one seen leaves a gap; a number
-//! behind it is late if it fills a gap and a repetition if it does not, told apart over the last 64 numbers. Older ones count as
+//! behind it is late if it fills a gap and a repetition if it does not, distinguished over the last 64 numbers. Older ones count as
 //! late without giving anything back. Gaps of up to 32,767 frames (8 s of telemetry) are counted exactly.
 
 /// Numbers behind the newest one that are remembered.

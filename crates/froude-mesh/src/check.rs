@@ -71,7 +71,7 @@ pub enum Trouble {
     },
     /// Neighbours that run the same way along an edge.
     #[error(
-        "{} passed twice in one direction, the first from {from:?} to {to:?} m: neighbours are oriented against each other", counted(*count, "edge is", "edges are")
+        "{} traversed twice in the same direction, the first from {from:?} to {to:?} m: neighbours are oriented against each other", counted(*count, "edge is", "edges are")
     )]
     Turned {
         /// How many.
@@ -288,15 +288,18 @@ fn edges(mesh: &Mesh) -> Vec<Trouble> {
     let mut edges: Vec<_> = passed.into_iter().collect();
     edges.sort_unstable();
     let point = |v: u32| mesh.vertices[v as usize];
-    let told = |is_such: fn(usize, usize) -> bool, trouble: fn(usize, Vec3, Vec3) -> Trouble| {
+    let reported = |is_such: fn(usize, usize) -> bool, trouble: fn(usize, Vec3, Vec3) -> Trouble| {
         let mut such = edges.iter().filter(|(_, (there, back))| is_such(*there, *back));
         let ((from, to), _) = *such.next()?;
         Some(trouble(1 + such.count(), point(from), point(to)))
     };
     [
-        told(|there, back| there + back == 1, |count, from, to| Trouble::Open { count, from, to }),
-        told(|there, back| there + back == 2 && there != back, |count, from, to| Trouble::Turned { count, from, to }),
-        told(|there, back| there + back > 2, |count, from, to| Trouble::Branched { count, from, to }),
+        reported(|there, back| there + back == 1, |count, from, to| Trouble::Open { count, from, to }),
+        reported(
+            |there, back| there + back == 2 && there != back,
+            |count, from, to| Trouble::Turned { count, from, to },
+        ),
+        reported(|there, back| there + back > 2, |count, from, to| Trouble::Branched { count, from, to }),
     ]
     .into_iter()
     .flatten()
@@ -315,18 +318,23 @@ mod tests {
     #[test]
     fn a_generated_body_is_fit_for_use_and_its_troubles_are_found() {
         assert_eq!(check(&good()), []);
-        let told = |change: fn(&mut Mesh)| {
+        let reported = |change: fn(&mut Mesh)| {
             let mut mesh = good();
             change(&mut mesh);
             check(&mesh).iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
         };
-        assert_eq!(told(|m| m.panels.clear()), "the mesh has no panel");
-        assert!(told(|m| m.vertices[3][1] = f64::NAN).starts_with("vertex 3 has the coordinates"));
-        assert!(told(|m| m.panels[0] = Panel::triangle(0, 1, 999)).contains("the vertex 999, and there are 26"));
-        assert!(told(|m| _ = m.panels.pop()).starts_with("3 edges have one panel only"));
-        assert!(told(|m| m.panels[9] = m.panels[9].turned()).contains("4 edges are passed twice in one direction"));
-        assert!(told(|m| m.panels.push(m.panels[9])).contains("is there twice (also as 9)"));
-        assert!(told(|m| m.panels.iter_mut().for_each(|p| *p = p.turned())).starts_with("the surface is inside out"));
-        assert!(told(|m| m.vertices.iter_mut().for_each(|v| (v[1], v[2]) = (0.0, 0.0))).contains("has no area"));
+        assert_eq!(reported(|m| m.panels.clear()), "the mesh has no panel");
+        assert!(reported(|m| m.vertices[3][1] = f64::NAN).starts_with("vertex 3 has the coordinates"));
+        assert!(reported(|m| m.panels[0] = Panel::triangle(0, 1, 999)).contains("the vertex 999, and there are 26"));
+        assert!(reported(|m| _ = m.panels.pop()).starts_with("3 edges have one panel only"));
+        assert!(
+            reported(|m| m.panels[9] = m.panels[9].turned())
+                .contains("4 edges are traversed twice in the same direction")
+        );
+        assert!(reported(|m| m.panels.push(m.panels[9])).contains("is there twice (also as 9)"));
+        assert!(
+            reported(|m| m.panels.iter_mut().for_each(|p| *p = p.turned())).starts_with("the surface is inside out")
+        );
+        assert!(reported(|m| m.vertices.iter_mut().for_each(|v| (v[1], v[2]) = (0.0, 0.0))).contains("has no area"));
     }
 }

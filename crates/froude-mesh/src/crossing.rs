@@ -1,7 +1,7 @@
 //! Panels that go through one another, touch where they share no vertex, or are folded onto a neighbour.
 //!
 //! Each panel is one or two triangles. Two triangles meet when an edge of one has a point in common with the other; the signs of the
-//! determinants that decide it are exact, so that no tolerance is needed and what touches is told as well. Of two triangles with one
+//! determinants that decide it are exact, so that no tolerance is needed and what touches is reported as well. Of two triangles with one
 //! common corner, the opposite edges must not meet the other. Two with a common edge meet elsewhere only when they are folded onto one
 //! another; there the angle between them is compared with [`FOLD_RAD`]. Vertices at one point count as one here, so that a seam that is
 //! not welded is no crossing.
@@ -49,13 +49,13 @@ pub fn crossings(mesh: &Mesh) -> Vec<Trouble> {
         crossing.len().max(folded.len()) < MOST
     });
     // Halves of two panels can meet more than once.
-    let told = |mut pairs: Vec<(u32, u32, Vec3)>| {
+    let reported = |mut pairs: Vec<(u32, u32, Vec3)>| {
         pairs.sort_by_key(|(a, b, _)| (*a, *b));
         pairs.dedup_by_key(|(a, b, _)| (*a, *b));
         pairs.first().map(|(first, second, at)| (pairs.len(), *first as usize, *second as usize, *at))
     };
-    let crossing = told(crossing).map(|(count, first, second, at)| Trouble::Crossing { count, first, second, at });
-    let folded = told(folded).map(|(count, first, second, at)| Trouble::Folded { count, first, second, at });
+    let crossing = reported(crossing).map(|(count, first, second, at)| Trouble::Crossing { count, first, second, at });
+    let folded = reported(folded).map(|(count, first, second, at)| Trouble::Folded { count, first, second, at });
     crossing.into_iter().chain(folded).collect()
 }
 
@@ -249,7 +249,7 @@ impl Tree {
         self.nodes.len() - 1
     }
 
-    /// Calls for each two triangles whose boxes meet, until told to stop.
+    /// Calls for each two triangles whose boxes meet, until asked to stop.
     fn each_pair(&self, mut f: impl FnMut(usize, usize) -> bool) {
         let mut open = vec![(0, 0)];
         while let Some((a, b)) = open.pop() {
@@ -295,18 +295,18 @@ mod tests {
         mesh.mapped(|[x, y, z]| [x + x_m, y, z])
     }
 
-    fn told(mesh: &Mesh) -> Vec<String> {
+    fn reported(mesh: &Mesh) -> Vec<String> {
         crossings(mesh).iter().map(ToString::to_string).collect()
     }
 
     #[test]
     fn sound_bodies_cross_nothing() {
-        assert_eq!(told(&ball(0.0, 4)), <[&str; 0]>::default());
+        assert_eq!(reported(&ball(0.0, 4)), <[&str; 0]>::default());
         let robot = ModularRobot::NECKED_MAMBA.body(3, 0.03).mesh(Resolution { along: 2, around: 24 }).unwrap().mesh;
-        assert_eq!(told(&robot), <[&str; 0]>::default());
+        assert_eq!(reported(&robot), <[&str; 0]>::default());
         let flat =
             SectionBody::flat_cylinder(1.0, 0.5, 0.5, [3, 5]).mesh(Resolution { along: 2, around: 16 }).unwrap().mesh;
-        assert_eq!(told(&flat), <[&str; 0]>::default());
+        assert_eq!(reported(&flat), <[&str; 0]>::default());
     }
 
     #[test]
@@ -314,19 +314,19 @@ mod tests {
         let mesh = ball(0.0, 4).with(&ball(1.5, 4));
         assert_eq!(check(&mesh), []);
         let [Trouble::Crossing { count, first, second, at }] = crossings(&mesh)[..] else {
-            panic!("{:?}", told(&mesh))
+            panic!("{:?}", reported(&mesh))
         };
         assert!(count > 30 && first < mesh.panels.len() / 2 && second >= mesh.panels.len() / 2);
         // Between the two spheres at x = 0.75, and within a panel's sag of both.
         assert!((at[0] - 0.75).abs() < 0.1 && (at[1].hypot(at[2]) - 0.75_f64.acos().sin()).abs() < 0.1, "{at:?}");
-        assert_eq!(told(&ball(0.0, 4).with(&ball(2.5, 4))), <[&str; 0]>::default());
+        assert_eq!(reported(&ball(0.0, 4).with(&ball(2.5, 4))), <[&str; 0]>::default());
     }
 
     fn one(vertices: &[Vec3], panels: &[&[u32]]) -> Vec<String> {
         let panel = |p: &&[u32]| {
             if let [a, b, c] = **p { Panel::triangle(a, b, c) } else { Panel::quad(p[0], p[1], p[2], p[3]) }
         };
-        told(&Mesh { vertices: vertices.to_vec(), panels: panels.iter().map(panel).collect() })
+        reported(&Mesh { vertices: vertices.to_vec(), panels: panels.iter().map(panel).collect() })
     }
 
     #[test]

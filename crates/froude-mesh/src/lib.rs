@@ -14,7 +14,7 @@
 //! | [`check`] | closed, oriented, without slivers, copies and numbers that are none |
 //! | [`parts`] | what hangs together; a part that is inside out, or inside another |
 //! | [`crossing`] | panels through one another, or folded onto a neighbour |
-//! | [`repair`] | vertices merged, panels turned, what is superfluous taken out: each told |
+//! | [`repair`] | vertices merged, panels turned, what is superfluous taken out: each reported |
 //! | [`plausible`] | doubts: drawn in millimetres, through the water's surface |
 //! | [`refine`] | panels divided, warp taken out, facets rounded |
 //! | [`sections`] | bodies of elliptic sections along a line: ellipsoids, capsules, cylinders, necks |

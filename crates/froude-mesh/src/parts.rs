@@ -158,9 +158,9 @@ mod tests {
     fn a_small_part_that_is_inside_out_is_told_although_the_whole_has_a_volume() {
         let mesh = ball(0.0, 1.0).with(&inside_out(ball(3.0, 0.5)));
         assert_eq!(check(&mesh), []);
-        let told: Vec<String> = part_troubles(&mesh).iter().map(ToString::to_string).collect();
+        let reported: Vec<String> = part_troubles(&mesh).iter().map(ToString::to_string).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 "part 1 (64 panels, at [2.5, 0.0, 0.0] m) is inside out (its volume is -4.5346e-1 m³), others are not; turn its panels"
             ]
@@ -170,9 +170,9 @@ mod tests {
     #[test]
     fn a_part_inside_another_is_told() {
         let mesh = ball(0.1, 0.5).with(&ball(0.0, 1.0)).with(&ball(5.0, 0.2));
-        let told: Vec<String> = part_troubles(&mesh).iter().map(ToString::to_string).collect();
+        let reported: Vec<String> = part_troubles(&mesh).iter().map(ToString::to_string).collect();
         assert_eq!(
-            told,
+            reported,
             [
                 "part 0 (64 panels, at [-0.4, 0.0, 0.0] m, volume 4.5346e-1 m³) lies inside part 1: no water reaches it; take it out"
             ]

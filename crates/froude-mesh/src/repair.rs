@@ -1,4 +1,4 @@
-//! Repairs that change no shape, each told: vertices merged, panels without area and copies taken out, panels turned.
+//! Repairs that change no shape, each reported: vertices merged, panels without area and copies taken out, panels turned.
 //!
 //! Holes are not closed, and what cannot be known is not decided: the outside of an open surface, and of one inside another.
 //!
@@ -54,7 +54,7 @@ pub enum Repair {
         count: usize,
     },
     /// Panels turned to run as their neighbours do.
-    #[error("{} turned to run as most of their neighbours, first at {at:?} m", counted(*count, "panel", "panels"))]
+    #[error("{} turned to match most of their neighbours, first at {at:?} m", counted(*count, "panel", "panels"))]
     Turned {
         /// How many.
         count: usize,
@@ -120,15 +120,15 @@ pub fn repaired(mesh: &Mesh, weld_m: f64) -> (Mesh, Vec<Repair>) {
     if let Some(trouble) = first_unreadable(mesh) {
         return (mesh.clone(), vec![Repair::Nothing(trouble)]);
     }
-    let mut told = Vec::new();
-    let mut out = welded(mesh, weld_m, &mut told);
-    take_out(&mut out, &mut told);
+    let mut reported = Vec::new();
+    let mut out = welded(mesh, weld_m, &mut reported);
+    take_out(&mut out, &mut reported);
     let count = out.drop_unused_vertices();
     if count > 0 {
-        told.push(Repair::Unused { count });
+        reported.push(Repair::Unused { count });
     }
-    orient(&mut out, &mut told);
-    (out, told)
+    orient(&mut out, &mut reported);
+    (out, reported)
 }
 
 fn corner(mesh: &Mesh, panel: usize) -> Vec3 {
@@ -136,7 +136,7 @@ fn corner(mesh: &Mesh, panel: usize) -> Vec3 {
 }
 
 /// Each vertex becomes the first one near it; a grid of cells as large as the tolerance finds it.
-fn welded(mesh: &Mesh, weld_m: f64, told: &mut Vec<Repair>) -> Mesh {
+fn welded(mesh: &Mesh, weld_m: f64, reported: &mut Vec<Repair>) -> Mesh {
     let weld_m = if weld_m.is_finite() { weld_m.max(0.0) } else { 0.0 };
     let low = |axis: usize| mesh.vertices.iter().map(|v| v[axis]).fold(f64::INFINITY, f64::min);
     let low = [low(0), low(1), low(2)];
@@ -175,13 +175,13 @@ fn welded(mesh: &Mesh, weld_m: f64, told: &mut Vec<Repair>) -> Mesh {
     out.panels = mesh.panels.iter().map(renumbered).collect();
     let count = mesh.vertices.len() - out.vertices.len();
     if let Some(at) = first {
-        told.push(Repair::Merged { count, weld_m, at });
+        reported.push(Repair::Merged { count, weld_m, at });
     }
     out
 }
 
 /// Takes out panels without area, and the later of two over the same corners.
-fn take_out(mesh: &mut Mesh, told: &mut Vec<Repair>) {
+fn take_out(mesh: &mut Mesh, reported: &mut Vec<Repair>) {
     let extent = extent(mesh);
     let mut seen = IndexSet::new();
     let (mut empty, mut copies) = ((0, None), (0, None));
@@ -201,10 +201,10 @@ fn take_out(mesh: &mut Mesh, told: &mut Vec<Repair>) {
         gone.1.get_or_insert_with(|| corner(mesh, number));
     }
     if let (count, Some(at)) = empty {
-        told.push(Repair::NoArea { count, at });
+        reported.push(Repair::NoArea { count, at });
     }
     if let (count, Some(at)) = copies {
-        told.push(Repair::Copies { count, at });
+        reported.push(Repair::Copies { count, at });
     }
     mesh.panels = panels;
 }
@@ -216,21 +216,21 @@ struct Sheet {
     is_closed: bool,
 }
 
-fn orient(mesh: &mut Mesh, told: &mut Vec<Repair>) {
+fn orient(mesh: &mut Mesh, reported: &mut Vec<Repair>) {
     let (sheets, mut turned) = sheets(mesh);
     let at = |mesh: &Mesh, sheet: &Sheet| corner(mesh, sheet.panels[0]);
     for sheet in &sheets {
         let count = sheet.panels.iter().filter(|p| turned[**p]).count();
         if !sheet.is_two_sided {
             sheet.panels.iter().for_each(|p| turned[*p] = false);
-            told.push(Repair::OneSided { panels: sheet.panels.len(), at: at(mesh, sheet) });
+            reported.push(Repair::OneSided { panels: sheet.panels.len(), at: at(mesh, sheet) });
         } else if 2 * count > sheet.panels.len() {
             sheet.panels.iter().for_each(|p| turned[*p] = !turned[*p]);
         }
     }
     let which: Vec<usize> = (0..turned.len()).filter(|p| turned[*p]).collect();
     if let Some(first) = which.first() {
-        told.push(Repair::Turned { count: which.len(), at: corner(mesh, *first) });
+        reported.push(Repair::Turned { count: which.len(), at: corner(mesh, *first) });
     }
     for p in &which {
         mesh.panels[*p] = mesh.panels[*p].turned();
@@ -245,16 +245,16 @@ fn orient(mesh: &mut Mesh, told: &mut Vec<Repair>) {
             continue;
         }
         if !sheet.is_closed {
-            told.push(Repair::Open { panels, at });
+            reported.push(Repair::Open { panels, at });
             continue;
         }
         let volume_m3 = volume(mesh, &sheet.panels);
         if let Some(outer) = holder {
             let outer = corner(mesh, sheets[*outer].panels[0]);
-            told.push(Repair::Nested { panels, at, volume_m3, outer });
+            reported.push(Repair::Nested { panels, at, volume_m3, outer });
         } else if volume_m3 < 0.0 {
             sheet.panels.iter().for_each(|p| mesh.panels[*p] = mesh.panels[*p].turned());
-            told.push(Repair::Outward { panels, at, volume_m3 });
+            reported.push(Repair::Outward { panels, at, volume_m3 });
         }
     }
 }
@@ -344,7 +344,7 @@ mod tests {
         out
     }
 
-    fn told(repairs: &[Repair]) -> Vec<String> {
+    fn reported(repairs: &[Repair]) -> Vec<String> {
         repairs.iter().map(ToString::to_string).collect()
     }
 
@@ -375,9 +375,9 @@ mod tests {
             "1 panel without area taken out, first at [-1.0, 0.0, 0.0] m".to_owned(),
             format!("1 copy of a panel taken out, first at {copied}"),
             "1 vertex that no panel uses taken out".to_owned(),
-            format!("1 panel turned to run as most of their neighbours, first at {turned}"),
+            format!("1 panel turned to match most of their neighbours, first at {turned}"),
         ];
-        assert_eq!(told(&repairs), expected);
+        assert_eq!(reported(&repairs), expected);
     }
 
     #[test]
@@ -386,14 +386,17 @@ mod tests {
         mesh.panels.iter_mut().for_each(|p| *p = p.turned());
         let (out, repairs) = repaired(&mesh, 0.0);
         assert!((Measure::of(&out).volume_m3 + Measure::of(&mesh).volume_m3).abs() < 1e-12);
-        assert_eq!(told(&repairs)[1], "64 panels turned outward, at [2.5, 0.0, 0.0] m: they enclosed -4.5346e-1 m³");
+        assert_eq!(
+            reported(&repairs)[1],
+            "64 panels turned outward, at [2.5, 0.0, 0.0] m: they enclosed -4.5346e-1 m³"
+        );
 
         let nested = ball(0.0, 1.0).with(&ball(0.0, 0.5));
         let (out, repairs) = repaired(&nested, 0.0);
         assert_eq!(out, nested);
         let sentence = "not decided: 64 panels at [-0.5, 0.0, 0.0] m, volume 4.5346e-1 m³, lie inside the surface at [-1.0, 0.0, 0.0] m; \
                         take out the one that the water does not touch";
-        assert_eq!(told(&repairs), [sentence]);
+        assert_eq!(reported(&repairs), [sentence]);
     }
 
     #[test]
@@ -402,7 +405,7 @@ mod tests {
         open.panels.remove(0);
         let (out, repairs) = repaired(&open, 1e-6);
         assert_eq!(out, open);
-        assert!(told(&repairs)[0].starts_with("not decided: the outside of 63 panels"), "{repairs:?}");
+        assert!(reported(&repairs)[0].starts_with("not decided: the outside of 63 panels"), "{repairs:?}");
 
         // A band of quadrilaterals, joined with half a turn.
         let vertices = (0..16).map(|i| {
@@ -419,7 +422,7 @@ mod tests {
         let band = Mesh { vertices: vertices.collect(), panels: (0..8).map(quad).collect() };
         let (out, repairs) = repaired(&band, 0.0);
         assert_eq!(out.panels, band.panels);
-        assert!(told(&repairs)[0].starts_with("not possible: 8 panels"), "{repairs:?}");
+        assert!(reported(&repairs)[0].starts_with("not possible: 8 panels"), "{repairs:?}");
     }
 
     #[test]
@@ -433,7 +436,7 @@ mod tests {
         let half = 0.5 * core::f64::consts::SQRT_2;
         let mesh = box_at(0.0, 0.0).with(&box_at(half, half));
         let (out, repairs) = repaired(&mesh, 1e-9);
-        assert_eq!(told(&repairs).len(), 1, "{repairs:?}");
+        assert_eq!(reported(&repairs).len(), 1, "{repairs:?}");
         assert!((Measure::of(&out).volume_m3 - 1.0).abs() < 1e-12);
     }
 

@@ -41,7 +41,7 @@ impl AddedMass {
 
     /// The same body in other axes about another point: A' = Tᵀ A T, T the motions here from those there.
     ///
-    /// The kinetic energy ½ νᵀAν of a motion does not depend on the frame that it is told in.
+    /// The kinetic energy ½ νᵀAν of a motion does not depend on the frame that it is expressed in.
     #[must_use]
     pub fn seen_from(&self, frame: &Frame) -> Self {
         let t = self.frame.motions_from(frame);

@@ -36,7 +36,7 @@ impl Frame {
         core::array::from_fn(|mode| dot(self.axes[mode % 3], if mode < 3 { n } else { m }))
     }
 
-    /// Motions along and about these axes (rows) of a rigid body whose motions are told in another frame (columns).
+    /// Motions along and about these axes (rows) of a rigid body whose motions are expressed in another frame (columns).
     ///
     /// With d from the other point to this one, the velocity here is v + ω × d.
     #[must_use]

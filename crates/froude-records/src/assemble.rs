@@ -78,7 +78,7 @@ pub(crate) fn plan<'s>(
     {
         return Err(RecordError::Syntax {
             place: header_place.clone(),
-            problem: "numbers stand where the columns are named; write a line of headers above them, as `speed [m/s],f_x [N]`"
+            problem: "there are numbers where the columns should be named; write a line of headers above them, as `speed [m/s],f_x [N]`"
                 .to_owned(),
         });
     }

@@ -178,7 +178,7 @@ fn need(s: &Section<'_>, key: &'static str) -> Result<f64, RecordError> {
         Some(value) if !(least..=most).contains(&length_m) => Err(s.wrong(
             key,
             value,
-            format!("is {length_m} m; lengths of a body are from {least} m to {most} m: look at its unit"),
+            format!("is {length_m} m; lengths of a body are from {least} m to {most} m: check its unit"),
         )),
         _ => Ok(length_m),
     }
@@ -217,21 +217,24 @@ fn joint(j: &Section<'_>, pitch_m: f64) -> Result<Joint, RecordError> {
             .ok_or_else(|| j.missing("scale", "write its section over that of the link: scale = 0.7"))?,
         ramp_m: need(j, "ramp")?,
     };
-    let told = |key: &'static str, problem: String| match j.get(key) {
+    let refused = |key: &'static str, problem: String| match j.get(key) {
         Some(value) => j.wrong(key, value, problem),
         None => j.missing(key, "write it"),
     };
     if !(joint.scale > 0.0 && joint.scale <= 1.0) {
-        return Err(told("scale", format!("is {}; a joint's section lies between 0 and 1 of the link's", joint.scale)));
+        return Err(refused(
+            "scale",
+            format!("is {}; a joint's section lies between 0 and 1 of the link's", joint.scale),
+        ));
     }
     if 2.0 * joint.ramp_m >= joint.length_m {
-        return Err(told(
+        return Err(refused(
             "ramp",
             format!("is {} m; two of them must be shorter than the joint of {} m", joint.ramp_m, joint.length_m),
         ));
     }
     if joint.length_m >= pitch_m {
-        return Err(told(
+        return Err(refused(
             "length",
             format!("is {} m; it must be shorter than the link from joint to joint, {pitch_m} m", joint.length_m),
         ));
@@ -291,17 +294,17 @@ ends = { length = "31 mm" }
 
     #[test]
     fn what_cannot_be_is_told_with_its_place() {
-        let told = |from: &str, to: &str| read(&ROBOT.replace(from, to)).unwrap_err().to_string();
+        let refused = |from: &str, to: &str| read(&ROBOT.replace(from, to)).unwrap_err().to_string();
         assert_eq!(
-            told("ramp = \"4 mm\"", "ramp = \"40 mm\""),
+            refused("ramp = \"4 mm\"", "ramp = \"40 mm\""),
             "body.toml:9:49: `ramp` is 0.04 m; two of them must be shorter than the joint of 0.06 m"
         );
-        assert!(told("\"31 mm\"", "\"31 kg\"").contains("body.toml:10"));
-        assert!(told("shape = \"robot\"", "shape = \"robo\"").contains("robot"));
-        assert!(told("scale = 0.7", "scale = 1.7").contains("between 0 and 1"));
-        assert!(told("shape = \"robot\"", "").contains("shape"));
-        assert!(told("ends = { length = \"31 mm\" }", "").contains("write ends"));
-        let gravity = |list: &str| told("ends =", &format!("centre_of_gravity = {list}\nends ="));
+        assert!(refused("\"31 mm\"", "\"31 kg\"").contains("body.toml:10"));
+        assert!(refused("shape = \"robot\"", "shape = \"robo\"").contains("robot"));
+        assert!(refused("scale = 0.7", "scale = 1.7").contains("between 0 and 1"));
+        assert!(refused("shape = \"robot\"", "").contains("shape"));
+        assert!(refused("ends = { length = \"31 mm\" }", "").contains("write ends"));
+        let gravity = |list: &str| refused("ends =", &format!("centre_of_gravity = {list}\nends ="));
         assert_eq!(
             gravity("[\"0 mm\", \"1 mm\"]"),
             "body.toml:10:21: `centre_of_gravity` has 2 entries; expected three lengths: [\"0 mm\", \"0 mm\", \"-12 mm\"]"

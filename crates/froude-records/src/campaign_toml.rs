@@ -225,8 +225,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     if let (Some(value), false) = (s.get("decay"), is_decay) {
-        let problem =
-            "says what swings, but no method of the source is one of free decay: write method = \"decay_output_error\"";
+        let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
     Ok(Source {
@@ -255,7 +254,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn decay(s: &Section<'_>) -> Result<DecaySpec, RecordError> {
     s.only(&["axis", "inertia", "stiffness", "free_from", "skip_half_cycles"])?;
     let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
-        .ok_or_else(|| s.missing("axis", "say what it does: axis = \"heave\", say"))?;
+        .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", say"))?;
     let (inertia, stiffness) =
         if axis.is_rotation() { (INERTIA, Dimension::MOMENT) } else { (Dimension::MASS, STIFFNESS) };
     let need = |key: &'static str, dimension, like: &str| {
@@ -316,7 +315,7 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
     }
     let levels = [Shared::Sample, Shared::Run, Shared::Setup, Shared::Campaign];
     let shared = one_of(s, "shared", &Shared::NAMES, &levels)?.ok_or_else(|| {
-        s.missing("shared", "say who shares the error: \"sample\", \"run\", \"setup\" or \"campaign\"")
+        s.missing("shared", "state what shares the error: \"sample\", \"run\", \"setup\" or \"campaign\"")
     })?;
     Ok(BudgetEntry {
         quantity: quantity.to_owned(),
@@ -539,7 +538,8 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
         return Err(RecordError::Value {
             place: s.place(),
             key: "standard_uncertainty".to_owned(),
-            problem: "must be larger than zero; a value without uncertainty is no prior, hold it with fixed".to_owned(),
+            problem: "must be larger than zero; a value without uncertainty is not a prior; fix it with `fixed`"
+                .to_owned(),
         });
     }
     Ok(out)
@@ -597,7 +597,7 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
     let ((Some(truth), None) | (None, Some(truth))) = (record, written) else {
         return Err(s.missing(
             "record",
-            "a twin needs its truth once: record (with select), or model and [simulate.coefficients]",
+            "a twin needs exactly one truth: record (with select), or model and [simulate.coefficients]",
         ));
     };
     Ok(Simulate {

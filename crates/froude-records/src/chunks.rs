@@ -75,7 +75,7 @@ fn csv<E: From<RecordError>>(
     sidecar: Option<&Sidecar>,
     each: &mut dyn FnMut(Table) -> Result<(), E>,
 ) -> Result<(), E> {
-    let failed = |error| E::from(told(path, error));
+    let failed = |error| E::from(reported(path, error));
     let mut reader = Reader::open(path, CHUNK_BYTES).map_err(failed)?;
     let mut start = reader.beginning().map_err(failed)?;
     if start.starts_with(b"\xef\xbb\xbf") {
@@ -131,7 +131,7 @@ fn chunk(
 }
 
 /// What keeps the lines from being read, in the words of tables.
-fn told(path: &Path, error: FastCsvError) -> RecordError {
+fn reported(path: &Path, error: FastCsvError) -> RecordError {
     let syntax = |line: u64, problem: String| RecordError::Syntax {
         place: Place::line(path, usize::try_from(line).unwrap_or(usize::MAX)),
         problem,

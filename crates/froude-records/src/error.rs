@@ -166,7 +166,7 @@ pub enum RecordError {
     },
     /// What a file says is not what its own `checksum` was written for.
     #[error(
-        "{place}: what the file says is not what this checksum was written for: the file was edited or damaged. Copy it again from \
+        "{place}: the content is not what this checksum was written for: the file was edited or damaged. Copy it again from \
          where it was written; to adopt an edit, delete this line"
     )]
     Checksum {

@@ -285,7 +285,7 @@ fn check(path: &Path, text: &str, file: &EstimateFile) -> Result<(), RecordError
 fn shape(file: &EstimateFile, estimate: &Estimate) -> Option<String> {
     let is = |rows: &[Vec<f64>], n: usize, q: usize| rows.len() == n && rows.iter().all(|row| row.len() == q);
     if let Some(key) = estimate.data.iter().find(|key| !file.data.contains_key(*key)) {
-        return Some(format!("its data names {key}, which is no file of the record"));
+        return Some(format!("its data names {key}, which is not a file of the record"));
     }
     let Some(TypeA { names, matrix, dof, kind: _ }) = &estimate.type_a else {
         let first = estimate.errors.keys().next()?;
@@ -296,7 +296,7 @@ fn shape(file: &EstimateFile, estimate: &Estimate) -> Option<String> {
         return Some(format!("the covariance names {n} coefficients, its matrix is not {n} by {n}"));
     }
     if let Some(name) = names.iter().find(|name| !estimate.coefficients.contains_key(*name)) {
-        return Some(format!("the covariance names {name}, which is no coefficient of it"));
+        return Some(format!("the covariance names {name}, which is not one of its coefficients"));
     }
     if dof.len() != n {
         return Some(format!("the covariance names {n} coefficients, {} have degrees of freedom", dof.len()));

@@ -84,7 +84,7 @@ fn clause(text: &str) -> Result<KeepClause, KeepError> {
     let (sign, comparison) = COMPARISONS
         .into_iter()
         .find(|(sign, _)| text[at..].starts_with(sign))
-        .ok_or_else(|| refuse("a single = or ! is no comparison; write == or !=".to_owned()))?;
+        .ok_or_else(|| refuse("a single = or ! is not a comparison; write == or !=".to_owned()))?;
     let column = text[..at].trim();
     let value = text[at + sign.len()..].trim();
     let is_name = !column.is_empty() && column.chars().all(|c| c.is_alphanumeric() || c == '_');

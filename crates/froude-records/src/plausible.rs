@@ -108,7 +108,7 @@ fn no_water(kg_m3: f64) -> Option<String> {
         None => "fresh water has 1000 kg/m^3, sea water 1025".to_owned(),
     };
     let [low, high] = [LIQUID_KG_M3.start(), LIQUID_KG_M3.end()];
-    Some(format!("is the density of no water ({low} to {high} kg/m^3 are taken); {advice}"))
+    Some(format!("is not a density of water ({low} to {high} kg/m^3 are accepted); {advice}"))
 }
 
 /// The unit that a bare number of this kind was probably meant in: 1.025 is a density in g/cm³, and in kg/m³ that of air.
@@ -156,7 +156,7 @@ mod tests {
         for rho in [500.0, 700.0, 997.0, 1025.0, 1240.0, 2000.0] {
             assert_eq!(density(rho, None), None, "{rho}");
         }
-        let meant = "is the density of no water (500 to 2000 kg/m^3 are taken); write 1.025 g/cm^3 or 1025 kg/m^3";
+        let meant = "is not a density of water (500 to 2000 kg/m^3 are taken); write 1.025 g/cm^3 or 1025 kg/m^3";
         assert!(density(1.025, None).unwrap().starts_with(&format!("{meant}; if the test was in air, state its")));
         assert_eq!(density(1.025e6, None).unwrap(), meant);
         assert!(

@@ -105,7 +105,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A key that is needed and not there; where an unknown key looks like it, that one is told.
+    /// A key that is needed and not there; where an unknown key looks like it, that one is reported.
     pub fn missing(&self, key: &str, advice: &str) -> RecordError {
         self.misspelt(key).unwrap_or_else(|| RecordError::MissingKey {
             place: self.place(),
@@ -127,7 +127,7 @@ impl<'a> Section<'a> {
     }
 
     /// Declares every key of the section, and refuses others before anything is read: a misspelt key that the section
-    /// needs is then told as misspelt and not as missing.
+    /// needs is then reported as misspelt and not as missing.
     pub fn only(&self, known: &[&'static str]) -> Result<(), RecordError> {
         self.asked.borrow_mut().extend(known);
         self.finish()

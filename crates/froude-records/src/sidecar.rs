@@ -46,7 +46,7 @@ pub struct Mapping {
 pub(crate) fn is_sidecar(path: &Path) -> bool {
     let is_head = |line: &str| {
         let line = line.trim_start();
-        // Without its last letter, so that [column] is told as misspelt and not passed over.
+        // Without its last letter, so that [column] is reported as misspelt and not passed over.
         line.starts_with("[column") || line.starts_with("[constant")
     };
     read_bytes(path, LARGEST_BYTES, "a sidecar").is_ok_and(|bytes| String::from_utf8_lossy(&bytes).lines().any(is_head))

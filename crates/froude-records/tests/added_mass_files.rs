@@ -148,7 +148,7 @@ fn what_is_no_row_is_told_with_its_line() {
     };
     assert_eq!(told("-1 1 1 2\n-1 1 2\n"), "a.1:2: the row has 3 numbers; PER, I, J and ABAR are needed");
     assert_eq!(told("-1 1 1 2\n0 1 1 2\n-1 1 1 3\n"), "a.1:3: element 1, 1 stands in line 1 already; delete one");
-    assert_eq!(told("-1 0 1 2\n"), "a.1:1: `0` is no index; they go from 1 to 5994");
+    assert_eq!(told("-1 0 1 2\n"), "a.1:1: `0` is not an index; they go from 1 to 5994");
     assert_eq!(told("-1 1 1 2\n-1 1 2 NaN\n"), "a.1:2: `NaN` is not a finite number");
     assert!(
         read_wamit(&path, 0.0, 1.0).unwrap_err().to_string().contains("density is 0; it must be finite and above 0")

@@ -281,7 +281,7 @@ fn versions_are_compared() {
         parse("{\"estimates\": []}").unwrap_err(),
         "estimate.json: `schema` is missing; expected froude/estimate/2"
     );
-    // A newer record may look quite different: the version is told first.
+    // A newer record may look quite different: the version is reported first.
     assert_eq!(
         parse("{\"schema\": \"froude/estimate/7\", \"estimates\": 3}").unwrap_err(),
         "estimate.json:1: this is froude/estimate/7; this program reads up to froude/estimate/2: use a newer Froude"
@@ -394,7 +394,7 @@ fn records_that_contradict_themselves_are_refused() {
     let file = spoil(&|a| a.names = vec!["C_q".to_owned()]);
     assert_eq!(
         parse(&text(&file)).unwrap_err(),
-        format!("estimate.json:{id}: estimate tank/f4: the covariance names C_q, which is no coefficient of it")
+        format!("estimate.json:{id}: estimate tank/f4: the covariance names C_q, which is not one of its coefficients")
     );
     refused(
         "\"sensitivity\": [\n            [\n              0.2",
@@ -407,7 +407,7 @@ fn records_that_contradict_themselves_are_refused() {
     file.estimates[0].data = vec!["d9".to_owned()];
     assert_eq!(
         parse(&text(&file)).unwrap_err(),
-        format!("estimate.json:{id}: estimate tank/f4: its data names d9, which is no file of the record")
+        format!("estimate.json:{id}: estimate tank/f4: its data names d9, which is not a file of the record")
     );
     let mut file = sample();
     file.estimates.push(file.estimates[0].clone());
@@ -435,7 +435,7 @@ fn a_record_may_be_laid_out_otherwise_and_not_say_otherwise() {
     assert_ne!(other, written);
     assert_eq!(
         parse(&other).unwrap_err(),
-        "estimate.json:3: what the file says is not what this checksum was written for: the file was edited or damaged. Copy it again \
+        "estimate.json:3: the content is not what this checksum was written for: the file was edited or damaged. Copy it again \
          from where it was written; to adopt an edit, delete this line"
     );
 }

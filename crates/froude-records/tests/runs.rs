@@ -563,7 +563,7 @@ fn bytes_changed_anywhere_give_a_run_or_an_error_and_never_a_panic() {
     assert!(n_read > n / 2, "most damage leaves something to read: {n_read} of {n}");
 }
 
-/// What resuming is told about a run.
+/// What resuming learns about a run.
 fn pair(folder: &Path, id: &str) -> Result<Pair, froude_records::RecordError> {
     let campaign = meta(id).campaign;
     check_pair(folder, id, CampaignMark { name: &campaign, sha256: "" })

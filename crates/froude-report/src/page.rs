@@ -597,17 +597,17 @@ fn notes(estimates: &[Estimate], with_cross_validation: bool) -> Markup {
             e.diagnostics.notes.iter().map(String::as_str).chain(note).map(move |n| (name, n))
         })
         .collect();
-    // The same sentence of several models is told once.
-    let mut told: Vec<(Vec<&str>, &str)> = Vec::new();
+    // The same sentence of several models is printed once.
+    let mut printed: Vec<(Vec<&str>, &str)> = Vec::new();
     for (model, note) in rows {
-        match told.iter_mut().find(|(_, n)| *n == note) {
+        match printed.iter_mut().find(|(_, n)| *n == note) {
             Some((models, _)) => models.push(model),
-            None => told.push((vec![model], note)),
+            None => printed.push((vec![model], note)),
         }
     }
     html! {
-        @if !told.is_empty() {
-            ul class="plain" { @for (models, note) in &told { li { b { (models.join(", ")) } ": " (note) } } }
+        @if !printed.is_empty() {
+            ul class="plain" { @for (models, note) in &printed { li { b { (models.join(", ")) } ": " (note) } } }
         }
     }
 }

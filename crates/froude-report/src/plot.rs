@@ -40,7 +40,7 @@ pub(crate) fn category(index: usize) -> Ink {
 }
 
 /// Anchors of the ramp for ordered things: dark blue to ochre, lightness rising,
-/// told apart without red and green.
+/// distinguished without red and green.
 const RAMP: [(f64, f64, f64); 5] =
     [(16.0, 42.0, 92.0), (20.0, 98.0, 140.0), (42.0, 145.0, 140.0), (122.0, 166.0, 80.0), (214.0, 150.0, 30.0)];
 

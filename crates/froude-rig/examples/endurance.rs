@@ -90,7 +90,7 @@ fn faults(runs: u64) -> bool {
             sum
         })
     });
-    for ((injection, called), (n, latest_s)) in &sweep.told {
+    for ((injection, called), (n, latest_s)) in &sweep.reported {
         println!("{n:6}  {latest_s:.5} s  {injection}: {called}");
     }
     println!("{} of {runs} not allowed", sweep.refused.len());

@@ -53,7 +53,7 @@ pub enum AmplifierFault {
     None,
     /// It switched itself off: no current, not ready.
     Off,
-    /// It gives its peak current whatever it is told, while enabled.
+    /// It gives its peak current whatever it is commanded, while enabled.
     Runaway,
 }
 

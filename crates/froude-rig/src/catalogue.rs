@@ -297,7 +297,7 @@ impl Scene {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sweep {
     /// For each injection and what it was called: how often, and the latest detection, s.
-    pub told: BTreeMap<(&'static str, String), (u64, f64)>,
+    pub reported: BTreeMap<(&'static str, String), (u64, f64)>,
     /// Runs that the catalogue does not allow, by seed.
     pub refused: Vec<(u64, Outcome)>,
 }
@@ -305,7 +305,7 @@ pub struct Sweep {
 impl Sweep {
     fn add(&mut self, seed: u64, outcome: Outcome) {
         let called = outcome.detected.map_or_else(|| "nothing".to_owned(), |(fault, _)| format!("{fault:?}"));
-        let row = self.told.entry((outcome.injection.name(), called)).or_default();
+        let row = self.reported.entry((outcome.injection.name(), called)).or_default();
         *row = (row.0 + 1, row.1.max(outcome.detected.map_or(0.0, |(_, after_s)| after_s)));
         if !outcome.is_allowed() {
             self.refused.push((seed, outcome));
@@ -314,8 +314,8 @@ impl Sweep {
 
     /// Joins another series to this one.
     pub fn join(&mut self, other: Self) {
-        for (what, (n, latest_s)) in other.told {
-            let row = self.told.entry(what).or_default();
+        for (what, (n, latest_s)) in other.reported {
+            let row = self.reported.entry(what).or_default();
             *row = (row.0 + n, row.1.max(latest_s));
         }
         self.refused.extend(other.refused);

@@ -48,7 +48,7 @@ pub const SHORT_MODE_HZ: f64 = 45.0;
 /// R/n of both axes, m/rad.
 const CHAIN_M_RAD: f64 = SPROCKET_RADIUS_M / GEAR_RATIO;
 
-/// One axis of the bare carriage, as the twin knows it. The controller is told declared values of its own.
+/// One axis of the bare carriage, as the twin knows it. The controller has declared values of its own.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisParameters {
     /// J_m, kg m²: rotor, gearbox and sprocket at the motor.

@@ -22,10 +22,10 @@ fn every_injected_fault_is_told_in_time_and_the_carriage_stays_inside() {
             sum
         })
     });
-    for ((injection, called), (n, latest_s)) in &sweep.told {
+    for ((injection, called), (n, latest_s)) in &sweep.reported {
         println!("{n:6}  {latest_s:.5} s  {injection}: {called}");
     }
-    assert_eq!(sweep.told.values().map(|(n, _)| n).sum::<u64>(), RUNS);
+    assert_eq!(sweep.reported.values().map(|(n, _)| n).sum::<u64>(), RUNS);
     let first: Vec<String> = sweep.refused.iter().take(12).map(|r| format!("{r:?}")).collect();
     assert!(sweep.refused.is_empty(), "{} of {RUNS}:\n{}", sweep.refused.len(), first.join("\n"));
 }

@@ -69,7 +69,7 @@ fn tracked(rig: &mut ClosedLoop, target_m: f64, speed_m_s: f64) -> Tracking {
     }
 }
 
-/// Whatever is mounted, from anywhere, with both axes told of the bare carriage only: the load does not swing when it comes to the switch,
+/// Whatever is mounted, from anywhere, with both axes configured for the bare carriage only: the load does not swing when it comes to the switch,
 /// so that nothing trips. Before the changes of speed were gentle, the short axis failed with a third of the draws with the body wet and
 /// ballasted.
 #[test]
@@ -163,7 +163,7 @@ fn shaping_for_the_loads_mode_halves_the_ripple_at_equal_move_time_even_when_the
     for mounting in [Mounting::Dry, Mounting::Wet] {
         let (mode_hz, _) = modes_hz(mounting);
         for wrong in [0.9, 1.0, 1.1] {
-            // ZVD makes a ramp longer by one period of the mode that it is told.
+            // ZVD makes a ramp longer by one period of the mode that it is given.
             let shaped = mean_ripple_m_s(mounting, 0.0, Reference::Shaped(wrong * mode_hz));
             let plain = mean_ripple_m_s(mounting, 1.0 / (wrong * mode_hz), Reference::Plain);
             println!(

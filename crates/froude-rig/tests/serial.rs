@@ -106,7 +106,7 @@ impl Board for TwinBoard {
     fn feed_watchdog(&mut self) {}
 }
 
-/// The board in a thread of its own, until told to end; gives back the application's last word and the twin.
+/// The board in a thread of its own, until asked to end; gives back the application's last word and the twin.
 struct Running {
     thread: JoinHandle<(Option<(Fault, u8)>, [Phase; AXES])>,
     is_over: Arc<AtomicBool>,
@@ -309,7 +309,7 @@ fn a_line_whose_telemetry_dies_is_given_up_and_the_carriage_stopped_whatever_els
         }
     };
     assert!(matches!(error, RigError::Silent { .. }), "{error}");
-    // Sooner than the board's own watchdog: it was told.
+    // Sooner than the board's own watchdog: it was commanded.
     running.pass_s(1.0);
     assert_eq!(running.end(), (None, [Phase::Disabled; AXES]));
 }
@@ -399,7 +399,7 @@ fn a_port_that_is_full_for_a_moment_is_no_error() {
     assert!(began.elapsed() >= Duration::from_secs(1));
 }
 
-/// Ticks a rig until it has read this tick of the board; the sessions that it was told of, and why it ended if it did by itself.
+/// Ticks a rig until it has read this tick of the board; the sessions that were reported to it, and why it ended if it did by itself.
 fn driven(mut rig: SerialRig, last: Arc<AtomicU64>) -> JoinHandle<(Vec<Stranger>, Result<(), RigError>)> {
     std::thread::spawn(move || {
         let mut strangers = vec![];

@@ -17,7 +17,7 @@
 //! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
 //!
 //! **Units.** A rate is in Hz, a time in s, the values are whatever they were.
-//! **Time.** Samples are equidistant; gaps and jitter are the caller's, told before they come here.
+//! **Time.** Samples are equidistant; gaps and jitter are the caller's, reported before they come here.
 //!
 //! Not here: high-pass and band-pass filters, resampling by fractions, the Ljung–Box test
 //! (`froude-fit::diagnostics`, where χ² is).

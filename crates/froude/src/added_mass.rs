@@ -3,7 +3,7 @@
 //! | module | what |
 //! | --- | --- |
 //! | [`family`] | similar meshes of a body, each finer than the one before |
-//! | [`refine`] | finer and finer until the tolerance holds, told beforehand what it takes |
+//! | [`refine`] | finer and finer until the tolerance is met, with the cost stated beforehand |
 //! | [`links`] | the robot with 1 to k links: the table, its least squares |
 //! | [`body`] | one body or mesh: what is computed, in which frame |
 //! | [`load`] | a body file or a mesh, read and checked |

@@ -19,7 +19,7 @@ const FOLDERS: [&str; 2] = ["unh-rm2", "mamba"];
 /// Its campaigns, in the order in which they run; results lie beside each.
 pub const CAMPAIGNS: [&str; 3] = ["unh-rm2/tare.toml", "unh-rm2/rotor.toml", "mamba/campaign.toml"];
 
-/// Writes the example campaigns into `folder` and runs them; `progress` is told each step.
+/// Writes the example campaigns into `folder` and runs them; `progress` receives each step.
 ///
 /// All of it grows beside the folder and takes its place at the end: a demo that fails leaves nothing.
 ///

@@ -232,7 +232,7 @@ fn folder(path: &Path) -> Result<Inspection, Error> {
         }
         counts.iter().map(|(name, n)| format!("{n} {name}")).collect::<Vec<_>>().join(", ")
     };
-    let aside = counted(n_aside, "more was put aside", "more were put aside");
+    let aside = counted(n_aside, "more was set aside", "more were set aside");
     let aside = if n_aside == 0 { String::new() } else { format!("; {aside}") };
     let is_towed = metas.iter().any(|meta| meta.method == TOW);
     let together =

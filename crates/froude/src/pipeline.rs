@@ -88,7 +88,7 @@ pub struct Summary {
     pub section: DocumentSection,
 }
 
-/// Reads, fits, chooses, compares, reports; `progress` is told each step.
+/// Reads, fits, chooses, compares, reports; `progress` receives each step.
 ///
 /// Nothing is written before everything is computed, and the results replace those of an earlier job as a whole, or not at all.
 ///

@@ -24,7 +24,7 @@ use crate::pipeline::Outcome;
 const CURVE_POINTS: usize = 60;
 /// Curves against speed drawn per configuration at most, one an angle; more would hide the points.
 const MOST_ANGLES: usize = 5;
-/// Curves against angle, one a speed: they lie apart, and a drift test has few; more shades are not told apart.
+/// Curves against angle, one a speed: they lie apart, and a drift test has few; more shades cannot be distinguished.
 const MOST_SPEEDS: usize = 12;
 /// Speeds of one setting differ by less than this part, angles by less than this: a measured speed is never twice the same number.
 const SAME_SPEED: f64 = 0.03;
@@ -206,7 +206,7 @@ fn supported(
         (Some(false), _, false) | (None, true, false) => "the residuals support the same absolute error",
         (Some(_), ..) => "AICc favours one whose own residuals are uneven: they support neither",
         (None, true, true) => "the residuals support neither",
-        (None, false, false) => "the residuals do not tell the two apart",
+        (None, false, false) => "the residuals do not distinguish the two",
     };
     format!("{verdict} ({numbers})")
 }

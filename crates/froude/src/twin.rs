@@ -51,7 +51,7 @@ pub fn simulate(campaign: &Path, replace: bool) -> Result<Vec<Written>, Error> {
         }
         if path.exists() && !replace {
             return Err(Error::Nothing(format!(
-                "{} exists; say --replace to write the twin's observations over it",
+                "{} exists; give --replace to write the twin's observations over it",
                 path.display()
             )));
         }

@@ -35,10 +35,10 @@ fn next(state: &mut u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// How many flips were told, changed nothing, and were taken for data.
+/// How many flips were reported, changed nothing, and were taken for data.
 #[derive(Debug, Default, PartialEq)]
 struct Tally {
-    told: usize,
+    reported: usize,
     harmless: usize,
     silent: Vec<(usize, u8)>,
 }
@@ -59,17 +59,17 @@ fn tally<T: PartialEq + Debug>(
         bytes[at] ^= 1 << bit;
         std::fs::write(path, &bytes).unwrap();
         match read() {
-            Err(_) => tally.told += 1,
-            Ok((_, found)) if found.len() > findings.len() => tally.told += 1,
+            Err(_) => tally.reported += 1,
+            Ok((_, found)) if found.len() > findings.len() => tally.reported += 1,
             Ok((found, _)) if found == content => tally.harmless += 1,
             Ok(_) => tally.silent.push((at, bit)),
         }
     }
     std::fs::write(path, &whole).unwrap();
     println!(
-        "{}: {} told, {} harmless, {} silent of {} flips in {} bytes",
+        "{}: {} reported, {} harmless, {} silent of {} flips in {} bytes",
         path.display(),
-        tally.told,
+        tally.reported,
         tally.harmless,
         tally.silent.len(),
         flips(),

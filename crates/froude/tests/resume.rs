@@ -80,7 +80,7 @@ impl Operator for Yes {
     }
 }
 
-/// Presses the switch when a run begins that is one too many; dies where it is told to.
+/// Presses the switch when a run begins that is one too many; dies where it is asked to.
 struct Watch {
     switch: StopSwitch,
     last: usize,

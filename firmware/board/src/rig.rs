@@ -1,7 +1,7 @@
 //! A small rig for the emulated board and the tests: two axes, each a motor with inertia, friction and true stick.
 //!
 //! J θ̈ = K_T K_amp v − B θ̇ − C sgn θ̇, stepped at the tick (semi-implicit Euler); the encoder is θ in whole counts. It is
-//! here to move when it is told to, the same way on every machine; for physics there is the twin.
+//! here to move when commanded, the same way on every machine; for physics there is the twin.
 
 use froude_control::config::{AxisConfig, Config, Limits};
 use froude_control::tick::{AXES, AxisInput, Command};

@@ -90,7 +90,7 @@ fn both_lines_at_once_are_an_error_counted_once_a_tick() {
         if is_bad {
             let (a, b) = chip.with(|s| s.decoders[0].lines);
             chip.set_lines(0, (!a, !b));
-            chip.set_lines(0, (a, b)); // a second one in the same tick is not told apart
+            chip.set_lines(0, (a, b)); // a second one in the same tick is not distinguished
         }
         pass_a_tick(&chip, latch);
         board.take_tick().unwrap().axes.map(|a| a.encoder_errors)
@@ -186,7 +186,7 @@ fn volts_come_out_of_the_dac_to_half_a_code_and_only_while_enabled() {
         let codes = board.actuate(&enabled([volts, -volts]));
         let out = chip.with(|s| s.volts);
         assert!((out[0] - volts).abs() <= 0.5 * 10.0 / 32768.0, "{volts} V: {} V", out[0]);
-        assert_eq!(f64::from(codes[0]) * 10.0 / 32768.0, out[0], "what was sent is what is told");
+        assert_eq!(f64::from(codes[0]) * 10.0 / 32768.0, out[0], "what was sent is what is reported");
     }
     assert_eq!(chip.with(|s| s.outputs), line::ENABLE[0] | line::ENABLE[1]);
     let mut command = enabled([2.0, 2.0]);
@@ -315,7 +315,7 @@ fn the_application_homes_a_rig_through_every_register() {
     assert!(axis.is_homed && axis.phase == Phase::Holding, "{axis:?}");
     let error_m = axis.position_m - rig.axes[0].position_m();
     assert!(error_m.abs() < 0.05 * 250e-6 * 2.0 + 2.5e-6, "{error_m} m off after homing");
-    // Every tick since the hello has been told, in order, and the last raw count is the rig's.
+    // Every tick since the hello has been reported, in order, and the last raw count is the rig's.
     assert!(telemetry.windows(2).all(|pair| pair[1].tick == pair[0].tick + 1), "a tick is missing");
     assert!(telemetry.len() > 15_950 && heard > 15_960, "{} frames of telemetry", telemetry.len());
     assert_eq!(application.overruns(), 0);

@@ -15,7 +15,7 @@ use froude_link::session::{AFTER_SILENCE_US, NOBODY};
 use froude_link::status::{Ack, BoardId, EventKind, LockStepReply, TurnedAway, Verdict};
 use froude_link::{FromBoard, ToBoard};
 
-/// A board whose ticks come when they are told to.
+/// A board whose ticks come when the test asks for them.
 #[derive(Default)]
 struct Queues {
     now_us: u32,

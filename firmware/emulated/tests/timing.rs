@@ -18,7 +18,7 @@ fn ticks_overruns_the_ring_and_a_silent_host_are_noticed_and_two_runs_are_equal(
     // The main loop hung over two ticks; the second of them was still in time for the loop's next turn.
     let [overruns, told] = numbers(&text, "overruns")[..] else { panic!("{text}") };
     assert!((1..=2).contains(&overruns), "{overruns}");
-    assert_eq!(overruns, told, "the host was told of all");
+    assert_eq!(overruns, told, "all were reported to the host");
     let worst_us = numbers(&text, "worst_step_us")[0];
     assert!(worst_us < 100, "{worst_us} µs from tick to command");
     assert_eq!(numbers(&text, "accepted"), [8, 0]);

@@ -25,8 +25,8 @@ pub fn sections(outcome: &AxisModels) -> Vec<DocumentSection> {
         )];
         if let Some(w) = &r.whiteness {
             paragraphs.push(format!(
-                "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of white-noise least squares are no honest \
-                 intervals unless that p is large; the intervals are those of {}.",
+                "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of least squares with white noise are realistic \
+                 only where that p is large; the intervals are those of {}.",
                 w.r1,
                 w.lags,
                 w.ljung_box,
@@ -37,7 +37,8 @@ pub fn sections(outcome: &AxisModels) -> Vec<DocumentSection> {
         let mut tables = vec![coefficient_table(format!("Rigid model, friction {}.", model.name), &r.coefficients)];
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
             tables.push(coefficient_table(
-                "The same at the motor's shaft (MCD Table II). A gear that loses part of the torque is in these numbers.".to_owned(),
+                "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers."
+                    .to_owned(),
                 &effective(r, motor),
             ));
         }
@@ -133,7 +134,7 @@ pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
     TextTable {
         caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run."
             .to_owned(),
-        head: ["speed [m/s]", "way", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
+        head: ["speed [m/s]", "direction", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
         rows: cells
             .iter()
             .map(|c| {
@@ -168,7 +169,7 @@ fn force_chart(model: &Model) -> Chart {
     Chart {
         name: format!("force-{}", model.name),
         title: format!("Drive force and model, friction {}", model.name),
-        caption: "Drive force of the command and of the model, and what is left: one line a run, each in its own time."
+        caption: "Drive force of the command and of the model, and the residual: one line per run, each against its own time."
             .to_owned(),
         x_label: "time [s]".to_owned(),
         panels: vec![

@@ -5,7 +5,7 @@
 //!
 //! ∫F dt = m v + D ∫u|u| dt + f T,
 //!
-//! with m the water that moves along (added mass and water inside the body) and what ballast the wet carriage carries more than the dry
+//! with m the added mass plus entrained water (the water inside the body) and the ballast that the wet carriage carries more than the dry
 //! one, u the reference speed, D and f what the steady part of the same pair gives: its mean difference is F_s = D v|v| + f. With D from
 //! all pairs (a line through F_s over v|v|), one pair gives
 //!
@@ -23,7 +23,7 @@ use super::steady::{SteadySettings, driving_part, window};
 use froude_fit::budget::{Uncertain, jackknife_of_one};
 use froude_fit::series::tapered;
 
-/// Water that moves along with the body.
+/// Added mass plus entrained water of the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AddedMass {
     /// Added mass and water inside, kg; with the ballast where its mass is not known.

@@ -49,7 +49,7 @@ pub struct ForcePerVolt {
 /// What is declared about a calibration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CalibrationSetup {
-    /// (n/R)·K_T·K_amp, N/V: the efficiency is told against it.
+    /// (n/R)·K_T·K_amp, N/V: the efficiency is stated relative to it.
     pub ideal_force_per_volt_n: f64,
     /// Standard uncertainty of the weights, as a part (mass, gravity, buoyancy in air).
     pub weight_relative: f64,
@@ -176,7 +176,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let is_pulley_measured = driving.iter().any(|r| r.weight_n > 0.0 && r.direction < 0.0);
     if !is_pulley_measured && weights[0] > 0.9 * weights[1] {
         return Err(DragError::Calibration(format!(
-            "{}, all lifting {:.2} N: friction and weight cannot be told apart; add runs without weight, or lower \
+            "{}, all lifting {:.2} N: friction and weight cannot be distinguished; add runs without weight, or lower \
              a weight that is lighter than the friction",
             counted(total, "run", "runs"),
             weights[1]
@@ -188,8 +188,8 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let k = 1.0 / take(&first, 1)?.value;
     if k <= 0.0 {
         return Err(DragError::Calibration(format!(
-            "lifting up to {:.1} N takes no more command than lifting nothing: look whether the weights hung all the way (floor), and at \
-             counts_per_revolution, which says how far the carriage went",
+            "lifting up to {:.1} N needs no more command than lifting nothing: check that the weights hung free over the whole travel (floor), \
+             and check counts_per_revolution, which gives the distance travelled",
             weights[1]
         )));
     }
@@ -240,7 +240,7 @@ fn take(fitted: &Fit, j: usize) -> Result<Uncertain, DragError> {
     match (c.value, c.standard, c.dof) {
         (Some(value), Some(standard), Some(dof)) => Ok(Uncertain { value, standard, dof }),
         _ => Err(DragError::Calibration(format!(
-            "{} not determine {} with any to spare; repeat every weight at least twice",
+            "{} not determine {} with degrees of freedom to spare; repeat every weight at least twice",
             counted(fitted.residuals.len(), "driving run does", "driving runs do"),
             c.name
         ))),
@@ -266,12 +266,12 @@ fn notes(
     )];
     if efficiency > 1.0 {
         out.push(format!(
-            "that is an efficiency of {efficiency:.3}: look at K_T, the amplifier's gain, the sprocket's radius and the weight"
+            "that is an efficiency of {efficiency:.3}: check K_T, the amplifier's gain, the sprocket's radius and the weight"
         ));
     }
     if overhauled > 0 {
         out.push(format!(
-            "{} left out: the weight drove the gear or may have, and a gear loses differently that way; weights \
+            "{} left out: the weight drove the gear, or may have, and the losses of a back-driven gear differ; weights \
              up to {:.2} N, half the friction, can be lowered under power",
             counted(overhauled, "run was", "runs were"),
             // Rounded down: the most that is advised is not refused.
@@ -280,8 +280,8 @@ fn notes(
     }
     if (found.value - loss.value).abs() > DOUBTED * loss.standard {
         out.push(format!(
-            "the pulley's loss comes out as {:.1} %, declared are {:.1} ± {:.1} %: the light weight may have driven the gear on its way \
-             down; hang a lighter one, or look at the pulley",
+            "the pulley's loss is estimated as {:.1} %, declared is {:.1} ± {:.1} %: the light weight may have driven the gear while it was \
+             lowered; hang a lighter one, or check the pulley",
             100.0 * found.value,
             100.0 * loss.value,
             100.0 * loss.standard
@@ -289,7 +289,7 @@ fn notes(
     }
     if !is_pulley_measured {
         out.push(format!(
-            "only lifting runs: the pulley's loss is taken as declared, {:.1} ± {:.1} % of the weight",
+            "lifting runs only: the declared loss of the pulley is used, {:.1} ± {:.1} % of the weight",
             100.0 * loss.value,
             100.0 * loss.standard
         ));
@@ -424,7 +424,7 @@ mod tests {
         let why = calibrated(&quiet(), &[20.0], |r| r.direction > 0.0).unwrap_err();
         assert_eq!(
             why.to_string(),
-            "calibration: 4 runs, all lifting 20.00 N: friction and weight cannot be told apart; add runs without weight, or \
+            "calibration: 4 runs, all lifting 20.00 N: friction and weight cannot be distinguished; add runs without weight, or \
              lower a weight that is lighter than the friction"
         );
     }

@@ -71,11 +71,11 @@ impl Detectability {
         (slowest_planned_m_s < limit).then(|| {
             let repeats = self.repeats_needed(d_n_s2_m2, slowest_planned_m_s);
             let repeat = repeats.map_or_else(
-                || format!("{MOST_REPEATS} repeats would not do at {slowest_planned_m_s:.3} m/s"),
+                || format!("{MOST_REPEATS} repeats would not suffice at {slowest_planned_m_s:.3} m/s"),
                 |n| format!("repeat {} at {slowest_planned_m_s:.3} m/s", counted(n, "time", "times")),
             );
             format!(
-                "below {limit:.3} m/s your drag is under its uncertainty: tow faster or {repeat} (a repeat is one wet-less-dry difference; \
+                "below {limit:.3} m/s the drag is smaller than its expanded uncertainty: tow faster or {repeat} (a repeat is one wet-less-dry difference; \
                  a pair out and back gives two)"
             )
         })

@@ -43,9 +43,9 @@ pub(super) fn shared(method: Method, points: &[Point], measured: f64, setup: &Dr
         if let Ballast::Unballasted { unloaded_n, rolling } = setup.ballast {
             let of_load = by(&|p| unloaded_n * p.speed_m_s.signum());
             out.push(match rolling {
-                Some(r) => of("rolling friction that buoyancy takes off", &of_load, r.standard, r.dof),
+                Some(r) => of("rolling friction removed by buoyancy", &of_load, r.standard, r.dof),
                 None => {
-                    let name = "rolling friction that buoyancy takes off, not declared";
+                    let name = "rolling friction removed by buoyancy, not declared";
                     SharedError::between(name, setup.load(), &of_load, UNDECLARED_ROLLING)
                 }
             });

@@ -53,9 +53,9 @@ impl Elsewhere {
     }
 }
 
-/// What is told on the way.
+/// What is reported along the way.
 #[derive(Debug, Default)]
-pub(super) struct Told {
+pub(super) struct Reported {
     /// Runs that gave no point.
     pub rejected: Vec<(Method, Rejected)>,
     pub findings: Vec<Finding>,
@@ -88,22 +88,22 @@ impl<'r, 'a> Tows<'r, 'a> {
     }
 
     /// The points of a method; `None` where there are no runs for it.
-    pub fn observed(&self, method: Method, setup: &DragSetup, told: &mut Told) -> Option<Observed> {
+    pub fn observed(&self, method: Method, setup: &DragSetup, reported: &mut Reported) -> Option<Observed> {
         match method {
-            Method::Fsm => self.wet.iter().any(|r| r.force_n.is_some()).then(|| self.sensed(setup, told)),
-            Method::Mcd => (!self.dry.is_empty()).then(|| self.differences(setup, told)),
+            Method::Fsm => self.wet.iter().any(|r| r.force_n.is_some()).then(|| self.sensed(setup, reported)),
+            Method::Mcd => (!self.dry.is_empty()).then(|| self.differences(setup, reported)),
             Method::MbdpFlexible if setup.flexible.is_none() => None,
-            Method::MbdpConstant | Method::MbdpMapped | Method::MbdpFlexible => self.modelled(method, setup, told),
+            Method::MbdpConstant | Method::MbdpMapped | Method::MbdpFlexible => self.modelled(method, setup, reported),
         }
     }
 
     /// The force sensor. Its scatter is no less than what noise and zeros within the runs must give.
-    fn sensed(&self, setup: &DragSetup, told: &mut Told) -> Observed {
+    fn sensed(&self, setup: &DragSetup, reported: &mut Reported) -> Observed {
         let all = self.wet.iter().map(|r| fsm::point(r, setup.sensor.drift_half_width_n, setup.steady));
-        let points = keep(all, Method::Fsm, told);
-        let errors = unseen_drift(&points, &self.wet, setup, &mut told.findings).into_iter().collect();
+        let points = keep(all, Method::Fsm, reported);
+        let errors = unseen_drift(&points, &self.wet, setup, &mut reported.findings).into_iter().collect();
         let least = Floor {
-            name: "noise and zeros of the runs (the pairs agree better than these allow)".to_owned(),
+            name: "noise and zeros of the runs (the pairs scatter less than these predict)".to_owned(),
             variance: vec![each_alone(&points, |p| p.standard_n).powi(2)],
             dof: points.iter().map(|p| p.effective_n).sum(),
         };
@@ -111,7 +111,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         Observed { scatter: scatter(sets), errors, ..Observed::of(Method::Fsm, points, setup) }
     }
 
-    fn differences(&self, setup: &DragSetup, told: &mut Told) -> Observed {
+    fn differences(&self, setup: &DragSetup, reported: &mut Reported) -> Observed {
         let k = setup.force_per_volt_n();
         let all = self.wet.iter().map(|w| match self.dry.iter().find(|d| d.is_partner_of(w)) {
             Some(d) => mcd::point(w, d, k, setup.steady),
@@ -121,14 +121,14 @@ impl<'r, 'a> Tows<'r, 'a> {
                 speed_m_s: w.target_speed_m_s * w.direction,
             }),
         });
-        let points = keep(all, Method::Mcd, told);
+        let points = keep(all, Method::Mcd, reported);
         let promised = self.promised(&points, setup);
         Observed::of_differences(points, promised.as_ref(), setup)
     }
 
     /// MBDP. Its type A has the scatter of the pairs, the friction identified anew without each of them, and that of the friction runs, each of
     /// their repeats left out in turn.
-    fn modelled(&self, method: Method, setup: &DragSetup, told: &mut Told) -> Option<Observed> {
+    fn modelled(&self, method: Method, setup: &DragSetup, reported: &mut Reported) -> Option<Observed> {
         let is_mapped = method != Method::MbdpConstant;
         let frictional: Vec<&DragRun<'_>> = match (is_mapped, self.sweeps.is_empty()) {
             (true, _) => self.dry.iter().chain(&self.sweeps).copied().collect(),
@@ -150,12 +150,12 @@ impl<'r, 'a> Tows<'r, 'a> {
         let Some(friction) = identify(None) else {
             if !frictional.is_empty() {
                 let why = if is_mapped {
-                    "the dry runs do not pass every stretch of the tow"
+                    "the dry runs do not cover the whole tow"
                 } else {
                     "no dry run has a steady window"
                 };
                 let text = format!("{}: left out: {why}", method.name());
-                told.findings.push(Finding::new(Severity::Note, "no-friction", text));
+                reported.findings.push(Finding::new(Severity::Note, "no-friction", text));
             }
             return None;
         };
@@ -166,7 +166,7 @@ impl<'r, 'a> Tows<'r, 'a> {
             }
             None => mbdp::point(run, &friction, k, setup.steady),
         };
-        let points = keep(self.wet.iter().map(|w| point(w)), method, told);
+        let points = keep(self.wet.iter().map(|w| point(w)), method, reported);
         let groups = pairs(&points);
         let without = |skip: Cluster| {
             let without = identify(Some(skip))?;
@@ -197,7 +197,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         let phantom = slope(&of_nothing).filter(|phantom| phantom.abs() > chance);
         let left = phantom.map(|phantom| {
             let squares: Vec<f64> = points.iter().map(|p| p.speed_m_s * p.speed_m_s.abs()).collect();
-            let name = "friction where it was not identified, left as it is";
+            let name = "friction outside the range where it was identified, not corrected";
             SharedError::of_load(name, setup.load(), &squares, phantom.abs(), f64::INFINITY)
         });
         let sets = if by_pairs.is_empty() { repeats(&points).into_iter().collect() } else { by_pairs };
@@ -255,19 +255,19 @@ fn scatter(sets: Vec<Replicates>) -> Scatter {
 fn of_dry_repeats(promised: &Detectability, part: f64, points: &[Point], setup: &DragSetup) -> Floor {
     let (rest, dof) = promised.floor_n_s2_m2;
     Floor {
-        name: "scatter of the dry repeats (the pairs agree better than these allow)".to_owned(),
+        name: "scatter of the dry repeats (the pairs scatter less than these predict)".to_owned(),
         variance: vec![(part * rest).hypot(on_drag(points, setup)).powi(2)],
         dof,
     }
 }
 
 /// The points that came out; the others are noted.
-fn keep(all: impl Iterator<Item = Result<Point, Rejected>>, method: Method, told: &mut Told) -> Vec<Point> {
+fn keep(all: impl Iterator<Item = Result<Point, Rejected>>, method: Method, reported: &mut Reported) -> Vec<Point> {
     let mut out = Vec::new();
     for point in all {
         match point {
             Ok(point) => out.push(point),
-            Err(why) => told.rejected.push((method, why)),
+            Err(why) => reported.rejected.push((method, why)),
         }
     }
     out
@@ -295,12 +295,12 @@ fn unseen_drift(
         "zero-on-one-side",
         format!(
             "fsm: {} no still window on one side of the tow; the declared drift of ± {half_n:.2} N moves D_d by \
-             up to {:.2} N s^2/m^2. Stand still for two seconds before and after",
+             up to {:.2} N s^2/m^2. Keep the carriage at rest for two seconds before and after each tow",
             counted(open, "wet run has", "wet runs have"),
             moved.abs(),
         ),
     ));
-    let name = "drift of the sensor that no still window shows";
+    let name = "drift of the sensor not seen in a still window";
     Some(SharedError::between(name, setup.load(), &vec![1.0; points.len()], [-half_n, half_n]))
 }
 
@@ -309,7 +309,7 @@ fn unseen_drift(
 enum Cluster {
     /// A dry tow: with its pair.
     Pair(u32),
-    /// A friction run: with its repeat of all speeds, or alone where repeats are not told apart.
+    /// A friction run: with its repeat of all speeds, or alone where repeats are not distinguished.
     Sweep(u32),
 }
 

@@ -136,7 +136,7 @@ pub(super) fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) ->
         .budget
         .iter()
         .map(|p| {
-            let held = if p.in_scatter { ", in the scatter and not added" } else { "" };
+            let held = if p.in_scatter { ", already in the scatter, not added" } else { "" };
             format!(
                 "{} (type {}, shared by {}): {:.4} N s^2/m^2, {:.2} % of D_d{held}",
                 p.name,
@@ -151,7 +151,7 @@ pub(super) fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) ->
         out.push("not calibrated: eq. 8 and 9 as printed give F/η".to_owned());
     }
     if c.method == Method::Fsm {
-        out.push("the sensor also carries what hangs below it beside the body".to_owned());
+        out.push("the sensor also carries what hangs below it besides the body".to_owned());
     }
     if setup.strut_n_s2_m2.is_none() {
         out.push("of body and strut together: no drag of the strut is declared".to_owned());

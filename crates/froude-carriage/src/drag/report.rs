@@ -9,7 +9,7 @@ use super::added_mass::{AddedMass, added_mass};
 use super::coefficient::{Coefficient, Method, Point, coefficient};
 use super::detectability::{Agreement, Detectability, agreement, zero_change};
 use super::error::DragError;
-use super::observed::{Told, Tows};
+use super::observed::{Reported, Tows};
 use super::record;
 use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
 use super::steady::Rejected;
@@ -17,7 +17,7 @@ use froude_identify::IdentifyError;
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;
-/// A constant force beside the drag is told when it exceeds this many standard uncertainties of its own …
+/// A constant force beside the drag is reported when it exceeds this many standard uncertainties of its own …
 const OFFSET_TOLD: f64 = 3.0;
 /// … and moves D_d by more than this part of it.
 const OFFSET_MATTERS: f64 = 0.005;
@@ -37,7 +37,7 @@ pub struct DragReport {
     pub detectability: Option<Detectability>,
     /// Whether the wet repeats kept it.
     pub agreement: Option<Agreement>,
-    /// Water that moves along.
+    /// Added mass plus entrained water.
     pub added_mass: Option<AddedMass>,
     /// Runs that gave no point, with the method.
     pub rejected: Vec<(Method, Rejected)>,
@@ -52,7 +52,7 @@ pub struct DragReport {
 /// # Errors
 ///
 /// [`DragError`] for columns of unequal length, samples that are not finite, impossible declarations, no wet run. A run
-/// without a usable window is no error: it is left out and told.
+/// without a usable window is no error: it is left out and reported.
 pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport, DragError> {
     drag_by(runs, setup, &Method::ALL)
 }
@@ -68,18 +68,18 @@ pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> R
     if tows.wet.is_empty() {
         return Err(DragError::NoWetRuns { n: runs.len() });
     }
-    let mut told = Told::default();
+    let mut reported = Reported::default();
     let mut coefficients: Vec<Coefficient> = Vec::new();
     for method in Method::ALL.into_iter().filter(|method| methods.contains(method)) {
-        let Some(observed) = tows.observed(method, setup, &mut told) else { continue };
+        let Some(observed) = tows.observed(method, setup, &mut reported) else { continue };
         let elsewhere = observed.elsewhere;
-        if let Some(mut c) = or_told(method, coefficient(observed, setup), &mut told.findings) {
-            told.findings.append(&mut c.result.findings);
-            told.findings.extend(elsewhere.map(|elsewhere| elsewhere.finding(method, c.value)));
+        if let Some(mut c) = or_reported(method, coefficient(observed, setup), &mut reported.findings) {
+            reported.findings.append(&mut c.result.findings);
+            reported.findings.extend(elsewhere.map(|elsewhere| elsewhere.finding(method, c.value)));
             coefficients.push(c);
         }
     }
-    Ok(judge(runs, setup, coefficients, methods.contains(&Method::Mcd).then_some(&tows), told))
+    Ok(judge(runs, setup, coefficients, methods.contains(&Method::Mcd).then_some(&tows), reported))
 }
 
 /// The methods beside each other: which is the best, whether they agree among themselves and with what the dry repeats promised.
@@ -90,9 +90,9 @@ fn judge(
     setup: &DragSetup,
     mut coefficients: Vec<Coefficient>,
     tows: Option<&Tows<'_, '_>>,
-    told: Told,
+    reported: Reported,
 ) -> DragReport {
-    let Told { rejected, mut findings } = told;
+    let Reported { rejected, mut findings } = reported;
     let by = |method: Method| coefficients.iter().find(|c| c.method == method);
     let reference = by(Method::Fsm).or(by(Method::Mcd)).or(coefficients.first()).map(|c| c.value);
     let differences = by(Method::Mcd).map_or(&[][..], |c| &c.points);
@@ -107,8 +107,8 @@ fn judge(
             Severity::Warning,
             "negative-added-mass",
             format!(
-                "the ramps say that {:.2} kg of water move along: no body has that. Look at the ballast (volume), at \
-                 counts_per_revolution, and whether dry and wet runs are what they are called",
+                "the ramps give {:.2} kg of added mass plus entrained water, which no body has. Check the ballast \
+                 (volume), counts_per_revolution, and that dry and wet runs are labelled correctly",
                 m.mass_kg.value
             ),
         )
@@ -151,7 +151,7 @@ fn judge(
 }
 
 /// A method that cannot be fitted costs its own row and says so.
-fn or_told(
+fn or_reported(
     method: Method,
     fitted: Result<Option<Coefficient>, IdentifyError>,
     findings: &mut Vec<Finding>,
@@ -187,12 +187,12 @@ fn doubts(
     let mut warn = |code: &str, text: String| out.push(Finding::new(Severity::Warning, code, text));
     if setup.calibration.is_none() && all.iter().any(|c| c.method.is_sensorless()) {
         let text = match setup.efficiency {
-            Efficiency::Undeclared => "nothing is calibrated and no gear efficiency is declared: eq. 8 and 9 are taken as \
-                 printed, which gives F/η (25 % too much at η = 0.8); the intervals reach over efficiencies from 0.6 to 1. \
-                 Hang a known weight over a pulley"
+            Efficiency::Undeclared => "the drive is not calibrated and no gear efficiency is declared: eq. 8 and 9 are used as \
+                 printed, which gives F/η (25 % too much at η = 0.8); the intervals cover efficiencies from 0.6 to 1. Calibrate \
+                 with a known weight over a pulley"
                 .to_owned(),
             Efficiency::Declared(e) => format!(
-                "not calibrated: no D_d from the motor's current is better than the declared efficiency ({:.1} %) and K_T \
+                "not calibrated: no D_d from the motor's current is more accurate than the declared efficiency ({:.1} %) and K_T \
                  ({:.1} %) allow",
                 100.0 * e.relative(),
                 100.0 * setup.torque_constant_relative
@@ -204,8 +204,8 @@ fn doubts(
         warn(
             "wet-not-ballasted",
             format!(
-                "the wet runs carried no ballast for what buoyancy takes off the wheels, {unloaded_n:.0} N: at a \
-                 rolling coefficient of 0.01 that is {:.2} N of friction that looks like less drag; the intervals reach over \
+                "the wet runs carried no ballast to replace the wheel load that buoyancy removes, {unloaded_n:.0} N: at a \
+                 rolling resistance coefficient of 0.01 that is {:.2} N of friction, which appears as less drag; the intervals cover \
                  coefficients from 0 to 0.02",
                 0.01 * unloaded_n
             ),
@@ -215,7 +215,7 @@ fn doubts(
     {
         warn(
             "ballast-contradicts",
-            "the setup says that wheel loads match, but runs are marked as not ballasted; say how much load buoyancy takes off"
+            "the setup states that wheel loads match, but runs are marked as not ballasted; state how much load buoyancy removes"
                 .to_owned(),
         );
     }
@@ -230,9 +230,9 @@ fn doubts(
         let scatter_dof = c.budget.iter().find(|p| p.kind == Kind::A).map_or(0.0, |p| p.dof[0]);
         if c.pairs < FEW_PAIRS && scatter_dof < FEW_PAIRS as f64 {
             let so = match (c.interval_95, scatter_dof.round() as usize) {
-                (None, _) => "nothing tells their scatter, and no interval is stated".to_owned(),
+                (None, _) => "their scatter is not known, and no interval is stated".to_owned(),
                 (_, dof) => format!(
-                    "the scatter has {} and its interval is mostly Student's t",
+                    "the scatter has {} and the width of its interval is mostly due to Student's t",
                     counted(dof, "degree of freedom", "degrees of freedom")
                 ),
             };
@@ -261,7 +261,7 @@ fn doubts(
                 Severity::Note,
                 "force-drifts-in-window",
                 format!(
-                    "{name}: in {} of {} windows the force changes by more than chance",
+                    "{name}: in {} of {} windows the force changes by more than its noise explains",
                     trending.len(),
                     c.points.len()
                 ),
@@ -282,14 +282,14 @@ fn doubts(
             Severity::Warning,
             "wet-scatters-otherwise",
             format!(
-                "wet repeats scatter by {:.3} N where dry ones promised {:.3} N (p = {:.4}): {}",
+                "wet repeats scatter by {:.3} N where the dry ones predict {:.3} N (p = {:.4}): {}",
                 a.observed_n,
                 a.predicted_n,
                 a.p,
                 if a.ratio > 1.0 {
                     "water not at rest, or a mount that does not repeat"
                 } else {
-                    "the dry runs had a trouble of their own, and the limit of detection is too pessimistic"
+                    "the dry runs were disturbed, and the detection limit is too pessimistic"
                 }
             ),
         ));
@@ -315,7 +315,11 @@ fn swings(rejected: &[(Method, Rejected)]) -> Option<Finding> {
         String::new()
     };
     first.map(|why| {
-        Finding::new(Severity::Warning, "load-swings", format!("left out by the motor's current{more}: {why}"))
+        Finding::new(
+            Severity::Warning,
+            "load-swings",
+            format!("left out of the evaluation by motor current{more}: {why}"),
+        )
     })
 }
 

@@ -49,7 +49,7 @@ pub fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentSection>
         title: "Runs".to_owned(),
         tables: vec![TextTable {
             caption: "Complete runs that were read.".to_owned(),
-            head: ["run", "kind", "pair", "speed [m/s]", "way", "length [s]"].map(str::to_owned).to_vec(),
+            head: ["run", "kind", "pair", "speed [m/s]", "direction", "length [s]"].map(str::to_owned).to_vec(),
             rows,
         }],
         ..DocumentSection::default()
@@ -67,7 +67,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     } else {
         let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());
         let why = if has_interval {
-            "neither the force sensor nor the difference of wet and dry runs states an interval here, and those of the models rest on \
+            "neither the force sensor nor the difference of wet and dry runs states an interval here, and those of the models depend on \
              their own friction"
         } else {
             "no method can state an interval from these runs"
@@ -76,7 +76,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     }
     if setup.calibration.is_none() {
         out.push(
-            "The force per volt was not calibrated with known weights: no D_d from motor currents is stated better than the declared \
+            "The force per volt was not calibrated with known weights: no D_d from motor currents is stated more accurately than the declared \
              efficiency of the gear and K_T allow."
                 .to_owned(),
         );
@@ -91,7 +91,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
             number::significant(d.expanded_n, 2),
         ));
         out.push(format!(
-            "Over all speeds together the smallest D_d that exceeds its scatter is {} N s²/m².",
+            "Over all speeds together the smallest D_d that exceeds its expanded uncertainty is {} N s²/m².",
             number::significant(d.smallest_n_s2_m2, 2)
         ));
         let speeds = report.coefficients.iter().flat_map(|c| c.points.iter().map(|p| p.speed_m_s.abs()));
@@ -111,14 +111,11 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     if let Some(m) = &report.added_mass {
         let what = match m.ballast_kg {
             Some(kg) if kg != 0.0 => {
-                format!(
-                    "water that moves along (added mass, water inside; {} kg of ballast taken off)",
-                    number::plain(kg, 3)
-                )
+                format!("added mass plus entrained water ({} kg of ballast subtracted)", number::plain(kg, 3))
             }
-            Some(_) => "water that moves along (added mass, water inside)".to_owned(),
+            Some(_) => "added mass plus entrained water".to_owned(),
             None => {
-                "what the wet run carries more than the dry one (added mass, water inside, ballast of unknown mass)"
+                "additional mass of the wet run over the dry one (added mass, entrained water, ballast of unknown mass)"
                     .to_owned()
             }
         };

@@ -49,7 +49,7 @@ impl Member {
     }
 }
 
-/// Whether a run was put aside, to be driven again: its files have a word more than its name (`045-wet.interrupted-1`).
+/// Whether a run was set aside, to be driven again: its files have a word more than its name (`045-wet.interrupted-1`).
 pub fn is_put_aside(log: &Path, meta: &RunMeta) -> bool {
     let stem = log.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     stem.strip_prefix(&meta.id).is_some_and(|rest| rest.starts_with('.'))
@@ -77,8 +77,8 @@ pub fn doubles(members: &[Member]) -> Vec<Finding> {
             }
         } else if let Some(first) = same_id.iter().find(|other| member.is_of_the_same_run(other)) {
             format!(
-                "{now} and {} are both run {id} of campaign {:?}: it was driven twice, and its pairs cannot be told apart. Reduce each \
-                 drive by itself",
+                "{now} and {} are both run {id} of campaign {:?}: it was driven twice, and its pairs cannot be distinguished. Reduce \
+                 each drive separately",
                 first.path.display(),
                 member.campaign
             )

@@ -56,7 +56,7 @@ impl Complete {
         let campaign = match read_campaign(&copy) {
             Ok(campaign) => campaign,
             Err(error) => {
-                let text = format!("what was planned is not known: {error}");
+                let text = format!("the plan is not known: {error}");
                 return Some(Finding::new(Severity::Warning, "campaign-unreadable", text));
             }
         };
@@ -87,7 +87,7 @@ impl Here {
         let there = planned.iter().filter(|run| is_there(run)).count();
         if planned.iter().zip(&is_missing).any(|(run, is_missing)| *is_missing && roles.contains(&run.role)) {
             let text = format!(
-                "{there} of {} are there complete; missing: {}. froude run with the same campaign drives what is missing",
+                "{there} of {} are complete; missing: {}. froude run with the same campaign drives what is missing",
                 counted(planned.len(), "planned run", "planned runs"),
                 stretches(planned, &is_missing)
             );

@@ -65,21 +65,21 @@ pub enum ServoError {
     },
 
     /// The simulation ran away: the parameters are far off, or the loop is not the one that was recorded.
-    #[error("the simulated axis leaves every bound at {time_s} s; check the loop's gains and the starting values")]
+    #[error("the simulated axis diverges at {time_s} s; check the loop's gains and the starting values")]
     RanAway {
         /// When.
         time_s: f64,
     },
 
     /// A run, or a stretch of a record, that decides something alone: nothing tells its error.
-    #[error("run or stretch {} alone decides a coefficient, so that its scatter cannot be told; record more like it", cluster + 1)]
+    #[error("run or stretch {} alone determines a coefficient, so its scatter cannot be estimated; record more like it", cluster + 1)]
     Alone {
         /// Which, from 0.
         cluster: usize,
     },
 
     /// Columns of the fit that are combinations of each other.
-    #[error("the record does not tell the coefficients apart; excite more, or fit fewer")]
+    #[error("the record does not distinguish the coefficients; use more excitation, or fit fewer")]
     Dependent,
 
     /// A filter refused.

@@ -160,11 +160,11 @@ impl Stepper {
         let (drive, driven) = (axis.efficiency_forward.recip(), axis.efficiency_backward);
         let is_gear = axis.efficiency_forward > 0.0 && drive >= driven && driven >= 0.0;
         if !is_gear {
-            let must = "it must be positive, and with the backward one take power, not give it";
+            let must = "it must be positive and, with the backward one, dissipate power, not supply it";
             return Err(ServoError::Setting { what: "efficiency of the gear", found: axis.efficiency_forward, must });
         }
         if axis.delay_s.is_nan() || axis.delay_s < 0.0 {
-            let must = "the force cannot come before the command";
+            let must = "the force cannot precede the command";
             return Err(ServoError::Setting { what: "delay (s)", found: axis.delay_s, must });
         }
         let steps = (sample_s / longest_step_s - 1e-9).ceil().max(1.0);

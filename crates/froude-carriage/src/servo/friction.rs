@@ -10,7 +10,7 @@
 //! | offset        | 1                                     | `offset`                       |
 //!
 //! Two Coulomb terms of different size in both directions are an offset and a mean: the offset is left out
-//! where directions are told apart.
+//! where directions are distinguished.
 
 use crate::servo::error::ServoError;
 

@@ -11,7 +11,7 @@
 //! Several runs of a campaign are clusters: friction and force per volt change between them, which no block within a run shows. The
 //! interval that is reported of a single record is that of the blocks, with Student's t for as many degrees of freedom as blocks
 //! lie side by side less the coefficients: twenty blocks are twenty pieces of evidence, however many rows they have. Whether
-//! residuals are white is told by their first autocorrelation and by Ljung and Box's test over 25 lags.
+//! residuals are white is judged by their first autocorrelation and by Ljung and Box's test over 25 lags.
 //!
 //! What neither sees: a model error that is the same in every period moves the estimate and not the interval.
 
@@ -217,7 +217,7 @@ pub(crate) fn over_blocks(
 ) -> Result<OverBlocks, ServoError> {
     let is_long = options.block_s >= SHORTEST_BLOCK_S;
     if !is_long {
-        let must = "blocks last 1 s or more, else they do not hold the correlation of a servo";
+        let must = "blocks must last 1 s or more: shorter ones do not contain the correlation of a servo";
         return Err(ServoError::Setting { what: "block (s)", found: options.block_s, must });
     }
     let block = (options.block_s * rate_hz).ceil() as usize;

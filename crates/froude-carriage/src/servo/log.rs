@@ -52,7 +52,7 @@ impl ServoLog {
         let rate_hz = mean_s.recip();
         let [least, most] = RATES_HZ;
         if !(least..=most).contains(&rate_hz) {
-            let must = "samples are between a thousandth and ten million a second: look at the unit of time";
+            let must = "samples are between a thousandth and ten million a second: check the unit of time";
             return Err(ServoError::Setting { what: "rate of the record (Hz)", found: rate_hz, must });
         }
         Ok(rate_hz)

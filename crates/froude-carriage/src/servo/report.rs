@@ -14,7 +14,7 @@ use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::least_squares;
 
-/// Fewest runs whose scatter is told.
+/// Fewest runs whose scatter is stated.
 const FEWEST_RUNS: usize = 5;
 
 /// One identified coefficient.
@@ -155,7 +155,7 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
     let by_blocks = |rows: Rows, why: &str| -> Result<ServoReport, ServoError> {
         let mut report = ServoReport { runs: ranges.clone(), ..of_rows(rows, chain)? };
         report.findings.push(format!(
-            "the intervals do not hold what changes from run to run: {why}; they are those of blocks within the runs"
+            "the intervals do not include what changes from run to run: {why}; they are those of blocks within the runs"
         ));
         Ok(report)
     };

@@ -18,7 +18,7 @@
 //! **What the motor cannot tell.** How viscous and Coulomb friction are split between motor and load shows only in the vibration
 //! and in the moments of sticking. The sums are coefficients; the splits are fractions in 0…1 with a prior that knows
 //! nothing (mean ½, standard deviation of a uniform one), and count as identified only when their interval lies inside 0…1 and is
-//! shorter than half of it. The force per volt cannot be told from the masses, nor η from the load's mass.
+//! shorter than half of it. The force per volt cannot be distinguished from the masses, nor η from the load's mass.
 //!
 //! # Source
 //!
@@ -385,7 +385,7 @@ impl<'a> Record<'a> {
                 }
             }
         }
-        let must = "no start of the search could be simulated; check mass and friction of the rigid fit";
+        let must = "no starting point of the search could be simulated; check mass and friction of the rigid fit";
         best.map(|(_, theta)| theta).ok_or(ServoError::Setting {
             what: "mass of the rigid axis (kg)",
             found: mass_kg,
@@ -431,7 +431,7 @@ impl<'a> Record<'a> {
         }
         if self.options.gear == Gear::Undeclared {
             findings.push(
-                "no efficiency of the gear is declared: mass, stiffness, damping and friction behind it are apparent, through the gear,                  1/eta times the true ones while the motor drives and eta_b times while it is driven (1.25 and 0.75 for a gear of 0.8 and                  0.75), and their intervals do not hold that factor"
+                "no efficiency of the gear is declared: mass, stiffness, damping and friction behind it are apparent, through the gear,                  1/eta times the true ones while the motor drives and eta_b times while it is driven (1.25 and 0.75 for a gear of 0.8 and                  0.75), and their intervals do not include that factor"
                     .to_owned(),
             );
         }

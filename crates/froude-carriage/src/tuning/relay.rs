@@ -2,7 +2,7 @@
 //!
 //! A relay of height d with hysteresis ε has the describing function N(a) with −1/N(a) = −(π/4d)(√(a² − ε²) + iε)
 //! (Åström & Hägglund 2006, §8.2): the limit cycle shows one point of the drive's response. Without hysteresis it is the
-//! ultimate point, K_u = 4d/(πa); with it K_u = 4d/(π√(a² − ε²)) and the point lies asin(ε/a) short of −180°, which is told.
+//! ultimate point, K_u = 4d/(πa); with it K_u = 4d/(π√(a² − ε²)) and the point lies asin(ε/a) short of −180°, which is reported.
 
 use super::TuningError;
 

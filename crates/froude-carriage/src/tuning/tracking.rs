@@ -23,7 +23,7 @@ pub struct Ramp {
     pub friction_v: f64,
 }
 
-/// What the controller is told, as command.
+/// The controller's reference, as command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Forward {
     /// Inertia, V per rad/s².

@@ -148,11 +148,11 @@ impl Solution {
     fn undetermined(&self, parameter: usize) -> NonlinearError {
         let Parameter { name, run, .. } = &self.parameters[parameter];
         let why = if run.is_some() {
-            "it belongs to one run alone; take its profile"
+            "it belongs to one run alone; use its profile likelihood"
         } else if self.at_bound[parameter] {
-            "it rests on a bound; take its profile"
+            "it lies on a bound; use its profile likelihood"
         } else {
-            "the data do not determine it; fix it, or add data that it moves"
+            "the data do not determine it; fix it, or add data that depend on it"
         };
         NonlinearError::Undetermined { name: name.clone(), why }
     }

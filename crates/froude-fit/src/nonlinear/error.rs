@@ -133,7 +133,7 @@ pub enum NonlinearError {
 
     /// A derivative at the start cannot be taken or is not finite.
     #[error(
-        "the derivative of run {run} by {name:?} does not exist at the start; start further from where the model is \
+        "the derivative of run {run} with respect to {name:?} does not exist at the start; start further from where the model is \
          impossible, or make the parameter's scale smaller"
     )]
     NoDerivative {

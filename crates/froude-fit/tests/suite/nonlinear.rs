@@ -318,7 +318,7 @@ fn what_the_data_do_not_determine_has_no_uncertainty() {
     let error = found.interval(2, Scatter::Independent, 0.95).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "\"c\" has no standard uncertainty: the data do not determine it; fix it, or add data that it moves"
+        "\"c\" has no standard uncertainty: the data do not determine it; fix it, or add data that depend on it"
     );
     let profile = profile_interval(&given(5, residuals), &found, 2, 0.95).unwrap();
     assert_eq!((profile.interval, profile.is_open), ([f64::NEG_INFINITY, f64::INFINITY], [true; 2]));

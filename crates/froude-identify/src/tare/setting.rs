@@ -58,8 +58,8 @@ impl Use<'_> {
         let furthest = here.iter().copied().max_by(|a, b| (a - own).abs().total_cmp(&(b - own).abs()))?;
         (!left.is_empty()).then(|| {
             let text = format!(
-                "the tare {} was taken at {own:.2} kg/m^3 and is used at {furthest:.2} kg/m^3: a drag goes with the density, so that {} are \
-                 not taken off as they should be; take the tare in the same fluid",
+                "the tare {} was taken at {own:.2} kg/m^3 and is used at {furthest:.2} kg/m^3: a drag is proportional to the density, so \
+                 {} are not subtracted correctly; take the tare in the same fluid",
                 self.estimate.id,
                 left.join(", ")
             );
@@ -71,7 +71,7 @@ impl Use<'_> {
     pub fn along_the_chain(&self) -> Option<Finding> {
         (self.estimate.frame.is_chain()).then(|| {
             let text = format!(
-                "the tare {} is along the chain of its carriage and is taken off f_x: that is right where x was along the travel",
+                "the tare {} is along the chain of its carriage and is subtracted from f_x: that is right only where x was along the travel",
                 self.estimate.id
             );
             Finding::new(Severity::Note, "tare-along-the-chain", text)
@@ -87,7 +87,7 @@ impl Use<'_> {
         let taken = self.sizes(&rows, &|_, _| 1.0);
         (!taken.is_empty()).then(|| {
             let text = format!(
-                "the tare {} was taken at {low:.3} to {high:.3} m/s and is used beyond that in {}: what it takes off there ({}) was not \
+                "the tare {} was taken at {low:.3} to {high:.3} m/s and is used beyond that in {}: what it subtracts there ({}) was not \
                  measured; tow the strut alone at the speeds of the test, or leave the others out with `keep`",
                 self.estimate.id,
                 self.of_all(&rows),
@@ -104,7 +104,7 @@ impl Use<'_> {
         let taken = self.sizes(&rows, &|_, _| 1.0);
         (!taken.is_empty()).then(|| {
             let text = format!(
-                "the tare {} was taken at {:.1} deg from straight ahead and more, and is used nearer to it in {}: what it takes off there \
+                "the tare {} was taken at {:.1} deg from straight ahead and more, and is used nearer to it in {}: what it subtracts there \
                  ({}) was not measured; tow the strut alone at the angles of the test, straight ahead included",
                 self.estimate.id,
                 least.to_degrees(),
@@ -127,7 +127,7 @@ impl Use<'_> {
         (!taken.is_empty()).then(|| {
             let [own, here] = if ahead { ["ahead", "astern"] } else { ["astern", "ahead"] };
             let text = format!(
-                "the tare {} was towed {own} only and is used {here} in {}: what it takes off there ({}) was not measured; it holds for a \
+                "the tare {} was towed {own} only and is used {here} in {}: what it subtracts there ({}) was not measured; it holds for a \
                  strut that is the same fore and aft, by a law that is odd in the velocity",
                 self.estimate.id,
                 self.of_all(&rows),
@@ -163,8 +163,8 @@ impl Use<'_> {
         let taken = self.sizes(&rows, &|_, _| 1.0);
         (!taken.is_empty()).then(|| {
             let text = format!(
-                "the tare {} pushes the body along in {}, which no strut does: {}. Look at the sign of the speed where the strut went astern, \
-                 at a law that is even in it, and at the angles of the tare runs",
+                "the tare {} propels the body in {}, which no strut does: {}. Check the sign of the speed where the strut went \
+                 astern, a law that is even in it, and the angles of the tare runs",
                 self.estimate.id,
                 self.of_all(&rows),
                 taken.join(", ")

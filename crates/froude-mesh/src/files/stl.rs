@@ -55,9 +55,9 @@ impl Triangles {
 
     fn done(self, mut notes: Vec<String>) -> (Mesh, Vec<String>) {
         if self.against > self.with {
-            let told = self.with + self.against;
+            let reported = self.with + self.against;
             notes.push(format!(
-                "the normals of {} of {told} triangles contradict the order of their corners; the order was taken",
+                "the normals of {} of {reported} triangles contradict the order of their corners; the order was taken",
                 self.against
             ));
         }

@@ -106,7 +106,7 @@ pub fn read_wamit(path: &Path, density_kg_m3: f64, length_m: f64) -> Result<Adde
         };
         let counted = |cell: &str| {
             let value = cell.parse::<usize>().ok().filter(|v| (1..=6 * MOST_BODIES).contains(v));
-            value.ok_or_else(|| refuse(format!("`{cell}` is no index; they go from 1 to {}", 6 * MOST_BODIES)))
+            value.ok_or_else(|| refuse(format!("`{cell}` is not an index; they go from 1 to {}", 6 * MOST_BODIES)))
         };
         let (period, i, j, bar) = (real(period)?, counted(i)?, counted(j)?, real(bar)?);
         if period > 0.0 {

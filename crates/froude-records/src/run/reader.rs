@@ -305,7 +305,7 @@ impl<R: Read + Seek> RunReader<R> {
         self.doubts.push(Doubt { kind, text: format!("{} {problem}", self.path.display()) });
     }
 
-    /// A run has the name of its files; one that was put aside has a word more.
+    /// A run has the name of its files; one that was set aside has a word more.
     fn check_name(&mut self) {
         let stem = self.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
         let rest = stem.strip_prefix(&self.meta.id).map(|rest| rest.is_empty() || rest.starts_with('.'));
@@ -336,7 +336,7 @@ impl<R: Read + Seek> RunReader<R> {
                 (Some(_), None) => self.doubt(
                     DoubtKind::Exchanged,
                     &format!(
-                        "is a whole log, and not the one that {sidecar} was written for (its SHA-256 is another): they are of two drives; \
+                        "is a whole log, and not the one that {sidecar} was written for (its SHA-256 is another): they come from two drives; \
                          put the files that belong together side by side"
                     ),
                 ),

@@ -100,7 +100,7 @@ pub(crate) fn contradiction(log: &RunMeta, sidecar: &RunMeta) -> Option<String> 
     }
     (!own.agrees(&said)).then(|| {
         format!(
-            "is of campaign {own} and its sidecar of {said}: they are of two drives; put the files that belong together side by side"
+            "is of campaign {own} and its sidecar of {said}: they come from two drives; put the files that belong together side by side"
         )
     })
 }

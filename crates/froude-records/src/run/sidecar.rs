@@ -279,7 +279,7 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
     let text = |key: &'static str| Ok::<_, RecordError>(s.text(key)?.unwrap_or_default().to_owned());
     let role = |key: &'static str| {
         one_of(s, key, &Role::NAMES, &Role::ALL)?
-            .ok_or_else(|| s.missing(key, "say what the run is for: \"wet\", \"dry\", \"still\", …"))
+            .ok_or_else(|| s.missing(key, "state what the run is for: \"wet\", \"dry\", \"still\", …"))
     };
     let (method, role, mounted, carriage) = if schema == 1 {
         s.only(&[&ALWAYS[..], &["kind"], &MOUNTED, &CARRIAGE].concat())?;
@@ -287,7 +287,7 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
     } else {
         s.only(&[&ALWAYS[..], &["method", "role", "mounted", "carriage", "channels"]].concat())?;
         let method = s.text("method")?.ok_or_else(|| {
-            s.missing("method", "say what sort of experiment it belongs to: \"tow\", \"free_decay\", …")
+            s.missing("method", "state the kind of experiment that it belongs to: \"tow\", \"free_decay\", …")
         })?;
         let mounted = s.section("mounted")?.map(|m| {
             m.only(&[&MOUNTED[..], &["travel"]].concat())?;
@@ -309,7 +309,7 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         mounted,
         carriage,
         status: one_of(s, "status", &RunStatus::NAMES, &RunStatus::ALL)?.ok_or_else(|| {
-            s.missing("status", "say how it ended: \"complete\", \"interrupted\", \"faulted\" or \"cut\"")
+            s.missing("status", "state how it ended: \"complete\", \"interrupted\", \"faulted\" or \"cut\"")
         })?,
         note: text("note")?,
         log_rate_hz: s.quantity("log_rate", Dimension::ANGULAR_SPEED)?.unwrap_or(0.0),

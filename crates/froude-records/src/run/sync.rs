@@ -24,11 +24,11 @@ impl Syncer {
     pub fn start(file: File) -> io::Result<Self> {
         let (stop, stopped) = channel::<()>();
         let failure = Arc::new(Mutex::new(None));
-        let told = Arc::clone(&failure);
+        let reported = Arc::clone(&failure);
         let thread = std::thread::Builder::new().name("fsync".to_owned()).spawn(move || {
             while stopped.recv_timeout(PERIOD) == Err(RecvTimeoutError::Timeout) {
                 if let Err(error) = file.sync_data() {
-                    *told.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                    *reported.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
                     return;
                 }
             }

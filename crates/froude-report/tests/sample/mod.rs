@@ -463,7 +463,7 @@ pub fn report() -> Report {
                 Severity::Warning,
                 "one-sided-angle",
                 "only angles θ ≥ 0 were run (0° to 39°): an angle offset of 1° between sensor and body moves C_XY_II by 0.3 to 0.5 and cannot be \
-                 told from it; run a few points at −θ"
+                 distinguished from it; run a few points at −θ"
                     .to_owned(),
             )
             .of_source("circulation tank"),

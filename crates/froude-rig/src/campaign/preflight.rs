@@ -254,7 +254,7 @@ fn tow(
         && let Some(refusal) = controller.refusal
     {
         let text =
-            format!("the controller would refuse the move ({refusal:?}): look at its speed, acceleration and jerk");
+            format!("the controller would refuse the move ({refusal:?}): check its speed, acceleration and jerk");
         out.push(Objection { id: run.id.clone(), kind: "controller", text });
     }
     let forecast = Forecast {
@@ -317,13 +317,13 @@ impl Ramps {
         let ramps_m = speed_m_s * (self.ramp_s + self.shaper_s);
         let enough_m = ramps_m + speed_m_s * SHORTEST_STEADY_S;
         let needed = format!(
-            "{SHORTEST_STEADY_S} s are needed, {:.2} m of way in all: go further, accelerate faster or tow slower",
+            "{SHORTEST_STEADY_S} s are needed, {:.2} m of travel in all: go further, accelerate faster or tow slower",
             (1e2 * enough_m).ceil() / 1e2
         );
         let shaper = if self.shaper_s > 0.0 { " (with the shaper)" } else { "" };
         Some(if ramps_m >= way_m {
             format!(
-                "its ramps alone{shaper} need {ramps_m:.2} m of way and it has {way_m:.2} m: no part of it is steady at {speed_m_s:.3} m/s; {needed}"
+                "its ramps alone{shaper} need {ramps_m:.2} m of travel and it has {way_m:.2} m: no part of it is steady at {speed_m_s:.3} m/s; {needed}"
             )
         } else {
             format!("only {:.2} s of its {:.2} s are steady{shaper}; {needed}", self.steady_s, self.total_s)
@@ -412,7 +412,7 @@ fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forec
     {
         let text = match refusal {
             froude_control::status::Refusal::BeyondTravel => format!(
-                "it starts at {from_m:.3} m and its way does not fit between the end switches at {:.3} and {:.3} m: start elsewhere",
+                "it starts at {from_m:.3} m and its travel does not fit between the end switches at {:.3} and {:.3} m: start elsewhere",
                 limits.low_switch_m, limits.high_switch_m
             ),
             _ => format!("the controller would refuse it: {asked:?} has a number out of its range"),
@@ -467,7 +467,7 @@ fn excursion(
     });
     let (cut_s, end_m) = cuts.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(format!(
-        "its {what} {are} foreseen to come to {end_m:.3} m after {cut_s:.1} s of {duration_s} s, where the controller ends what could not be \
+        "its {what} {are} predicted to reach {end_m:.3} m after {cut_s:.1} s of {duration_s} s, where the controller ends what could not be \
          stopped inside the soft limits any more. {advice}"
     ))
 }
@@ -502,7 +502,7 @@ fn fall(
     }
     let Some(floor_m) = run.floor_m else {
         return Some(format!(
-            "friction surely holds {:.2} N of its {weight_n:.2} N: if the torque fails the weight pulls the carriage into the stop \
+            "friction reliably holds {:.2} N of its {weight_n:.2} N: if the torque fails the weight pulls the carriage into the stop \
              at {:.3} m. Give it a floor to rest on, floor = \"{:.2} m\" in [carriage.calibration], or hang less",
             at_most(held_n),
             limits.hard_low_m,
@@ -695,11 +695,11 @@ mod tests {
         // 0.55 (0.917 + 0.278) m.
         assert!(
             text.starts_with(
-                "its ramps alone (with the shaper) need 0.66 m of way and it has 0.60 m: no part of it is steady at 0.550 m/s"
+                "its ramps alone (with the shaper) need 0.66 m of travel and it has 0.60 m: no part of it is steady at 0.550 m/s"
             ),
             "{text}"
         );
-        let enough_m = between(text, "1.55 s are needed, ", " m of way in all");
+        let enough_m = between(text, "1.55 s are needed, ", " m of travel in all");
         assert!(kinds(&way(enough_m), "550mm_s").is_empty());
         let less = way(enough_m - 0.02);
         assert!(less.iter().any(|o| o.text.starts_with("only 1.5")), "{less:?}");

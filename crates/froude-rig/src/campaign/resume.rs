@@ -7,13 +7,13 @@
 //! | --- | --- | --- |
 //! | neither | nothing was recorded yet | driven |
 //! | both, `complete` | the run was done | left alone |
-//! | both, any other status | interrupted, faulted, cut, or the program died in it | put aside, driven |
-//! | the log alone | the program died before the sidecar was written | put aside, driven |
+//! | both, any other status | interrupted, faulted, cut, or the program died in it | set aside, driven |
+//! | the log alone | the program died before the sidecar was written | set aside, driven |
 //! | the sidecar alone, not `complete` | the program died between the two renames of putting aside | put beside its log, driven |
-//! | the sidecar alone, `complete` | somebody moved the log away, or the program died while it put a damaged one aside | put aside by itself, driven |
-//! | a sidecar without a word in it | the power failed before it reached the disk | put aside, driven |
+//! | the sidecar alone, `complete` | somebody moved the log away, or the program died while it set a damaged one aside | set aside by itself, driven |
+//! | a sidecar without a word in it | the power failed before it reached the disk | set aside, driven |
 //!
-//! Nothing is deleted and nothing replaced: what is put aside is `ID.interrupted-N`, N counting up from 1.
+//! Nothing is deleted and nothing replaced: what is set aside is `ID.interrupted-N`, N counting up from 1.
 
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -32,12 +32,12 @@ pub(super) enum Found {
     },
     /// Nothing, now: it is to be driven.
     Nothing {
-        /// What was put aside, in a sentence.
+        /// What was set aside, in a sentence.
         aside: Option<String>,
     },
 }
 
-/// Whether a run lies there complete, its log as it was recorded. What lies there otherwise is put aside.
+/// Whether a run lies there complete, its log as it was recorded. What lies there otherwise is set aside.
 ///
 /// # Errors
 ///
@@ -194,7 +194,7 @@ mod tests {
         let before = content(folder);
         assert_eq!(look(folder, ID, SMALL).unwrap(), Found::Complete { is_compared: true });
         assert_eq!(content(folder), before);
-        // A log that was put aside alone earlier is not taken for the one that is gone.
+        // A log that was set aside alone earlier is not taken for the one that is gone.
         std::fs::rename(folder.join("084-wet.mcap"), folder.join("084-wet.interrupted-1.mcap")).unwrap();
         let Found::Nothing { aside: Some(told) } = look(folder, ID, SMALL).unwrap() else {
             panic!("it was left alone")

@@ -75,7 +75,7 @@ pub enum RunnerError {
     },
     /// A fault while nothing was to move: the operator was asked, or logs were read.
     #[error(
-        "fault between two runs, while nothing was to move: {fault:?} (category {category} stop). Mend the cause, then run the \
+        "fault between two runs, while nothing was to move: {fault:?} (category {category} stop). Remove the cause, then run the \
          campaign again: it goes on from there"
     )]
     FaultAtRest {
@@ -86,7 +86,7 @@ pub enum RunnerError {
     },
     /// The controller latched a fault.
     #[error(
-        "fault in {run}: {fault:?} (category {category} stop); the run is kept and marked. Mend the cause, then run the campaign \
+        "fault in {run}: {fault:?} (category {category} stop); the run is kept and marked. Remove the cause, then run the campaign \
          again: it goes on from there"
     )]
     Fault {
@@ -99,7 +99,7 @@ pub enum RunnerError {
     },
     /// A fault before the run itself: in homing, or on the way to its start.
     #[error(
-        "fault before {run}, in homing or on the way to its start: {fault:?} (category {category} stop); nothing was recorded. Mend the \
+        "fault before {run}, in homing or on the way to its start: {fault:?} (category {category} stop); nothing was recorded. Remove the \
          cause (a loop softer than its chain lets the motor swing: froude carriage tune), then run the campaign again"
     )]
     FaultBefore {
@@ -224,7 +224,7 @@ pub trait Operator {
 }
 
 /// What is asked before the first motion.
-const CLEAR: &str = "Homing moves both axes now: both ways are clear, and somebody stands at the emergency stop";
+const CLEAR: &str = "Homing moves both axes now: both axes are clear, and a person stands at the emergency stop";
 
 /// What is said of logs without a hash.
 const EARLIER_VERSION: &str = "runs of an earlier version lie there: they carry no SHA-256 of their logs, so that only the logs' own checksums \
@@ -313,7 +313,7 @@ impl Outcome {
     }
 }
 
-/// Drives a whole plan. Runs that lie complete in the folder are not driven again; anything else that lies there of a run is put aside
+/// Drives a whole plan. Runs that lie complete in the folder are not driven again; anything else that lies there of a run is set aside
 /// as `ID.interrupted-N`, and the run driven anew.
 ///
 /// # Errors
@@ -446,7 +446,7 @@ impl<'a> Campaign<'a, '_> {
         let (status, note) = match &driven {
             Ok(None) => (RunStatus::Complete, None),
             Ok(Some(why)) => (RunStatus::Cut, Some(why.clone())),
-            Err(error @ RunnerError::Record(_)) => (error.status(), Some("the disk took no more".to_owned())),
+            Err(error @ RunnerError::Record(_)) => (error.status(), Some("the disk accepted no more data".to_owned())),
             Err(error) => (error.status(), Some(error.to_string())),
         };
         let path = recording.map(|r| r.finish(status, note, clock)).transpose();

@@ -1,6 +1,6 @@
 //! From the `[rig]` section to a configured controller and, for a twin, to the plant behind it.
 //!
-//! The controller is told what the campaign declares; the twin has its own truth ([`crate::parameters`]), of which `[rig.twin]`
+//! The controller receives what the campaign declares; the twin has its own truth ([`crate::parameters`]), of which `[rig.twin]`
 //! overrides what it names. The two differ as they do in a laboratory: the gear's efficiency, for instance, is in the truth and in
 //! no declared friction.
 
@@ -60,7 +60,7 @@ pub fn control(campaign: &CarriageCampaign, towed_kg: f64) -> Result<Config, Set
 
 fn axis(spec: &AxisSpec, towed_kg: f64) -> Result<AxisConfig, SetupError> {
     let missing = |key, why| SetupError::Missing { place: spec.place.to_string(), key, why };
-    let coast = "the coast distance, and with it what may move, hangs on it; take it from `froude carriage identify`, or declare a \
+    let coast = "the coast distance, and with it the permitted motion, depends on it; take it from `froude carriage identify`, or declare a \
                  lower bound with a large `standard`";
     let inertia = spec.inertia_kg_m2.ok_or_else(|| missing("inertia", coast))?;
     let coulomb = spec.coulomb_n_m.ok_or_else(|| missing("coulomb_friction", coast))?;
@@ -190,7 +190,7 @@ pub fn in_words(error: &ConfigError, control: &Config) -> (String, String) {
             section(axis),
             format!(
                 "travel leaves nothing between its soft limits at {low_m:.3} and {high_m:.3} m, which lie 50 mm and following_error_limit \
-                 inside its ends: look at travel, or lower following_error_limit"
+                 inside its ends: check travel, or lower following_error_limit"
             ),
         ),
         _ => ("[rig]".to_owned(), error.to_string()),

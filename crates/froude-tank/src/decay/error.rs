@@ -32,7 +32,7 @@ pub enum DecayError {
 
     /// Time that does not go in equal steps.
     #[error(
-        "run {run:?}: sample {index} is {late_s:.3e} s off an even step of {step_s:.3e} s; put the log on an even clock first"
+        "run {run:?}: sample {index} is {late_s:.3e} s off an even step of {step_s:.3e} s; resample the log to even steps first"
     )]
     UnevenTime {
         /// The run.
@@ -95,7 +95,7 @@ pub enum DecayError {
 
     /// A half cycle that is no half cycle.
     #[error(
-        "run {run:?}: half cycle {half_cycle} has no turning point near its middle: two modes beat, or a wave is in it; restrain the \
+        "run {run:?}: half cycle {half_cycle} has no turning point near its middle: two modes beat, or a wave disturbs it; restrain the \
          other mode, or count swings only while they are larger (smallest over noise)"
     )]
     Irregular {

@@ -49,7 +49,7 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
         out.push(warning(
             "few-runs",
             format!(
-                "{}: what changes from release to release is not in the intervals; {FEWEST_RUNS} releases show it, five show it well",
+                "{}: what changes from release to release is not included in the intervals; {FEWEST_RUNS} releases show it, five show it well",
                 counted(n, "release", "releases")
             ),
         ));
@@ -59,8 +59,8 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
         out.push(warning(
             "damping-not-split",
             format!(
-                "speed amplitudes reach from {low:.3} to {high:.3} only, {TOLD_APART} times is needed: {} and {} are not told \
-                 apart, their sum at these speeds is; release from further out or let it swing longer",
+                "speed amplitudes range from {low:.3} to {high:.3} only, a factor of {TOLD_APART} is needed: {} and {} are not distinguished, \
+                 only their sum at these speeds is known; release from further out or let it swing longer",
                 fit.names[1], fit.names[2]
             ),
         ));
@@ -103,7 +103,7 @@ fn negative(fit: &DecayFit, j: usize) -> Option<Finding> {
         _ => warning(
             "negative-damping",
             format!(
-                "{name} is {value:.4}, below zero: water takes energy; look for friction, drift, or too narrow a range"
+                "{name} is {value:.4}, below zero: water dissipates energy; look for friction, drift, or too narrow a range"
             ),
         ),
     })
@@ -124,8 +124,8 @@ fn coulomb(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Option<
         warning(
             "coulomb-friction",
             format!(
-                "each half cycle loses the same whatever its amplitude, as {force:.3e} ± {standard:.1e} {unit} of Coulomb friction \
-                 would take: the damping has friction of the rig in it; free the guides or hang the body"
+                "each half cycle loses the same whatever its amplitude, as {force:.3e} ± {standard:.1e} {unit} of Coulomb \
+                 friction would: the damping includes friction of the rig; free the guides or hang the body"
             ),
         )
     })
@@ -160,8 +160,8 @@ fn first_half_cycles(fit: &DecayFit) -> Option<Finding> {
         warning(
             "start-not-free",
             format!(
-                "the first half cycles lose {:+.1} % against the law of the others ({:.1} times what chance does): the release or the \
-                 water's start is in them; skip half cycles",
+                "the first half cycles lose {:+.1} % against the law of the others ({:.1} times what chance does): they include the release \
+                 or the start-up of the flow; skip half cycles",
                 100.0 * off / force,
                 off.abs() / chance
             ),
@@ -179,7 +179,7 @@ fn growing(reduced: &Reduced<'_>, swings: &Swings, id: &str, setup: &DecaySetup)
     Some(warning(
         "swing-grows",
         format!(
-            "run {id:?}: turn {} is {:.3e} from rest, the one before {:.3e}: another mode or a wave gives energy; let the water \
+            "run {id:?}: turn {} is {:.3e} from rest, the one before {:.3e}: another mode or a wave adds energy; let the water \
              calm down, or use the runs up to there",
             grown + 1,
             amplitude(grown + 1),
@@ -265,7 +265,7 @@ pub(super) fn of_residuals(fit: &DecayFit, residuals: &[Vec<f64>], reduced: &Red
             _ => out.push(warning(
                 "residuals-beyond-noise",
                 format!(
-                    "run {:?}: the fit leaves {:.2e} {} rms where a sample's noise is {:.2e}: the law of damping is not the whole motion",
+                    "run {:?}: the fit leaves {:.2e} {} rms where a sample's noise is {:.2e}: the damping law does not explain the whole motion",
                     run.id,
                     run.residual_rms,
                     fit.axis.position_unit(),
@@ -307,7 +307,7 @@ pub(super) fn not_converged(report: Report) -> Finding {
     warning(
         "not-converged",
         format!(
-            "the fit of the motion stopped after {} without meeting its rule ({:?}); its numbers are the best found",
+            "the fit of the motion stopped after {} without meeting its convergence criterion ({:?}); its numbers are the best found",
             counted(report.iterations, "step", "steps"),
             report.end
         ),

@@ -52,7 +52,7 @@ impl Method for FreeDecay {
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         let Some(spec) = &source.decay else {
-            let what = "nothing is declared of what swings: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
+            let what = "nothing is declared of the body that oscillates: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
                         \"12 kg\", standard = \"0.5 %\" }";
             return Err(MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() });
         };

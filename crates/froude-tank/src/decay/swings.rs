@@ -224,7 +224,7 @@ mod tests {
         let said = swings(&t, &q).unwrap_err().to_string();
         assert_eq!(
             said,
-            "run \"r\": sample 500 is 1.000e-2 s off an even step of 2.000e-2 s; put the log on an even clock first"
+            "run \"r\": sample 500 is 1.000e-2 s off an even step of 2.000e-2 s; resample the log to even steps first"
         );
         assert!(matches!(swings(&t[..10], &q), Err(DecayError::Length { .. })));
         assert!(swings(&[], &[]).is_err() && swings(&[0.0], &[0.0]).is_err());

@@ -199,7 +199,7 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
         masses.iter().filter(|m| (m.interval_95[0]..=m.interval_95[1]).contains(&scenario.added_mass_kg)).count();
     claims.holds(
         SECTION,
-        &format!("{head}: water that moves along, from the ramps"),
+        &format!("{head}: added mass plus entrained water, from the ramps"),
         &format!("{} kg within 1 %; at least {low} covered", scenario.added_mass_kg),
         format!("{mean:.3} kg in the mean, {hits} of {} covered", masses.len()),
         (mean / scenario.added_mass_kg - 1.0).abs() < 0.01 && hits as u64 >= low,
@@ -374,13 +374,13 @@ fn unballasted(claims: &mut Claims, seeds: usize) {
         );
     }
     let silent = campaigns(&scenario, seeds, |_| {});
-    let told = silent.iter().filter(|r| r.findings.iter().any(|f| f.code == "constant-beside-drag")).count();
+    let reported = silent.iter().filter(|r| r.findings.iter().any(|f| f.code == "constant-beside-drag")).count();
     claims.holds(
         SECTION,
         "dry runs not ballasted and nobody said so: the report sees a constant force beside the drag",
         "more than 90 % of the campaigns",
-        format!("{told} of {seeds}"),
-        told as f64 > 0.9 * seeds as f64,
+        format!("{reported} of {seeds}"),
+        reported as f64 > 0.9 * seeds as f64,
     );
 }
 

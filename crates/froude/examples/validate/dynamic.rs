@@ -97,7 +97,7 @@ fn pinned(
     let mean = masses.iter().map(|m| m.mass_kg.value).sum::<f64>() / masses.len() as f64;
     claims.holds(
         SECTION,
-        &format!("{head}: water that moves along, from the ramps"),
+        &format!("{head}: added mass plus entrained water, from the ramps"),
         &format!("{truth:.2} kg; covered in at least {low} of {seeds}"),
         format!("{mean:.3} kg in the mean, {hits} of {} covered", masses.len()),
         hits >= low,

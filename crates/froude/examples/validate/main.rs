@@ -4,7 +4,7 @@
 //! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, dynamic,
 //! potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
-//! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is told, not tuned.
+//! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
 
 #[path = "../../../froude-panel/examples/coverage/bodies.rs"]
 mod bodies;

@@ -177,7 +177,7 @@ fn against_table_6(claims: &mut Claims, root: &Path, done: &LinksOutcome) -> Res
     Ok(())
 }
 
-/// What lies outside is told as what it is: the stand-in is not the robot, and an independent code finds the same for it.
+/// What lies outside is reported as such: the stand-in is not the robot, and an independent code finds the same for it.
 fn verdict(is_in: bool) -> Verdict {
     if is_in { Verdict::Pass } else { Verdict::Finding }
 }

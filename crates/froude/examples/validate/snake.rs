@@ -213,7 +213,7 @@ pub fn contradictions(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Er
     claims.holds(
         SLIPS,
         "Table 10 has C_f_II and C_d_I exchanged",
-        "told for every column in which they differ (4)",
+        "reported for every column in which they differ (4)",
         exchanged.join("<br>"),
         exchanged.len() == 4 && exchanged.iter().all(|m| m.contains("C_f_II") && m.contains("C_d_I")),
     );
@@ -229,7 +229,7 @@ pub fn contradictions(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Er
     claims.holds(
         SLIPS,
         "Table 11 against Table 9: C_d 0.3628 and 0.3268",
-        "told once, as exchanged digits",
+        "reported once, as exchanged digits",
         digits.join("<br>"),
         digits.len() == 1 && digits[0].contains("exchanged digits"),
     );

@@ -1,4 +1,4 @@
-//! Friction sweeps of a campaign: what a rigid axis is told by runs that differ from each other.
+//! Friction sweeps of a campaign: what a rigid axis learns from runs that differ from each other.
 
 use froude::fit::coverage::Count;
 use froude::methods::carriage::drag::simulate::Scenario;

@@ -121,7 +121,7 @@ pub fn forecasts(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Erro
 /// # Errors
 ///
 /// See [`Error`].
-pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
+pub fn body(job: &BodyJob, progress: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     let loaded = load(job)?;
     let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
@@ -140,7 +140,7 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     let mut cases = Vec::new();
     for s in surroundings(job, &coarse)? {
         let wanted = Wanted { frame, mirrors: s.mirrors, tank: s.tank, ..job.wanted.clone() };
-        let refined = refine(&loaded.family, &wanted, &|step| told(&format!("{}: {step}", s.title)))?;
+        let refined = refine(&loaded.family, &wanted, &|step| progress(&format!("{}: {step}", s.title)))?;
         findings.extend(not_within(&s.title, &refined));
         cases.push(Case { title: s.title, surroundings: s.words, is_lid: s.is_lid, refined });
     }
@@ -158,12 +158,11 @@ pub fn body(job: &BodyJob, told: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
     let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
     tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
     if let Family::Mesh(mesh) = &loaded.family {
-        told("the same with facets rounded");
+        progress("the same with facets rounded");
         match geometry(mesh, &cases[0], &job.wanted, &frame, density_kg_m3) {
             Ok(table) => tables.push(table),
             Err(why) => {
-                notes
-                    .push(format!("How far a smooth body with these corners lies from the facets is not told: {why}."));
+                notes.push(format!("The faceting error, smooth body minus polyhedron, is not stated: {why}."));
             }
         }
     }

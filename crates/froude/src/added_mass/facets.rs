@@ -1,4 +1,4 @@
-//! What the facets of a mesh may hide.
+//! The faceting error of a mesh.
 
 use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::{Mesh, Vec3};
@@ -15,7 +15,7 @@ use super::refine::{Wanted, forecast, memory_bytes};
 /// Angle between facets from which an edge is an edge of the body, rad: seven segments to a circle still count as round.
 const CREASE_RAD: f64 = 50.0 * core::f64::consts::PI / 180.0;
 
-/// What the facets of a mesh may hide: its difference from the smooth body that they stand for; otherwise why it is not told.
+/// The faceting error of a mesh: its difference from the smooth body that the facets approximate; otherwise why it is not stated.
 pub(super) fn geometry(
     mesh: &Mesh,
     case: &Case,
@@ -55,8 +55,8 @@ pub(super) fn geometry(
         .collect();
     Ok(TextTable {
         caption: format!(
-            "Two uncertainties, never one: that of the panels (the matrix of the polyhedron that was given), and how far a smooth body with \
-             these corners lies from it, should the facets stand for one. Edges of more than {:.0}° count as edges of the body.",
+            "Two separate uncertainties: the discretisation error of the panels (for the polyhedron as given), and the faceting error, the difference to a \
+             smooth body with the same corners, should the facets approximate one. Edges of more than {:.0}° count as edges of the body.",
             CREASE_RAD.to_degrees()
         ),
         head: ["", "value [kg, kg m²]", "numerical uncertainty", "smooth body minus polyhedron"]

@@ -37,7 +37,7 @@ pub fn table(cases: &[Case], density_kg_m3: f64) -> Option<TextTable> {
         head.extend([case.title.clone(), "change".to_owned()]);
     }
     Some(TextTable {
-        caption: "Limits of the water's surface, for slow and for fast motion. They are no bounds: between them waves, and in a tank sloshing, may lead outside.".to_owned(),
+        caption: "Zero- and infinite-frequency limits of the water's surface. They are not bounds: at frequencies between them, waves (in a tank, sloshing) may give values outside.".to_owned(),
         head,
         rows,
     })

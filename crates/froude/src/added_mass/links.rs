@@ -88,7 +88,7 @@ const FIT: usize = 3;
 /// # Errors
 ///
 /// See [`Error`].
-pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error> {
+pub fn links(job: &LinksJob, progress: &dyn Fn(&str)) -> Result<LinksOutcome, Error> {
     if !is_body_file(&job.body) {
         return Err(not_links(&job.body));
     }
@@ -105,13 +105,13 @@ pub fn links(job: &LinksJob, told: &dyn Fn(&str)) -> Result<LinksOutcome, Error>
     for &links in &job.links {
         let name = format!("H{links}LT");
         let family = Family::of(&body.shape, links);
-        let refined = refine(&family, &wanted, &|step| told(&format!("{name}: {step}")))?;
+        let refined = refine(&family, &wanted, &|step| progress(&format!("{name}: {step}")))?;
         let length_m = robot(&body.shape).length_m(links);
         configurations.push(Configuration { links, name, length_m, refined });
     }
     let mut outcome = None;
     crate::results::replace(&out, |folder| {
-        let done = written(job, &body.name, density_kg_m3, configurations, folder, told)?;
+        let done = written(job, &body.name, density_kg_m3, configurations, folder, progress)?;
         outcome = Some(LinksOutcome { replaced: replaces_another_frame(&out, &done.file), ..done });
         Ok(())
     })?;
@@ -132,7 +132,7 @@ fn written(
     density_kg_m3: f64,
     configurations: Vec<Configuration>,
     folder: &Path,
-    told: &dyn Fn(&str),
+    progress: &dyn Fn(&str),
 ) -> Result<LinksOutcome, Error> {
     let table = folder.join("links.csv");
     write_atomically(&table, csv(&configurations, density_kg_m3).as_bytes())?;
@@ -141,7 +141,7 @@ fn written(
     let mut findings = Vec::new();
     let mut fits = Vec::new();
     if configurations.len() >= FIT {
-        told("least squares over the configurations");
+        progress("least squares over the configurations");
         let done = identify(&Job { date: job.date.clone(), ..Job::new(&campaign) }, &|_| {})?;
         fits.clone_from(&done.file.estimates);
         // Computed masses have no noise and no instrument: what these two say of tests does not hold for them.

@@ -140,13 +140,13 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         }
         if is_open {
             wrong.push(
-                "  where it looks closed and is not, corners lie within edges of neighbours (T-junctions): let the drawing program mesh it anew"
+                "  where it looks closed and is not, corners lie within edges of neighbours (T-junctions): let the CAD program mesh it again"
                     .to_owned(),
             );
         }
         if is_repairable {
             wrong.push(format!(
-                "  froude added-mass {}{} --repair repaired.obj writes a mesh with what can be decided put right",
+                "  froude added-mass {}{} --repair repaired.obj writes a mesh with the unambiguous faults corrected",
                 job.input.display(),
                 job.unit_m.map_or_else(String::new, |m| format!(" --unit \"{m} m\""))
             ));
@@ -189,7 +189,7 @@ fn thin_panels(mesh: &Mesh) -> Option<Finding> {
     let (length, facet) = thin.first()?;
     let message = format!(
         "{} of {} panels are long and thin, the first at {:.4?} m is {length:.4} m long; finer meshes keep their shape, and converge slowly \
-         where they meet an edge: let the drawing program mesh the surface with edges of {:.3} m or less",
+         where they meet an edge: let the CAD program mesh the surface with edges of {:.3} m or less",
         thin.len(),
         mesh.panels.len(),
         facet.centroid,
@@ -198,5 +198,5 @@ fn thin_panels(mesh: &Mesh) -> Option<Finding> {
     Some(Finding::new(Severity::Note, "thin-panels", message))
 }
 
-/// Troubles of a mesh that are told one by one.
+/// Faults of a mesh that are reported one by one.
 const MOST_TOLD: usize = 12;

@@ -64,7 +64,7 @@ pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
         })
         .collect();
     TextTable {
-        caption: "Added mass: force (first three rows) and moment (last three) on the body are minus this times the acceleration. kg, kg m, \
+        caption: "Added mass A: the load on the body is F = −A·v̇, force in the first three rows and moment in the last three. kg, kg m, \
                   kg m²; ± is the numerical uncertainty, 95 %."
             .to_owned(),
         head: std::iter::once("").chain(MOTIONS).map(str::to_owned).collect(),
@@ -113,7 +113,7 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
     let head = ["panels", "unknowns", "iterations"].map(str::to_owned).into_iter();
     let masses = (0..6).map(|i| format!("A{0}{0} [{1}]", i + 1, unit(i, i).replace('*', " ").replace("^2", "²")));
     TextTable {
-        caption: "Meshes from the coarsest on. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): a flag, no estimate \
+        caption: "Meshes, the coarsest first. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): an indicator, not an estimate \
                   of the error."
             .to_owned(),
         head: head.chain(masses).chain(["asymmetry [1]".to_owned()]).collect(),
@@ -147,7 +147,7 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
     Chart {
         name: "convergence".to_owned(),
         title: "Convergence with the number of panels".to_owned(),
-        caption: "Distance of each mesh's diagonal from the value that is given, as part of it.".to_owned(),
+        caption: "Relative difference of each mesh's diagonal from the value that is given.".to_owned(),
         x_label: "panels [1]".to_owned(),
         x_scale: Scale::Logarithmic,
         panels: vec![ChartPanel { y_label: "|A/A∞ − 1| [1]".to_owned(), y_scale: Scale::Logarithmic, series }],
@@ -162,7 +162,7 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
     let mut out = vec![if refined.steps.len() == 1 {
         "One mesh only: there is no numerical uncertainty; three meshes give one.".to_owned()
     } else if orders.is_empty() {
-        "No order of convergence can be seen on these meshes: values are extrapolated with the second order all the same; look at the meshes."
+        "No order of convergence can be seen on these meshes: values are extrapolated with the second order all the same; check the meshes."
             .to_owned()
     } else {
         format!("Observed order of convergence: {}. Flat panels of constant potential have 2.", orders.join(", "))

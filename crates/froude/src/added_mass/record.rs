@@ -56,7 +56,7 @@ pub(super) fn mesh_file(path: &Path) -> Result<DataFile, Error> {
 
 /// What the signs of a matrix mean.
 pub(super) fn signs() -> Signs {
-    Signs("loads of the fluid on the body are minus the matrix times the accelerations".to_owned())
+    Signs("loads of the fluid on the body are F = −A·v̇, with A the matrix and v̇ the accelerations".to_owned())
 }
 
 /// An estimate that came from it, and from what was made of it on the way.

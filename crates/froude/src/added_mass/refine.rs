@@ -1,4 +1,4 @@
-//! Finer and finer until the tolerance holds, told beforehand what it takes.
+//! Finer and finer until the tolerance is met, with the cost stated beforehand.
 
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
@@ -21,7 +21,7 @@ pub struct Wanted {
     pub frame: Frame,
     /// Largest numerical uncertainty: of a diagonal entry as part of itself, of another as part of √(A_ii A_jj).
     pub tolerance: f64,
-    /// Panels at most.
+    /// Largest number of panels.
     pub most_panels: usize,
     /// Memory at most, bytes; `None`: four fifths of what is free when each mesh begins.
     pub memory_bytes: Option<f64>,
@@ -208,13 +208,13 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
     Ok((mesh.mesh.clone(), whole(&wanted.mirrors)))
 }
 
-/// Refines until the tolerance holds, or panels, memory or members end; `told` hears of every step before it starts.
+/// Refines until the tolerance is met, or panels, memory or members end; `progress` hears of every step before it starts.
 ///
 /// # Errors
 ///
 /// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
 /// panels than are allowed.
-pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
+pub fn refine(family: &Family, wanted: &Wanted, progress: &dyn Fn(&str)) -> Result<Refined, Error> {
     let length_m = extent(&family.member(0)?.mesh.mesh);
     let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
     let is_foreign = matches!(family, Family::Mesh(_));
@@ -250,7 +250,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             stopped = Some(why);
             break;
         }
-        told(&format!(
+        progress(&format!(
             "{panels} panels, {} unknowns: some {} and {:.0} MB",
             forecast.unknowns,
             duration(forecast.seconds),
@@ -304,7 +304,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
 fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
     let (coarsest, third) = (family.panels(0)?, family.panels(2)?);
     Ok(Error::Nothing(format!(
-        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
+        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, because the numerical uncertainty needs \
          three meshes, or {coarsest} for a value without",
         wanted.most_panels
     )))

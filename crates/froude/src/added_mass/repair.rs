@@ -1,4 +1,4 @@
-//! A mesh with what can be decided put right, as a new file; the given one stays as it is.
+//! A mesh with the unambiguous faults corrected, as a new file; the given one stays as it is.
 
 use std::io::Write as _;
 use std::path::Path;

@@ -98,7 +98,7 @@ struct Level {
 /// # Errors
 ///
 /// See [`Error`].
-pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<SeveralOutcome, Error> {
+pub fn several(job: &BodyJob, apart: Apart, progress: &dyn Fn(&str)) -> Result<SeveralOutcome, Error> {
     let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
     crate::results::can_be_written(&out)?;
     let loaded = match apart {
@@ -108,7 +108,7 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
     let mut levels = Vec::new();
     for (size, problem) in loaded.problems {
-        told(&format!("{} panels, {} parts", problem.facets.len(), problem.frames.len()));
+        progress(&format!("{} panels, {} parts", problem.facets.len(), problem.frames.len()));
         let solution = solve(&problem);
         if solution.report.residual > LOOSE {
             return Err(Error::Nothing(format!(
@@ -146,13 +146,13 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
     let size = |i: usize| value[i][i].abs().max(ZERO * least(i));
     let worst = (0..n * n).map(|k| uncertainty[k / n][k % n] / (size(k / n) * size(k % n)).sqrt()).fold(0.0, f64::max);
     if worst.is_nan() || worst > job.wanted.tolerance {
-        let told = if worst.is_finite() {
+        let known = if worst.is_finite() {
             format!("is {:.1} %", 100.0 * worst)
         } else {
-            "cannot be told from one mesh".to_owned()
+            "cannot be estimated from one mesh".to_owned()
         };
         let message = format!(
-            "the largest numerical uncertainty of an entry, as part of the diagonal, {told} where {:.1} % was asked for: no finer mesh is made \
+            "the largest numerical uncertainty of an entry, as part of the diagonal, {known} where {:.1} % was asked for: no finer mesh is made \
              part by part",
             100.0 * job.wanted.tolerance
         );
@@ -308,12 +308,12 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
 fn parts_of(job: &BodyJob) -> Result<Several, Error> {
     let loaded = load(job)?;
     let Family::Mesh(mesh) = loaded.family else {
-        return Err(Error::Nothing(format!("{}: --apart takes a mesh of several closed parts", job.input.display())));
+        return Err(Error::Nothing(format!("{}: --apart is for a mesh of several closed parts", job.input.display())));
     };
     let found = parts(&mesh);
     if found.len() < 2 {
         return Err(Error::Nothing(format!(
-            "{}: the mesh hangs together, it has one part; leave --apart out",
+            "{}: the mesh is connected and has one part; leave --apart out",
             job.input.display()
         )));
     }
@@ -403,7 +403,7 @@ fn diagonal_table(parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>]
     }
 }
 
-/// Parts of which all pairs are told.
+/// Parts of which all pairs are reported.
 const MOST_PARTS: usize = 12;
 
 fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> Option<TextTable> {

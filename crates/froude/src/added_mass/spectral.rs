@@ -103,7 +103,7 @@ pub fn replace(refined: &mut Refined, spectral: &Spectral, frame: &Frame) -> Str
     refined.is_within = true;
     refined.stopped = None;
     format!(
-        "A body of revolution: the values are those of azimuthal modes on its meridian, the meshes a check: in {} they come to {:.2} of their own \
+        "A body of revolution: the values are those of azimuthal modes on its meridian, the meshes a check: in {} they differ by {:.2} of their own \
          uncertainty.",
         MOTIONS[furthest.1], furthest.0
     )

@@ -81,7 +81,7 @@ pub(super) fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding
     };
     Ok(vec![
         deep,
-        case("Slow motion: rigid lid", "rigid: ω²d/g → 0", true, Kind::Wall, Surface::Lid),
-        case("Fast motion: φ = 0", "φ = 0 there: ω²d/g → ∞", false, Kind::FreeSurface, Surface::Free),
+        case("Zero-frequency limit: rigid lid", "rigid: ω²d/g → 0", true, Kind::Wall, Surface::Lid),
+        case("Infinite-frequency limit: φ = 0", "φ = 0 there: ω²d/g → ∞", false, Kind::FreeSurface, Surface::Free),
     ])
 }

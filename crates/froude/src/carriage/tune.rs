@@ -426,7 +426,7 @@ impl<'a> Bench<'a> {
                     ));
                 }
             }
-            _ => out.push("the response shows no two masses, so the ramps could not be foreseen".to_owned()),
+            _ => out.push("the response shows no two masses, so the ramps could not be predicted".to_owned()),
         }
         out
     }
@@ -450,7 +450,7 @@ fn against_margins(m: &Margins) -> Vec<String> {
             phase.to_degrees(),
             demand.phase_rad.to_degrees()
         )),
-        None => out.push("no crossover: the loop holds nothing".to_owned()),
+        None => out.push("no crossover: the loop gain stays below 1".to_owned()),
         Some(_) => {}
     }
     if let Some(gain) = m.gain.filter(|&g| g < demand.gain) {
@@ -461,7 +461,7 @@ fn against_margins(m: &Margins) -> Vec<String> {
     }
     if m.largest_sensitivity > demand.sensitivity {
         let (is, may) = (digits(m.largest_sensitivity), digits(demand.sensitivity));
-        out.push(format!("largest sensitivity {is}, {may} is allowed"));
+        out.push(format!("maximum sensitivity {is}, {may} is allowed"));
     }
     out
 }
@@ -484,7 +484,7 @@ pub fn candidates_table(outcome: &TuneOutcome) -> TextTable {
         ("gain margin [1]", |c| c.margins.gain),
         ("gain may fall to [1]", |c| c.margins.gain_reduction),
         ("delay margin [ms]", |c| c.margins.delay_s.map(|s| 1e3 * s)),
-        ("largest sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
+        ("maximum sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
         ("phase margin, heaviest body [°]", |c| c.heaviest?.phase_rad.map(f64::to_degrees)),
         ("integral feeds swings below [Hz]", |c| Some(c.gains.feeding_hz())),
         ("following error in ramps [mm]", |c| c.following_error_m.map(|m| 1e3 * m)),
@@ -555,8 +555,7 @@ pub fn tune_sentences(outcome: &TuneOutcome) -> Vec<String> {
             ));
             if outcome.candidates[0].objections.is_empty() {
                 out.push(
-                    "The gains as configured keep all that is asked for as well: there is no need to change them."
-                        .to_owned(),
+                    "The gains as configured also meet every requirement: there is no need to change them.".to_owned(),
                 );
             }
         }

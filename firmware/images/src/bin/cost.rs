@@ -27,7 +27,7 @@ use froude_link::{FromBoard, HostFrame, Telemetry, ToBoard};
 
 static LATCH: TickLatch = TickLatch::new();
 
-/// Costs up to this many instructions are told apart.
+/// Costs up to this many instructions are distinguished.
 const CLASSES: usize = 65_536;
 /// Costliest steps that are followed.
 const WORST: usize = 8;

@@ -58,7 +58,7 @@ struct Host {
     seen: Seen,
 }
 
-/// What the host was told.
+/// What was reported to the host.
 #[derive(Default)]
 struct Seen {
     accepted: u32,

@@ -60,8 +60,8 @@ pub fn calibrated(source: &str, c: &Calibration, weight_relative: f64, weights_k
         derived: IndexMap::from([("efficiency".to_owned(), efficiency)]),
         diagnostics: Diagnostics { notes: c.notes.clone(), ..Diagnostics::default() },
         recommended: true,
-        reason: Some("known weights say it, gear and chain included".to_owned()),
-        ..estimate(source, "calibration", "least squares of the command over known weights, both ways", coefficient)
+        reason: Some("from known weights, gear and chain included".to_owned()),
+        ..estimate(source, "calibration", "least squares of the command on known weights, both directions", coefficient)
     }
 }
 
@@ -92,12 +92,7 @@ pub fn declared(source: &str, setup: &DragSetup) -> Estimate {
         interval_95: None,
         effective_dof: None,
     };
-    estimate(
-        &format!("{source}, declared"),
-        "declared",
-        "the constants of the drive, as they are declared",
-        coefficient,
-    )
+    estimate(&format!("{source}, declared"), "declared", "the constants of the drive as declared", coefficient)
 }
 
 fn estimate(source: &str, method: &str, words: &str, coefficient: Coefficient) -> Estimate {
