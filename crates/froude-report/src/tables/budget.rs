@@ -1,0 +1,139 @@
+//! The budget: what each input contributes to each coefficient.
+
+use maud::{Markup, html};
+
+use super::{Tables, head_unit, html_symbol, union};
+use crate::figures::{budget_rows, ranked_inputs, share};
+use crate::input::{BudgetRow, SourceSection};
+use crate::symbol::unit_text;
+use froude_records::number::{self, MISSING};
+
+/// Shares of a variance below this are rounding: double precision, squared, with room.
+const ROUNDING: f64 = 1e-20;
+
+/// Most inputs that get a column each.
+const MOST_INPUTS: usize = 6;
+
+/// A budget: a column per input where they fit, else a row per input and coefficient.
+fn budget_table(rows: &[&BudgetRow], caption: &Markup) -> Markup {
+    let mut inputs: Vec<(&str, &str)> = Vec::new();
+    for (input, _) in ranked_inputs(rows) {
+        for r in rows.iter().filter(|r| r.input == input) {
+            if !inputs.contains(&(input, r.shared.as_str())) {
+                inputs.push((input, r.shared.as_str()));
+            }
+        }
+    }
+    if inputs.len() > MOST_INPUTS {
+        return long_budget_table(rows, caption);
+    }
+    let of = |coefficient: &str, input: &(&str, &str)| {
+        rows.iter().copied().find(|r| r.coefficient == coefficient && r.input == input.0 && r.shared == input.1)
+    };
+    html! {
+        div class="table" {
+            table class="coefficients" {
+                (caption)
+                thead {
+                    tr {
+                        th scope="col" { "Coefficient" }
+                        @for (input, shared) in &inputs {
+                            th scope="col" {
+                                (input)
+                                @if !shared.is_empty() { br; span class="mark" { "shared by " (shared) } }
+                            }
+                        }
+                    }
+                }
+                tbody {
+                    @for coefficient in union(rows.iter().map(|r| &r.coefficient)) {
+                        @let unit = rows.iter().find(|r| r.coefficient == coefficient).map_or("1", |r| r.unit.as_str());
+                        @let largest = rows.iter().filter(|r| r.coefficient == coefficient).map(|r| share(r)).fold(0.0, f64::max);
+                        tr {
+                            th scope="row" { (html_symbol(coefficient)) (head_unit(if unit.is_empty() { "1" } else { unit })) }
+                            @for input in &inputs {
+                                td {
+                                    @if let Some(r) = of(coefficient, input) {
+                                        @if share(r) >= largest && largest > 0.0 { b { (number::significant(r.contribution, 2)) } }
+                                        @else if share(r) < ROUNDING { "0" }
+                                        @else { (number::significant(r.contribution, 2)) }
+                                        span class="interval" { (number::percent(if share(r) < ROUNDING { 0.0 } else { r.share })) }
+                                    }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn long_budget_table(rows: &[&BudgetRow], caption: &Markup) -> Markup {
+    let order: Vec<&str> = ranked_inputs(rows).into_iter().map(|(input, _)| input).collect();
+    let coefficients = union(rows.iter().map(|r| &r.coefficient));
+    html! {
+        div class="table" {
+            table {
+                (caption)
+                thead {
+                    tr {
+                        th scope="col" { "Coefficient" }
+                        th scope="col" { "Input" }
+                        th scope="col" { "Shared by" }
+                        th scope="col" class="num" { "Standard uncertainty" }
+                        th scope="col" { "Unit" }
+                        th scope="col" class="num" { "Share of variance" }
+                    }
+                }
+                @for coefficient in &coefficients {
+                    @let own = sorted(rows, coefficient, &order);
+                    tbody {
+                        @for (i, r) in own.iter().enumerate() {
+                            tr {
+                                @if i == 0 { th scope="rowgroup" rowspan=(own.len()) { (html_symbol(coefficient)) } }
+                                td { (r.input) }
+                                td { (if r.shared.is_empty() { MISSING } else { r.shared.as_str() }) }
+                                td class="num" { (number::significant(r.contribution, 2)) }
+                                td { (unit_text(if r.unit.is_empty() { "1" } else { &r.unit })) }
+                                td class="num" { (number::percent(r.share)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Rows of one coefficient, the largest share first; ties as the inputs rank overall.
+fn sorted<'a>(rows: &[&'a BudgetRow], coefficient: &str, order: &[&str]) -> Vec<&'a BudgetRow> {
+    let rank = |input: &str| order.iter().position(|o| *o == input).unwrap_or(usize::MAX);
+    let mut own: Vec<&BudgetRow> = rows.iter().copied().filter(|r| r.coefficient == coefficient).collect();
+    own.sort_by(|a, b| share(b).total_cmp(&share(a)).then(rank(&a.input).cmp(&rank(&b.input))));
+    own
+}
+
+impl Tables {
+    /// Contributions by coefficient, the largest first.
+    pub(crate) fn budget(&mut self, source: &SourceSection) -> Markup {
+        let rows = budget_rows(source);
+        let model = rows.first().map_or("", |r| r.model.as_str());
+        let caption = self.caption(&format!(
+            "Uncertainty budget of model {model}: standard uncertainty that each input alone gives to each coefficient, and its share of the \
+             variance. What is shared by a setup or a campaign does not average down."
+        ));
+        let table = budget_table(&rows, &caption);
+        let others =
+            union(source.budget.iter().map(|r| &r.model)).into_iter().filter(|m| *m != model).collect::<Vec<_>>();
+        let folded: Vec<Markup> = others
+            .into_iter()
+            .map(|other| {
+                let rows: Vec<&BudgetRow> = source.budget.iter().filter(|r| r.model == other).collect();
+                let caption = self.caption(&format!("Uncertainty budget of model {other}."));
+                html! { details { summary { "Uncertainty budget of model " (other) } (budget_table(&rows, &caption)) } }
+            })
+            .collect();
+        html! { (table) @for part in &folded { (part) } }
+    }
+}

@@ -1,0 +1,180 @@
+//! The contest of the models.
+
+use maud::{Markup, html};
+
+use super::{Tables, html_symbol, union};
+use crate::input::{SelectionRow, SourceSection};
+use crate::symbol::unit_text;
+use froude_records::number::{self, MISSING};
+
+impl Tables {
+    /// The contest of the models.
+    pub(crate) fn selection<'a>(&mut self, source: &'a SourceSection) -> Markup {
+        let rows = &source.selection;
+        let blocks = union(rows.iter().flat_map(|r| r.range_blocks.iter().map(|(name, _)| name)));
+        let has_lack = rows.iter().any(|r| r.lack_of_fit_p.is_some());
+        let components = union(rows.iter().map(|r| &r.component));
+        let best = crate::figures::recommended(source).map(|e| e.law.name.as_str());
+        let has_scores = rows.iter().any(|r| r.cross_validation.is_ok());
+        let scored = |r: &'a SelectionRow| r.cross_validation.as_ref().err().filter(|_| has_scores);
+        let reasons = union(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));
+        let footnote = |reason: &String| {
+            html! {
+                @if let Some(i) = reasons.iter().position(|x| x == reason) { sup { (i + 1) } }
+            }
+        };
+        let caption = self.caption(&format!(
+            "Models against each other, by load component. p: estimated coefficients; σ: residual standard deviation; r: norm of the \
+             residual over norm of the measurement; ΔAICc: above the best model of this load{}.",
+            if has_scores { "; cross-validation: root mean square error when one configuration is left out" } else { "" }
+        ));
+        let row = |r: &SelectionRow| {
+            html! {
+                tr class=(if Some(r.model.as_str()) == best { "best" } else { "" }) {
+                    th scope="row" { (r.model) @if Some(r.model.as_str()) == best { " " span class="mark" { "recommended" } } }
+                    td class="num" { (r.n_coefficients) }
+                    td class="num" { (number::significant(r.sigma, 3)) }
+                    td class="num" { (number::percent(r.relative_residual)) }
+                    td class="num" {
+                        @match &r.delta_aicc {
+                            Ok(delta) => (number::fixed(*delta, 1)),
+                            Err(reason) => { (MISSING) (footnote(reason)) },
+                        }
+                    }
+                    @if has_scores {
+                        td class="num" {
+                            @match &r.cross_validation {
+                                Ok(error) => (number::significant(*error, 3)),
+                                Err(reason) => { (MISSING) (footnote(reason)) },
+                            }
+                        }
+                    }
+                    @for block in &blocks {
+                        td class="num" {
+                            (r.range_blocks.iter().find(|(name, _)| name == block).map_or_else(|| MISSING.to_owned(), |(_, x)| number::significant(*x, 3)))
+                        }
+                    }
+                    @if has_lack { td class="num" { (r.lack_of_fit_p.map_or_else(|| MISSING.to_owned(), number::p_value)) } }
+                }
+            }
+        };
+        let n_columns = 5 + usize::from(has_scores) + blocks.len() + usize::from(has_lack);
+        html! {
+            div class="table" {
+                table {
+                    (caption)
+                    thead {
+                        tr {
+                            th scope="col" { "Model" }
+                            th scope="col" class="num" { "p" }
+                            th scope="col" class="num" { "σ" }
+                            th scope="col" class="num" { "r" }
+                            th scope="col" class="num" { "ΔAICc" }
+                            @if has_scores { th scope="col" class="num" { "Cross-validation" } }
+                            @for block in &blocks { th scope="col" class="num" { "Error for " (block) } }
+                            @if has_lack { th scope="col" class="num" { "Lack of fit, p" } }
+                        }
+                    }
+                    @for component in &components {
+                        @let own = || rows.iter().filter(|r| r.component == *component);
+                        @let units = union(own().map(|r| &r.unit));
+                        tbody {
+                            tr class="group" {
+                                th scope="rowgroup" colspan=(n_columns) {
+                                    (html_symbol(component))
+                                    span class="mark" {
+                                        @for (i, unit) in units.iter().enumerate() {
+                                            @if i == 0 { ", σ and errors in " (unit_text(unit)) }
+                                            @else {
+                                                ", in " (unit_text(unit)) " for "
+                                                (own().filter(|r| r.unit == *unit).map(|r| r.model.as_str()).collect::<Vec<_>>().join(", "))
+                                            }
+                                        }
+                                    }
+                                }
+                            }
+                            @for r in own() { (row(r)) }
+                        }
+                    }
+                    @if !source.not_fitted.is_empty() {
+                        tbody {
+                            tr class="group" { th scope="rowgroup" colspan=(n_columns) { "Not fitted" } }
+                            @for (model, why) in &source.not_fitted {
+                                tr { th scope="row" { (model) } td colspan=(n_columns - 1) { (why) } }
+                            }
+                        }
+                    }
+                }
+            }
+            @if !reasons.is_empty() {
+                p class="notes" {
+                    @for (i, reason) in reasons.iter().enumerate() { sup { (i + 1) } " " (bare_reason(reason)) ". " }
+                }
+            }
+            @if !has_scores { (unscored(rows)) }
+        }
+    }
+
+    /// F tests along the nesting.
+    pub(crate) fn nested(&mut self, source: &SourceSection) -> Markup {
+        let caption = self.caption(
+            "F tests of the simpler model inside the more general one. A small p means that the data contradict the restriction.",
+        );
+        html! {
+            div class="table" {
+                table class="compact" {
+                    (caption)
+                    thead {
+                        tr {
+                            th scope="col" { "Restriction" }
+                            th scope="col" { "Load" }
+                            th scope="col" class="num" { "F" }
+                            th scope="col" class="num" { "Degrees of freedom" }
+                            th scope="col" class="num" { "p" }
+                            th scope="col" { "At 5 %" }
+                        }
+                    }
+                    tbody {
+                        @for t in &source.tests {
+                            tr {
+                                th scope="row" { (t.simple) " ⊂ " (t.general) }
+                                td { (html_symbol(&t.component)) }
+                                td class="num" { (number::significant(t.f, 3)) }
+                                td class="num" { (number::dof(t.dof[0])) ", " (number::dof(t.dof[1])) }
+                                td class="num" { (number::p_value(t.p)) }
+                                td {
+                                    @if !t.p.is_finite() { (MISSING) }
+                                    @else if t.p < 0.05 { (t.general) " fits better" }
+                                    @else { "no evidence against " (t.simple) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Why there is no cross-validation, without the words that say that there is none.
+fn bare_reason(reason: &str) -> &str {
+    reason.strip_prefix("not scorable: ").unwrap_or(reason)
+}
+
+/// The sentence that stands for a column in which no model has a cross-validation.
+fn unscored(rows: &[SelectionRow]) -> Markup {
+    let reasons = union(rows.iter().filter_map(|r| r.cross_validation.as_ref().err()));
+    let models = |reason: &str| {
+        union(rows.iter().filter(|r| r.cross_validation.as_ref().err().is_some_and(|x| x == reason)).map(|r| &r.model))
+    };
+    let sentence = match reasons.as_slice() {
+        [] => return Markup::default(),
+        [one] => bare_reason(one).to_owned(),
+        several => several
+            .iter()
+            .map(|reason| format!("{} ({})", bare_reason(reason), models(reason).join(", ")))
+            .collect::<Vec<_>>()
+            .join("; "),
+    };
+    html! { p class="notes" { "Cross-validation is not scorable: " (sentence) "." } }
+}
