@@ -156,7 +156,7 @@ mod tests {
         for rho in [500.0, 700.0, 997.0, 1025.0, 1240.0, 2000.0] {
             assert_eq!(density(rho, None), None, "{rho}");
         }
-        let meant = "is not a density of water (500 to 2000 kg/m^3 are taken); write 1.025 g/cm^3 or 1025 kg/m^3";
+        let meant = "is not a density of water (500 to 2000 kg/m^3 are accepted); write 1.025 g/cm^3 or 1025 kg/m^3";
         assert!(density(1.025, None).unwrap().starts_with(&format!("{meant}; if the test was in air, state its")));
         assert_eq!(density(1.025e6, None).unwrap(), meant);
         assert!(
