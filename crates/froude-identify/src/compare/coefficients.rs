@@ -1,0 +1,116 @@
+//! Coefficients that two estimates share, and E_n of two numbers.
+
+use froude_records::comparison::{CoefficientComparison, Side};
+use froude_records::estimate::{Coefficient, Status};
+
+use super::Named;
+use crate::common::{Common, Number};
+use crate::uncertainty::coverage_factor;
+
+/// Coverage factor where no degrees of freedom are stated: two-sided 95 % of the normal distribution.
+pub(super) const NORMAL_COVERAGE: f64 = 1.959_963_984_540_054;
+
+/// What is said in place of E_n where two estimates come from the same observations.
+pub const SAME_DATA: &str = "same data: not independent, E_n not meaningful";
+/// What is said in place of χ² there.
+pub(super) const SAME_DATA_JOINTLY: &str = "same data: not independent, χ² not meaningful";
+
+/// A number as one estimate states it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Stated {
+    pub value: Option<f64>,
+    /// Standard uncertainty, in the unit of the value; `None` where none is stated.
+    pub standard: Option<f64>,
+    /// Effective degrees of freedom of it; `None` where the record states no finite ones.
+    pub dof: Option<f64>,
+}
+
+impl Stated {
+    /// As a side of a comparison: with the coverage factor k of the 95 % uncertainty U = k·u.
+    pub(super) fn of(self, source: &str) -> Side {
+        let coverage_factor = self.standard.map(|_| self.dof.map_or(NORMAL_COVERAGE, coverage_factor));
+        Side {
+            source: source.to_owned(),
+            value: self.value,
+            standard_uncertainty: self.standard,
+            effective_dof: self.dof,
+            coverage_factor,
+            expanded_uncertainty: coverage_factor.zip(self.standard).map(|(k, u)| k * u),
+        }
+    }
+}
+
+/// E_n and an empty note, or none and why.
+pub(super) fn noted(e_n: Result<f64, String>) -> (Option<f64>, String) {
+    match e_n {
+        Ok(e_n) => (Some(e_n), String::new()),
+        Err(why) => (None, why),
+    }
+}
+
+pub(super) fn coefficient_rows(
+    [a, b]: [&Named<'_>; 2],
+    [first, second]: [&str; 2],
+    common: &Common<'_>,
+    is_same_data: bool,
+) -> Vec<CoefficientComparison> {
+    a.estimate
+        .coefficients
+        .iter()
+        .filter_map(|(name, x)| b.estimate.coefficients.get(name).map(|y| (name, x, y)))
+        .map(|(name, x, y)| {
+            let e_n = if x.unit == y.unit {
+                let sides = [Number::of_coefficient(a.estimate, name), Number::of_coefficient(b.estimate, name)];
+                e_n([&sides[0], &sides[1]], common, [first, second], is_same_data)
+                    .and_then(|e_n| not_free(x, first).or_else(|| not_free(y, second)).map_or(Ok(e_n), Err))
+            } else {
+                Err(format!("units differ: {} and {}", x.unit, y.unit))
+            };
+            let (e_n, note) = noted(e_n);
+            CoefficientComparison {
+                model: a.estimate.law.name.clone(),
+                coefficient: name.clone(),
+                label: x.label.clone().or_else(|| y.label.clone()),
+                unit: x.unit.clone(),
+                first: stated(x).of(first),
+                second: stated(y).of(second),
+                e_n,
+                note,
+            }
+        })
+        .collect()
+}
+
+/// Why a coefficient is no measurement that stands by itself: a bound, whose uncertainty is that of the fit without it, or
+/// a fit to a published value, which may be the other side.
+pub(super) fn not_free(c: &Coefficient, id: &str) -> Option<String> {
+    match c.status {
+        Status::AtBound => Some(format!("at its bound in {id}")),
+        Status::Prior => Some(format!("rests on a published value in {id}")),
+        _ => None,
+    }
+}
+
+pub(super) fn stated(c: &Coefficient) -> Stated {
+    Stated { value: c.value, standard: c.standard_uncertainty, dof: c.effective_dof }
+}
+
+/// E_n of two numbers, or why there is none.
+pub(super) fn e_n(
+    sides: [&Number<'_>; 2],
+    common: &Common<'_>,
+    ids: [&str; 2],
+    is_same_data: bool,
+) -> Result<f64, String> {
+    let [Some(a), Some(b)] = sides.map(|side| side.stated.value) else { return Err("undetermined".to_owned()) };
+    let without: Vec<&str> =
+        sides.into_iter().zip(ids).filter(|(side, _)| side.stated.standard.is_none()).map(|(_, id)| id).collect();
+    if !without.is_empty() {
+        return Err(format!("no uncertainty stated by {}", without.join(" and ")));
+    }
+    if is_same_data {
+        return Err(SAME_DATA.to_owned());
+    }
+    let u = common.expanded_difference(sides, a - b);
+    if u > 0.0 { Ok((a - b) / u) } else { Err("both uncertainties are zero".to_owned()) }
+}

@@ -1,0 +1,115 @@
+//! Whether two estimates come from the same observations.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use froude_records::estimate::{DataFile, Estimate};
+use froude_records::finding::{Finding, Severity};
+
+use super::Named;
+
+/// What is read as something else than observations: it is the same error under its own key, or no error at all.
+const NOT_OBSERVED: [&str; 4] = ["campaign", "sidecar", "record", "calibration"];
+
+/// Whether a file holds observations; an old record does not say what it read a file as.
+fn is_observed(data: &DataFile) -> bool {
+    let is_table = |path: &str| {
+        Path::new(path).extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml") && !e.eq_ignore_ascii_case("json"))
+    };
+    !data.sha256.is_empty()
+        && data.role.as_deref().map_or_else(|| is_table(&data.path), |role| !NOT_OBSERVED.contains(&role))
+}
+
+/// Fingerprints of the observations among files.
+fn fingerprints<'a>(files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a str> {
+    files.filter(|data| is_observed(data)).map(|data| data.sha256.as_str()).collect()
+}
+
+/// Where an estimate comes from, as far as its record tells.
+pub(super) struct Origin<'a> {
+    /// Fingerprints of its tables or runs.
+    tables: BTreeSet<&'a str>,
+    /// Whether these are its own, and not those of all estimates of its record.
+    is_exact: bool,
+    /// Whether all estimates of the record are of this one's source.
+    is_alone: bool,
+}
+
+/// The origin of each estimate.
+pub(super) fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
+    let of = |n: &Named<'a>| {
+        let own = fingerprints(n.record.data_of(n.estimate));
+        let is_exact = !own.is_empty();
+        let first = n.record.estimates.first().map(|e| &e.source);
+        let is_alone = || n.record.estimates.iter().all(|e| Some(&e.source) == first);
+        if is_exact {
+            Origin { tables: own, is_exact, is_alone: true }
+        } else {
+            Origin { tables: fingerprints(n.record.data.values()), is_exact, is_alone: is_alone() }
+        }
+    };
+    all.iter().map(of).collect()
+}
+
+/// True for two models of one source in one record, which nobody takes for independent.
+pub(super) fn is_one_source(a: &Named<'_>, b: &Named<'_>) -> bool {
+    std::ptr::eq(a.record, b.record) && a.estimate.source == b.estimate.source
+}
+
+/// True for two methods, of two sources that each have an estimate of the same law by the other's method too.
+pub(super) fn has_likes(all: &[Named<'_>], a: &Named<'_>, b: &Named<'_>) -> bool {
+    let has = |source: &Named<'_>, method: &str| {
+        all.iter().any(|n| {
+            is_one_source(n, source)
+                && n.estimate.law.name == source.estimate.law.name
+                && n.estimate.method.name == method
+        })
+    };
+    let [of_a, of_b] = [a, b].map(|n| n.estimate.method.name.as_str());
+    // In this order: most pairs are of one method, and nothing is searched for them.
+    of_a != of_b && has(a, of_b) && has(b, of_a)
+}
+
+/// True where both records name their tables and none of them is the same.
+pub(super) fn have_other_tables([a, b]: [&Origin<'_>; 2]) -> bool {
+    !a.tables.is_empty() && !b.tables.is_empty() && a.tables.is_disjoint(&b.tables)
+}
+
+/// True where two estimates come from the same observations, as far as their records tell.
+///
+/// A record says which files each estimate came from. An old one names its tables, but not which source read which: there a shared table counts where that is plain (one table, or
+/// one source), and else if the sources have the same name or the same observations (number and ranges). Without
+/// fingerprints only an equal fit is known to be the same.
+pub(super) fn same_data([a, b]: [&Named<'_>; 2], [first, second]: [&Origin<'_>; 2]) -> bool {
+    let (x, y) = (a.estimate, b.estimate);
+    if is_one_source(a, b) || x == y {
+        return true;
+    }
+    let values = |e: &Estimate| e.coefficients.iter().map(|(n, c)| (n.clone(), c.value)).collect::<Vec<_>>();
+    let same_observations = x.n_observations > 0 && x.n_observations == y.n_observations && x.validity == y.validity;
+    if same_observations && x.law.name == y.law.name && x.sigma == y.sigma && values(x) == values(y) {
+        return true;
+    }
+    if first.is_exact && second.is_exact {
+        return !first.tables.is_disjoint(&second.tables);
+    }
+    if std::ptr::eq(a.record, b.record) {
+        // Fitted sources read tables; a published one beside them does not.
+        return first.tables.len() == 1 && x.n_observations > 0 && y.n_observations > 0;
+    }
+    let is_plain = |own: &Origin<'_>| own.tables.len() == 1 || own.is_alone;
+    !first.tables.is_disjoint(&second.tables)
+        && ((is_plain(first) && is_plain(second)) || x.source == y.source || same_observations)
+}
+
+pub(super) fn same_data_finding(a: &Named<'_>, b: &Named<'_>) -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "same-data",
+        format!(
+            "{} ({}) and {} ({}) come from the same data: that they agree is no evidence, and E_n and χ², which assume \
+             independent measurements, are not given",
+            a.estimate.source, a.file, b.estimate.source, b.file
+        ),
+    )
+}
