@@ -19,8 +19,6 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 CASES = [
     ("columns", "gram", 3.0, "10^7 x 10 from memory", "numpy Gram + Cholesky"),
     ("columns-qr", "gelsy", 15.0, "the same by reflections (QR)", "scipy lstsq gelsy"),
-    ("rows", "features", 30.0, "features on the fly from 5 columns", "numpy features + Gram"),
-    ("rows", "features-small-pages", None, "the same", "numpy on 4 KiB pages"),
     ("non-negative", "nnls-on-gram", 3.0, "non-negative", "scipy nnls on Gram"),
     ("csv", "csv-polars", 4.0, "CSV to two components", "polars + numpy"),
     ("csv-cluster", "csv-polars", 4.0, "the same with cluster CR3", "polars + numpy, no CR3"),
@@ -29,15 +27,12 @@ CASES = [
     ("savitzky-golay", "savitzky-golay", 12.0, "Savitzky-Golay derivative, 41", "scipy savgol_filter"),
     ("forward-backward", "forward-backward", 1.7, "forward-backward, order 4", "scipy sosfiltfilt"),
     ("hour", "hour", None, "axis, an hour of 10 kHz x 8", "numpy + scipy in memory"),
-    ("bootstrap", "bootstrap", 2.5, "bootstrap 10^4 of 1,000 x 10", "bincount x gemm, batched"),
 ]
 
 
 def run(command, threads):
     names = ("OMP", "OPENBLAS", "MKL", "RAYON", "ARROW")
     env = dict(os.environ, POLARS_MAX_THREADS=str(threads), **{f"{n}_NUM_THREADS": str(threads) for n in names})
-    if "features-small-pages" in command:
-        env["NUMPY_MADVISE_HUGEPAGE"] = "0"
     cpus = ",".join(map(str, sorted(os.sched_getaffinity(0))[:threads]))
     pinned = ["taskset", "-c", cpus] if threads < os.cpu_count() else []
     done = subprocess.run(pinned + command, env=env, capture_output=True, text=True)
@@ -101,7 +96,7 @@ def main():
         with open(a.json, "w") as f:
             json.dump(records, f, indent=1)
     print("\nTimes are the best of all runs; CPU counts user and system time of all threads. 'Differ by' is the "
-          "largest difference of the\ntwo sides' coefficients (bootstrap: standard errors, whose own scatter is 0.7 %) "
+          "largest difference of the\ntwo sides' coefficients "
           "over the largest coefficient.")
     sys.exit(1 if missed else 0)
 

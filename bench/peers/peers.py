@@ -47,25 +47,6 @@ def nnls_on_gram(X, y):
     return nnls(L.T, sl.solve_triangular(L, X.T @ y, lower=True))[0]
 
 
-def bootstrap(X, y, resamples=10_000, batch=500):
-    """Resampling as integer weights: all Gram matrices by one product of counts with products of columns."""
-    rng = np.random.default_rng(1)
-    n, p = X.shape
-    Z = np.concatenate([X, y[:, None]], 1)
-    i, j = np.triu_indices(p + 1)
-    products = Z[:, i] * Z[:, j]
-    shift = np.arange(batch)[:, None] * n
-    out = np.empty((resamples, p))
-    for start in range(0, resamples, batch):
-        drawn = rng.integers(0, n, (batch, n), dtype=np.int32) + shift
-        counts = np.bincount(drawn.ravel(), minlength=batch * n).reshape(batch, n)
-        G = np.zeros((batch, p + 1, p + 1))
-        G[:, i, j] = counts.astype(float) @ products
-        G[:, j, i] = G[:, i, j]
-        out[start:start + batch] = np.linalg.solve(G[:, :p, :p], G[:, :p, p:])[..., 0]
-    return out.std(0, ddof=1)
-
-
 def force_regressors(vx, vy, theta, omega):
     c, s = np.cos(theta), np.sin(theta)
     u, v = c * vx + s * vy, c * vy - s * vx
@@ -136,18 +117,11 @@ def main(case, folder):
         reader = case.removeprefix("csv-")
         __import__({"polars": "polars", "pyarrow": "pyarrow.csv", "pandas": "pandas"}[reader])
         call, runs = (lambda: csv(os.path.join(folder, "record.csv"), reader)), 3
-    elif case == "bootstrap":
-        *x, y = raw(folder, 1000)
-        X = regressors(*x)
-        call, runs = (lambda: bootstrap(X, y)), 7
     elif case in ("gaussian", "savitzky-golay", "forward-backward"):
         call = filtered(case, np.fromfile(os.path.join(folder, "u.f64")))
     elif case == "hour":
         import scipy.signal  # noqa: F401
         call, runs = (lambda: hour(os.path.join(folder, "hour.f64"))), 2
-    elif case.startswith("features"):
-        *x, y = raw(folder)
-        call = lambda: gram(regressors(*x), y)  # noqa: E731
     else:
         *x, y = raw(folder)
         X = regressors(*x)

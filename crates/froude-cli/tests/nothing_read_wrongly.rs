@@ -189,7 +189,8 @@ fn an_angle_of_several_turns_is_refused_with_its_cause() {
 
 #[test]
 fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
-    const NO_WATER: &str = "the density of no water (500 to 2000 kg/m^3 are accepted); write 1.025 g/cm^3 or 1025 kg/m^3";
+    const NO_WATER: &str =
+        "the density of no water (500 to 2000 kg/m^3 are accepted); write 1.025 g/cm^3 or 1025 kg/m^3";
     const OR_AIR: &str = "; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: kinematic_viscosity beside density, in \
                           [fluid] of the campaign or as columns";
     let campaign = |density: &str| format!("schema = 1\nname = \"x\"\n[fluid]\ndensity = {density}\n");

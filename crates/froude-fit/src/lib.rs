@@ -18,7 +18,6 @@
 //! | [`select`]      | F tests, AICc, cross-validation, lack of fit                         |
 //! | [`nonlinear`]   | models that are not linear in their parameters, by runs              |
 //! | [`odr`]         | orthogonal distance regression: uncertain inputs                     |
-//! | [`bootstrap`]   | pairs and cluster bootstrap                                          |
 //! | [`stream`]      | more rows than memory holds, one pass                                |
 //! | [`wild`]        | wild cluster bootstrap                                               |
 //! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
@@ -29,7 +28,7 @@
 //! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
 //!
-//! All of it runs on one thread except the bootstrap, whose result does not
+//! All of it runs on one thread except [`stream::reduce_columns`], whose result does not
 //! depend on how many there are.
 //!
 //! Not here: correlated noise other than by cluster (and, for one long run, by
@@ -43,7 +42,6 @@
 
 pub mod autocorrelation;
 mod block;
-pub mod bootstrap;
 pub mod bounded;
 pub mod budget;
 mod constrained;

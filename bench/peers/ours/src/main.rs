@@ -6,7 +6,7 @@
 //! peer-bench CASE DIR THREADS   solve it, print one line of JSON
 //! ```
 //!
-//! Cases: `columns`, `columns-qr`, `rows`, `non-negative`, `bootstrap`, `csv`,
+//! Cases: `columns`, `columns-qr`, `non-negative`, `csv`,
 //! `csv-cluster`, `gaussian`, `savitzky-golay`, `forward-backward`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
 
 mod hour;
@@ -18,9 +18,8 @@ use std::error::Error;
 use std::num::NonZeroUsize;
 use std::path::Path;
 
-use froude_fit::bootstrap::{Resampling, pairs};
 use froude_fit::stream::{
-    Accumulator, ClusterAccumulator, ClusterKind, Factor, Method, Shape, StreamError, reduce_columns, reduce_rows,
+    Accumulator, ClusterAccumulator, ClusterKind, Factor, Method, Shape, StreamError, reduce_columns,
 };
 use froude_records::fast_csv::{Chunk, FastCsv, FastCsvError};
 use meter::{Row, measure};
@@ -45,8 +44,6 @@ fn main() -> Outcome<()> {
         "columns" => columns(dir, Method::Adaptive, false),
         "columns-qr" => columns(dir, Method::Reflections, false),
         "non-negative" => columns(dir, Method::Adaptive, true),
-        "rows" => rows(dir),
-        "bootstrap" => bootstrap(dir),
         "csv" => csv(dir, threads, false),
         "csv-cluster" => csv(dir, threads, true),
         "gaussian" | "savitzky-golay" | "forward-backward" => signals::filter(dir, case),
@@ -95,21 +92,6 @@ fn columns(dir: &Path, method: Method, is_bounded: bool) -> Outcome<Row> {
             factor.solve(0)?.coefficients
         })
     })
-}
-
-fn rows(dir: &Path) -> Outcome<Row> {
-    let [u, v, theta, w, y] = &raw(dir)?;
-    measure(9, || {
-        let factor = reduce_rows([u, v, theta, w, y], 1, Method::Adaptive, design)?;
-        Ok(factor.solve(0)?.coefficients)
-    })
-}
-
-fn bootstrap(dir: &Path) -> Outcome<Row> {
-    let columns = in_memory(dir, 1000)?;
-    let all: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-    let options = Resampling { resamples: 10_000, seed: 1 };
-    measure(15, || Ok(pairs(&all[..10], all[10], None, options)?.standard()))
 }
 
 /// The eight regressors of the force record, and both forces.

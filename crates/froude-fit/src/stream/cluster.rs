@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use faer::Mat;
 use faer::prelude::*;
 
-use super::{Accumulator, Factor, Shape, StreamError, check_finite, check_lengths, columns_of};
+use super::in_memory::columns_of;
+use super::{Accumulator, Factor, Shape, StreamError, check_finite, check_lengths};
 
 /// Fewest clusters for which a cluster-robust covariance is given.
 const FEWEST_CLUSTERS: usize = 5;
@@ -28,7 +29,7 @@ pub enum ClusterKind {
 #[derive(Debug)]
 pub struct ClusterAccumulator {
     current: Option<u64>,
-    rows: Accumulator,
+    pub(super) rows: Accumulator,
     factors: ClusterFactors,
     taken: u64,
 }
@@ -94,7 +95,7 @@ impl ClusterAccumulator {
 /// A triangle for each cluster.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClusterFactors {
-    shape: Shape,
+    pub(super) shape: Shape,
     limit: usize,
     by_cluster: BTreeMap<u64, Factor>,
 }

@@ -174,53 +174,6 @@ pub(crate) fn put(block: &mut [Lane], width: usize, column: usize, row: usize, v
     }
 }
 
-/// Makes rows from raw columns, all of one length, into the block.
-pub(crate) struct MakeRows<'a, const R: usize, const W: usize, F> {
-    pub(crate) raw: [&'a [f64]; R],
-    pub(crate) block: &'a mut [Lane],
-    pub(crate) make: &'a F,
-}
-
-impl<const R: usize, const W: usize, F> Kernel for MakeRows<'_, R, W, F>
-where
-    F: Fn([f64; R]) -> [f64; W],
-{
-    type Output = ();
-
-    #[inline(always)]
-    fn run<V: Vectors>(self, _: V) {
-        let parts = self.raw.map(|column| column.as_chunks::<LANES>());
-        let whole = parts.map(|(whole, _)| whole);
-        let count = whole.iter().map(|whole| whole.len()).min().unwrap_or(0);
-        let mut groups = self.block.chunks_exact_mut(W).filter_map(|group| group.first_chunk_mut::<W>());
-        for (g, group) in groups.by_ref().take(count).enumerate() {
-            make_group(self.make, &std::array::from_fn(|r| whole[r][g]), group);
-        }
-        if let Some(group) = groups.next() {
-            let mut rest = [[0.0; LANES]; R];
-            for (lane, (_, values)) in rest.iter_mut().zip(parts) {
-                lane[..values.len()].copy_from_slice(values);
-            }
-            make_group(self.make, &rest, group);
-        }
-    }
-}
-
-/// Makes eight rows. Written row by row, compiled to work on all eight at once.
-#[inline(always)]
-fn make_group<const R: usize, const W: usize>(
-    make: impl Fn([f64; R]) -> [f64; W],
-    raw: &[[f64; LANES]; R],
-    group: &mut [Lane; W],
-) {
-    for i in 0..LANES {
-        let row = make(std::array::from_fn(|r| raw[r][i]));
-        for j in 0..W {
-            group[j].0[i] = row[j];
-        }
-    }
-}
-
 /// Rows that come later, asked for line by line while the processor computes.
 ///
 /// Memory answers only so many requests at a time: all lines of a block asked for at once
@@ -228,7 +181,7 @@ fn make_group<const R: usize, const W: usize>(
 #[derive(Debug, Clone)]
 pub(crate) struct Ahead<'a> {
     columns: &'a [&'a [f64]],
-    rows: Range<usize>,
+    pub(super) rows: Range<usize>,
     column: usize,
     row: usize,
 }

@@ -30,8 +30,6 @@ pub(crate) trait Vectors: Copy {
     const TILE: usize;
     /// Columns in a panel: the registers hold all products of two panels.
     const PANEL: usize;
-    /// Terms whose sums over eight or sixteen resamples the registers hold.
-    const TERMS: usize;
 
     /// The same number everywhere.
     fn splat(self, value: f64) -> Self::Vector;
@@ -43,10 +41,6 @@ pub(crate) trait Vectors: Copy {
     fn multiply_add(self, a: Self::Vector, b: Self::Vector, c: Self::Vector) -> Self::Vector;
     /// `c − a·b`.
     fn subtract_product(self, a: Self::Vector, b: Self::Vector, c: Self::Vector) -> Self::Vector;
-    /// `a/b`.
-    fn divide(self, a: Self::Vector, b: Self::Vector) -> Self::Vector;
-    /// `√a`.
-    fn square_root(self, a: Self::Vector) -> Self::Vector;
     /// Sum of the numbers in a register, in a fixed order.
     fn sum(self, a: Self::Vector) -> f64;
 }
@@ -89,16 +83,6 @@ impl Level {
         Self::available().next().unwrap_or(Self::Plain(Plain))
     }
 
-    /// The level for code that the compiler is left to put into lanes: four numbers a
-    /// register, where it does well; with eight it gave up in our measurements.
-    pub(crate) fn for_compiler(self) -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Self::Avx512(_) = self {
-            return x86::Avx2::detect().map_or(self, Self::Avx2);
-        }
-        self
-    }
-
     /// Runs a kernel.
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
@@ -119,7 +103,6 @@ impl Vectors for Plain {
     type Vector = [f64; 2];
     const PARTS: usize = 4;
     const TILE: usize = 4;
-    const TERMS: usize = 2;
     const PANEL: usize = 3;
 
     #[inline(always)]
@@ -148,16 +131,6 @@ impl Vectors for Plain {
     }
 
     #[inline(always)]
-    fn divide(self, a: Self::Vector, b: Self::Vector) -> Self::Vector {
-        [a[0] / b[0], a[1] / b[1]]
-    }
-
-    #[inline(always)]
-    fn square_root(self, a: Self::Vector) -> Self::Vector {
-        a.map(f64::sqrt)
-    }
-
-    #[inline(always)]
     fn sum(self, a: Self::Vector) -> f64 {
         a[0] + a[1]
     }
@@ -168,9 +141,8 @@ impl Vectors for Plain {
 mod x86 {
     use std::arch::x86_64::{
         __m256d, __m512d, _mm_add_pd, _mm_add_sd, _mm_cvtsd_f64, _mm_unpackhi_pd, _mm256_castpd256_pd128,
-        _mm256_div_pd, _mm256_extractf128_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_set1_pd,
-        _mm256_sqrt_pd, _mm256_storeu_pd, _mm512_div_pd, _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_load_pd,
-        _mm512_reduce_add_pd, _mm512_set1_pd, _mm512_sqrt_pd, _mm512_store_pd,
+        _mm256_extractf128_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_loadu_pd, _mm256_set1_pd, _mm256_storeu_pd,
+        _mm512_fmadd_pd, _mm512_fnmadd_pd, _mm512_load_pd, _mm512_reduce_add_pd, _mm512_set1_pd, _mm512_store_pd,
     };
 
     use super::{Kernel, Lane, Vectors};
@@ -221,7 +193,6 @@ mod x86 {
         type Vector = __m512d;
         const PARTS: usize = 1;
         const TILE: usize = 10;
-        const TERMS: usize = 13;
         const PANEL: usize = 5;
 
         #[inline(always)]
@@ -250,16 +221,6 @@ mod x86 {
         }
 
         #[inline(always)]
-        fn divide(self, a: __m512d, b: __m512d) -> __m512d {
-            unsafe { _mm512_div_pd(a, b) }
-        }
-
-        #[inline(always)]
-        fn square_root(self, a: __m512d) -> __m512d {
-            unsafe { _mm512_sqrt_pd(a) }
-        }
-
-        #[inline(always)]
         fn sum(self, a: __m512d) -> f64 {
             unsafe { _mm512_reduce_add_pd(a) }
         }
@@ -269,7 +230,6 @@ mod x86 {
         type Vector = __m256d;
         const PARTS: usize = 2;
         const TILE: usize = 5;
-        const TERMS: usize = 6;
         const PANEL: usize = 3;
 
         #[inline(always)]
@@ -297,16 +257,6 @@ mod x86 {
         #[inline(always)]
         fn subtract_product(self, a: __m256d, b: __m256d, c: __m256d) -> __m256d {
             unsafe { _mm256_fnmadd_pd(a, b, c) }
-        }
-
-        #[inline(always)]
-        fn divide(self, a: __m256d, b: __m256d) -> __m256d {
-            unsafe { _mm256_div_pd(a, b) }
-        }
-
-        #[inline(always)]
-        fn square_root(self, a: __m256d) -> __m256d {
-            unsafe { _mm256_sqrt_pd(a) }
         }
 
         #[inline(always)]

@@ -4,9 +4,13 @@ use proptest::prelude::*;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 
+use super::gram::{add_products, pairs};
+use super::kernel::put;
 use super::kernel::{Ahead, absorb};
+use super::lanes::{Lane, Level};
 use super::*;
 use crate::stream::reference::triangularise;
+use faer::Mat;
 
 fn uniform(generator: &mut Pcg64) -> f64 {
     (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
@@ -298,28 +302,6 @@ fn the_cut_into_chunks_and_the_number_of_threads_change_no_bit() {
 }
 
 #[test]
-fn rows_made_on_the_fly_are_the_columns_in_memory() {
-    let columns = drag_columns(150_001, 7);
-    let all = slices(&columns);
-    let shape = Shape { regressors: 4, responses: 1 };
-    for method in [Method::Adaptive, Method::Reflections] {
-        let memory = reduce_columns(&all[..4], &all[4..], method).unwrap();
-        let rows = reduce_rows([all[0], all[2], all[4]], 1, method, |[u, v, y]| [u, u * u.abs(), v, v * v.abs(), y]);
-        assert!(rows.unwrap() == memory);
-        let features = reduce_features(&[all[0], all[2], all[4]], shape, method, |raw, out| {
-            for i in 0..raw[0].len() {
-                let (u, v) = (raw[0][i], raw[1][i]);
-                let row = [u, u * u.abs(), v, v * v.abs(), raw[2][i]];
-                for (out, value) in out.iter_mut().zip(row) {
-                    out[i] = value;
-                }
-            }
-        });
-        assert!(features.unwrap() == memory);
-    }
-}
-
-#[test]
 fn the_adaptive_method_falls_back_where_columns_are_parallel() {
     // Nearly parallel everywhere: no segment may use products.
     let (columns, _) = exact_problem(300_000, 4, 17);
@@ -568,15 +550,6 @@ fn what_is_wrong_is_said_with_its_place() {
     let shape = Shape { regressors: 4, responses: 1 };
     for method in [Method::Adaptive, Method::Reflections] {
         let error = reduce_columns(&all[..4], &all[4..], method).unwrap_err();
-        assert_eq!(error.to_string(), message);
-        let error = reduce_features(&all, shape, method, |raw, out| {
-            for (out, raw) in out.iter_mut().zip(raw) {
-                out.copy_from_slice(raw);
-            }
-        });
-        assert_eq!(error.unwrap_err().to_string(), message);
-        let raw = [all[0], all[1], all[2], all[3], all[4]];
-        let error = reduce_rows(raw, 1, method, |row| row).unwrap_err();
         assert_eq!(error.to_string(), message);
     }
     let mut rows = Accumulator::new(shape);

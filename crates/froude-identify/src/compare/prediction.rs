@@ -5,10 +5,10 @@ use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
 
+use super::Named;
 use super::coefficients::{Stated, e_n, noted};
 use super::contradiction::{axes_not_tied, density_differs};
 use super::independence::{origins, same_data};
-use super::Named;
 use crate::common::{self, Common, Number};
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
