@@ -54,7 +54,7 @@ impl Stage {
         if !yes && !std::io::stdin().is_terminal() {
             let instead = if prepared.is_twin() { ", or say --yes, which the twin takes" } else { "" };
             return Err(Error::Nothing(format!(
-                "nothing was moved: nobody can confirm, because standard input is no terminal. Run it in a terminal{instead}"
+                "nothing was moved: nobody can confirm, because standard input is not a terminal. Run it in a terminal{instead}"
             )));
         }
         // Nobody who stops reading ends a drive half way.

@@ -475,7 +475,7 @@ fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
     assert!(last.iter().any(|f| (f + d * 0.25).abs() < 1e-9), "{table}");
 }
 
-/// Two campaigns reduced with one calibration: their records know it by one key, and what both feel alike is taken out of E_n.
+/// Two campaigns reduced with one calibration: their records know it by one key, and what affects both alike is removed from E_n.
 #[test]
 fn campaigns_that_share_a_calibration_are_compared_without_its_error() {
     let folder = tempfile::tempdir().unwrap();

@@ -322,7 +322,7 @@ fn without_a_terminal_and_without_yes_nothing_moves() {
         let error = String::from_utf8_lossy(&out.stderr);
         assert_eq!(out.status.code(), Some(2), "{error}");
         assert!(
-            error.contains("nothing was moved: nobody can confirm, because standard input is no terminal"),
+            error.contains("nothing was moved: nobody can confirm, because standard input is not a terminal"),
             "{error}"
         );
         assert!(error.contains("or say --yes, which the twin takes"), "{error}");

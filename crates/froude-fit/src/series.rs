@@ -76,7 +76,7 @@ pub fn mean(series: &[f64], step_s: f64) -> Mean {
     let line = Line::through(&blocks);
     let left: Vec<f64> = blocks.iter().map(|x| x - line.middle).collect();
     let tau = integrated_time_about_mean(&left);
-    // The mean taken off hides 2τ/m of the variance.
+    // Subtracting the mean hides 2τ/m of the variance.
     let shown = (1.0 - 2.0 * tau / m as f64).max(0.2);
     let variance = left.iter().map(|x| x * x).sum::<f64>() / (m as f64 * shown);
     let effective_n = (m as f64 / (2.0 * tau * TAPER_COST)).max(1.0);

@@ -145,7 +145,7 @@ fn left_out(data: &Dataset) -> Vec<Finding> {
 /// What to do with the angle of a vertical test.
 const IN_THE_VERTICAL_PLANE: &str = "if it is the angle of attack in the vertical plane, give v_x and v_z instead of the speed \
                                      (z points down: v_z is positive with the bow up)";
-/// What Froude's angle is, for whoever has to choose a sign.
+/// What Froude's angle is, for a user who has to choose a sign.
 const CONVENTION: &str = "angle = atan2(-v_y, v_x): a positive one moves the body to port through the water, and the side force on it is \
                           positive, to starboard";
 

@@ -12,7 +12,7 @@
 //! An interval that reaches to one side, or pays for looks, has the arm that points to the other value as its U.
 //!
 //! Errors that two records know by one key are one error: u²(a − b) = u_a² + u_b² − 2 cov(a, b) (GUM 5.2.2), and the part that is
-//! common is taken out of E_n and χ² exactly. Scatter from the same observations cannot be: two fits to the same
+//! common is removed from E_n and χ² exactly. Scatter from the same observations cannot be: two fits to the same
 //! table or the same runs get [`SAME_DATA`] and no number.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -130,7 +130,7 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
             if is_same_data && !is_one_source(a, b) && told.insert(pair) {
                 out.findings.push(same_data_finding(a, b));
             }
-            // Nobody takes two methods of one source for independent, and each is set beside its like where there is one.
+            // Two methods of one source are not independent, and each is compared with its own kind where there is one.
             if a.estimate.law.name != b.estimate.law.name || is_one_source(a, b) || has_likes(all, a, b) {
                 continue;
             }
@@ -164,7 +164,7 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
     out
 }
 
-/// That no two estimates have anything in common, and what each has: for whoever asked for nothing but a comparison.
+/// That no two estimates have anything in common, and what each has: for a command that asks for a comparison only.
 #[must_use]
 pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
     let is_said = out.findings.iter().any(|f| matches!(f.code.as_str(), "no-common-range" | "not-compared"));
@@ -190,7 +190,7 @@ pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> 
     ))
 }
 
-/// Which estimates stand beside no other, and why: for whoever asked for nothing but a comparison.
+/// Which estimates are compared with no other, and why: for a command that asks for a comparison only.
 #[must_use]
 pub fn left_out(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
     let of_rows = out.coefficients.iter().flat_map(|row| [&row.first, &row.second]);
@@ -289,7 +289,7 @@ fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
     all.iter().map(of).collect()
 }
 
-/// True for two models of one source in one record, which nobody takes for independent.
+/// True for two models of one source in one record, which are not independent.
 fn is_one_source(a: &Named<'_>, b: &Named<'_>) -> bool {
     std::ptr::eq(a.record, b.record) && a.estimate.source == b.estimate.source
 }
@@ -561,7 +561,7 @@ fn digits_exchanged(a: f64, b: f64) -> bool {
 /// Relative difference of density that a dimensional coefficient shows: a tenth of fresh against sea water.
 const DENSITY_MATTERS: f64 = 0.002;
 
-/// Densities of two estimates that differ, where the coefficients go with them.
+/// Densities of two estimates that differ, where the coefficients depend on them.
 fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
     let (x, y) = (a.density()?, b.density()?);
     let has_dimension = |e: &Estimate| e.coefficients.values().any(|c| c.unit.contains("kg") || c.unit.contains('N'));
@@ -578,7 +578,7 @@ fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
     })
 }
 
-/// Forces of a carriage, which knows no axis of the body, beside those in body axes.
+/// Forces of a carriage, which has no axis of the body, beside those in body axes.
 fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
     let (chain, body) = match [a, b].map(|e| e.frame.is_chain()) {
         [true, false] => (a, b),
@@ -979,7 +979,7 @@ mod tests {
         assert!(!c.loads.is_empty() && codes(&c).is_empty(), "{:?}", c.findings);
     }
 
-    /// One calibration, declared with two uncertainties: nobody can say which is right.
+    /// One calibration, declared with two uncertainties: it is not known which is right.
     #[test]
     fn one_error_with_two_uncertainties_is_said_and_not_taken_out() {
         let mut other = calibrated("b", 41.0, "cal/1");

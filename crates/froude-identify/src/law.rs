@@ -281,13 +281,13 @@ impl ForceLaw {
         out
     }
 
-    /// Whether a response goes with the speed or the angle of the motion through the water.
+    /// Whether a response depends on the speed or the angle of the motion through the water.
     #[must_use]
     pub fn moves(&self, response: usize) -> bool {
         self.reads(response, |c| matches!(c, "v_x" | "v_y" | "v_z" | "speed" | "angle"))
     }
 
-    /// Whether a response goes with the density already.
+    /// Whether a response depends on the density already.
     #[must_use]
     pub fn has_density(&self, response: usize) -> bool {
         matches!(self.kind, Kind::Drag { .. }) || self.reads(response, |c| c == "density")

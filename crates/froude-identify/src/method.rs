@@ -103,7 +103,7 @@ pub struct Found {
     pub blocks: Vec<DocumentSection>,
     /// What is doubtful about the runs, or about the results together.
     pub findings: Vec<Finding>,
-    /// Where results go that nobody named a folder for, of a source that no campaign names.
+    /// Where results go when no folder was named, of a source that no campaign names.
     pub beside: Option<PathBuf>,
     /// True where more lies there than was named: such a result takes the place of no other.
     pub is_part: bool,

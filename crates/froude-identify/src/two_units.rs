@@ -6,7 +6,7 @@
 //!
 //! **Rule.** Within one setting (everything alike but the speed) |f|/U² of a body changes little. Where the rows
 //! of a setting fall into two tight groups that lie thirtyfold apart, the column has two units. A load that is noise
-//! (a side force at no angle), or that hangs on something that the table does not say, is spread over the gap and
+//! (a side force at no angle), or that depends on something that the table does not state, is spread over the gap and
 //! changes its sign, and is passed over.
 
 use std::collections::BTreeMap;

@@ -30,7 +30,7 @@ pub const SCATTER: &str = "scatter of the observations";
 pub struct SharedError {
     /// What it is, for the budget.
     pub name: String,
-    /// Its name among all sources and campaigns: what has one key is one error. `None` where nobody else can have it.
+    /// Its name among all sources and campaigns: what has one key is one error. `None` where no other estimate can have it.
     pub key: Option<String>,
     /// The quantity that errs.
     pub quantity: String,

@@ -323,7 +323,7 @@ fn a_source_has_one_input() {
     refused(
         "name  = \"circulation tank\"\n",
         "",
-        "lab/campaign.toml:12:1: [[source]] has no `name`; write name = \"circulation tank\", say",
+        "lab/campaign.toml:12:1: [[source]] has no `name`; write name = \"circulation tank\", for example",
     );
 }
 

@@ -145,7 +145,7 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
             "distance = \"2.2 m\"\n",
             "",
             format!(
-                "{}:1: [carriage] has no `distance`; write the travel of a run with its ramps, \"2.2 m\", say",
+                "{}:1: [carriage] has no `distance`; write the travel of a run with its ramps, \"2.2 m\", for example",
                 line("[carriage]")
             ),
         ),
@@ -220,6 +220,6 @@ fn a_carriage_without_a_rig_is_told_to_name_one() {
     let text = "schema = 1\nname = \"a\"\n[carriage]\nspeeds = [\"0.1 m/s\"]\ndistance = \"1 m\"\nacceleration = \"1 m/s^2\"\n";
     assert_eq!(
         parse_campaign(Path::new("c.toml"), text).unwrap_err().to_string(),
-        "c.toml:1:1: the file has no `rig`; [carriage] says what to do; [rig] says with what: kind = \"twin\", say"
+        "c.toml:1:1: the file has no `rig`; [carriage] states what to do; [rig] states with what: kind = \"twin\", for example"
     );
 }

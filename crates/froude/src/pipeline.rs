@@ -272,7 +272,7 @@ fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
     }
 }
 
-/// What a record says of itself that whoever sets it beside others must know.
+/// What a record states about itself that a comparison must take into account.
 fn errors_of(path: &Path, record: &EstimateFile) -> Option<Finding> {
     let mut errors = record.findings.iter().filter(|finding| finding.severity == Severity::Error);
     let first = errors.next()?;

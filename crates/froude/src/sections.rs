@@ -498,7 +498,7 @@ fn bands(
     let n = places.rows;
     let mut out = Vec::new();
     for (r, response) in model.law.responses.iter().enumerate() {
-        // Of the scatter: the fewest among the coefficients of this load, those of the clusters, say.
+        // Of the scatter: the fewest among the coefficients of this load, those of the clusters, for example.
         let touches = |j: usize| (0..n).any(|i| slopes[(r * n + i, j)] != 0.0);
         let scatter_dof =
             (0..slopes.ncols()).filter(|&j| touches(j)).map(|j| model.budget[0].dof[j]).fold(f64::INFINITY, f64::min);

@@ -48,7 +48,7 @@ pub struct Scenario {
     pub noise_time_s: f64,
     /// Change of K_T from run to run, standard deviation, as a part.
     pub torque_drift: f64,
-    /// Friction that buoyancy takes off the wheels in wet runs, N.
+    /// Friction that buoyancy removes from the wheels in wet runs, N.
     pub buoyancy_friction_n: f64,
     /// Drift of the sensor over a run: uniform, half-width, N.
     pub sensor_drift_n: f64,

@@ -1,7 +1,7 @@
 //! A tare at other angles than its own.
 //!
 //! Straight ahead a strut only drags; at drift it also pushes sideways, and that force
-//! stays in the loads of the body when the tare knows nothing of it.
+//! stays in the loads of the body when the tare does not contain it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -48,7 +48,7 @@ pub(super) fn beyond_its_angles(
     let beyond = |reach: f64| -> Vec<usize> {
         moving(speed, AT_REST).into_iter().filter(|&i| askew(i) > reach + SAME_ANGLE_RAD).collect()
     };
-    // Of a load that the law does not give, the tare knows nothing at any angle.
+    // Of a load that the law does not give, the tare contains nothing at any angle.
     let stays_in = |load: &str| data.values(load).filter(|_| gives(load).is_none());
     let (side, moment) = (stays_in("f_y"), stays_in("m_z"));
     let rows = beyond(if side.is_some() || moment.is_some() { 0.0 } else { reach });

@@ -1,6 +1,6 @@
 //! Mesh files of other programs, read and written.
 //!
-//! **Units.** None is applied: coordinates come as the file has them. Whoever calls scales them, and [`crate::plausible`] says when a
+//! **Units.** None is applied: coordinates come as the file has them. The caller scales them, and [`crate::plausible`] says when a
 //! body is so large that it must have been drawn in millimetres.
 //!
 //! | format | extension | what is read | source |

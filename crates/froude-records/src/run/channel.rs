@@ -152,8 +152,9 @@ impl Meaning {
     /// A unit of another dimension than the quantity's, a sign against that of a name of Froude's own.
     pub(crate) fn read(s: &Section<'_>, name: &str) -> Result<Self, RecordError> {
         s.only(&["quantity", "unit", "frame", "sign", "clock"])?;
-        let unit =
-            s.text("unit")?.ok_or_else(|| s.missing("unit", "write unit = \"m\", say; \"1\" for counts and codes"))?;
+        let unit = s
+            .text("unit")?
+            .ok_or_else(|| s.missing("unit", "write unit = \"m\", for example; \"1\" for counts and codes"))?;
         let dimension =
             parse_unit(unit).map_err(|e| wrong(s, "unit", format!("is {unit:?}, which cannot be read: {e}")))?;
         let mut out = Self::of(name, unit, LOG);

@@ -696,7 +696,7 @@ impl<R: Read + Seek> RunReader<R> {
     }
 }
 
-/// What a log says of itself at its beginning; `None` where that cannot be read.
+/// What a log states about itself at its beginning; `None` where that cannot be read.
 pub(crate) fn head_of(path: &Path) -> Result<Option<RunMeta>, RecordError> {
     let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
     let Some(mut walk) = Walk::new(BufReader::new(File::open(path).map_err(failed)?)).map_err(failed)? else {

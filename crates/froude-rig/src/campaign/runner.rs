@@ -499,7 +499,7 @@ impl<'a> Campaign<'a, '_> {
     }
 }
 
-/// The load of a run: a ballasted wet run carries what buoyancy takes off its wheels.
+/// The load of a run: a ballasted wet run carries the wheel load that buoyancy removes.
 fn load_of(run: &PlannedRun, base: &Load) -> Load {
     use crate::load::{HungWeight, Mounting};
     let mounting = match run.body {

@@ -49,7 +49,7 @@ pub enum SetupError {
 ///
 /// # Errors
 ///
-/// [`SetupError::Missing`]: inertia and Coulomb friction must be declared, the coast distance hangs on them.
+/// [`SetupError::Missing`]: inertia and Coulomb friction must be declared, the coast distance depends on them.
 pub fn control(campaign: &CarriageCampaign, towed_kg: f64) -> Result<Config, SetupError> {
     let standard = control_config(&[Load::default(); 2]);
     let [_, short] = standard.axes;
