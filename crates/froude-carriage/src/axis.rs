@@ -197,7 +197,7 @@ pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
         findings.push(Finding::new(
             Severity::Note,
             "servo",
-            "M and J_eff of runs at constant speed rest on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
+            "M and J_eff of runs at constant speed depend on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
              may be off by one per cent, which their intervals do not include; take the masses from the pulses"
                 .to_owned(),
         ));

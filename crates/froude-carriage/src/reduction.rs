@@ -163,7 +163,7 @@ fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Optio
             Severity::Note,
             "gain-not-declared",
             format!(
-                "no uncertainty of the force sensor's gain is declared; {} is taken. Write gain_standard in [rig.force_sensor]",
+                "no uncertainty of the force sensor's gain is declared; {} is assumed. Write gain_standard in [rig.force_sensor]",
                 number::percent(UNDECLARED_GAIN)
             ),
         )

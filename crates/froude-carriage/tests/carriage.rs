@@ -140,7 +140,11 @@ fn an_area_in_the_wrong_unit_is_found_out_by_its_drag_coefficient() {
     let scenario = scenario();
     let wrong = DragSetup { reference_area_m2: Some(9.0), ..setup(&scenario) };
     let report = report(&scenario, &wrong, |_| true).unwrap();
-    assert!(message(&report, "unphysical-drag-coefficient").contains("no body has that"), "{:?}", report.findings);
+    assert!(
+        message(&report, "unphysical-drag-coefficient").contains("no body has such a value"),
+        "{:?}",
+        report.findings
+    );
 }
 
 #[test]

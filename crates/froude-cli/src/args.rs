@@ -292,6 +292,6 @@ pub enum Export {
     Wamit,
     /// NetCDF as Capytaine writes it.
     Capytaine,
-    /// CSV with a unit in every head.
+    /// CSV with a unit in every header.
     Csv,
 }

@@ -52,7 +52,7 @@ impl Stage {
             ));
         }
         if !yes && !std::io::stdin().is_terminal() {
-            let instead = if prepared.is_twin() { ", or say --yes, which the twin takes" } else { "" };
+            let instead = if prepared.is_twin() { ", or give --yes, which the twin accepts" } else { "" };
             return Err(Error::Nothing(format!(
                 "nothing was moved: nobody can confirm, because standard input is not a terminal. Run it in a terminal{instead}"
             )));

@@ -232,7 +232,7 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
         let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
             words.contains(
-                "No least squares: they take 3 configurations at least, such as --links 1..3, and these are 2. links.csv and campaign.toml are \
+                "No least squares: they need 3 configurations at least, such as --links 1..3, and these are 2. links.csv and campaign.toml are \
                  written all the same; there is no campaign-results, and the record holds the matrices alone."
             ),
             "{words}"
@@ -609,7 +609,7 @@ fn page_and_terminal_have_the_matrix_once_with_its_frame() {
         let page = std::fs::read_to_string(at.join("hull-added-mass/report.html")).unwrap();
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         for said in [words(&text), words(&page)] {
-            assert_eq!(said.matches("force (first three rows) and moment").count(), tables, "{said}");
+            assert_eq!(said.matches("force in the first three rows and moment").count(), tables, "{said}");
             assert_eq!(said.matches("Frame: x forward, y starboard, z down (SNAME, Fossen); in the mesh x is forward and z up; moments about (").count(), 1, "{said}");
             assert_eq!(said.matches("(the centre of buoyancy)").count(), 1, "{said}");
         }
@@ -867,7 +867,7 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
     refuses(
         &[("m.obj", large.as_bytes())],
         &[&["m.obj"], &WATER[..]].concat(),
-        "m.obj: the mesh is 200.0000 m long and encloses 8.0000e6 m³ (doubtful above 50 m); drawn in millimetres it is 0.2000 m and 8.0000e-3 m³: say `--unit mm`, or `--unit m` if it is that large",
+        "m.obj: the mesh is 200.0000 m long and encloses 8.0000e6 m³ (doubtful above 50 m); drawn in millimetres it is 0.2000 m and 8.0000e-3 m³: give `--unit mm`, or `--unit m` if it is that large",
     );
     refuses(
         &small,

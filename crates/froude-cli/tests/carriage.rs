@@ -641,7 +641,7 @@ fn runs_are_a_source_of_a_campaign() {
     assert!(refused("keep = \"speed > 0.2 m/s\"\n").contains("`keep` belongs to the rows of a table"));
     std::fs::rename(bench.runs.join("campaign.toml"), folder.join("away.toml")).unwrap();
     let out = json(&["identify", text(&campaign("method = \"mcd\"\n")), "--json"]);
-    assert!(findings_of(&out, "no-campaign-of-runs")[0].1.contains("fresh water at 20 degC is taken, no area"));
+    assert!(findings_of(&out, "no-campaign-of-runs")[0].1.contains("fresh water at 20 degC is assumed, no area"));
     let table = "schema = 1\nname = \"x\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"tow.csv\"\nmethod = \"mcd\"\n";
     std::fs::write(folder.join("t.toml"), table).unwrap();
     let said = bench::refusal(&["identify", text(&folder.join("t.toml"))]);

@@ -154,7 +154,7 @@ fn an_angle_of_several_turns_is_refused_with_its_cause() {
     };
     assert_eq!(
         of("rad", 20.0),
-        "froude: t.csv:3: `angle [rad]` is 20, which is more than a whole turn: degrees under the head of radians, probably: write the \
+        "froude: t.csv:3: `angle [rad]` is 20, which is more than a whole turn: degrees under a header in radians, probably: write the \
          unit deg; of an angle counted on over several turns take the whole ones off (1.15044 rad)"
     );
     assert_eq!(
@@ -189,7 +189,8 @@ fn an_angle_of_several_turns_is_refused_with_its_cause() {
 
 #[test]
 fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
-    const NO_WATER: &str = "the density of no water (500 to 2000 kg/m^3 are taken); write 1.025 g/cm^3 or 1025 kg/m^3";
+    const NO_WATER: &str =
+        "not a density of water (500 to 2000 kg/m^3 are accepted); write 1.025 g/cm^3 or 1025 kg/m^3";
     const OR_AIR: &str = "; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: kinematic_viscosity beside density, in \
                           [fluid] of the campaign or as columns";
     let campaign = |density: &str| format!("schema = 1\nname = \"x\"\n[fluid]\ndensity = {density}\n");
@@ -208,7 +209,7 @@ fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
     // Of added mass nobody asks a viscosity.
     let body = "schema = 1\nname = \"b\"\n[fluid]\ndensity = \"1.025 kg/m^3\"\n[body]\nshape = \"ellipsoid\"\n\
                 semi_axes = [\"1 m\", \"0.2 m\", \"0.2 m\"]\n";
-    let over_rho = "; in air, ask for \"1 kg/m^3\" and take the result times the density of the air";
+    let over_rho = "; in air, ask for \"1 kg/m^3\" and multiply the result by the density of the air";
     let said = refusal(&[], &["added-mass", "x.stl", "--density", "1.025 kg/m^3"]);
     assert_eq!(said, format!("froude: --density \"1.025 kg/m^3\": it is {NO_WATER}{over_rho}"));
     let said = refusal(&[("b.toml", body)], &["added-mass", "b.toml"]);
@@ -259,7 +260,7 @@ fn air_is_taken_where_its_viscosity_is_stated_and_water_in_other_units_is_not() 
     assert!(said(&rows("", ""), water).ends_with(no_air), "{}", said(&rows("", ""), water));
     assert!(
         said(&rows("1.025", "1.05e-6"), "")
-            .starts_with("froude: t.csv:2: `density [kg/m^3]` is 1.025, which is the density of no water")
+            .starts_with("froude: t.csv:2: `density [kg/m^3]` is 1.025, which is not a density of water")
     );
     assert!(said(&rows("1.025", "1.05e-6"), "").ends_with(no_air));
     let viscosity_of_water = "[fluid]\nkinematic_viscosity = \"1.05e-6 m^2/s\"\n";
@@ -276,7 +277,7 @@ fn air_is_taken_where_its_viscosity_is_stated_and_water_in_other_units_is_not() 
     assert_eq!(keep(&sea, "1030 kg/m^3").status.code(), Some(0));
     let refused = keep(&sea, "1.03 kg/m^3");
     let said = String::from_utf8_lossy(&refused.stderr);
-    assert!(said.contains("keep: density is compared with 1.03 kg/m^3, which is the density of no water"), "{said}");
+    assert!(said.contains("keep: density is compared with 1.03 kg/m^3, which is not a density of water"), "{said}");
 }
 
 /// The head of a column, where there is one.
@@ -304,7 +305,7 @@ fn rows_in_gram_force_are_refused_with_their_lines() {
     assert!(
         said.contains(", at one setting; there are two groups of rows a factor of 10")
             && said.ends_with(
-                "as loads of one body are not: some rows are in gram-force under a head of newtons (1 N is 102 gf), probably; convert \
+                "as loads of one body are not: some rows are in gram-force under a header in newtons (1 N is 102 gf), probably; convert \
                  them, or leave them out with `keep`"
             ),
         "{said}"
@@ -410,7 +411,7 @@ fn no_column_is_dropped_in_silence() {
     assert!(warned[0].starts_with("`Mz [N m]` (") && warned[0].ends_with("if it is m_z, name it so"), "{warned:?}");
     assert_eq!(
         warned[1],
-        "w_z goes from 0.2000 to 0.2000 1/s and no law has it: the fit of f_x takes it for zero; write a law with it \
+        "w_z goes from 0.2000 to 0.2000 1/s and appears in no law: the fit of f_x treats it as zero; write a law with it \
          ([[identify.model]]), or keep the rows where it is zero"
     );
     let noted: Vec<&str> = told.iter().filter(|f| f.0 == "note").map(|f| f.1).collect();
@@ -476,7 +477,7 @@ fn an_angle_beside_a_lone_velocity_is_proposed_with_what_it_needs() {
         });
         let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
         let told = findings(&out, "column-not-used");
-        let beside = ", and v_x `speed` if that is the carriage's (a velocity goes before an angle; beside one along the body give v_y): \
+        let beside = ", and v_x `speed` if that is the carriage's (a velocity takes precedence over an angle; beside one along the body give v_y): \
                       with that sign the side force";
         assert!(told[0].0 == "warning" && told[0].1.contains(beside), "{told:?}");
     }
@@ -492,7 +493,7 @@ fn an_angle_beside_a_lone_velocity_is_proposed_with_what_it_needs() {
     let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
     let told = findings(&out, "column-not-used");
     assert!(
-        told[0].1.contains("head it `angle [deg]`, and leave v_x out, which goes before speed and angle: "),
+        told[0].1.contains("head it `angle [deg]`, and leave v_x out, which takes precedence over speed and angle: "),
         "{told:?}"
     );
 }
@@ -995,7 +996,7 @@ fn a_strut_at_one_angle_has_one_term_along_the_body() {
             "tare-beyond-its-angles",
             "was taken at 20.0 deg from straight ahead and more, and is used nearer to it in 56 of 72 rows",
         ),
-        ("tare-pushes", "pushes the body along in "),
+        ("tare-pushes", "propels the body in "),
     ] {
         let told = findings(&out, code);
         assert!(told.len() == 1 && told[0].1.contains(said), "{code}: {told:?}");

@@ -325,7 +325,7 @@ fn without_a_terminal_and_without_yes_nothing_moves() {
             error.contains("nothing was moved: nobody can confirm, because standard input is not a terminal"),
             "{error}"
         );
-        assert!(error.contains("or say --yes, which the twin takes"), "{error}");
+        assert!(error.contains("or give --yes, which the twin accepts"), "{error}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "only the campaign");
     }
     let board = board();

@@ -305,9 +305,9 @@ fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dat
 fn beside_v_x(data: &Dataset) -> &'static str {
     match (has(data, "v_x"), has(data, "speed")) {
         (false, _) => "",
-        (true, true) => ", and leave v_x out, which goes before speed and angle",
+        (true, true) => ", and leave v_x out, which takes precedence over speed and angle",
         (true, false) => {
-            ", and v_x `speed` if that is the carriage's (a velocity goes before an angle; beside one along the body give v_y)"
+            ", and v_x `speed` if that is the carriage's (a velocity takes precedence over an angle; beside one along the body give v_y)"
         }
     }
 }

@@ -37,7 +37,7 @@ const SETTING_WITHIN: f64 = 0.01;
 
 /// What a factor between rows comes from.
 const CAUSES: [(f64, &str); 3] = [
-    (101.97, "some rows are in gram-force under a head of newtons (1 N is 102 gf)"),
+    (101.97, "some rows are in gram-force under a header in newtons (1 N is 102 gf)"),
     (1e3, "some rows lack a prefix (N and mN, kN and N)"),
     (1e6, "some rows lack two prefixes (kN and mN)"),
 ];
@@ -201,7 +201,7 @@ mod tests {
             let twice = found(&second, &LOADS).unwrap();
             assert_eq!(
                 (twice.load, twice.cause()),
-                ("f_x", "some rows are in gram-force under a head of newtons (1 N is 102 gf)")
+                ("f_x", "some rows are in gram-force under a header in newtons (1 N is 102 gf)")
             );
             let [large, small] = twice.rows.map(|i| second.values("f_x").unwrap()[i].abs());
             assert!(large > 50.0 * small);

@@ -192,7 +192,7 @@ fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, Ident
     let values = fit.data.values(quantity).ok_or_else(|| IdentifyError::Campaign {
         place: "[[source.uncertainty]]".to_owned(),
         what: format!(
-            "quantity = {quantity:?} is no column of the table; it has {}",
+            "quantity = {quantity:?} is not a column of the table; it has {}",
             fit.data.channels.keys().cloned().collect::<Vec<_>>().join(", ")
         ),
     })?;

@@ -151,7 +151,7 @@ fn a_fitted_tare_is_subtracted_with_its_covariance_as_a_shared_error() {
 fn a_drag_coefficient_that_no_body_has_is_told() {
     // The MCD paper prints D_d = 0.0878 N s²/m² for a cylinder of 0.04 m²: C_D = 0.0044.
     let finding = froude_identify::lint::drag_coefficient("D_d", 0.0878, 1000.0, 0.04).unwrap();
-    assert!(finding.message.contains("is C_D = 0.0044: no body has that"), "{}", finding.message);
+    assert!(finding.message.contains("is C_D = 0.0044: no body has such a value"), "{}", finding.message);
     assert!(froude_identify::lint::drag_coefficient("D_d", 20.0, 1000.0, 0.04).is_none());
 }
 
@@ -160,7 +160,7 @@ fn a_force_along_the_motion_names_the_sign_to_write() {
     let folder = tempfile::tempdir().unwrap();
     let result = identify(folder.path(), &quadratic_table().replace(",-", ","), QUADRATIC);
     let finding = result.findings.iter().find(|f| f.code == "force-along-motion").unwrap();
-    assert!(finding.message.contains("say sign = -1 for its column"), "{}", finding.message);
+    assert!(finding.message.contains("write sign = -1 for its column"), "{}", finding.message);
 }
 
 #[test]

@@ -350,7 +350,7 @@ fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
     let mut speeds = positive_series(s, key, value, Dimension::SPEED)?;
     speeds.sort_by(f64::total_cmp);
     match speeds.array_windows().find(|[a, b]| a == b) {
-        Some([twice, _]) => Err(s.wrong(key, value, format!("names {twice} m/s twice; say how often in repeats"))),
+        Some([twice, _]) => Err(s.wrong(key, value, format!("names {twice} m/s twice; give the number in repeats"))),
         None => Ok(speeds),
     }
 }

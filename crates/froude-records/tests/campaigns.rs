@@ -250,13 +250,13 @@ fn quantities_of_another_kind_name_both() {
     refused(
         "\"1025 kg/m^3\"",
         "\"-1 kg/m^3\"",
-        "lab/campaign.toml:5:11: `density` is \"-1 kg/m^3\", which is not a density of water (500 to 2000 kg/m^3 are taken); \
+        "lab/campaign.toml:5:11: `density` is \"-1 kg/m^3\", which is not a density of water (500 to 2000 kg/m^3 are accepted); \
          fresh water has 1000 kg/m^3, sea water 1025",
     );
     refused(
         "\"1025 kg/m^3\"",
         "\"1.025 kg/m^3\"",
-        "lab/campaign.toml:5:11: `density` is \"1.025 kg/m^3\", which is not a density of water (500 to 2000 kg/m^3 are taken); \
+        "lab/campaign.toml:5:11: `density` is \"1.025 kg/m^3\", which is not a density of water (500 to 2000 kg/m^3 are accepted); \
          write 1.025 g/cm^3 or 1025 kg/m^3; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: \
          kinematic_viscosity beside density, in [fluid] of the campaign or as columns",
     );
@@ -275,7 +275,7 @@ fn quantities_of_another_kind_name_both() {
         "angle <= 39 deg",
         "angle <= 39 rad",
         "lab/campaign.toml:16:9: `keep` cannot be read: \"angle <= 39 rad\" is not a condition: 39 rad is more than a whole turn: \
-         degrees under the head of radians, probably: write the unit deg; of an angle counted on over several turns take the whole ones \
+         degrees under a header in radians, probably: write the unit deg; of an angle counted on over several turns take the whole ones \
          off (1.30089 rad); write for example \"angle <= 39 deg and configuration != H1LT\"",
     );
     refused(

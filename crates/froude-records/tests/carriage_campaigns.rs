@@ -129,7 +129,7 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
             "\"0.45 m/s\", \"0.55 m/s\"]\nrepeats = 5",
             "\"0.55 m/s\", \"0.55 m/s\"]\nrepeats = 5",
             format!(
-                "{}:10: `speeds` names 0.55 m/s twice; say how often in repeats",
+                "{}:10: `speeds` names 0.55 m/s twice; give the number in repeats",
                 line("speeds = [\"0.05 m/s\", \"0.15")
             ),
         ),

@@ -558,7 +558,7 @@ fn a_board_that_starts_anew_is_told_from_one_that_is_silent() {
         assert!(begun.elapsed() < Duration::from_secs(20));
     };
     assert!(matches!(error, RigError::Restarted { .. }), "{error}");
-    assert!(error.to_string().starts_with("the board at a socket has started anew: the torque is off"), "{error}");
+    assert!(error.to_string().starts_with("the board at a socket has restarted: the torque is off"), "{error}");
     running.end();
 }
 

@@ -221,7 +221,7 @@ mod tests {
         assert_eq!(
             (force.series.len(), residual.series.len()),
             (12, 6),
-            "command and model of six runs, and what is left"
+            "command and model of six runs, and the residual"
         );
         for series in force.series.iter().chain(&residual.series) {
             assert_eq!(series.x.len(), 60, "a run whole");

@@ -321,7 +321,7 @@ mod tests {
         assert_eq!(report.spread.runs, None);
         assert_eq!(
             report.findings.last().unwrap(),
-            "the intervals do not hold what changes from run to run: 4 runs are too few, 5 are needed; they are those of blocks \
+            "the intervals do not include what changes from run to run: 4 runs are too few, 5 are needed; they are those of blocks \
              within the runs"
         );
     }

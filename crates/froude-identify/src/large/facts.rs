@@ -103,7 +103,7 @@ impl Facts {
             // Links are read from names, viscosity from temperatures: what some rows have, others may lack.
             return Err(refusal(
                 source,
-                "rows that do not all say the same quantities (configurations HkLT beside others, air beside water)",
+                "rows that do not all state the same quantities (configurations HkLT beside others, air beside water)",
             ));
         }
         self.n_read += table.n_rows;

@@ -70,7 +70,7 @@ fn stl_is_read_as_text_and_as_bytes() {
 #[test]
 fn normals_of_an_stl_against_its_corners_are_told() {
     let text = format!("solid\n{}endsolid", FACET.replace("normal 0 0 1", "normal 0 0 -1"));
-    let told = "the normals of 1 of 1 triangles contradict the order of their corners; the order was taken";
+    let told = "the normals of 1 of 1 triangles contradict the order of their corners; the order was used";
     assert_eq!(good("a.stl", text).notes, [told]);
 }
 

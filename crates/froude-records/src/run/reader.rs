@@ -670,7 +670,7 @@ impl<R: Read + Seek> RunReader<R> {
                     if lost == 0 {
                         "no byte of it came to the file".to_owned()
                     } else {
-                        format!("{lost} bytes of it, from byte {offset} on, are no whole chunk")
+                        format!("{lost} bytes of it, from byte {offset} on, are not a whole chunk")
                     }
                 );
                 if !self.is_unfinished {

@@ -71,7 +71,7 @@ impl Expected {
     /// What a sentence about a coast must add where the mass behind it is a guess.
     fn guess(&self) -> String {
         self.assumed_volume_m3.map_or_else(String::new, |v| {
-            format!(". There is no volume in [body]: that of a {:.1} litre body is taken", 1e3 * v)
+            format!(". There is no volume in [body]: that of a {:.1} litre body is assumed", 1e3 * v)
         })
     }
 }
@@ -341,7 +341,8 @@ fn beyond_the_drive(
     let limits = &axis.limits;
     let mut out = Vec::new();
     if command_v > limits.command_v {
-        let text = format!("{what} asks for {command_v:.2} V, the amplifier takes {:.2} V: {advice}", limits.command_v);
+        let text =
+            format!("{what} asks for {command_v:.2} V, the amplifier accepts {:.2} V: {advice}", limits.command_v);
         out.push(("command", text));
     }
     if current_a > limits.current_a {
@@ -367,7 +368,7 @@ fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forec
     let n_m_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
     // Largest command, its root mean square, what the controller is asked, from where, and what to do about too much.
     let (command_v, rms_v, duration_s, asked, from_m, advice) = match run.drive {
-        Drive::Profile { .. } => unreachable!("a tow is no excitation"),
+        Drive::Profile { .. } => unreachable!("a tow is not an excitation"),
         Drive::Pulses { from_m, volts, period_s, duty, duration_s } => (
             volts.abs(),
             volts.abs() * duty.sqrt(),
@@ -664,7 +665,7 @@ mod tests {
         assert_eq!(with(advised), []);
         assert_eq!(with(advised + 0.001).len(), 1);
         let found = objections(&[(r#"shaped_damping = "0.017 1""#, r#"shaped_damping = "0.95 1""#)]);
-        assert_eq!(found[0].text, "controller.shaped_damping is 0.95; the controller takes 0 to 0.9");
+        assert_eq!(found[0].text, "controller.shaped_damping is 0.95; the controller accepts 0 to 0.9");
     }
 
     #[test]
@@ -749,7 +750,11 @@ mod tests {
         let coasts: Vec<_> = guessed.iter().filter(|o| o.kind == "coast").collect();
         assert!(!coasts.is_empty());
         for o in coasts {
-            assert!(o.text.ends_with("There is no volume in [body]: that of a 6.3 litre body is taken"), "{}", o.text);
+            assert!(
+                o.text.ends_with("There is no volume in [body]: that of a 6.3 litre body is assumed"),
+                "{}",
+                o.text
+            );
         }
         assert!(told(&far, None).1.iter().all(|o| !o.text.contains("litre")));
     }

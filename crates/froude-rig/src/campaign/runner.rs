@@ -36,13 +36,13 @@ use froude_records::carriage::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Ste
 #[non_exhaustive]
 pub enum RunnerError {
     /// The operator asked for it.
-    #[error("stopped by the operator in {run}; run the campaign again to go on from there")]
+    #[error("stopped by the operator in {run}; run the campaign again to resume from there")]
     Stopped {
         /// The run.
         run: String,
     },
     /// The operator asked for it while being asked.
-    #[error("stopped by the operator, who was asked: {prompt}; run the campaign again to go on from there")]
+    #[error("stopped by the operator, who was asked: {prompt}; run the campaign again to resume from there")]
     StoppedWaiting {
         /// What was asked.
         prompt: String,
@@ -56,7 +56,7 @@ pub enum RunnerError {
     /// Another program on the line asked for a stop.
     #[error(
         "another program on the line (session {session:08x}) stopped the carriage in {run}. Ask who wanted it, then run the campaign \
-         again: it goes on from there"
+         again: it resumes from there"
     )]
     StoppedByAnother {
         /// The run.
@@ -67,7 +67,7 @@ pub enum RunnerError {
     /// Another program on the line asked for a stop while nothing was to move.
     #[error(
         "another program on the line (session {session:08x}) asked for a stop between two runs, while nothing was to move. Ask who wanted \
-         it, then run the campaign again: it goes on from there"
+         it, then run the campaign again: it resumes from there"
     )]
     StoppedAtRest {
         /// The other program's session.
@@ -76,7 +76,7 @@ pub enum RunnerError {
     /// A fault while nothing was to move: the operator was asked, or logs were read.
     #[error(
         "fault between two runs, while nothing was to move: {fault:?} (category {category} stop). Remove the cause, then run the \
-         campaign again: it goes on from there"
+         campaign again: it resumes from there"
     )]
     FaultAtRest {
         /// The fault.
@@ -87,7 +87,7 @@ pub enum RunnerError {
     /// The controller latched a fault.
     #[error(
         "fault in {run}: {fault:?} (category {category} stop); the run is kept and marked. Remove the cause, then run the campaign \
-         again: it goes on from there"
+         again: it resumes from there"
     )]
     Fault {
         /// The run.
@@ -133,7 +133,7 @@ pub enum RunnerError {
     /// A move ended elsewhere.
     #[error(
         "{run}: the move to {target_m:.3} m ended at {at_m:.3} m without a fault: something else stopped the carriage. Run the campaign \
-         again: it goes on from there"
+         again: it resumes from there"
     )]
     Elsewhere {
         /// The run.

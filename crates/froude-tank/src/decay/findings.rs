@@ -215,7 +215,7 @@ fn drifting(swings: &Swings, id: &str, setup: &DecaySetup) -> Option<Finding> {
         warning(
             "rest-drifts",
             format!(
-                "run {id:?}: the rest position moves by {over:+.3e} {} while the body swings; both methods take it as fixed",
+                "run {id:?}: the rest position moves by {over:+.3e} {} while the body swings; both methods assume it fixed",
                 setup.axis.position_unit()
             ),
         )

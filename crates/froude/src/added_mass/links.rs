@@ -181,7 +181,7 @@ fn written(
 pub fn no_fits(configurations: usize) -> Option<String> {
     (configurations < FIT).then(|| {
         format!(
-            "No least squares: they take {FIT} configurations at least, such as --links 1..{FIT}, and these are {configurations}. \
+            "No least squares: they need {FIT} configurations at least, such as --links 1..{FIT}, and these are {configurations}. \
              links.csv and campaign.toml are written all the same; there is no campaign-results, and the record holds the matrices alone."
         )
     })

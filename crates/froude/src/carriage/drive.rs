@@ -159,7 +159,7 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         .clone()
         .ok_or_else(|| Error::Nothing(format!("{path}: nothing to drive: the campaign has no [rig]")))?;
     let asked = carriage.plan.clone().ok_or_else(|| {
-        Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do"))
+        Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must state what it is to do"))
     })?;
     if asked.axis as usize == 1 && carriage.rig.x.is_none() {
         return Err(Error::Nothing(format!(

@@ -626,9 +626,9 @@ pub fn modes_table(outcome: &ResonanceOutcome) -> TextTable {
         "its damping [1]",
         "free mode, seen through the driving gear [Hz]",
         "its damping [1]",
-        "free mode, the gear's loss taken out [Hz]",
+        "free mode, corrected for the gear's loss [Hz]",
         "load over motor inertia, seen [1]",
-        "the same, the gear's loss taken out [1]",
+        "the same, corrected for the gear's loss [1]",
         "left unexplained of the response",
         "the same, median of the points",
     ]
