@@ -169,7 +169,7 @@ fn a_sensor_whose_gain_is_off_contradicts_the_motor_current() {
 }
 
 #[test]
-fn a_wet_run_without_its_dry_one_is_left_out_and_told() {
+fn a_wet_run_without_its_dry_one_is_left_out_and_reported() {
     let scenario = scenario();
     let report = report(&scenario, &setup(&scenario), |r| {
         !(r.body == BodyState::Dry && r.pair == 2 && r.target_speed_m_s > 0.5 && r.direction > 0.0)

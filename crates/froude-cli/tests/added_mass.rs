@@ -812,7 +812,7 @@ fn cube(side_m: f64) -> Mesh {
 }
 
 #[test]
-fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
+fn a_mesh_that_is_no_body_is_reported_panel_by_panel() {
     let changed = |change: fn(&mut Mesh)| {
         let mut mesh = cube(1.0);
         change(&mut mesh);
@@ -860,7 +860,7 @@ fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
 }
 
 #[test]
-fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
+fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_reported() {
     let metre = write_obj(&cube(1.0));
     let small = [("m.obj", metre.as_bytes())];
     let large = write_obj(&cube(200.0));
@@ -896,7 +896,7 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
 }
 
 #[test]
-fn a_file_that_is_no_mesh_is_told_with_its_place() {
+fn a_file_that_is_no_mesh_is_reported_with_its_place() {
     let stl = write_stl_binary(&cube(1.0));
     let of = |name: &str, content: &[u8], message: &str| {
         refuses(&[(name, content)], &[&[name], &WATER[..]].concat(), message);
@@ -920,7 +920,7 @@ fn a_file_that_is_no_mesh_is_told_with_its_place() {
 }
 
 #[test]
-fn what_an_option_was_called_is_told_with_its_new_name() {
+fn what_an_option_was_called_is_reported_with_its_new_name() {
     let metre = write_obj(&cube(1.0));
     let told = |args: &[&str], message: &str| {
         refuses(&[("m.obj", metre.as_bytes())], &[&["m.obj"], &WATER[..], args].concat(), message);
@@ -1032,7 +1032,7 @@ fn options_that_say_nothing_sensible_are_told_what_they_take() {
 }
 
 #[test]
-fn results_that_cannot_be_written_are_told_before_anything_is_computed() {
+fn results_that_cannot_be_written_are_reported_before_anything_is_computed() {
     let metre = write_obj(&cube(1.0));
     let robot = body_file(ROBOT);
     let files = [("m.obj", metre.as_bytes()), ("r.toml", robot.as_bytes())];
@@ -1081,7 +1081,7 @@ fn a_full_disk_leaves_nothing_of_an_added_mass() {
 }
 
 #[test]
-fn more_than_fits_into_the_memory_is_told_with_what_would_fit() {
+fn more_than_fits_into_the_memory_is_reported_with_what_would_fit() {
     let family = Family::Mesh(hull());
     let wanted = |memory_bytes| Wanted { memory_bytes: Some(memory_bytes), ..Wanted::default() };
     let refused = refine(&family, &wanted(5e4), &|_| {}).unwrap_err();

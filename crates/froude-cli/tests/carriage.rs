@@ -210,7 +210,7 @@ fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported(
 }
 
 #[test]
-fn one_cause_of_many_refusals_is_told_by_kind_and_the_table_names_the_weights() {
+fn one_cause_of_many_refusals_is_reported_by_kind_and_the_table_names_the_weights() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(
         folder.path(),
@@ -249,7 +249,7 @@ fn a_weight_that_would_pull_the_carriage_into_its_stop_is_refused() {
 }
 
 #[test]
-fn a_truth_that_the_twin_does_not_have_is_told_with_its_place() {
+fn a_truth_that_the_twin_does_not_have_is_reported_with_its_place() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[(r#"pulley_friction = "1 %""#, r#"pully_friction = "1 %""#)]);
     let out = froude(&["run", text(&campaign), "--yes"]);
@@ -347,7 +347,7 @@ fn a_loop_softer_than_its_chain_faults_in_homing_and_not_in_the_run_after_it() {
 
 /// Truth: 13.0 Hz both masses free, 6.71 Hz the load on a held motor, M/m = 2.75, η = 0.8.
 #[test]
-fn the_free_mode_is_told_as_seen_and_without_the_gears_loss() {
+fn the_free_mode_is_reported_as_seen_and_without_the_gears_loss() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[]);
     let found = json(&["carriage", "resonance", text(&campaign), "--yes", "--json"]);

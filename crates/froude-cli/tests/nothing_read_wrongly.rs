@@ -808,7 +808,7 @@ fn a_faired_strut_as_tare_leaves_nothing_in_the_forces() {
 
 /// Laws of one's own beside a source that names its models without them.
 #[test]
-fn a_law_that_no_source_asks_for_is_told() {
+fn a_law_that_no_source_asks_for_is_reported() {
     let rows = drift_test(24);
     let text = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &rows, |r| {
         format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y)
@@ -848,7 +848,7 @@ fn strut_both_ways(angles_deg: &[f64]) -> String {
 /// A strut alone and under a body, in two tanks: what a tare in another fluid, beyond its speeds, of the other way or with an ERROR of its own
 /// leaves in the loads.
 #[test]
-fn a_tare_that_does_not_fit_is_told_with_its_size() {
+fn a_tare_that_does_not_fit_is_reported_with_its_size() {
     let of = |speeds: &[f64], newtons_s2_m2: f64, seed: u64| {
         let mut noise = noise(seed);
         let row = |u: &f64| format!("{u},{}\n", -newtons_s2_m2 * u * u.abs() + 1e-4 * noise());

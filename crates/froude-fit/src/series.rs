@@ -8,7 +8,7 @@
 use crate::autocorrelation::integrated_time_about_mean;
 
 /// A trend is reported beyond this many of its standard uncertainties.
-const TREND_TOLD: f64 = 3.0;
+const TREND_REPORTED: f64 = 3.0;
 /// Part of a window at each end over which the weights of its mean rise and fall …
 const TAPERED: f64 = 0.25;
 /// … and what that costs in independent samples: Σw² n/(Σw)² = (1 − 5r/8)/(1 − r/2)² with r = 2 · 0.25.
@@ -38,7 +38,7 @@ impl Mean {
     /// Whether the change over the window is more than chance (3 standard uncertainties).
     #[must_use]
     pub fn has_trend(&self) -> bool {
-        self.trend.abs() > TREND_TOLD * self.trend_standard
+        self.trend.abs() > TREND_REPORTED * self.trend_standard
     }
 }
 

@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn bodies_through_one_another_are_told_with_a_point_of_both() {
+    fn bodies_through_one_another_are_reported_with_a_point_of_both() {
         let mesh = ball(0.0, 4).with(&ball(1.5, 4));
         assert_eq!(check(&mesh), []);
         let [Trouble::Crossing { count, first, second, at }] = crossings(&mesh)[..] else {

@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn panels_through_the_water_are_told_and_those_that_end_there_are_not() {
+    fn panels_through_the_water_are_reported_and_those_that_end_there_are_not() {
         let mesh = hull(2.0);
         assert_eq!(crosses(&mesh, 2, 0.0), None);
         assert_eq!(crosses(&mesh, 2, 0.2), None);

@@ -95,7 +95,7 @@ fn a_board_at_a_serial_port_has_a_port_and_no_seed() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
+fn what_is_wrong_is_reported_with_its_line_and_what_to_write() {
     let cases = [
         (
             "gear_ratio = \"34.97 1\"",
@@ -204,7 +204,7 @@ fn a_stop_that_the_steps_do_not_reach_is_refused_with_steps_that_do() {
 }
 
 #[test]
-fn litres_and_decimal_commas_are_told_as_what_they_are() {
+fn litres_and_decimal_commas_are_reported_as_what_they_are() {
     let volume = "volume = \"6.283e-3 m^3\"";
     let text = example().replace(volume, "volume = \"6.283 l\"");
     let body = parse_campaign(Path::new("c.toml"), &text).unwrap().body.unwrap();

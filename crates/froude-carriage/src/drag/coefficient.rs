@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_force_beside_the_drag_is_told() {
+    fn a_constant_force_beside_the_drag_is_reported() {
         let points: Vec<Point> = (0..3)
             .flat_map(|k| {
                 [0.1, 0.3, -0.5]

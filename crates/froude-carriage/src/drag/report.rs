@@ -18,7 +18,7 @@ use froude_identify::IdentifyError;
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;
 /// A constant force beside the drag is reported when it exceeds this many standard uncertainties of its own …
-const OFFSET_TOLD: f64 = 3.0;
+const OFFSET_REPORTED: f64 = 3.0;
 /// … and moves D_d by more than this part of it.
 const OFFSET_MATTERS: f64 = 0.005;
 
@@ -240,7 +240,7 @@ fn doubts(
             out.push(Finding::new(Severity::Warning, "few-pairs", format!("{name}: {pairs}; {so}")));
         }
         if let Some(f) = c.offset_n
-            && f.value.abs() > OFFSET_TOLD * f.standard
+            && f.value.abs() > OFFSET_REPORTED * f.standard
             && offset_share(c, f.value) > OFFSET_MATTERS
         {
             out.push(Finding::new(

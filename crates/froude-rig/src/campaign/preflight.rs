@@ -650,7 +650,7 @@ mod tests {
     }
 
     #[test]
-    fn a_configuration_that_the_controller_does_not_take_is_told_with_its_key_and_advice_that_can_be_followed() {
+    fn a_configuration_that_the_controller_does_not_take_is_reported_with_its_key_and_advice_that_can_be_followed() {
         let key = r#"unhomed_speed_limit = "0.018 m/s""#;
         let found = objections(&[(key, r#"unhomed_speed_limit = "0.3 m/s""#)]);
         assert_eq!((found[0].id.as_str(), found[0].kind), ("[rig.y]", "controller"));
@@ -689,7 +689,7 @@ mod tests {
     }
 
     #[test]
-    fn a_way_that_the_ramps_use_up_is_told_with_a_way_that_is_enough() {
+    fn a_way_that_the_ramps_use_up_is_reported_with_a_way_that_is_enough() {
         let way = |to: f64| objections(&[(r#"distance = "2.2 m""#, &format!("distance = \"{to} m\""))]);
         let short = way(0.6);
         let text = &short.iter().find(|o| o.id.contains("550mm_s")).unwrap().text;
@@ -744,7 +744,7 @@ mod tests {
     }
 
     #[test]
-    fn an_assumed_volume_is_told_where_the_coast_hangs_on_it() {
+    fn an_assumed_volume_is_reported_where_the_coast_hangs_on_it() {
         let far = [(r#"distance = "2.2 m""#, r#"distance = "4.7 m""#)];
         let guessed = told(&far, Some(6.283e-3)).1;
         let coasts: Vec<_> = guessed.iter().filter(|o| o.kind == "coast").collect();
