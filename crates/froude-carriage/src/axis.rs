@@ -1,4 +1,4 @@
-//! What runs of a carriage, or anyone's log of a servo, say of an axis: rigid models and two masses.
+//! What runs of a carriage, or any log of a servo, show about an axis: rigid models and two masses.
 //!
 //! A carriage's friction sweep and dry runs give inertia and friction (rigid, over position); its pulses give the two masses. A log of another
 //! program (CSV with a sidecar) gives the rigid model, symmetric and asymmetric.

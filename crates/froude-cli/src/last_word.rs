@@ -1,4 +1,4 @@
-//! The last word of a run that ends otherwise than meant: a fault of the program, or no memory left.
+//! The last message of a run that ends abnormally: an internal error, or no memory left.
 //!
 //! Whatever the input, the program ends with a sentence and with 0, 1 or 2; never with a trace, never by a signal of its own.
 

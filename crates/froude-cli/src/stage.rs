@@ -1,4 +1,4 @@
-//! What stands around a drive: who may stop it, who confirms, and who is informed.
+//! The people around a drive: who may stop it, who confirms, and who is informed.
 //!
 //! The carriage is driven by a thread that knows none of this. Everything for the terminal goes to a thread that writes it as the
 //! terminal takes it: who drives and records never waits for standard error, and a line that nobody reads is no failure.

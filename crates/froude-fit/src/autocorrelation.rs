@@ -1,4 +1,4 @@
-//! How long a record remembers itself.
+//! Autocorrelation of a record, and its integrated correlation time.
 //!
 //! Two rules for the integrated autocorrelation time stand here, on one kernel, because they serve two questions:
 //!

@@ -1,4 +1,4 @@
-//! Loads of one setting that differ a hundredfold: two units under one head.
+//! Loads of one setting that differ a hundredfold: two units under one header.
 //!
 //! A table put together from two exports may hold newtons in some rows and
 //! gram-force in the others. The column has one unit, so no check of dimensions

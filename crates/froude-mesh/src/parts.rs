@@ -1,4 +1,4 @@
-//! Parts of a mesh that hang together over edges, which of them is inside out, and which lies inside another.
+//! Connected parts of a mesh (joined by edges), which of them is inside out, and which lies inside another.
 //!
 //! [`mod@crate::check`] looks at the whole: a small part that is inside out disappears in the volume of a large one. Here each part is on
 //! its own.

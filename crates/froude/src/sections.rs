@@ -1,4 +1,4 @@
-//! Identification results as the report wants them: points, curves with bands, budget, selection.
+//! Identification results as the report needs them: points, curves with bands, budget, selection.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What drag a campaign can see, said from still and dry repeats alone, before a body is mounted wet.
+//! Which drag a campaign can detect, predicted from still and dry repeats alone, before a body is mounted wet.
 //!
 //! Dry runs of one speed and direction differ by what will scatter the difference of wet and dry. Part of it all runs of a pair share
 //! (mount, hour: standard deviation s_p), part not (s_r). One difference then scatters by √2 √(s_p² + s_r²), its mean over m differences

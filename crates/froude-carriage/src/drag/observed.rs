@@ -1,4 +1,4 @@
-//! What each method makes of the runs: steady points, how these scatter, and the errors that only it knows.
+//! What each method makes of the runs: steady points, how these scatter, and the errors that only it has.
 //!
 //! The scatter is that of the pairs, each left out in turn, since runs of one pair share mounts and the hour; with one pair that of its runs. It is
 //! not believed below what is known to differ between any two runs: noise and zeros of the sensor, or what the dry repeats show.

@@ -1,4 +1,4 @@
-//! Modes of the two-mass carriage from its motor-side response, and the shaper that they ask for.
+//! Modes of the two-mass carriage from its motor-side response, and the input shaper for them.
 //!
 //! Motor side of MCD eq. 2: θ/v_c = k (s² + 2ζ_a ω_a s + ω_a²) / (s (s + b) (s² + 2ζ_p ω_p s + ω_p²)) · e^(−sT).
 //! Its **antiresonance** ω_a = √(K_e/M) is the load swinging on a motor that stands still, which is what a stiff position loop

@@ -1,4 +1,4 @@
-//! The fit of a long table: triangles of all rows, then what their residuals say.
+//! The fit of a long table: triangles of all rows, then what their residuals show.
 
 use froude_fit as fit;
 use froude_fit::faer::{Col, Mat};

@@ -1,4 +1,4 @@
-//! A tare in another setting than its own: another fluid, other speeds or angles, the other way; or one that its own record calls wrong.
+//! A tare in another setting than its own: another fluid, other speeds or angles, the other way; or one whose own record reports errors.
 
 use froude_records::estimate::{Estimate, EstimateFile, Range};
 use froude_records::finding::{Finding, Severity};

@@ -1,4 +1,4 @@
-//! What is doubtful about a decay test, with the numbers it rests on.
+//! What is doubtful about a decay test, with the numbers that support it.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! One body or mesh: what is computed of it, in which frame, and what comes out.
+//! One body or mesh: what is computed of it, in which frame, and what results.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Finer and finer until the tolerance is met, with the cost stated beforehand.
+//! Meshes refined until the tolerance is met, with the cost stated beforehand.
 
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
