@@ -370,7 +370,7 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
 /// Most observations that one block of a plan makes.
 const MOST_OBSERVATIONS: usize = 1_000_000;
 
-/// What a section multiplies out to is held against a limit: each of its numbers may be small, and their product not.
+/// What a section multiplies out to is checked against a limit: each of its numbers may be small, and their product not.
 pub(crate) fn at_most(s: &Section<'_>, numbers: &[usize], most: usize) -> Result<(), RecordError> {
     let product = numbers.iter().fold(1_usize, |product, n| product.saturating_mul(*n));
     if product <= most {

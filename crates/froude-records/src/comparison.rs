@@ -190,7 +190,7 @@ impl Comparison {
         self.coefficients.is_empty() && self.joint.is_empty() && self.loads.is_empty()
     }
 
-    /// Ids of the estimates whose loads are predicted, the one that all others are held against first.
+    /// Ids of the estimates whose loads are predicted, the one that all others are compared with first.
     #[must_use]
     pub fn load_sources(&self) -> Vec<&str> {
         let mut out: Vec<&str> = Vec::new();

@@ -24,7 +24,7 @@ pub const OWN: &str = "own/";
 
 /// A whole `estimate.json`.
 ///
-/// It is serialised with a `checksum` of its content, which [`crate::json::read_estimates`] holds it against.
+/// It is serialised with a `checksum` of its content, which [`crate::json::read_estimates`] checks it against.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct EstimateFile {
     /// `froude/estimate/2`; a record of version 1 is lifted to it when it is read.

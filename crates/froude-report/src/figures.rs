@@ -132,9 +132,7 @@ fn distinct<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
 
 /// What a caption says of points that are a sample.
 fn drawn_by_chance(section: &SourceSection) -> String {
-    section
-        .sample_of
-        .map_or_else(String::new, |n| format!(" The points are a sample, drawn by chance, of {n} observations."))
+    section.sample_of.map_or_else(String::new, |n| format!(" The points are a random sample of {n} observations."))
 }
 
 /// Every `n`th of many, so that at most `limit` stay.

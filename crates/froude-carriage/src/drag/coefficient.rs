@@ -176,7 +176,7 @@ fn offset(points: &[Point]) -> Option<Uncertain> {
     Some(Uncertain { value: fit(None)?, standard, dof })
 }
 
-/// D_d from wet-less-dry differences, its scatter held against what the dry repeats show; `None` without a moving point.
+/// D_d from wet-less-dry differences, its scatter compared with what the dry repeats show; `None` without a moving point.
 ///
 /// # Errors
 ///

@@ -6,7 +6,7 @@
 //! those of a two-way layout (cells of speed and direction against pairs, no interaction); s_p = 0 where the mean square between pairs is
 //! not above that of the rest, which then are pooled.
 //!
-//! The prediction is held against the scatter of the wet runs: the ratio of the two variances follows Fisher's F when they agree.
+//! The prediction is compared with the scatter of the wet runs: the ratio of the two variances follows Fisher's F when they agree.
 //!
 //! **Source.** Searle, Casella & McCulloch (1992), *Variance Components*, 4.3; Satterthwaite (1946) for the degrees of freedom of sums.
 

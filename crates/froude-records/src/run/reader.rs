@@ -5,7 +5,7 @@
 //! ([`RunReader::refuse_damage`]). A tick is taken only when every topic has its message of it.
 //!
 //! **Whether it is the log.** Where the sidecar has the log's SHA-256 the whole file is summed before anything in it is read: one pass
-//! more over the file. All checksums that the file has itself (chunks, data, summary) are held against it
+//! more over the file. All checksums that the file has itself (chunks, data, summary) are checked against it
 //! besides. What does not fit is in [`RunReader::doubts`].
 
 use std::fs::{File, TryLockError};

@@ -77,7 +77,7 @@ impl Expected {
 }
 
 /// Shortest part at constant speed that can be averaged, s: the reduction drops 0.5 s at its start and 0.05 s at its end and needs 1 s
-/// between. A test of the `froude` crate holds this against the reduction's own settings.
+/// between. A test of the `froude` crate compares this with the reduction's own settings.
 pub const SHORTEST_STEADY_S: f64 = 0.5 + 0.05 + 1.0;
 /// Shortest stand-still that gives a zero after a tow, s: 0.5 s until the wake has passed, and 1 s to average. Held as above.
 pub const SHORTEST_STILL_S: f64 = 0.5 + 1.0;

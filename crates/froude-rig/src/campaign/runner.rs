@@ -55,7 +55,7 @@ pub enum RunnerError {
     },
     /// Another program on the line asked for a stop.
     #[error(
-        "another program on the line (session {session:08x}) stopped the carriage in {run}. Ask who wanted it, then run the campaign \
+        "another program on the line (session {session:08x}) stopped the carriage in {run}. Find out who requested it, then run the campaign \
          again: it resumes from there"
     )]
     StoppedByAnother {
@@ -66,7 +66,7 @@ pub enum RunnerError {
     },
     /// Another program on the line asked for a stop while nothing was to move.
     #[error(
-        "another program on the line (session {session:08x}) asked for a stop between two runs, while nothing was to move. Ask who wanted \
+        "another program on the line (session {session:08x}) asked for a stop between two runs, while nothing was to move. Find out who requested \
          it, then run the campaign again: it resumes from there"
     )]
     StoppedAtRest {

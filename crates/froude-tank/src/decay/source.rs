@@ -120,8 +120,8 @@ fn releases(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
         ]
     });
     let left = match fit.method {
-        DecayMethod::OutputError => format!("left of the position, rms [{unit}]"),
-        DecayMethod::Envelope => format!("left of the force, rms [{}]", if unit == "rad" { "N m" } else { "N" }),
+        DecayMethod::OutputError => format!("residual of the position, rms [{unit}]"),
+        DecayMethod::Envelope => format!("residual of the force, rms [{}]", if unit == "rad" { "N m" } else { "N" }),
     };
     let panel = |summary: &RunSummary| {
         let run = runs.iter().find(|run| run.id == summary.id)?;
@@ -159,7 +159,7 @@ fn releases(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
         title: "Releases".to_owned(),
         paragraphs: Vec::new(),
         tables: vec![TextTable {
-            caption: format!("What was used of each release, by {}.", fit.method.name()),
+            caption: format!("Data used of each release, by {}.", fit.method.name()),
             head: ["release", "half cycles", "from [s]"]
                 .map(str::to_owned)
                 .into_iter()

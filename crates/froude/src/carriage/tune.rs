@@ -280,7 +280,7 @@ fn cycle_of(log: &RunLog, axis: &AxisConfig, e: &Experiments) -> Result<LimitCyc
     limit_cycle(columns.rate_hz, e.relay_v, hysteresis_rad, &columns.command_v[rows.clone()], &columns.angle_rad[rows])
 }
 
-/// What candidates are held against.
+/// The requirements on candidates.
 struct Bench<'a> {
     plant: &'a [ResponsePoint],
     modes: Option<TwoMassModes>,
@@ -629,7 +629,7 @@ pub fn modes_table(outcome: &ResonanceOutcome) -> TextTable {
         "free mode, corrected for the gear's loss [Hz]",
         "load over motor inertia, seen [1]",
         "the same, corrected for the gear's loss [1]",
-        "left unexplained of the response",
+        "unexplained part of the response",
         "the same, median of the points",
     ]
     .map(|name| vec![name.to_owned()])
@@ -703,7 +703,7 @@ pub fn resonance_sentences(outcome: &ResonanceOutcome) -> Vec<String> {
                 .to_owned(),
         });
         out.push(
-            "Left unexplained is the root mean square of |model/measured − 1| over the points with a coherence above 0.8. Much of it lies in \
+            "The unexplained part is the root mean square of |model/measured − 1| over the points with a coherence above 0.8. Much of it lies in \
              the dip, which friction fills, beside the peak, at the lower end of the band, and with a body at multiples of the load's mode, \
              which the gear makes of its swing; most points are far better, as the median says. It makes the dampings and the depth \
              of the dip uncertain, hardly the place of the dip, which is all that a shaper needs: it takes 10 % of frequency either way."
