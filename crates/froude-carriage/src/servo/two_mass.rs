@@ -431,7 +431,7 @@ impl<'a> Record<'a> {
         }
         if self.options.gear == Gear::Undeclared {
             findings.push(
-                "no efficiency of the gear is declared: mass, stiffness, damping and friction behind it are apparent, through the gear,                  1/eta times the true ones while the motor drives and eta_b times while it is driven (1.25 and 0.75 for a gear of 0.8 and                  0.75), and their intervals do not include that factor"
+                "no efficiency of the gear is declared: mass, stiffness, damping and friction behind it are apparent, through the gear, 1/eta times the true ones while the motor drives and eta_b times while it is driven (1.25 and 0.75 for a gear of 0.8 and 0.75), and their intervals do not include that factor"
                     .to_owned(),
             );
         }

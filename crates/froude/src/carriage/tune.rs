@@ -495,7 +495,7 @@ pub fn candidates_table(outcome: &TuneOutcome) -> TextTable {
     let names = outcome.candidates.iter().map(|c| c.name.clone());
     TextTable {
         caption: format!(
-            "Gains of MCD eq. 6 in SI and per count and tick (V); margins on the response measured from {:.1} to {:.0} Hz; following error              and speed of the motor from the campaign's hardest ramps, bare and with the heaviest body, run through the two masses that              the response shows. A margin without a value: the loop does not cross there.",
+            "Gains of MCD eq. 6 in SI and per count and tick (V); margins on the response measured from {:.1} to {:.0} Hz; following error and speed of the motor from the campaign's hardest ramps, bare and with the heaviest body, run through the two masses that the response shows. A margin without a value: the loop does not cross there.",
             outcome.band_hz[0], outcome.band_hz[1]
         ),
         head: std::iter::once("quantity".to_owned()).chain(names).collect(),
