@@ -169,7 +169,7 @@ const KNOT_M: f64 = 0.25;
 /// Most stretches between knots: on ways longer than 250 m they are longer.
 const MOST_STRETCHES: usize = 1000;
 
-/// Models of what runs of a carriage say of their axis.
+/// Models of the axis, from runs of a carriage.
 ///
 /// # Errors
 ///
@@ -254,7 +254,7 @@ fn knots_between(low_m: f64, high_m: f64) -> Vec<f64> {
     (0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect()
 }
 
-/// The part of a run in which the reference moves; at rest friction is anything below breakaway and tells nothing.
+/// The part of a run in which the reference moves; at rest friction is anything below breakaway and shows nothing.
 fn moving(log: &RunLog) -> Result<Option<RunLog>, MethodError> {
     let speed = column(log, &format!("{}/reference_velocity", log.meta.carriage.axis.name()), Dimension::SPEED)?;
     let first = speed.iter().position(|v| *v != 0.0);

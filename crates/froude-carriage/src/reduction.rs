@@ -170,7 +170,7 @@ fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Optio
     }))
 }
 
-/// What is declared, from the campaign where there is one, else from what the runs say of their rig.
+/// What is declared, from the campaign where there is one, else from what the runs state about their rig.
 #[must_use]
 pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
     let mut setup = DragSetup::of_the_paper();

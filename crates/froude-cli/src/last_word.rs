@@ -25,7 +25,7 @@ pub fn guarded(job: impl FnOnce() -> ExitCode) -> ExitCode {
     })
 }
 
-/// What is said of a fault: whose it is, and what to do.
+/// The message about a fault: whose it is, and what to do.
 fn sentence(fault: &str) -> String {
     if NO_THREAD.iter().any(|words| fault.contains(words)) {
         return "the machine gives the program no more threads: its memory or its number of processes is used up. Results that were not \

@@ -374,7 +374,7 @@ fn anyones_servo_log_is_identified_with_intervals() {
     assert!(out.join("report.html").exists());
 }
 
-/// The halves of a record are two records of one axis: what they say of it is compared like any other estimates, with the same numbers as on the page.
+/// The halves of a record are two records of one axis: what they state about it is compared like any other estimates, with the same numbers as on the page.
 #[test]
 fn two_records_of_a_servo_are_compared() {
     let folder = tempfile::tempdir().unwrap();

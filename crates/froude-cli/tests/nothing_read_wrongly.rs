@@ -435,7 +435,7 @@ fn no_column_is_dropped_in_silence() {
     );
 }
 
-/// What is said of the observations is said of those that are fitted: the wild row is dropped, and a figure of the others has their lines.
+/// The findings about the observations concern those that are fitted: the wild row is dropped, and a figure of the others has their lines.
 #[test]
 fn a_contradiction_in_rows_that_are_left_out_is_none() {
     let mut noise = noise(15);
@@ -537,7 +537,7 @@ fn the_moment_of_a_bare_table_is_fitted_beside_its_forces() {
     );
 }
 
-/// Three laws of f_x and one of three loads: what the one says of the other two counts.
+/// Three laws of f_x and one of three loads: what the one states about the other two counts.
 #[test]
 fn laws_of_different_loads_are_compared_load_by_load() {
     let text = table("speed [m/s],angle [deg],f_x [N],f_y [N],m_z [N m]", &drift_test(5), |r| {

@@ -532,7 +532,7 @@ fn a_long_drive_with_prompts_signals_and_a_second_host_on_the_line_stays_in_its_
             }
         }
         let (status, said) = driven.end();
-        // The last line: the next session says of the run that it puts aside what stopped it.
+        // The last line: the next session reports what stopped the run that it sets aside.
         let last = said.lines().last().unwrap_or_default();
         let is_by_another = last.contains("another program on the line (session 00000bad)");
         stopped_by_another += usize::from(is_by_another);

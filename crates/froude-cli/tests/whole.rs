@@ -1,4 +1,4 @@
-//! What is said of a campaign that is not whole (a part of it that was named, one that was not driven to its end, one that stopped because it
+//! The message about a campaign that is not whole (a part of it that was named, one that was not driven to its end, one that stopped because it
 //! knew enough), and that no result takes the place of one of more runs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 

@@ -40,9 +40,9 @@ const FORCE_POINTS: usize = 5;
 /// Coverage factor where no degrees of freedom are stated: two-sided 95 % of the normal distribution.
 const NORMAL_COVERAGE: f64 = 1.959_963_984_540_054;
 
-/// What is said in place of E_n where two estimates come from the same observations.
+/// The text in place of E_n where two estimates come from the same observations.
 pub const SAME_DATA: &str = "same data: not independent, E_n not meaningful";
-/// What is said in place of χ² there.
+/// The text in place of χ² there.
 const SAME_DATA_JOINTLY: &str = "same data: not independent, χ² not meaningful";
 
 /// A number as one estimate states it.
@@ -263,7 +263,7 @@ fn fingerprints<'a>(files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a s
     files.filter(|data| is_observed(data)).map(|data| data.sha256.as_str()).collect()
 }
 
-/// Where an estimate comes from, as far as its record tells.
+/// Where an estimate comes from, as far as its record shows.
 struct Origin<'a> {
     /// Fingerprints of its tables or runs.
     tables: BTreeSet<&'a str>,
@@ -313,7 +313,7 @@ fn have_other_tables([a, b]: [&Origin<'_>; 2]) -> bool {
     !a.tables.is_empty() && !b.tables.is_empty() && a.tables.is_disjoint(&b.tables)
 }
 
-/// True where two estimates come from the same observations, as far as their records tell.
+/// True where two estimates come from the same observations, as far as their records show.
 ///
 /// A record says which files each estimate came from. An old one names its tables, but not which source read which: there a shared table counts where that is plain (one table, or
 /// one source), and else if the sources have the same name or the same observations (number and ranges). Without

@@ -43,7 +43,7 @@ pub enum Kind {
     Formulas(Vec<Formula>),
     /// F = −k·sgn(v)·|v|ⁿ along one axis, v in units of 1 m/s.
     PowerLaw {
-        /// The velocity channel, `v_x` say.
+        /// The velocity channel, for example `v_x`.
         channel: String,
         /// True: fitted as ln|F| = ln k + n·ln|v| (relative errors); false: in newtons (absolute errors).
         in_logarithms: bool,

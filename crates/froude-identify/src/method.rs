@@ -2,7 +2,7 @@
 //!
 //! A source of a campaign names a table or runs, and for runs its methods. Each method reduces what it is given to observations, fits them by
 //! the common regression with the common budget ([`crate::seam`]), and gives [`Found`]: for each answer data, fits, estimates and files, and what
-//! it says of all of them. After it there is one comparison, one record, one page and one writer.
+//! it states about all of them. After it there is one comparison, one record, one page and one writer.
 
 use std::path::PathBuf;
 
@@ -97,7 +97,7 @@ pub fn lacking<'a>(needs: &[Need], files: impl Fn(&str) -> Vec<Box<dyn Fn(&str) 
 pub struct Found {
     /// A result for each name that was asked for.
     pub results: Vec<SourceResult>,
-    /// What it says of all of them together, on the terminal and at the head of the page; the results alone where there is nothing.
+    /// What it states about all of them together, on the terminal and at the head of the page; the results alone where there is nothing.
     pub summary: Option<DocumentSection>,
     /// What else belongs on the page.
     pub blocks: Vec<DocumentSection>,
@@ -109,7 +109,7 @@ pub struct Found {
     pub is_part: bool,
 }
 
-/// Why a method gives no estimates; each message says what to do.
+/// Why a method gives no estimates; each message states what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MethodError {

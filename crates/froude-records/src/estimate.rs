@@ -231,9 +231,9 @@ pub enum ErrorKind {
 /// Axes of the coefficients.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Frame {
-    /// `body`, `chain`, …; empty where nobody said it.
+    /// `body`, `chain`, …; empty where it is not stated.
     pub name: String,
-    /// Where its axes point, in words, `x`, `y`, `z` in turn; empty where nobody said it.
+    /// Where its axes point, in words, `x`, `y`, `z` in turn; empty where it is not stated.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<String>,
     /// All of it in words.

@@ -36,7 +36,7 @@ pub struct Mapping {
     pub sign: f64,
     /// Factor that gives a dimensionless column its dimension.
     pub scale: Option<Scale>,
-    /// What is said of it as a channel of a log.
+    /// The message about it as a channel of a log.
     pub(crate) words: Words,
     /// Where it stands in the sidecar.
     pub place: Place,

@@ -75,11 +75,11 @@ pub struct Outcome {
     pub written: Option<Written>,
     /// Everything that is known about each fitted source.
     pub sources: Vec<SourceResult>,
-    /// What methods say of several of them together.
+    /// What methods state about several of them together.
     pub summaries: Vec<Summary>,
 }
 
-/// What a method says of all results that it has from one source.
+/// What a method states about all results that it has from one source.
 #[derive(Debug, Clone)]
 pub struct Summary {
     /// Which of [`Outcome::sources`].

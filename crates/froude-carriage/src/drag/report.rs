@@ -57,7 +57,7 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     drag_by(runs, setup, &Method::ALL)
 }
 
-/// The same by some of the methods; nothing is said of the others.
+/// The same by some of the methods; nothing is stated about the others.
 ///
 /// # Errors
 ///

@@ -5,7 +5,7 @@
 //! grows mid-tank, changes from run to run and wanders, K_T that drifts, a gear that loses, a sensor that drifts.
 //!
 //! **Setting.** Trapezoids of one acceleration, still before and after; pairs of dry and wet runs in turn (dry, wet, wet,
-//! dry). The friction's Coulomb part carries the bump and the run-to-run change unless said otherwise.
+//! dry). The friction's Coulomb part carries the bump and the run-to-run change unless stated otherwise.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};

@@ -23,7 +23,7 @@ pub struct Mode {
     pub damping_std: f64,
 }
 
-/// What the response says of the two masses.
+/// What the response states about the two masses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoMassModes {
     /// Load on a motor held still: the mode to shape for.

@@ -189,7 +189,7 @@ fn dimension_of(quantity: &str) -> Option<Dimension> {
     QUANTITIES.iter().find(|(known, _)| *known == quantity).map(|(_, dimension)| *dimension)
 }
 
-/// What an entry of a sidecar says of a channel beside its name, unit and sign.
+/// What an entry of a sidecar states about a channel beside its name, unit and sign.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Words {
     quantity: Option<String>,

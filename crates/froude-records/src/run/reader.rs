@@ -167,7 +167,7 @@ impl<R: Read + Seek> RunReader<R> {
         Ok(reader)
     }
 
-    /// What speaks against the log as a whole; settled when the last block has been read.
+    /// Faults of the log as a whole; settled when the last block has been read.
     #[must_use]
     pub fn doubts(&self) -> &[Doubt] {
         &self.doubts

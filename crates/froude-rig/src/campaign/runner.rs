@@ -226,7 +226,7 @@ pub trait Operator {
 /// What is asked before the first motion.
 const CLEAR: &str = "Homing moves both axes now: both axes are clear, and a person stands at the emergency stop";
 
-/// What is said of logs without a hash.
+/// The message about logs without a hash.
 const EARLIER_VERSION: &str = "runs of an earlier version lie there: they carry no SHA-256 of their logs, so that only the logs' own checksums \
                                vouch for them";
 
@@ -885,7 +885,7 @@ fn has_begun(sample: &Sample, request: &Request) -> bool {
 /// Whoever watches is shown the samples whose tick is a multiple of this: thirty a second, fewer from a board that sends fewer.
 const SHOWN_EVERY: u64 = 133;
 
-/// What is said of another program on the line.
+/// The message about another program on the line.
 pub(super) fn said_of(stranger: Stranger) -> String {
     match stranger {
         Stranger::TurnedAway(session) => {

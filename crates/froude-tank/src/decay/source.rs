@@ -77,7 +77,7 @@ impl Method for FreeDecay {
             fits.push(fit);
         }
         findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
-        // What both say of a release is said once.
+        // What both state about a release is reported once.
         let mut said: Vec<Finding> = Vec::new();
         for finding in findings {
             if !said.contains(&finding) {

@@ -34,7 +34,7 @@ pub struct LinksJob {
     pub axes: Axes,
     /// Tolerance, limits.
     pub wanted: Wanted,
-    /// Folder of the results; beside the body file, unless said.
+    /// Folder of the results; beside the body file, unless stated.
     pub out: Option<PathBuf>,
     /// Date for the report.
     pub date: Option<String>,
@@ -74,7 +74,7 @@ pub struct LinksOutcome {
     pub page: PathBuf,
     /// The table of the configurations.
     pub table: PathBuf,
-    /// What is said of a record in another frame that this one has replaced.
+    /// The message about a record in another frame that this one has replaced.
     pub replaced: Option<String>,
 }
 
@@ -144,7 +144,7 @@ fn written(
         progress("least squares over the configurations");
         let done = identify(&Job { date: job.date.clone(), ..Job::new(&campaign) }, &|_| {})?;
         fits.clone_from(&done.file.estimates);
-        // Computed masses have no noise and no instrument: what these two say of tests does not hold for them.
+        // Computed masses have no noise and no instrument: what these two state about tests does not hold for them.
         let is_of_tests = |f: &Finding| f.code == "no-budget" || f.code == "serial-correlation";
         findings.extend(done.file.findings.into_iter().filter(|f| !is_of_tests(f)));
     }

@@ -78,7 +78,7 @@ pub struct SeveralOutcome {
     pub page: PathBuf,
     /// The matrix as a table, and exports.
     pub others: Vec<PathBuf>,
-    /// What is said of a record in another frame that this one has replaced.
+    /// The message about a record in another frame that this one has replaced.
     pub replaced: Option<String>,
 }
 

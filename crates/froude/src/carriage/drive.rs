@@ -31,7 +31,7 @@ use froude_records::run::{CAMPAIGN_COPY, LAST_RUN, STOPPED_EARLY};
 pub struct DriveJob {
     /// The campaign.
     pub campaign: PathBuf,
-    /// Folder of the runs; beside the campaign, named after it, unless said.
+    /// Folder of the runs; beside the campaign, named after it, unless stated.
     pub out: Option<PathBuf>,
     /// Host's clock at the start, ns since 1970.
     pub start_unix_ns: u64,

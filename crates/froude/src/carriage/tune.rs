@@ -65,7 +65,7 @@ pub struct Candidate {
     pub following_error_m: Option<f64>,
     /// Largest speed of the motor in homing, m/s, likewise.
     pub homing_m_s: Option<f64>,
-    /// What speaks against them; nothing if they are fit for the campaign.
+    /// Objections to them; none if they are fit for the campaign.
     pub objections: Vec<String>,
 }
 
@@ -513,7 +513,7 @@ pub fn candidates_table(outcome: &TuneOutcome) -> TextTable {
     }
 }
 
-/// What speaks against each candidate, where its margins come from, and what to write into the campaign.
+/// Objections to each candidate, where its margins come from, and what to write into the campaign.
 #[must_use]
 pub fn tune_sentences(outcome: &TuneOutcome) -> Vec<String> {
     let mut out = Vec::new();
