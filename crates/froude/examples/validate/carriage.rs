@@ -315,7 +315,7 @@ fn pairs_of_one_calibration(claims: &mut Claims, pairs: usize) {
 /// What the scenario leaves open, as figures without an acceptance band.
 fn variants(claims: &mut Claims, d: f64, seeds: usize) {
     for (name, out_and_back, viscous_changes) in
-        [("one way only", false, false), ("out and back, viscous friction changes from run to run too", true, true)]
+        [("one direction only", false, false), ("out and back, viscous friction changes from run to run too", true, true)]
     {
         let scenario = Scenario { out_and_back, viscous_changes, ..Scenario::pinned(d) };
         let reports = campaigns(&scenario, seeds, |_| {});
