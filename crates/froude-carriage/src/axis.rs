@@ -82,7 +82,7 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
     let imported = import_run(path, sidecar)?;
     let log = &imported.log;
     let gain = log.meta.constants.get("drive_gain").ok_or_else(|| {
-        let what = "the sidecar must say the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
+        let what = "the sidecar must state the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
         MethodError::input(path, what)
     })?;
     let gain_n_v = gain.value;
@@ -301,7 +301,7 @@ fn varies(models: &[Model]) -> Option<Finding> {
             Severity::Note,
             "servo",
             format!(
-                "no change of friction along the travel is detected: at every knot of the map F_c = {:.2} N lies in its interval",
+                "no change of friction along the travel is detected: the interval at every knot of the map contains F_c = {:.2} N",
                 constant.value
             ),
         ));

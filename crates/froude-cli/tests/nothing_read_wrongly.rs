@@ -625,7 +625,7 @@ fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() 
         told[0].0 == "warning"
             && told[0].1.starts_with(
                 "the tare tare.csv/quadratic was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side \
-                 force stays in f_y: for a strut whose drag is the same from all sides up to 2.4"
+                 force stays in f_y: for a strut whose drag is the same from all sides, up to 2.4"
             )
             && told[0].1.ends_with(
                 "tow the strut alone at the angles of the test, fit these runs with models = [\"strut\"] (f_x and f_y) and subtract that record"
@@ -726,7 +726,7 @@ fn a_tare_that_gives_a_side_force_is_a_warning_at_drift_if_it_was_towed_straight
             told.len() == 1
                 && told[0].1.starts_with(
                     "the tare t/askew was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side force differs \
-                     there: for a strut whose drag is the same from all sides by up to 2.6"
+                     there: for a strut whose drag is the same from all sides, by up to 2.6"
                 ),
             "{head}: {told:?}"
         );

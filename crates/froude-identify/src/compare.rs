@@ -570,8 +570,8 @@ fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
             Severity::Warning,
             "density-differs",
             format!(
-                "{} was measured in water of {} {}, {} in {} {}: coefficients with kg or N in their unit, and the forces that they give, are proportional \
-                 to the density; scale one of them before comparing",
+                "{} was measured in water of {} {}, {} in {} {}: coefficients with kg or N in their unit, and the forces that they give, depend on \
+                 the density; scale one of them before comparing",
                 a.id, x.value, x.unit, b.id, y.value, y.unit
             ),
         )
@@ -590,7 +590,7 @@ fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
         "axes-not-tied",
         format!(
             "{} is along the chain of its carriage, {} in body axes: their f_x are compared as if the body had been towed along its x \
-             axis; if it was towed across it, they are two forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign; of runs that are driven already, in \
+             axis; if it was towed across it, they are two different forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign; of runs that are driven already, in \
              a campaign that `froude carriage drag --campaign` names",
             chain.id, body.id
         ),

@@ -66,7 +66,7 @@ pub(super) fn beyond_its_angles(
             let stays_n = |i: usize| -drag_n[i] * angle[i].sin();
             left.extend(size(&rows, &stays_n, side).map(|(most_n, percent)| {
                 format!(
-                    "its side force stays in f_y: for a strut whose drag is the same from all sides up to {most_n:.3} N, {percent:.1} % of the \
+                    "its side force stays in f_y: for a strut whose drag is the same from all sides, up to {most_n:.3} N, {percent:.1} % of the \
                      measured f_y (and of its coefficients), for a streamlined one several times that"
                 )
             }));
@@ -75,7 +75,7 @@ pub(super) fn beyond_its_angles(
             let stays_n = |i: usize| -drag_n[i] * angle[i].sin() - predicted[q * data.rows + i];
             left.extend(size(&beyond(reach), &stays_n, side).map(|(most_n, percent)| {
                 format!(
-                    "its side force differs there: for a strut whose drag is the same from all sides by up to {most_n:.3} N, {percent:.1} % \
+                    "its side force differs there: for a strut whose drag is the same from all sides, by up to {most_n:.3} N, {percent:.1} % \
                      of the measured f_y"
                 )
             }));
@@ -84,7 +84,7 @@ pub(super) fn beyond_its_angles(
             let stays_n = |i: usize| drag_n[i] * angle[i].cos() - predicted[r * data.rows + i];
             left.extend(size(&beyond(reach), &stays_n, along).map(|(most_n, percent)| {
                 format!(
-                    "its drag differs there: for a strut whose drag is the same from all sides by up to {most_n:.3} N, {percent:.1} % of the \
+                    "its drag differs there: for a strut whose drag is the same from all sides, by up to {most_n:.3} N, {percent:.1} % of the \
                      measured f_x"
                 )
             }));

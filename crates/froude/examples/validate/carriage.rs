@@ -314,9 +314,10 @@ fn pairs_of_one_calibration(claims: &mut Claims, pairs: usize) {
 
 /// What the scenario leaves open, as figures without an acceptance band.
 fn variants(claims: &mut Claims, d: f64, seeds: usize) {
-    for (name, out_and_back, viscous_changes) in
-        [("one direction only", false, false), ("out and back, viscous friction changes from run to run too", true, true)]
-    {
+    for (name, out_and_back, viscous_changes) in [
+        ("one direction only", false, false),
+        ("out and back, viscous friction changes from run to run too", true, true),
+    ] {
         let scenario = Scenario { out_and_back, viscous_changes, ..Scenario::pinned(d) };
         let reports = campaigns(&scenario, seeds, |_| {});
         let text = of(&reports, Method::Mcd, d).text();
