@@ -1,4 +1,4 @@
-//! What runs of a carriage, or anyone's log of a servo, say of an axis: rigid models and two masses.
+//! What runs of a carriage, or any log of a servo, show about an axis: rigid models and two masses.
 //!
 //! A carriage's friction sweep and dry runs give inertia and friction (rigid, over position); its pulses give the two masses. A log of another
 //! program (CSV with a sidecar) gives the rigid model, symmetric and asymmetric.
@@ -82,7 +82,7 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
     let imported = import_run(path, sidecar)?;
     let log = &imported.log;
     let gain = log.meta.constants.get("drive_gain").ok_or_else(|| {
-        let what = "the sidecar must say the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
+        let what = "the sidecar must state the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
         MethodError::input(path, what)
     })?;
     let gain_n_v = gain.value;
@@ -169,7 +169,7 @@ const KNOT_M: f64 = 0.25;
 /// Most stretches between knots: on ways longer than 250 m they are longer.
 const MOST_STRETCHES: usize = 1000;
 
-/// Models of what runs of a carriage say of their axis.
+/// Models of the axis, from runs of a carriage.
 ///
 /// # Errors
 ///
@@ -197,7 +197,7 @@ pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
         findings.push(Finding::new(
             Severity::Note,
             "servo",
-            "M and J_eff of runs at constant speed rest on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
+            "M and J_eff of runs at constant speed depend on their ramps, whose positions are filtered at 3 Hz and whose forces are not: they \
              may be off by one per cent, which their intervals do not include; take the masses from the pulses"
                 .to_owned(),
         ));
@@ -254,7 +254,7 @@ fn knots_between(low_m: f64, high_m: f64) -> Vec<f64> {
     (0..=n).map(|i| (1e3 * (low + (high - low) * i as f64 / n as f64)).round() / 1e3).collect()
 }
 
-/// The part of a run in which the reference moves; at rest friction is anything below breakaway and tells nothing.
+/// The part of a run in which the reference moves; at rest friction is anything below breakaway and shows nothing.
 fn moving(log: &RunLog) -> Result<Option<RunLog>, MethodError> {
     let speed = column(log, &format!("{}/reference_velocity", log.meta.carriage.axis.name()), Dimension::SPEED)?;
     let first = speed.iter().position(|v| *v != 0.0);
@@ -301,7 +301,7 @@ fn varies(models: &[Model]) -> Option<Finding> {
             Severity::Note,
             "servo",
             format!(
-                "no change of friction along the travel is detected: at every knot of the map F_c = {:.2} N lies in its interval",
+                "no change of friction along the travel is detected: the interval at every knot of the map contains F_c = {:.2} N",
                 constant.value
             ),
         ));

@@ -1,6 +1,6 @@
 //! Drag of a towed body from a carriage: force sensor, motor current difference, model of the servo.
 //!
-//! A run is a trapezoid along the tank, logged as columns. Its steady part gives a mean force with an honest
+//! A run is a trapezoid along the tank, logged as columns. Its steady part gives a mean force with a realistic
 //! uncertainty; the means over speeds and repeats give `D_d` of F = D_d v|v|, with a budget and an interval.
 //!
 //! **Setting.** One axis, stiff tracking, body mounted wet or above the water; wet and dry runs come in pairs.

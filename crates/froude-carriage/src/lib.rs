@@ -1,4 +1,4 @@
-//! The methods of the towing carriage: what its runs say of the drag, of the drive and of the loop that it is driven by.
+//! The methods of the towing carriage: what its runs show about the drag, the drive and the position loop.
 //!
 //! [`drag`] reduces towed runs to D_d by a force sensor, by differences of the motor's current and by a model of the drive. [`servo`] identifies that
 //! model, rigid and as two masses with a chain between them. [`tuning`] measures the frequency response of an axis and chooses its gains.

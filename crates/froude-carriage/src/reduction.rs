@@ -163,14 +163,14 @@ fn undeclared(campaign: Option<&Campaign>, runs: &[DragRun<'_>]) -> Result<Optio
             Severity::Note,
             "gain-not-declared",
             format!(
-                "no uncertainty of the force sensor's gain is declared; {} is taken. Write gain_standard in [rig.force_sensor]",
+                "no uncertainty of the force sensor's gain is declared; {} is assumed. Write gain_standard in [rig.force_sensor]",
                 number::percent(UNDECLARED_GAIN)
             ),
         )
     }))
 }
 
-/// What is declared, from the campaign where there is one, else from what the runs say of their rig.
+/// What is declared, from the campaign where there is one, else from what the runs state about their rig.
 #[must_use]
 pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> DragSetup {
     let mut setup = DragSetup::of_the_paper();

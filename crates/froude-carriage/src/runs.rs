@@ -309,7 +309,7 @@ fn first_folder(paths: &[PathBuf]) -> PathBuf {
 /// Largest number in a channel of a carriage, SI: no carriage goes a thousand kilometres or pulls a meganewton.
 const LARGEST: f64 = 1e6;
 
-/// A channel of a run, held against what a carriage can be.
+/// A channel of a run, checked against what a carriage can reach.
 ///
 /// # Errors
 ///

@@ -44,13 +44,13 @@ pub fn motor_of(constants: &AxisConstants) -> MotorSide {
     }
 }
 
-/// The run that tells the two masses.
+/// The run that determines the two masses.
 #[must_use]
 pub fn pulses(logs: &[RunLog]) -> Option<&RunLog> {
     logs.iter().find(|l| l.meta.role == Role::Excitation)
 }
 
-/// Two masses and a chain from the first run with pulses; a finding where there is one that does not tell them.
+/// Two masses and a chain from the first run with pulses; a finding where there is one that does not determine them.
 #[must_use]
 pub fn two_masses(logs: &[RunLog]) -> (Option<FlexibleReport>, Option<Finding>) {
     let Some((log, constants)) = pulses(logs).and_then(|l| l.meta.moving_axis().map(|c| (l, c))) else {

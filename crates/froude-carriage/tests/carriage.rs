@@ -140,7 +140,11 @@ fn an_area_in_the_wrong_unit_is_found_out_by_its_drag_coefficient() {
     let scenario = scenario();
     let wrong = DragSetup { reference_area_m2: Some(9.0), ..setup(&scenario) };
     let report = report(&scenario, &wrong, |_| true).unwrap();
-    assert!(message(&report, "unphysical-drag-coefficient").contains("no body has that"), "{:?}", report.findings);
+    assert!(
+        message(&report, "unphysical-drag-coefficient").contains("no body has such a value"),
+        "{:?}",
+        report.findings
+    );
 }
 
 #[test]
@@ -165,7 +169,7 @@ fn a_sensor_whose_gain_is_off_contradicts_the_motor_current() {
 }
 
 #[test]
-fn a_wet_run_without_its_dry_one_is_left_out_and_told() {
+fn a_wet_run_without_its_dry_one_is_left_out_and_reported() {
     let scenario = scenario();
     let report = report(&scenario, &setup(&scenario), |r| {
         !(r.body == BodyState::Dry && r.pair == 2 && r.target_speed_m_s > 0.5 && r.direction > 0.0)

@@ -226,7 +226,7 @@ fn a_shaper_leaves_nothing_of_its_mode_and_the_robust_one_little_beside_it() {
 }
 
 #[test]
-fn a_relay_that_never_switched_is_told() {
+fn a_relay_that_never_switched_is_reported() {
     let error = limit_cycle(1_000.0, 1.0, 0.0, &[1.0; 600], &[0.0; 600]).unwrap_err();
     assert_eq!(
         error.to_string(),

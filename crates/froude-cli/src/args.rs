@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 /// What stands below the help.
 const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input.";
 
-/// Froude turns tank tests, tows and potential flow into drag and added-mass coefficients with honest uncertainties, and drives the towing carriage.
+/// Froude turns tank tests, tows and potential flow into drag and added-mass coefficients with realistic uncertainties, and drives the towing carriage.
 #[derive(Debug, Parser)]
 #[command(name = "froude", version, arg_required_else_help = true, after_help = EXIT_CODES)]
 pub struct Cli {
@@ -292,6 +292,6 @@ pub enum Export {
     Wamit,
     /// NetCDF as Capytaine writes it.
     Capytaine,
-    /// CSV with a unit in every head.
+    /// CSV with a unit in every header.
     Csv,
 }

@@ -1,4 +1,4 @@
-//! The last word of a run that ends otherwise than meant: a fault of the program, or no memory left.
+//! The last message of a run that ends abnormally: an internal error, or no memory left.
 //!
 //! Whatever the input, the program ends with a sentence and with 0, 1 or 2; never with a trace, never by a signal of its own.
 
@@ -25,7 +25,7 @@ pub fn guarded(job: impl FnOnce() -> ExitCode) -> ExitCode {
     })
 }
 
-/// What is said of a fault: whose it is, and what to do.
+/// The message about a fault: whose it is, and what to do.
 fn sentence(fault: &str) -> String {
     if NO_THREAD.iter().any(|words| fault.contains(words)) {
         return "the machine gives the program no more threads: its memory or its number of processes is used up. Results that were not \

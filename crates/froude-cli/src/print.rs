@@ -82,7 +82,7 @@ pub fn written(Written { estimate, report, .. }: &Written) {
     say!("report    {}", report.display());
 }
 
-/// What a method says of all its results: its tables, then its sentences.
+/// What a method states about all its results: its tables, then its sentences.
 fn summary(section: &DocumentSection) {
     for table in &section.tables {
         text_table(table);

@@ -1,4 +1,4 @@
-//! What stands around a drive: who may stop it, who confirms, and who is informed.
+//! The people around a drive: who may stop it, who confirms, and who is informed.
 //!
 //! The carriage is driven by a thread that knows none of this. Everything for the terminal goes to a thread that writes it as the
 //! terminal takes it: who drives and records never waits for standard error, and a line that nobody reads is no failure.
@@ -52,9 +52,9 @@ impl Stage {
             ));
         }
         if !yes && !std::io::stdin().is_terminal() {
-            let instead = if prepared.is_twin() { ", or say --yes, which the twin takes" } else { "" };
+            let instead = if prepared.is_twin() { ", or give --yes, which the twin accepts" } else { "" };
             return Err(Error::Nothing(format!(
-                "nothing was moved: nobody can confirm, because standard input is no terminal. Run it in a terminal{instead}"
+                "nothing was moved: nobody can confirm, because standard input is not a terminal. Run it in a terminal{instead}"
             )));
         }
         // Nobody who stops reading ends a drive half way.

@@ -232,7 +232,7 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
         let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
             words.contains(
-                "No least squares: they take 3 configurations at least, such as --links 1..3, and these are 2. links.csv and campaign.toml are \
+                "No least squares: they need 3 configurations at least, such as --links 1..3, and these are 2. links.csv and campaign.toml are \
                  written all the same; there is no campaign-results, and the record holds the matrices alone."
             ),
             "{words}"
@@ -609,7 +609,7 @@ fn page_and_terminal_have_the_matrix_once_with_its_frame() {
         let page = std::fs::read_to_string(at.join("hull-added-mass/report.html")).unwrap();
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
         for said in [words(&text), words(&page)] {
-            assert_eq!(said.matches("force (first three rows) and moment").count(), tables, "{said}");
+            assert_eq!(said.matches("force in the first three rows and moment").count(), tables, "{said}");
             assert_eq!(said.matches("Frame: x forward, y starboard, z down (SNAME, Fossen); in the mesh x is forward and z up; moments about (").count(), 1, "{said}");
             assert_eq!(said.matches("(the centre of buoyancy)").count(), 1, "{said}");
         }
@@ -812,7 +812,7 @@ fn cube(side_m: f64) -> Mesh {
 }
 
 #[test]
-fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
+fn a_mesh_that_is_no_body_is_reported_panel_by_panel() {
     let changed = |change: fn(&mut Mesh)| {
         let mut mesh = cube(1.0);
         change(&mut mesh);
@@ -860,14 +860,14 @@ fn a_mesh_that_is_no_body_is_told_panel_by_panel() {
 }
 
 #[test]
-fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
+fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_reported() {
     let metre = write_obj(&cube(1.0));
     let small = [("m.obj", metre.as_bytes())];
     let large = write_obj(&cube(200.0));
     refuses(
         &[("m.obj", large.as_bytes())],
         &[&["m.obj"], &WATER[..]].concat(),
-        "m.obj: the mesh is 200.0000 m long and encloses 8.0000e6 m³ (doubtful above 50 m); drawn in millimetres it is 0.2000 m and 8.0000e-3 m³: say `--unit mm`, or `--unit m` if it is that large",
+        "m.obj: the mesh is 200.0000 m long and encloses 8.0000e6 m³ (doubtful above 50 m); drawn in millimetres it is 0.2000 m and 8.0000e-3 m³: give `--unit mm`, or `--unit m` if it is that large",
     );
     refuses(
         &small,
@@ -896,7 +896,7 @@ fn a_mesh_that_is_not_where_or_as_large_as_it_should_be_is_told() {
 }
 
 #[test]
-fn a_file_that_is_no_mesh_is_told_with_its_place() {
+fn a_file_that_is_no_mesh_is_reported_with_its_place() {
     let stl = write_stl_binary(&cube(1.0));
     let of = |name: &str, content: &[u8], message: &str| {
         refuses(&[(name, content)], &[&[name], &WATER[..]].concat(), message);
@@ -920,7 +920,7 @@ fn a_file_that_is_no_mesh_is_told_with_its_place() {
 }
 
 #[test]
-fn what_an_option_was_called_is_told_with_its_new_name() {
+fn what_an_option_was_called_is_reported_with_its_new_name() {
     let metre = write_obj(&cube(1.0));
     let told = |args: &[&str], message: &str| {
         refuses(&[("m.obj", metre.as_bytes())], &[&["m.obj"], &WATER[..], args].concat(), message);
@@ -1032,7 +1032,7 @@ fn options_that_say_nothing_sensible_are_told_what_they_take() {
 }
 
 #[test]
-fn results_that_cannot_be_written_are_told_before_anything_is_computed() {
+fn results_that_cannot_be_written_are_reported_before_anything_is_computed() {
     let metre = write_obj(&cube(1.0));
     let robot = body_file(ROBOT);
     let files = [("m.obj", metre.as_bytes()), ("r.toml", robot.as_bytes())];
@@ -1081,7 +1081,7 @@ fn a_full_disk_leaves_nothing_of_an_added_mass() {
 }
 
 #[test]
-fn more_than_fits_into_the_memory_is_told_with_what_would_fit() {
+fn more_than_fits_into_the_memory_is_reported_with_what_would_fit() {
     let family = Family::Mesh(hull());
     let wanted = |memory_bytes| Wanted { memory_bytes: Some(memory_bytes), ..Wanted::default() };
     let refused = refine(&family, &wanted(5e4), &|_| {}).unwrap_err();

@@ -83,7 +83,7 @@ fn a_table_without_rows_is_refused() {
 }
 
 #[test]
-fn a_truncated_parquet_file_is_told_as_such() {
+fn a_truncated_parquet_file_is_reported_as_such() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("t.parquet"), b"PAR1 and then nothing").unwrap();
     let output = froude(folder.path(), &["identify", "t.parquet"]);
@@ -127,7 +127,7 @@ fn an_unknown_model_on_the_command_line_is_told_the_nearest_or_what_there_is() {
 }
 
 #[test]
-fn an_unknown_model_of_a_campaign_is_told_with_its_place() {
+fn an_unknown_model_of_a_campaign_is_reported_with_its_place() {
     let table = ("t.csv", TABLE);
     refuses(
         &[("c.toml", &format!("{CAMPAIGN}models = [\"quadratic\", \"F4\"]\n")), table],
@@ -142,7 +142,7 @@ fn an_unknown_model_of_a_campaign_is_told_with_its_place() {
 }
 
 #[test]
-fn a_misspelt_key_that_is_needed_is_told_as_misspelt_and_not_as_missing() {
+fn a_misspelt_key_that_is_needed_is_reported_as_misspelt_and_not_as_missing() {
     refuses(
         &[("c.toml", &CAMPAIGN.replace("table =", "tabel ="))],
         "c.toml",
@@ -290,7 +290,7 @@ fn duplicate_coefficient_names_of_different_unit_are_refused() {
 }
 
 #[test]
-fn an_output_folder_that_cannot_be_made_is_told_and_nothing_is_left() {
+fn an_output_folder_that_cannot_be_made_is_reported_and_nothing_is_left() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("t.csv"), TABLE).unwrap();
     std::fs::write(folder.path().join("file"), "in the way").unwrap();

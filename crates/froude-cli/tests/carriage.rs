@@ -210,7 +210,7 @@ fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported(
 }
 
 #[test]
-fn one_cause_of_many_refusals_is_told_by_kind_and_the_table_names_the_weights() {
+fn one_cause_of_many_refusals_is_reported_by_kind_and_the_table_names_the_weights() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(
         folder.path(),
@@ -249,7 +249,7 @@ fn a_weight_that_would_pull_the_carriage_into_its_stop_is_refused() {
 }
 
 #[test]
-fn a_truth_that_the_twin_does_not_have_is_told_with_its_place() {
+fn a_truth_that_the_twin_does_not_have_is_reported_with_its_place() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[(r#"pulley_friction = "1 %""#, r#"pully_friction = "1 %""#)]);
     let out = froude(&["run", text(&campaign), "--yes"]);
@@ -347,7 +347,7 @@ fn a_loop_softer_than_its_chain_faults_in_homing_and_not_in_the_run_after_it() {
 
 /// Truth: 13.0 Hz both masses free, 6.71 Hz the load on a held motor, M/m = 2.75, η = 0.8.
 #[test]
-fn the_free_mode_is_told_as_seen_and_without_the_gears_loss() {
+fn the_free_mode_is_reported_as_seen_and_without_the_gears_loss() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[]);
     let found = json(&["carriage", "resonance", text(&campaign), "--yes", "--json"]);
@@ -374,7 +374,7 @@ fn anyones_servo_log_is_identified_with_intervals() {
     assert!(out.join("report.html").exists());
 }
 
-/// The halves of a record are two records of one axis: what they say of it is compared like any other estimates, with the same numbers as on the page.
+/// The halves of a record are two records of one axis: what they state about it is compared like any other estimates, with the same numbers as on the page.
 #[test]
 fn two_records_of_a_servo_are_compared() {
     let folder = tempfile::tempdir().unwrap();
@@ -475,7 +475,7 @@ fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {
     assert!(last.iter().any(|f| (f + d * 0.25).abs() < 1e-9), "{table}");
 }
 
-/// Two campaigns reduced with one calibration: their records know it by one key, and what both feel alike is taken out of E_n.
+/// Two campaigns reduced with one calibration: their records know it by one key, and what affects both alike is removed from E_n.
 #[test]
 fn campaigns_that_share_a_calibration_are_compared_without_its_error() {
     let folder = tempfile::tempdir().unwrap();
@@ -641,7 +641,7 @@ fn runs_are_a_source_of_a_campaign() {
     assert!(refused("keep = \"speed > 0.2 m/s\"\n").contains("`keep` belongs to the rows of a table"));
     std::fs::rename(bench.runs.join("campaign.toml"), folder.join("away.toml")).unwrap();
     let out = json(&["identify", text(&campaign("method = \"mcd\"\n")), "--json"]);
-    assert!(findings_of(&out, "no-campaign-of-runs")[0].1.contains("fresh water at 20 degC is taken, no area"));
+    assert!(findings_of(&out, "no-campaign-of-runs")[0].1.contains("fresh water at 20 degC is assumed, no area"));
     let table = "schema = 1\nname = \"x\"\n[[source]]\nname = \"t\"\nkind = \"towing\"\ntable = \"tow.csv\"\nmethod = \"mcd\"\n";
     std::fs::write(folder.join("t.toml"), table).unwrap();
     let said = bench::refusal(&["identify", text(&folder.join("t.toml"))]);

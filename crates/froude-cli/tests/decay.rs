@@ -186,7 +186,7 @@ fn what_is_missing_is_named() {
     assert!(said.contains("is \"12 N\": expected a mass (kg), found a force (N)"), "{said}");
 }
 
-/// A start that is not free, methods that disagree, and springs that nobody weighed: each is said, and any column of lengths is the position.
+/// A start that is not free, methods that disagree, and springs that were not weighed: each is reported, and any column of lengths is the position.
 #[test]
 fn what_is_declared_wrongly_is_said() {
     let folder = tempfile::tempdir().unwrap();

@@ -102,8 +102,8 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
         (
             vec!["identify", runs],
             format!(
-                "{runs} is a folder of runs; froude identify takes a campaign (.toml) or a table (.csv, .parquet). What reduces it: froude \
-                 carriage drag {runs}; what is in it: froude inspect {runs}"
+                "{runs} is a folder of runs; froude identify takes a campaign (.toml) or a table (.csv, .parquet). To reduce it: froude carriage \
+                 drag {runs}; to see what is in it: froude inspect {runs}"
             ),
         ),
         (
@@ -184,7 +184,7 @@ fn a_unit_in_round_parentheses_is_answered_with_what_to_write() {
     std::fs::remove_file(table.with_extension("toml")).unwrap();
     std::fs::write(&table, "0.1,-0.2\n0.2,-0.81\n").unwrap();
     let told = refusal(&["inspect", text(&table)]);
-    assert!(told.contains("tank.csv:1: numbers stand where the columns are named"), "{told}");
+    assert!(told.contains("tank.csv:1: there are numbers where the columns should be named"), "{told}");
 }
 
 /// The rule of the book: an error among the findings is for a person to read, and the result is there.

@@ -37,7 +37,7 @@ fn runs_as_they_were_driven_give_no_finding_and_a_folder_says_what_is_in_it() {
 }
 
 #[test]
-fn a_log_that_is_gone_is_told_and_driven_again() {
+fn a_log_that_is_gone_is_reported_and_driven_again() {
     let bench = Bench::new();
     let log = &bench.logs("dry")[1];
     std::fs::remove_file(log).unwrap();

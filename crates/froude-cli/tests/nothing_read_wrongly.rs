@@ -154,7 +154,7 @@ fn an_angle_of_several_turns_is_refused_with_its_cause() {
     };
     assert_eq!(
         of("rad", 20.0),
-        "froude: t.csv:3: `angle [rad]` is 20, which is more than a whole turn: degrees under the head of radians, probably: write the \
+        "froude: t.csv:3: `angle [rad]` is 20, which is more than a whole turn: degrees under a header in radians, probably: write the \
          unit deg; of an angle counted on over several turns take the whole ones off (1.15044 rad)"
     );
     assert_eq!(
@@ -190,7 +190,7 @@ fn an_angle_of_several_turns_is_refused_with_its_cause() {
 #[test]
 fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
     const NO_WATER: &str =
-        "the density of no water (500 to 2000 kg/m^3 are accepted); write 1.025 g/cm^3 or 1025 kg/m^3";
+        "not a density of water (500 to 2000 kg/m^3 are accepted); write 1.025 g/cm^3 or 1025 kg/m^3";
     const OR_AIR: &str = "; if the test was in air, state its kinematic viscosity too, some 1.5e-5 m^2/s: kinematic_viscosity beside density, in \
                           [fluid] of the campaign or as columns";
     let campaign = |density: &str| format!("schema = 1\nname = \"x\"\n[fluid]\ndensity = {density}\n");
@@ -209,7 +209,7 @@ fn water_as_thin_as_air_is_refused_wherever_it_is_stated() {
     // Of added mass nobody asks a viscosity.
     let body = "schema = 1\nname = \"b\"\n[fluid]\ndensity = \"1.025 kg/m^3\"\n[body]\nshape = \"ellipsoid\"\n\
                 semi_axes = [\"1 m\", \"0.2 m\", \"0.2 m\"]\n";
-    let over_rho = "; in air, ask for \"1 kg/m^3\" and take the result times the density of the air";
+    let over_rho = "; in air, ask for \"1 kg/m^3\" and multiply the result by the density of the air";
     let said = refusal(&[], &["added-mass", "x.stl", "--density", "1.025 kg/m^3"]);
     assert_eq!(said, format!("froude: --density \"1.025 kg/m^3\": it is {NO_WATER}{over_rho}"));
     let said = refusal(&[("b.toml", body)], &["added-mass", "b.toml"]);
@@ -260,7 +260,7 @@ fn air_is_taken_where_its_viscosity_is_stated_and_water_in_other_units_is_not() 
     assert!(said(&rows("", ""), water).ends_with(no_air), "{}", said(&rows("", ""), water));
     assert!(
         said(&rows("1.025", "1.05e-6"), "")
-            .starts_with("froude: t.csv:2: `density [kg/m^3]` is 1.025, which is the density of no water")
+            .starts_with("froude: t.csv:2: `density [kg/m^3]` is 1.025, which is not a density of water")
     );
     assert!(said(&rows("1.025", "1.05e-6"), "").ends_with(no_air));
     let viscosity_of_water = "[fluid]\nkinematic_viscosity = \"1.05e-6 m^2/s\"\n";
@@ -277,7 +277,7 @@ fn air_is_taken_where_its_viscosity_is_stated_and_water_in_other_units_is_not() 
     assert_eq!(keep(&sea, "1030 kg/m^3").status.code(), Some(0));
     let refused = keep(&sea, "1.03 kg/m^3");
     let said = String::from_utf8_lossy(&refused.stderr);
-    assert!(said.contains("keep: density is compared with 1.03 kg/m^3, which is the density of no water"), "{said}");
+    assert!(said.contains("keep: density is compared with 1.03 kg/m^3, which is not a density of water"), "{said}");
 }
 
 /// The head of a column, where there is one.
@@ -305,7 +305,7 @@ fn rows_in_gram_force_are_refused_with_their_lines() {
     assert!(
         said.contains(", at one setting; there are two groups of rows a factor of 10")
             && said.ends_with(
-                "as loads of one body are not: some rows are in gram-force under a head of newtons (1 N is 102 gf), probably; convert \
+                "as loads of one body are not: some rows are in gram-force under a header in newtons (1 N is 102 gf), probably; convert \
                  them, or leave them out with `keep`"
             ),
         "{said}"
@@ -411,7 +411,7 @@ fn no_column_is_dropped_in_silence() {
     assert!(warned[0].starts_with("`Mz [N m]` (") && warned[0].ends_with("if it is m_z, name it so"), "{warned:?}");
     assert_eq!(
         warned[1],
-        "w_z goes from 0.2000 to 0.2000 1/s and no law has it: the fit of f_x takes it for zero; write a law with it \
+        "w_z goes from 0.2000 to 0.2000 1/s and appears in no law: the fit of f_x treats it as zero; write a law with it \
          ([[identify.model]]), or keep the rows where it is zero"
     );
     let noted: Vec<&str> = told.iter().filter(|f| f.0 == "note").map(|f| f.1).collect();
@@ -435,7 +435,7 @@ fn no_column_is_dropped_in_silence() {
     );
 }
 
-/// What is said of the observations is said of those that are fitted: the wild row is dropped, and a figure of the others has their lines.
+/// The findings about the observations concern those that are fitted: the wild row is dropped, and a figure of the others has their lines.
 #[test]
 fn a_contradiction_in_rows_that_are_left_out_is_none() {
     let mut noise = noise(15);
@@ -477,7 +477,7 @@ fn an_angle_beside_a_lone_velocity_is_proposed_with_what_it_needs() {
         });
         let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
         let told = findings(&out, "column-not-used");
-        let beside = ", and v_x `speed` if that is the carriage's (a velocity goes before an angle; beside one along the body give v_y): \
+        let beside = ", and v_x `speed` if that is the carriage's (a velocity takes precedence over an angle; beside one along the body give v_y): \
                       with that sign the side force";
         assert!(told[0].0 == "warning" && told[0].1.contains(beside), "{told:?}");
     }
@@ -493,7 +493,7 @@ fn an_angle_beside_a_lone_velocity_is_proposed_with_what_it_needs() {
     let out = json(&[("t.csv", &text)], &["identify", "t.csv"]);
     let told = findings(&out, "column-not-used");
     assert!(
-        told[0].1.contains("head it `angle [deg]`, and leave v_x out, which goes before speed and angle: "),
+        told[0].1.contains("head it `angle [deg]`, and leave v_x out, which takes precedence over speed and angle: "),
         "{told:?}"
     );
 }
@@ -537,7 +537,7 @@ fn the_moment_of_a_bare_table_is_fitted_beside_its_forces() {
     );
 }
 
-/// Three laws of f_x and one of three loads: what the one says of the other two counts.
+/// Three laws of f_x and one of three loads: what the one states about the other two counts.
 #[test]
 fn laws_of_different_loads_are_compared_load_by_load() {
     let text = table("speed [m/s],angle [deg],f_x [N],f_y [N],m_z [N m]", &drift_test(5), |r| {
@@ -625,7 +625,7 @@ fn a_tare_taken_straight_ahead_is_a_warning_at_drift_and_a_strut_law_mends_it() 
         told[0].0 == "warning"
             && told[0].1.starts_with(
                 "the tare tare.csv/quadratic was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side \
-                 force stays in f_y: for a strut whose drag is the same from all sides up to 2.4"
+                 force stays in f_y: for a strut whose drag is the same from all sides, up to 2.4"
             )
             && told[0].1.ends_with(
                 "tow the strut alone at the angles of the test, fit these runs with models = [\"strut\"] (f_x and f_y) and subtract that record"
@@ -726,7 +726,7 @@ fn a_tare_that_gives_a_side_force_is_a_warning_at_drift_if_it_was_towed_straight
             told.len() == 1
                 && told[0].1.starts_with(
                     "the tare t/askew was taken straight ahead and is used at angles up to 20.0 deg, in 64 of 72 rows; its side force differs \
-                     there: for a strut whose drag is the same from all sides by up to 2.6"
+                     there: for a strut whose drag is the same from all sides, by up to 2.6"
                 ),
             "{head}: {told:?}"
         );
@@ -808,7 +808,7 @@ fn a_faired_strut_as_tare_leaves_nothing_in_the_forces() {
 
 /// Laws of one's own beside a source that names its models without them.
 #[test]
-fn a_law_that_no_source_asks_for_is_told() {
+fn a_law_that_no_source_asks_for_is_reported() {
     let rows = drift_test(24);
     let text = table("speed [m/s],angle [deg],f_x [N],f_y [N]", &rows, |r| {
         format!("{},{},{},{}", r.speed, r.angle_deg, r.f_x, r.f_y)
@@ -848,7 +848,7 @@ fn strut_both_ways(angles_deg: &[f64]) -> String {
 /// A strut alone and under a body, in two tanks: what a tare in another fluid, beyond its speeds, of the other way or with an ERROR of its own
 /// leaves in the loads.
 #[test]
-fn a_tare_that_does_not_fit_is_told_with_its_size() {
+fn a_tare_that_does_not_fit_is_reported_with_its_size() {
     let of = |speeds: &[f64], newtons_s2_m2: f64, seed: u64| {
         let mut noise = noise(seed);
         let row = |u: &f64| format!("{u},{}\n", -newtons_s2_m2 * u * u.abs() + 1e-4 * noise());
@@ -996,7 +996,7 @@ fn a_strut_at_one_angle_has_one_term_along_the_body() {
             "tare-beyond-its-angles",
             "was taken at 20.0 deg from straight ahead and more, and is used nearer to it in 56 of 72 rows",
         ),
-        ("tare-pushes", "pushes the body along in "),
+        ("tare-pushes", "propels the body in "),
     ] {
         let told = findings(&out, code);
         assert!(told.len() == 1 && told[0].1.contains(said), "{code}: {told:?}");

@@ -322,10 +322,10 @@ fn without_a_terminal_and_without_yes_nothing_moves() {
         let error = String::from_utf8_lossy(&out.stderr);
         assert_eq!(out.status.code(), Some(2), "{error}");
         assert!(
-            error.contains("nothing was moved: nobody can confirm, because standard input is no terminal"),
+            error.contains("nothing was moved: nobody can confirm, because standard input is not a terminal"),
             "{error}"
         );
-        assert!(error.contains("or say --yes, which the twin takes"), "{error}");
+        assert!(error.contains("or give --yes, which the twin accepts"), "{error}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "only the campaign");
     }
     let board = board();
@@ -532,7 +532,7 @@ fn a_long_drive_with_prompts_signals_and_a_second_host_on_the_line_stays_in_its_
             }
         }
         let (status, said) = driven.end();
-        // The last line: the next session says of the run that it puts aside what stopped it.
+        // The last line: the next session reports what stopped the run that it sets aside.
         let last = said.lines().last().unwrap_or_default();
         let is_by_another = last.contains("another program on the line (session 00000bad)");
         stopped_by_another += usize::from(is_by_another);

@@ -103,7 +103,7 @@ fn as_a_source(folder: &Path, drag: &Value) {
     );
 }
 
-/// Drives a changed example, reduces it and holds the numbers against those of the old program.
+/// Drives a changed example, reduces it and compares the numbers with those of the old program.
 fn stays(name: &str, changes: &[(&str, &str)]) {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), changes);

@@ -1,4 +1,4 @@
-//! What is said of a campaign that is not whole (a part of it that was named, one that was not driven to its end, one that stopped because it
+//! The message about a campaign that is not whole (a part of it that was named, one that was not driven to its end, one that stopped because it
 //! knew enough), and that no result takes the place of one of more runs.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -153,7 +153,7 @@ fn a_campaign_that_was_not_driven_to_its_end_says_what_is_missing() {
     // A run that is damaged is not there.
     std::fs::write(&logs[3], b"nothing").unwrap();
     assert!(findings_of(&bench.drag(), unfinished)[0].1.starts_with("15 of 17 planned runs"));
-    // What was planned by a campaign that was edited since, nobody knows.
+    // What was planned by a campaign that was edited since is not known.
     let copy = bench.runs.join("campaign.toml");
     let edited = std::fs::read_to_string(&copy).unwrap().replace("repeats = 2  ", "repeats = 9  ");
     std::fs::write(&copy, edited).unwrap();

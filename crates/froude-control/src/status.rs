@@ -1,4 +1,4 @@
-//! What the controller says of itself each tick.
+//! What the controller reports about itself each tick.
 
 use crate::fault::Fault;
 use crate::tick::{AXES, Command};

@@ -1,4 +1,4 @@
-//! How long a record remembers itself.
+//! Autocorrelation of a record, and its integrated correlation time.
 //!
 //! Two rules for the integrated autocorrelation time stand here, on one kernel, because they serve two questions:
 //!
@@ -20,7 +20,7 @@ pub fn lagged_product(record: &[f64], lag: usize) -> f64 {
 /// Autocorrelations `ρ₀ = 1, ρ₁, …, ρ_lags` of a record of mean zero.
 ///
 /// `ρ_k = Σ x_i x_{i+k} / Σ x_i²`: the biased estimate, whose sequence is that of some stationary process. The mean
-/// is not taken off: residuals of a fit with an intercept have none, those of a fit without must show theirs.
+/// is not subtracted: residuals of a fit with an intercept have none, those of a fit without must show theirs.
 /// `None` for a record without power, or not longer than `lags`.
 #[must_use]
 pub fn autocorrelation(record: &[f64], lags: usize) -> Option<Vec<f64>> {

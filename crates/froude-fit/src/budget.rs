@@ -257,7 +257,7 @@ mod tests {
         }
     }
 
-    /// A uniform error alone: its interval holds the middle 95 % of it, and the value where that lies outside.
+    /// A uniform error alone: its interval contains the middle 95 % of it, and the value where that lies outside.
     #[test]
     fn an_error_to_one_side_gives_an_interval_to_one_side() {
         let part = Part::of_one_between(String::new(), "campaign", [-4.0, 0.0]);

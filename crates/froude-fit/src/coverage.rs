@@ -1,4 +1,4 @@
-//! Whether an interval covers as often as it says.
+//! Whether the coverage of an interval is the nominal one.
 
 use crate::distribution::normal_quantile;
 

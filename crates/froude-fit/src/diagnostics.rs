@@ -1,4 +1,4 @@
-//! What the numbers of a fit do not say by themselves.
+//! Diagnostics of what the coefficients of a fit do not show by themselves.
 //!
 //! | what                      | function                 | source                        |
 //! |---------------------------|--------------------------|-------------------------------|

@@ -204,7 +204,7 @@ pub enum FitError {
     },
 
     /// A method does not do what was asked.
-    #[error("{method} does not take {what}")]
+    #[error("{method} does not accept {what}")]
     Unsupported {
         /// The method.
         method: &'static str,

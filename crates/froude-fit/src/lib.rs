@@ -1,4 +1,4 @@
-//! Least squares with honest uncertainty; knows no fluid.
+//! Least squares with a realistic uncertainty; independent of any fluid.
 //!
 //! A [`Problem`] (design, responses of one or several components, weights,
 //! clusters) and [`Options`] (bounds, constraints, priors, loss, covariance)

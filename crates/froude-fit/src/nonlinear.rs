@@ -1,4 +1,4 @@
-//! Non-linear least squares: bounded, with parameters of single runs, and honest intervals.
+//! Non-linear least squares: bounded, with parameters of single runs, and realistic intervals.
 //!
 //! A [`Model`] gives weighted residuals, measured less modelled, run by run; [`minimise`] looks for the [`Parameter`]s that make their sum of
 //! squares least. What comes out of a simulation in time has serially correlated residuals: its intervals are made from whole runs, or from a
@@ -43,7 +43,7 @@ use point::{Layout, Point, Problem};
 const FIRST_DAMPING: f64 = 1e-3;
 /// Beyond this damping a step is lost in rounding.
 const MOST_DAMPING: f64 = 1e16;
-/// A promised fall below this part of the sum of squares is lost in the rounding of its terms.
+/// A predicted decrease below this part of the sum of squares is lost in the rounding of its terms.
 const ROUNDING: f64 = 1e-12;
 
 /// One parameter of a model.
@@ -226,7 +226,7 @@ pub fn minimise(model: &dyn Model, parameters: &[Parameter], settings: &Settings
         let (trial, promised) = bounded_step(&here, &problem, &newton.is_held, Damping { lambda, lengths: &holds });
         let is_rounding = promised <= ROUNDING * here.sum;
         if is_rounding && growth > 2.0 && newton.size > ROUNDING * here.sum {
-            // Longer steps did not help, and shorter ones promise nothing: kinks.
+            // Longer steps did not help, and shorter ones predict no decrease: kinks.
             report.end = End::Stalled;
             break;
         }

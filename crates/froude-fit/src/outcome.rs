@@ -58,7 +58,7 @@ pub struct ComponentSummary {
     pub name: String,
     /// Its rows.
     pub n: usize,
-    /// How many parameters its rows determine (equalities taken off).
+    /// How many parameters its rows determine (equalities subtracted).
     pub rank: usize,
     /// `n − tr H`: rows less the parameters that they determine; a fraction
     /// where a prior or another component shares in one.

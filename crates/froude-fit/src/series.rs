@@ -8,7 +8,7 @@
 use crate::autocorrelation::integrated_time_about_mean;
 
 /// A trend is reported beyond this many of its standard uncertainties.
-const TREND_TOLD: f64 = 3.0;
+const TREND_REPORTED: f64 = 3.0;
 /// Part of a window at each end over which the weights of its mean rise and fall …
 const TAPERED: f64 = 0.25;
 /// … and what that costs in independent samples: Σw² n/(Σw)² = (1 − 5r/8)/(1 − r/2)² with r = 2 · 0.25.
@@ -38,7 +38,7 @@ impl Mean {
     /// Whether the change over the window is more than chance (3 standard uncertainties).
     #[must_use]
     pub fn has_trend(&self) -> bool {
-        self.trend.abs() > TREND_TOLD * self.trend_standard
+        self.trend.abs() > TREND_REPORTED * self.trend_standard
     }
 }
 
@@ -76,7 +76,7 @@ pub fn mean(series: &[f64], step_s: f64) -> Mean {
     let line = Line::through(&blocks);
     let left: Vec<f64> = blocks.iter().map(|x| x - line.middle).collect();
     let tau = integrated_time_about_mean(&left);
-    // The mean taken off hides 2τ/m of the variance.
+    // Subtracting the mean hides 2τ/m of the variance.
     let shown = (1.0 - 2.0 * tau / m as f64).max(0.2);
     let variance = left.iter().map(|x| x * x).sum::<f64>() / (m as f64 * shown);
     let effective_n = (m as f64 / (2.0 * tau * TAPER_COST)).max(1.0);

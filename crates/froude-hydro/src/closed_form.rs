@@ -73,7 +73,7 @@ fn lamb_gamma(slenderness: f64) -> f64 {
 ///
 /// # Example
 ///
-/// A hull 1 m long and 0.2 m thick takes 5.9 % of its displaced mass along:
+/// A hull 1 m long and 0.2 m thick has an axial added mass of 5.9 % of its displaced mass:
 ///
 /// ```
 /// # use froude_hydro::closed_form::{SlendernessError, spheroid_axial_coefficient};

@@ -20,7 +20,7 @@
 //! | f5 | f4 without `C_fHT^I`, `C_XY^I` | f3 without `C_dHT^I` | USR eq. 13 |
 //! | f6 | `½ρ πab C_f q_x` | `½ρ (A_yH + k·2l·2a + A_yT) C_d q_y` | USR eq. 14 |
 //!
-//! What was put right against print: in eq. 11 the second head/tail area is `πa²`,
+//! Corrections of the printed equations: in eq. 11 the second head/tail area is `πa²`,
 //! here `πab` as in the first; the signs of eq. 13 and 14 are those of a resisting
 //! force, as in eq. 9; eq. 11 to 13 print `n − 2` for what is `k` here.
 //!

@@ -129,7 +129,7 @@ pub fn ellipsoid_coefficients(semi_axes_m: [f64; 3]) -> Result<[f64; 3], Ellipso
 ///
 /// # Example
 ///
-/// A thin disc takes along as much as a sphere of fluid 2/π its volume, `8/3 ρ a³`:
+/// A thin disc has 2/π of the mass of the sphere of fluid of its radius, `8/3 ρ a³`:
 ///
 /// ```
 /// # use froude_hydro::ellipsoid::{EllipsoidError, ellipsoid_added_mass};

@@ -123,7 +123,7 @@ const LEAST_DISTANCE: f64 = 1.05;
 ///
 /// # Example
 ///
-/// One diameter under a rigid lid a sphere takes 2.4 % more along than in open water:
+/// One diameter under a rigid lid a sphere has 2.4 % more added mass than in open water:
 ///
 /// ```
 /// # use froude_hydro::near_wall::{Boundary, ClearanceError, Direction, sphere_near_plane};

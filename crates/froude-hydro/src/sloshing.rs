@@ -1,4 +1,4 @@
-//! First sloshing modes of a tank: from which frequency on its walls and surface answer.
+//! First sloshing modes of a tank: above which frequency its walls and surface respond.
 //!
 //! Added mass of a body in a tank is that of a rigid lid well below these frequencies and that of φ = 0 well above them;
 //! between, it depends on frequency and neither limit holds.

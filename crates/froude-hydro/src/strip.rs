@@ -16,7 +16,7 @@
 //! | yaw A₆₆, A₂₆   | x² π h², x π h²  | Newman 1977, ch. 7 |
 //!
 //! **Error.** Of strip theory itself: fluid that passes round the ends. A spheroid six times as long as thick has 8 % less
-//! in sway and 22 % less in yaw than its strips say, one of 20:1 1 % and 4 %. The ends weigh most in yaw and pitch.
+//! in sway and 22 % less in yaw than its strips predict, one of 20:1 1 % and 4 %. The ends weigh most in yaw and pitch.
 //!
 //! Not here: surge (a slender body's is small and needs the ends), sections off the axis, walls, free surface.
 

@@ -292,7 +292,7 @@ fn power_law_is_odd_and_rests_at_zero() {
 }
 
 #[test]
-fn a_drag_coefficient_that_no_body_has_is_told() {
+fn a_drag_coefficient_that_no_body_has_is_reported() {
     // MCD's cylinder: 6 N at 0.55 m/s would be C_D ≈ 1.
     let real = drag_coefficient(6.05, 1000.0, 0.04, 0.55);
     assert_eq!(frontal_drag_coefficient(real), Verdict::Plausible);

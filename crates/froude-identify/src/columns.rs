@@ -145,7 +145,7 @@ fn left_out(data: &Dataset) -> Vec<Finding> {
 /// What to do with the angle of a vertical test.
 const IN_THE_VERTICAL_PLANE: &str = "if it is the angle of attack in the vertical plane, give v_x and v_z instead of the speed \
                                      (z points down: v_z is positive with the bow up)";
-/// What Froude's angle is, for whoever has to choose a sign.
+/// What Froude's angle is, for a user who has to choose a sign.
 const CONVENTION: &str = "angle = atan2(-v_y, v_x): a positive one moves the body to port through the water, and the side force on it is \
                           positive, to starboard";
 
@@ -305,9 +305,9 @@ fn angle_under_another_name(header: &str, name: &str, values: &[f64], data: &Dat
 fn beside_v_x(data: &Dataset) -> &'static str {
     match (has(data, "v_x"), has(data, "speed")) {
         (false, _) => "",
-        (true, true) => ", and leave v_x out, which goes before speed and angle",
+        (true, true) => ", and leave v_x out, which takes precedence over speed and angle",
         (true, false) => {
-            ", and v_x `speed` if that is the carriage's (a velocity goes before an angle; beside one along the body give v_y)"
+            ", and v_x `speed` if that is the carriage's (a velocity takes precedence over an angle; beside one along the body give v_y)"
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Errors that two estimates have in common, and the uncertainty of a difference between them.
 //!
 //! A number is `y = f(β)` with x = ∂y/∂β. Its scatter has the variance xᵀAx, an error e of covariance C moves it by s·e with s = Sᵀx. Two
-//! numbers that name one key have the same e: their difference goes with s_a − s_b, and what both feel alike drops out of it
+//! numbers that name one key have the same e: their difference goes with s_a − s_b, and what affects both alike cancels
 //! (u²(a − b) = u_a² + u_b² − 2 cov(a, b), GUM 5.2.2).
 //!
 //! The expanded uncertainty of the difference is U² = U_a² + U_b² + U_c²: that of what only the first has, that of what only the second has

@@ -12,7 +12,7 @@
 //! An interval that reaches to one side, or pays for looks, has the arm that points to the other value as its U.
 //!
 //! Errors that two records know by one key are one error: u²(a − b) = u_a² + u_b² − 2 cov(a, b) (GUM 5.2.2), and the part that is
-//! common is taken out of E_n and χ² exactly. Scatter from the same observations cannot be: two fits to the same
+//! common is removed from E_n and χ² exactly. Scatter from the same observations cannot be: two fits to the same
 //! table or the same runs get [`SAME_DATA`] and no number.
 
 mod coefficients;
@@ -92,7 +92,7 @@ pub fn compare(all: &[Named<'_>]) -> Comparison {
             if is_same_data && !is_one_source(a, b) && told.insert(pair) {
                 out.findings.push(same_data_finding(a, b));
             }
-            // Nobody takes two methods of one source for independent, and each is set beside its like where there is one.
+            // Two methods of one source are not independent, and each is compared with its own kind where there is one.
             if a.estimate.law.name != b.estimate.law.name || is_one_source(a, b) || has_likes(all, a, b) {
                 continue;
             }

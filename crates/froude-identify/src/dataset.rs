@@ -96,7 +96,7 @@ impl Dataset {
         [at("v_x"), at("v_y")]
     }
 
-    /// A copy in which `name` of every row is moved by `shift[row]`, with what hangs on it.
+    /// A copy in which `name` of every row is moved by `shift[row]`, with what depends on it.
     ///
     /// A shift of `speed` or `angle` moves the velocity, one of `v_x` or `v_y` moves speed and angle.
     ///

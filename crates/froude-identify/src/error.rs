@@ -8,7 +8,7 @@ use froude_records::RecordError;
 
 use crate::formula::FormulaError;
 
-/// Why a campaign gives no coefficients; each message says what to do.
+/// Why a campaign gives no coefficients; each message states what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum IdentifyError {

@@ -246,7 +246,7 @@ fn reduced(
     Ok(Reduced { n_read: facts.n_read, scatter, validity, findings, files, ..out })
 }
 
-/// What is said of a table that was read in chunks.
+/// The message about a table that was read in chunks.
 fn in_chunks(facts: &Facts, sample: &Dataset) -> Finding {
     let copies = if facts.has_no_copies() { "" } else { "identical copies of rows, " };
     let all = facts.n_used;

@@ -43,7 +43,7 @@ pub enum Kind {
     Formulas(Vec<Formula>),
     /// F = −k·sgn(v)·|v|ⁿ along one axis, v in units of 1 m/s.
     PowerLaw {
-        /// The velocity channel, `v_x` say.
+        /// The velocity channel, for example `v_x`.
         channel: String,
         /// True: fitted as ln|F| = ln k + n·ln|v| (relative errors); false: in newtons (absolute errors).
         in_logarithms: bool,
@@ -281,13 +281,13 @@ impl ForceLaw {
         out
     }
 
-    /// Whether a response goes with the speed or the angle of the motion through the water.
+    /// Whether a response depends on the speed or the angle of the motion through the water.
     #[must_use]
     pub fn moves(&self, response: usize) -> bool {
         self.reads(response, |c| matches!(c, "v_x" | "v_y" | "v_z" | "speed" | "angle"))
     }
 
-    /// Whether a response goes with the density already.
+    /// Whether a response depends on the density already.
     #[must_use]
     pub fn has_density(&self, response: usize) -> bool {
         matches!(self.kind, Kind::Drag { .. }) || self.reads(response, |c| c == "density")

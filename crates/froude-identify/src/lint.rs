@@ -246,7 +246,7 @@ fn force_along_motion(data: &Dataset) -> Vec<Finding> {
     along_motion(&ALONG.into_iter().filter_map(counted).collect::<Vec<_>>(), data.rows, data)
 }
 
-/// What is said of loads along the motion, of so many rows; `data` says which channels there are.
+/// The message about loads along the motion, of so many rows; `data` says which channels there are.
 pub(crate) fn along_motion(
     counted: &[(&'static str, &'static str, Pushed)],
     n_rows: usize,
@@ -412,7 +412,7 @@ pub(crate) fn in_radians(distinct: usize, largest: f64) -> Option<Finding> {
     })
 }
 
-/// Too few distinct speeds to tell a linear from a quadratic term.
+/// Too few distinct speeds to distinguish a linear from a quadratic term.
 fn distinct_speeds(data: &Dataset) -> Option<Finding> {
     let speed = data.values("speed")?;
     // The laws are odd in the speed: ahead and astern are one.

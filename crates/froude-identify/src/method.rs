@@ -2,7 +2,7 @@
 //!
 //! A source of a campaign names a table or runs, and for runs its methods. Each method reduces what it is given to observations, fits them by
 //! the common regression with the common budget ([`crate::seam`]), and gives [`Found`]: for each answer data, fits, estimates and files, and what
-//! it says of all of them. After it there is one comparison, one record, one page and one writer.
+//! it states about all of them. After it there is one comparison, one record, one page and one writer.
 
 use std::path::PathBuf;
 
@@ -97,19 +97,19 @@ pub fn lacking<'a>(needs: &[Need], files: impl Fn(&str) -> Vec<Box<dyn Fn(&str) 
 pub struct Found {
     /// A result for each name that was asked for.
     pub results: Vec<SourceResult>,
-    /// What it says of all of them together, on the terminal and at the head of the page; the results alone where there is nothing.
+    /// What it states about all of them together, on the terminal and at the head of the page; the results alone where there is nothing.
     pub summary: Option<DocumentSection>,
     /// What else belongs on the page.
     pub blocks: Vec<DocumentSection>,
     /// What is doubtful about the runs, or about the results together.
     pub findings: Vec<Finding>,
-    /// Where results go that nobody named a folder for, of a source that no campaign names.
+    /// Where results go when no folder was named, of a source that no campaign names.
     pub beside: Option<PathBuf>,
     /// True where more lies there than was named: such a result takes the place of no other.
     pub is_part: bool,
 }
 
-/// Why a method gives no estimates; each message says what to do.
+/// Why a method gives no estimates; each message states what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MethodError {

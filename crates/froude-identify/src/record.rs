@@ -242,7 +242,7 @@ fn type_a(model: &ModelFit) -> Option<TypeA> {
     })
 }
 
-/// All other errors that are added, by key. One that nobody else can have is written by what it does to the coefficients, under a key of its own.
+/// All other errors that are added, by key. One that no other estimate can have is written by what it does to the coefficients, under a key of its own.
 fn errors(model: &ModelFit) -> IndexMap<String, SharedError> {
     let there = known(model);
     let is_felt = |part: &&Part| there.iter().any(|&j| part.covariance[(j, j)] > 0.0);

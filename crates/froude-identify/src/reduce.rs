@@ -58,7 +58,7 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
         data = data.subset(&unique);
         keep = unique.iter().map(|&i| keep[i]).collect();
     }
-    // What is said of the observations is said of those that are fitted.
+    // The findings about the observations concern those that are fitted.
     findings.extend(zero_drift(&data));
     findings.extend(crate::lint::motion_contradictions(&table, &keep, &data));
     one_unit(&table, &data, &fitted_loads(campaign, source, &data))?;

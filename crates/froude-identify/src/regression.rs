@@ -720,7 +720,7 @@ fn contradicted_priors(
                 Severity::Warning,
                 "prior-contradicted",
                 format!(
-                    "{}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior says {:.4} ± {:.4} {unit}: \
+                    "{}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior is {:.4} ± {:.4} {unit}: \
                      {apart:.1} standard uncertainties apart; the fit between them agrees with neither",
                     law.name,
                     specs[prior.index].name,

@@ -82,7 +82,7 @@ pub fn of_method(meta: &RunMeta) -> String {
     if meta.method.is_empty() { "no method that it states".to_owned() } else { format!("the method {}", meta.method) }
 }
 
-/// What every run in a folder says of itself, as far as it can be read.
+/// What every run in a folder states about itself, as far as it can be read.
 ///
 /// # Errors
 ///

@@ -1,8 +1,8 @@
 //! The seam: what a method hands over is [`Reduced`], and whatever is fitted to rows passes [`fit`].
 //!
 //! A method knows how its runs or its table become observations, which laws they are to be fitted with, what they weigh, where their scatter
-//! comes from, and which errors they share. It knows no regression, budget, interval or record: these are here, once. What it has to say of the
-//! answers (which of several is the best, whether they agree) it says afterwards.
+//! comes from, and which errors they share. It contains no regression, budget, interval or record: these are here, once. What it states about the
+//! results (which of several is the best, whether they agree) it says afterwards.
 
 use froude_fit::budget::Kind;
 use froude_records::campaign::{BudgetEntry, Identify, SourceKind};

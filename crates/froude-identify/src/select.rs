@@ -29,6 +29,6 @@ pub fn one_estimate<'a>(
     match (recommended.as_slice(), file.estimates.as_slice()) {
         ([one], _) => Ok(one),
         (_, [one]) => Ok(one),
-        _ => Err(complaint(format!("several estimates; say which with select = \"source/model\": {}", ids()))),
+        _ => Err(complaint(format!("several estimates; name one with select = \"source/model\": {}", ids()))),
     }
 }

@@ -180,7 +180,7 @@ pub(crate) fn scatter(
 
 /// Built-in models that need no body.
 const PLAIN_MODELS: [&str; 5] = ["quadratic", "linear_quadratic", "power_law", "power_law_log", "strut"];
-/// Those that are fitted where nobody asks for any.
+/// Those that are fitted where none is asked for.
 const DEFAULT_MODELS: [&str; 3] = ["quadratic", "linear_quadratic", "power_law"];
 
 /// The models that are fitted to a source: its own, else those of `[identify]`, else the defaults.

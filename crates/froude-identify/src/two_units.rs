@@ -1,4 +1,4 @@
-//! Loads of one setting that differ a hundredfold: two units under one head.
+//! Loads of one setting that differ a hundredfold: two units under one header.
 //!
 //! A table put together from two exports may hold newtons in some rows and
 //! gram-force in the others. The column has one unit, so no check of dimensions
@@ -6,7 +6,7 @@
 //!
 //! **Rule.** Within one setting (everything alike but the speed) |f|/U² of a body changes little. Where the rows
 //! of a setting fall into two tight groups that lie thirtyfold apart, the column has two units. A load that is noise
-//! (a side force at no angle), or that hangs on something that the table does not say, is spread over the gap and
+//! (a side force at no angle), or that depends on something that the table does not state, is spread over the gap and
 //! changes its sign, and is passed over.
 
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ const SETTING_WITHIN: f64 = 0.01;
 
 /// What a factor between rows comes from.
 const CAUSES: [(f64, &str); 3] = [
-    (101.97, "some rows are in gram-force under a head of newtons (1 N is 102 gf)"),
+    (101.97, "some rows are in gram-force under a header in newtons (1 N is 102 gf)"),
     (1e3, "some rows lack a prefix (N and mN, kN and N)"),
     (1e6, "some rows lack two prefixes (kN and mN)"),
 ];
@@ -201,7 +201,7 @@ mod tests {
             let twice = found(&second, &LOADS).unwrap();
             assert_eq!(
                 (twice.load, twice.cause()),
-                ("f_x", "some rows are in gram-force under a head of newtons (1 N is 102 gf)")
+                ("f_x", "some rows are in gram-force under a header in newtons (1 N is 102 gf)")
             );
             let [large, small] = twice.rows.map(|i| second.values("f_x").unwrap()[i].abs());
             assert!(large > 50.0 * small);

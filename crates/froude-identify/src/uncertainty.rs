@@ -30,7 +30,7 @@ pub const SCATTER: &str = "scatter of the observations";
 pub struct SharedError {
     /// What it is, for the budget.
     pub name: String,
-    /// Its name among all sources and campaigns: what has one key is one error. `None` where nobody else can have it.
+    /// Its name among all sources and campaigns: what has one key is one error. `None` where no other estimate can have it.
     pub key: Option<String>,
     /// The quantity that errs.
     pub quantity: String,
@@ -192,7 +192,7 @@ fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, Ident
     let values = fit.data.values(quantity).ok_or_else(|| IdentifyError::Campaign {
         place: "[[source.uncertainty]]".to_owned(),
         what: format!(
-            "quantity = {quantity:?} is no column of the table; it has {}",
+            "quantity = {quantity:?} is not a column of the table; it has {}",
             fit.data.channels.keys().cloned().collect::<Vec<_>>().join(", ")
         ),
     })?;

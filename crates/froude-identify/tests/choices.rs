@@ -320,7 +320,7 @@ fn units_that_were_mixed_up_are_suspected_for_any_law() {
 }
 
 #[test]
-fn a_drag_term_that_pushes_is_told() {
+fn a_drag_term_that_pushes_is_reported() {
     let rows: String =
         (2..=9).map(|k| format!("{},{}\n", 0.1 * f64::from(k), -0.1 * f64::from(k * k) + 0.2 * f64::from(k))).collect();
     let r = identify(&format!("speed [m/s],f_x [N]\n{rows}"), &format!("{SOURCE}models = [\"linear_quadratic\"]\n"));

@@ -78,7 +78,7 @@ fn an_error_that_no_two_rows_share_is_part_of_the_scatter() {
 }
 
 #[test]
-fn identical_copies_are_dropped_and_told() {
+fn identical_copies_are_dropped_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let table = quadratic_table() + "0.55,-3.0\n0.55,-3.0\n0.55,-3.0\n";
     let result = identify(folder.path(), &table, QUADRATIC);
@@ -148,10 +148,10 @@ fn a_fitted_tare_is_subtracted_with_its_covariance_as_a_shared_error() {
 }
 
 #[test]
-fn a_drag_coefficient_that_no_body_has_is_told() {
+fn a_drag_coefficient_that_no_body_has_is_reported() {
     // The MCD paper prints D_d = 0.0878 N s²/m² for a cylinder of 0.04 m²: C_D = 0.0044.
     let finding = froude_identify::lint::drag_coefficient("D_d", 0.0878, 1000.0, 0.04).unwrap();
-    assert!(finding.message.contains("is C_D = 0.0044: no body has that"), "{}", finding.message);
+    assert!(finding.message.contains("is C_D = 0.0044: no body has such a value"), "{}", finding.message);
     assert!(froude_identify::lint::drag_coefficient("D_d", 20.0, 1000.0, 0.04).is_none());
 }
 
@@ -160,11 +160,11 @@ fn a_force_along_the_motion_names_the_sign_to_write() {
     let folder = tempfile::tempdir().unwrap();
     let result = identify(folder.path(), &quadratic_table().replace(",-", ","), QUADRATIC);
     let finding = result.findings.iter().find(|f| f.code == "force-along-motion").unwrap();
-    assert!(finding.message.contains("say sign = -1 for its column"), "{}", finding.message);
+    assert!(finding.message.contains("write sign = -1 for its column"), "{}", finding.message);
 }
 
 #[test]
-fn zeros_before_and_after_a_run_are_subtracted_and_their_drift_is_told() {
+fn zeros_before_and_after_a_run_are_subtracted_and_their_drift_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut table = "speed [m/s],f_x [N],zero_before_f_x [N],zero_after_f_x [N]\n".to_owned();
     for k in 1..=6 {
@@ -244,7 +244,7 @@ fn a_zero_that_was_read_once_leaves_its_drift_unknown() {
 }
 
 #[test]
-fn a_measured_density_is_used_unless_one_is_stated_and_then_it_is_told() {
+fn a_measured_density_is_used_unless_one_is_stated_and_then_it_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut table = "speed [m/s],f_x [N],density [kg/m^3],temperature [degC]\n".to_owned();
     for k in 1..=6 {

@@ -1,4 +1,4 @@
-//! Whoever fits to rows passes one function: what a method says of weights and scatter is what its record states.
+//! Every fit to rows passes through one function: what a method states about weights and scatter is what its record states.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use froude_fit::replicates::Replicates;

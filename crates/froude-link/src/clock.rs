@@ -1,4 +1,4 @@
-//! Where the board's clock stands against the host's, and how well that is known.
+//! Offset of the board's clock from the host's, and how well it is known.
 //!
 //! **Setting.** The host stamps a request (h₁), the board its arrival and its answer (b₂, b₃), the host the answer's arrival (h₄).
 //! The offset is θ = ((b₂ − h₁) + (b₃ − h₄))/2, wrong by at most half of the time spent on the line, δ = (h₄ − h₁) − (b₃ − b₂).

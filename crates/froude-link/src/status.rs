@@ -1,4 +1,4 @@
-//! What the board says of itself besides telemetry: who it is, what happened, how the link is.
+//! What the board reports about itself besides telemetry: who it is, what happened, how the link is.
 
 use froude_control::fault::{Fault, StopCategory};
 use froude_control::status::{Phase, Refusal};

@@ -27,7 +27,7 @@ pub const FOLD_RAD: f64 = 1e-6;
 /// Pairs after which counting ends.
 pub const MOST: usize = 100_000;
 
-/// Crossings and folds of a mesh: at most one trouble of each kind, with its count and first pair.
+/// Crossings and folds of a mesh: at most one fault of each kind, with its count and first pair.
 ///
 /// None for a mesh with coordinates or corners that are none. Panels without area cross nothing.
 #[must_use]
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn bodies_through_one_another_are_told_with_a_point_of_both() {
+    fn bodies_through_one_another_are_reported_with_a_point_of_both() {
         let mesh = ball(0.0, 4).with(&ball(1.5, 4));
         assert_eq!(check(&mesh), []);
         let [Trouble::Crossing { count, first, second, at }] = crossings(&mesh)[..] else {

@@ -2,7 +2,7 @@
 //!
 //! **Setting.** Closed surfaces of flat triangles and quadrilaterals; corners run counter-clockwise seen from the fluid, so that
 //! normals point into it.
-//! **Frame.** That of the body: whoever makes the mesh says where its origin is. Bodies of sections lie along `x`.
+//! **Frame.** That of the body: the maker of the mesh states where its origin is. Bodies of sections lie along `x`.
 //! **Units.** Metres.
 //!
 //! | module | what |

@@ -1,4 +1,4 @@
-//! Parts of a mesh that hang together over edges, which of them is inside out, and which lies inside another.
+//! Connected parts of a mesh (joined by edges), which of them is inside out, and which lies inside another.
 //!
 //! [`mod@crate::check`] looks at the whole: a small part that is inside out disappears in the volume of a large one. Here each part is on
 //! its own.
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn a_small_part_that_is_inside_out_is_told_although_the_whole_has_a_volume() {
+    fn a_small_part_that_is_inside_out_is_reported_although_the_whole_has_a_volume() {
         let mesh = ball(0.0, 1.0).with(&inside_out(ball(3.0, 0.5)));
         assert_eq!(check(&mesh), []);
         let reported: Vec<String> = part_troubles(&mesh).iter().map(ToString::to_string).collect();
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_inside_another_is_told() {
+    fn a_part_inside_another_is_reported() {
         let mesh = ball(0.1, 0.5).with(&ball(0.0, 1.0)).with(&ball(5.0, 0.2));
         let reported: Vec<String> = part_troubles(&mesh).iter().map(ToString::to_string).collect();
         assert_eq!(

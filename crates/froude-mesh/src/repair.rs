@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn every_repair_is_told() {
+    fn every_repair_is_reported() {
         let mut mesh = ball(0.0, 1.0);
         mesh.vertices.push([-1.0, 5e-7, 0.0]);
         let extra = mesh.vertices.len() as u32 - 1;

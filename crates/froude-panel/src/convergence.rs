@@ -54,11 +54,11 @@ pub struct Converged {
 
 /// Orders that a second-order method may show.
 const ORDERS: core::ops::RangeInclusive<f64> = 1.5..=2.5;
-/// Factor on what the extrapolation takes off the finest value.
+/// Factor on what the extrapolation subtracts from the finest value.
 const FINE: f64 = 1.5;
 /// Factor on the change of the extrapolated value.
 const SAFETY: f64 = 3.0;
-/// Part of what the extrapolation takes off, below which the change of the extrapolated value is small by chance.
+/// Part of what the extrapolation subtracts, below which the change of the extrapolated value is small by chance.
 const CHANCE: f64 = 0.03;
 /// Factors where the order is another: on the distance from the value without both powers, and on the change.
 const OTHER: [f64; 2] = [2.5, 1.0];

@@ -1,4 +1,4 @@
-//! The plain solver: every panel on every other in double precision, LU. The readable version that the fast ones are held against.
+//! The plain solver: every panel on every other in double precision, LU. The readable version that the fast ones are compared with.
 //!
 //! With mirrors the unknowns are those of the panels that are given; motions with the same signs on all images share a matrix.
 

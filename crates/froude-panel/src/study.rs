@@ -11,7 +11,7 @@ const ZERO: f64 = 1e-12;
 /// Orders of a diagonal entry that say that edges or a thin side are not resolved yet. Then no entry's change from mesh to mesh can be trusted
 /// to be small, whatever its own order: a flat disc's surge erred by 13 of its uncertainty while its order was 1.99 and that of others 0.7.
 pub const SLOW: core::ops::RangeInclusive<f64> = 0.2..=1.4;
-/// Least uncertainty of an extrapolated value then, as part of what extrapolation takes off. On the bodies of `examples/coverage`, a third of
+/// Least uncertainty of an extrapolated value then, as part of what extrapolation subtracts. On the bodies of `examples/coverage`, a third of
 /// which show such an order, coverage stays and the median of U over the error grows from 8.2 to 9.5 at most.
 const UNRESOLVED: f64 = 0.5;
 

@@ -31,7 +31,7 @@ fn the_links_of_a_bent_chain_add_up_to_the_body() {
     assert!(apart < 1e-10, "{apart}");
 }
 
-/// What is said of the diagonal form: the range that the rms errors of both robots lie in, 0 to 30 degrees.
+/// The statement about the diagonal form: the range that the rms errors of both robots lie in, 0 to 30 degrees.
 const ALIKE: [f64; 2] = [0.02, 0.03];
 const ALTERNATING: [f64; 2] = [0.53, 0.61];
 const TRAVELLING: [f64; 2] = [0.16, 0.19];

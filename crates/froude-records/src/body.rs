@@ -293,7 +293,7 @@ ends = { length = "31 mm" }
     }
 
     #[test]
-    fn what_cannot_be_is_told_with_its_place() {
+    fn what_cannot_be_is_reported_with_its_place() {
         let refused = |from: &str, to: &str| read(&ROBOT.replace(from, to)).unwrap_err().to_string();
         assert_eq!(
             refused("ramp = \"4 mm\"", "ramp = \"40 mm\""),

@@ -436,7 +436,7 @@ pub struct PriorSpec {
     pub model: Option<String>,
 }
 
-/// A declared block of cross-validation: fitted to rows inside, held against the rest.
+/// A declared block of cross-validation: fitted to rows inside, compared with the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RangeBlock {
     /// The column.

@@ -170,7 +170,8 @@ const SOURCE_KEYS: [&str; 17] = [
 
 fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     s.only(&SOURCE_KEYS)?;
-    let name = s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"circulation tank\", say"))?.to_owned();
+    let name =
+        s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"circulation tank\", for example"))?.to_owned();
     let kinds = [SourceKind::Tank, SourceKind::Towing, SourceKind::Cfd, SourceKind::Potential, SourceKind::Published];
     let kind = one_of(s, "kind", &SourceKind::NAMES, &kinds)?.ok_or_else(|| {
         s.missing("kind", "write kind = \"tank\", \"towing\", \"cfd\", \"potential\" or \"published\"")
@@ -254,7 +255,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn decay(s: &Section<'_>) -> Result<DecaySpec, RecordError> {
     s.only(&["axis", "inertia", "stiffness", "free_from", "skip_half_cycles"])?;
     let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
-        .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", say"))?;
+        .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", for example"))?;
     let (inertia, stiffness) =
         if axis.is_rotation() { (INERTIA, Dimension::MOMENT) } else { (Dimension::MASS, STIFFNESS) };
     let need = |key: &'static str, dimension, like: &str| {
@@ -369,7 +370,7 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
 /// Most observations that one block of a plan makes.
 const MOST_OBSERVATIONS: usize = 1_000_000;
 
-/// What a section multiplies out to is held against a limit: each of its numbers may be small, and their product not.
+/// What a section multiplies out to is checked against a limit: each of its numbers may be small, and their product not.
 pub(crate) fn at_most(s: &Section<'_>, numbers: &[usize], most: usize) -> Result<(), RecordError> {
     let product = numbers.iter().fold(1_usize, |product, n| product.saturating_mul(*n));
     if product <= most {
@@ -566,7 +567,7 @@ fn range_block(s: &Section<'_>) -> Result<RangeBlock, RecordError> {
 }
 
 fn user_model(s: &Section<'_>) -> Result<UserModel, RecordError> {
-    let name = s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"sway\", say"))?.to_owned();
+    let name = s.text("name")?.ok_or_else(|| s.missing("name", "write name = \"sway\", for example"))?.to_owned();
     let mut formulas = IndexMap::new();
     for (load, _, value) in s.others() {
         formulas.insert(load.to_owned(), s.as_text(load, value)?.to_owned());
@@ -603,7 +604,7 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
     Ok(Simulate {
         seed: s
             .integer("seed")?
-            .ok_or_else(|| s.missing("seed", "write seed = 1, say; the same seed gives the same table"))?,
+            .ok_or_else(|| s.missing("seed", "write seed = 1, for example; the same seed gives the same table"))?,
         truth,
         sensors: s.sections("sensor")?.iter().map(sensor).collect::<Result<_, _>>()?,
         misalignment_rad: s.quantity("misalignment", Dimension::ONE)?,

@@ -33,9 +33,8 @@ pub(crate) fn carriage(root: &Section<'_>) -> Result<Option<CarriageCampaign>, R
     let Some(section) = root.section("rig")? else {
         return match plan {
             None => Ok(None),
-            Some(_) => {
-                Err(root.missing("rig", "[carriage] says what to do; [rig] says with what: kind = \"twin\", say"))
-            }
+            Some(_) => Err(root
+                .missing("rig", "[carriage] states what to do; [rig] states with what: kind = \"twin\", for example")),
         };
     };
     Ok(Some(CarriageCampaign { rig: rig(&section)?, plan }))
@@ -55,14 +54,15 @@ fn rig(s: &Section<'_>) -> Result<RigSpec, RecordError> {
     let kind = if is_twin {
         let seed = s
             .integer("seed")?
-            .ok_or_else(|| s.missing("seed", "write seed = 1, say; the same seed gives the same runs"))?;
+            .ok_or_else(|| s.missing("seed", "write seed = 1, for example; the same seed gives the same runs"))?;
         let mut truths = Vec::new();
         if let Some(twin) = s.section("twin")? {
             twin_truths(&twin, "", &mut truths)?;
         }
         RigKind::Twin { seed, truths }
     } else {
-        let port = s.text("port")?.ok_or_else(|| s.missing("port", "write port = \"/dev/ttyUSB0\", say"))?.to_owned();
+        let port =
+            s.text("port")?.ok_or_else(|| s.missing("port", "write port = \"/dev/ttyUSB0\", for example"))?.to_owned();
         let baud = count(s, "baud", 100_000_000)?.map_or(3_000_000, |baud| baud as u32);
         RigKind::Serial { port, baud }
     };
@@ -117,11 +117,19 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
     ])?;
     let limit = |key, dimension, advice: &str| s.positive(key, dimension)?.ok_or_else(|| s.missing(key, advice));
     let limits = LimitsSpec {
-        speed_m_s: limit("speed_limit", Dimension::SPEED, "write the largest speed, \"0.7 m/s\", say")?,
+        speed_m_s: limit("speed_limit", Dimension::SPEED, "write the largest speed, \"0.7 m/s\", for example")?,
         unhomed_speed_m_s: s.positive("unhomed_speed_limit", Dimension::SPEED)?,
-        acceleration_m_s2: limit("acceleration_limit", Dimension::ACCELERATION, "write \"1 m/s^2\", say")?,
-        command_v: limit("command_limit", Dimension::VOLTAGE, "write the amplifier's input range, \"10 V\", say")?,
-        current_a: limit("current_limit", Dimension::CURRENT, "write the motor's peak current, \"3.5 A\", say")?,
+        acceleration_m_s2: limit("acceleration_limit", Dimension::ACCELERATION, "write \"1 m/s^2\", for example")?,
+        command_v: limit(
+            "command_limit",
+            Dimension::VOLTAGE,
+            "write the amplifier's input range, \"10 V\", for example",
+        )?,
+        current_a: limit(
+            "current_limit",
+            Dimension::CURRENT,
+            "write the motor's peak current, \"3.5 A\", for example",
+        )?,
         continuous_current_a: s.positive("continuous_current_limit", Dimension::CURRENT)?,
         thermal_time_s: duration(s, "thermal_time")?,
         following_error_m: s.positive("following_error_limit", Dimension::LENGTH)?,
@@ -129,7 +137,7 @@ fn axis(s: &Section<'_>) -> Result<AxisSpec, RecordError> {
     let constant = |key, dimension, advice: &str| {
         let constant = positive_constant(s, key, dimension)?;
         constant.ok_or_else(|| {
-            s.missing(key, &format!("write {key} = {{ value = \"{advice}\", standard = \"1 %\" }}, say"))
+            s.missing(key, &format!("write {key} = {{ value = \"{advice}\", standard = \"1 %\" }}, for example"))
         })
     };
     let constants = AxisConstants {
@@ -227,7 +235,7 @@ fn gains(s: &Section<'_>) -> Result<GainsSpec, RecordError> {
         "robust_shaper",
     ])?;
     let gain = |key, dimension, example: &str| {
-        let value = s.get(key).ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", say")))?;
+        let value = s.get(key).ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", for example")))?;
         let gain = s.as_quantity_of(key, value, dimension)?;
         if gain < 0.0 {
             Err(s.wrong(key, value, format!("is {}; it must not be negative", found(value))))
@@ -290,12 +298,16 @@ fn plan(s: &Section<'_>) -> Result<CarriagePlan, RecordError> {
         repeats,
         order: one_of(s, "order", &Order::NAMES, &Order::ALL)?.unwrap_or_default(),
         directions: one_of(s, "directions", &Directions::NAMES, &Directions::ALL)?.unwrap_or_default(),
-        distance_m: need("distance", Dimension::LENGTH, "write the travel of a run with its ramps, \"2.2 m\", say")?,
+        distance_m: need(
+            "distance",
+            Dimension::LENGTH,
+            "write the travel of a run with its ramps, \"2.2 m\", for example",
+        )?,
         start_m: s.quantity("start", Dimension::LENGTH)?,
         acceleration_m_s2: need(
             "acceleration",
             Dimension::ACCELERATION,
-            "write that of the ramps, \"0.6 m/s^2\", say",
+            "write that of the ramps, \"0.6 m/s^2\", for example",
         )?,
         jerk_m_s3: s.positive("jerk", JERK)?,
         settling_dry_s,
@@ -338,7 +350,7 @@ fn speeds(s: &Section<'_>, key: &'static str) -> Result<Vec<f64>, RecordError> {
     let mut speeds = positive_series(s, key, value, Dimension::SPEED)?;
     speeds.sort_by(f64::total_cmp);
     match speeds.array_windows().find(|[a, b]| a == b) {
-        Some([twice, _]) => Err(s.wrong(key, value, format!("names {twice} m/s twice; say how often in repeats"))),
+        Some([twice, _]) => Err(s.wrong(key, value, format!("names {twice} m/s twice; give the number in repeats"))),
         None => Ok(speeds),
     }
 }
@@ -382,10 +394,11 @@ fn settling(s: &Section<'_>) -> Result<(f64, f64), RecordError> {
 fn warm_up(s: &Section<'_>) -> Result<WarmUp, RecordError> {
     s.only(&["duration", "speed"])?;
     Ok(WarmUp {
-        duration_s: duration(s, "duration")?.ok_or_else(|| s.missing("duration", "write how long, \"10 min\", say"))?,
+        duration_s: duration(s, "duration")?
+            .ok_or_else(|| s.missing("duration", "write how long, \"10 min\", for example"))?,
         speed_m_s: s
             .positive("speed", Dimension::SPEED)?
-            .ok_or_else(|| s.missing("speed", "write how fast, \"0.3 m/s\", say"))?,
+            .ok_or_else(|| s.missing("speed", "write how fast, \"0.3 m/s\", for example"))?,
     })
 }
 
@@ -399,15 +412,15 @@ fn friction_sweep(s: &Section<'_>) -> Result<FrictionSweep, RecordError> {
 fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
     s.only(&["weights", "standard", "pulley_loss", "speed", "repeats", "start", "distance", "floor"])?;
     let value = s.get("weights");
-    let value =
-        value.ok_or_else(|| s.missing("weights", "write the weights as forces, [\"9.81 N\", \"19.62 N\"], say"))?;
+    let value = value
+        .ok_or_else(|| s.missing("weights", "write the weights as forces, [\"9.81 N\", \"19.62 N\"], for example"))?;
     Ok(Calibration {
         weights_n: positive_series(s, "weights", value, Dimension::FORCE)?,
         weight_standard_n: s.positive("standard", Dimension::FORCE)?.unwrap_or(0.0),
         pulley_loss: positive_constant(s, "pulley_loss", Dimension::ONE)?,
         speed_m_s: s
             .positive("speed", Dimension::SPEED)?
-            .ok_or_else(|| s.missing("speed", "write how fast they are lifted, \"0.1 m/s\", say"))?,
+            .ok_or_else(|| s.missing("speed", "write how fast they are lifted, \"0.1 m/s\", for example"))?,
         repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
         start_m: s.quantity("start", Dimension::LENGTH)?,
         distance_m: s.positive("distance", Dimension::LENGTH)?,
@@ -418,13 +431,13 @@ fn calibration(s: &Section<'_>) -> Result<Calibration, RecordError> {
 fn excitation(s: &Section<'_>) -> Result<PulseTrain, RecordError> {
     s.only(&["amplitude", "period", "duty", "duration"])?;
     let need = |value: Option<f64>, key, example: &str| {
-        value.ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", say")))
+        value.ok_or_else(|| s.missing(key, &format!("write {key} = \"{example}\", for example")))
     };
     Ok(PulseTrain {
         amplitude_v: need(s.positive("amplitude", Dimension::VOLTAGE)?, "amplitude", "2 V")?,
         period_s: need(duration(s, "period")?, "period", "1 s")?,
         duty: fraction(s, "duty", "the part of a period that is on")?
-            .ok_or_else(|| s.missing("duty", "write duty = \"60 %\", say"))?,
+            .ok_or_else(|| s.missing("duty", "write duty = \"60 %\", for example"))?,
         duration_s: need(duration(s, "duration")?, "duration", "20 s")?,
     })
 }

@@ -219,7 +219,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_as_of_a_table_that_is_read_whole() {
+    fn what_is_wrong_is_reported_as_of_a_table_that_is_read_whole() {
         let folder = tempfile::tempdir().unwrap();
         for bad in ["1,", "1,x", "1", "1,2,3", "1,inf", "", "# 1,2", "1,1e99", "1,\"2"] {
             let path = written(folder.path(), "speed [m/s],f_x [N]", |i| {

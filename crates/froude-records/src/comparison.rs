@@ -1,6 +1,6 @@
 //! Estimates side by side, as a record holds them and as pages and tables show them.
 //!
-//! Coefficients are set beside those of the same model; loads are predicted over the common range. E_n is the normalised difference
+//! Coefficients are compared with those of the same model; loads are predicted over the common range. E_n is the normalised difference
 //! (first − second)/U, U the expanded (95 %) uncertainty of the difference. Where there is none, a note says why.
 
 use serde::{Deserialize, Serialize};
@@ -190,7 +190,7 @@ impl Comparison {
         self.coefficients.is_empty() && self.joint.is_empty() && self.loads.is_empty()
     }
 
-    /// Ids of the estimates whose loads are predicted, the one that all others are held against first.
+    /// Ids of the estimates whose loads are predicted, the one that all others are compared with first.
     #[must_use]
     pub fn load_sources(&self) -> Vec<&str> {
         let mut out: Vec<&str> = Vec::new();

@@ -12,7 +12,7 @@
 //!
 //! The splitting is our own and not a library's: every message names the line on
 //! which the row begins, also after cells with line breaks, and nothing that is not
-//! a row is skipped in silence. The tests hold it against the `csv` crate.
+//! a row is skipped in silence. The tests compare it with the `csv` crate.
 
 use std::borrow::Cow;
 use std::io::Write as _;

@@ -24,7 +24,7 @@ pub const OWN: &str = "own/";
 
 /// A whole `estimate.json`.
 ///
-/// It is serialised with a `checksum` of its content, which [`crate::json::read_estimates`] holds it against.
+/// It is serialised with a `checksum` of its content, which [`crate::json::read_estimates`] checks it against.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct EstimateFile {
     /// `froude/estimate/2`; a record of version 1 is lifted to it when it is read.
@@ -231,9 +231,9 @@ pub enum ErrorKind {
 /// Axes of the coefficients.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Frame {
-    /// `body`, `chain`, …; empty where nobody said it.
+    /// `body`, `chain`, …; empty where it is not stated.
     pub name: String,
-    /// Where its axes point, in words, `x`, `y`, `z` in turn; empty where nobody said it.
+    /// Where its axes point, in words, `x`, `y`, `z` in turn; empty where it is not stated.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub axes: Vec<String>,
     /// All of it in words.

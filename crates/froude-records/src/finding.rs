@@ -40,7 +40,7 @@ impl Finding {
         Self { severity, code: code.to_owned(), message, source: None, place: None }
     }
 
-    /// The same finding, said of a source.
+    /// The same finding, stated about a source.
     #[must_use]
     pub fn of_source(mut self, source: &str) -> Self {
         self.source = Some(source.to_owned());

@@ -266,7 +266,7 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
     }
 }
 
-/// Pages whose claims are held against their bytes before the decoder allocates for them.
+/// Pages whose claims are checked against their bytes before the decoder allocates for them.
 ///
 /// The decoder reserves memory for as many dictionary entries as a page's header says; a
 /// damaged header can say two thousand million, and running out of memory cannot be caught. A page is unpacked before it can be
@@ -426,7 +426,7 @@ impl Cells<'_> {
     }
 }
 
-/// Sizes that the footer claims, held against the file, before anything is allocated for them.
+/// Sizes that the footer claims, checked against the file, before anything is allocated for them.
 fn check_sizes(path: &Path, metadata: &ParquetMetaData, length: u64) -> Result<(), RecordError> {
     let rows = metadata.file_metadata().num_rows();
     let damaged =

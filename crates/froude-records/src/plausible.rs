@@ -52,7 +52,7 @@ pub fn angle(rad: f64, unit: &Unit) -> Option<String> {
     let is_in_radians = unit.factor == 1.0;
     let cause = if is_in_radians && number.abs() <= 360.0 {
         format!(
-            "degrees under the head of radians, probably: write the unit deg; of an angle counted on over several turns take the \
+            "degrees under a header in radians, probably: write the unit deg; of an angle counted on over several turns take the \
              whole ones off ({wrapped})"
         )
     } else if is_in_radians {
@@ -93,7 +93,7 @@ pub fn density_of_displaced_water(kg_m3: f64) -> Option<String> {
     let problem = no_water(kg_m3).filter(|_| kg_m3 != 1.0)?;
     let is_air = AIR_KG_M3.contains(&kg_m3);
     let advice =
-        if is_air { "; in air, ask for \"1 kg/m^3\" and take the result times the density of the air" } else { "" };
+        if is_air { "; in air, ask for \"1 kg/m^3\" and multiply the result by the density of the air" } else { "" };
     Some(format!("{problem}{advice}"))
 }
 
@@ -140,7 +140,7 @@ mod tests {
         }
         assert_eq!(
             said(30.0, "rad").unwrap(),
-            "is more than a whole turn: degrees under the head of radians, probably: write the unit deg; of an angle counted on \
+            "is more than a whole turn: degrees under a header in radians, probably: write the unit deg; of an angle counted on \
              over several turns take the whole ones off (-1.41593 rad)"
         );
         assert_eq!(
@@ -162,7 +162,7 @@ mod tests {
         assert!(
             density_of_displaced_water(1.2)
                 .unwrap()
-                .ends_with("in air, ask for \"1 kg/m^3\" and take the result times the density of the air")
+                .ends_with("in air, ask for \"1 kg/m^3\" and multiply the result by the density of the air")
         );
         assert_eq!(density_of_displaced_water(1.025e6).unwrap(), meant);
         assert!(density(11_340.0, None).unwrap().ends_with("fresh water has 1000 kg/m^3, sea water 1025"));

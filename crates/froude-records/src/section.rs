@@ -216,7 +216,7 @@ impl<'a> Section<'a> {
 
     /// A quantity of any kind; where one is expected, messages suggest units of that kind.
     ///
-    /// `like` is that kind, and the name (of the key or of the column that it belongs to) that its usual unit hangs on.
+    /// `like` is that kind, and the name (of the key or of the column that it belongs to) that its usual unit depends on.
     pub fn quantity_like(
         &self,
         key: &str,

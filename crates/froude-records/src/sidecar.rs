@@ -36,7 +36,7 @@ pub struct Mapping {
     pub sign: f64,
     /// Factor that gives a dimensionless column its dimension.
     pub scale: Option<Scale>,
-    /// What is said of it as a channel of a log.
+    /// The message about it as a channel of a log.
     pub(crate) words: Words,
     /// Where it stands in the sidecar.
     pub place: Place,
@@ -91,7 +91,8 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
 
 fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
     section.only(&["name", "unit", "sign", "scale", "quantity", "frame", "clock"])?;
-    let name = section.text("name")?.ok_or_else(|| section.missing("name", "write name = \"f_x\", say"))?.to_owned();
+    let name =
+        section.text("name")?.ok_or_else(|| section.missing("name", "write name = \"f_x\", for example"))?.to_owned();
     let place = section.place();
     let unit = match section.text("unit")? {
         Some(text) => {

@@ -138,7 +138,7 @@ fn wamits_own_file_is_read() {
 }
 
 #[test]
-fn what_is_no_row_is_told_with_its_line() {
+fn what_is_no_row_is_reported_with_its_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.1");
     let told = |text: &str| {

@@ -92,7 +92,7 @@ fn cells_that_are_no_numbers_name_line_and_column() {
 }
 
 #[test]
-fn ragged_rows_no_rows_and_no_file_are_told_apart() {
+fn ragged_rows_no_rows_and_no_file_are_distinguished() {
     refused("speed [m/s],f_x [N]\n0.1,2\n0.2\n", "tank.csv:3: the row has 1 cell, the header has 2");
     refused("speed [m/s],f_x [N]\n0.1,2,3\n", "tank.csv:2: the row has 3 cells, the header has 2");
     refused("speed [m/s],f_x [N]\n", "tank.csv: the table has no rows; at least one observation is needed");

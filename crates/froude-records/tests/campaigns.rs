@@ -275,7 +275,7 @@ fn quantities_of_another_kind_name_both() {
         "angle <= 39 deg",
         "angle <= 39 rad",
         "lab/campaign.toml:16:9: `keep` cannot be read: \"angle <= 39 rad\" is not a condition: 39 rad is more than a whole turn: \
-         degrees under the head of radians, probably: write the unit deg; of an angle counted on over several turns take the whole ones \
+         degrees under a header in radians, probably: write the unit deg; of an angle counted on over several turns take the whole ones \
          off (1.30089 rad); write for example \"angle <= 39 deg and configuration != H1LT\"",
     );
     refused(
@@ -323,7 +323,7 @@ fn a_source_has_one_input() {
     refused(
         "name  = \"circulation tank\"\n",
         "",
-        "lab/campaign.toml:12:1: [[source]] has no `name`; write name = \"circulation tank\", say",
+        "lab/campaign.toml:12:1: [[source]] has no `name`; write name = \"circulation tank\", for example",
     );
 }
 

@@ -95,7 +95,7 @@ fn a_board_at_a_serial_port_has_a_port_and_no_seed() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
+fn what_is_wrong_is_reported_with_its_line_and_what_to_write() {
     let cases = [
         (
             "gear_ratio = \"34.97 1\"",
@@ -129,7 +129,7 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
             "\"0.45 m/s\", \"0.55 m/s\"]\nrepeats = 5",
             "\"0.55 m/s\", \"0.55 m/s\"]\nrepeats = 5",
             format!(
-                "{}:10: `speeds` names 0.55 m/s twice; say how often in repeats",
+                "{}:10: `speeds` names 0.55 m/s twice; give the number in repeats",
                 line("speeds = [\"0.05 m/s\", \"0.15")
             ),
         ),
@@ -145,7 +145,7 @@ fn what_is_wrong_is_told_with_its_line_and_what_to_write() {
             "distance = \"2.2 m\"\n",
             "",
             format!(
-                "{}:1: [carriage] has no `distance`; write the travel of a run with its ramps, \"2.2 m\", say",
+                "{}:1: [carriage] has no `distance`; write the travel of a run with its ramps, \"2.2 m\", for example",
                 line("[carriage]")
             ),
         ),
@@ -204,7 +204,7 @@ fn a_stop_that_the_steps_do_not_reach_is_refused_with_steps_that_do() {
 }
 
 #[test]
-fn litres_and_decimal_commas_are_told_as_what_they_are() {
+fn litres_and_decimal_commas_are_reported_as_what_they_are() {
     let volume = "volume = \"6.283e-3 m^3\"";
     let text = example().replace(volume, "volume = \"6.283 l\"");
     let body = parse_campaign(Path::new("c.toml"), &text).unwrap().body.unwrap();
@@ -220,6 +220,6 @@ fn a_carriage_without_a_rig_is_told_to_name_one() {
     let text = "schema = 1\nname = \"a\"\n[carriage]\nspeeds = [\"0.1 m/s\"]\ndistance = \"1 m\"\nacceleration = \"1 m/s^2\"\n";
     assert_eq!(
         parse_campaign(Path::new("c.toml"), text).unwrap_err().to_string(),
-        "c.toml:1:1: the file has no `rig`; [carriage] says what to do; [rig] says with what: kind = \"twin\", say"
+        "c.toml:1:1: the file has no `rig`; [carriage] states what to do; [rig] states with what: kind = \"twin\", for example"
     );
 }

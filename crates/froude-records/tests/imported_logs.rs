@@ -54,7 +54,7 @@ fn a_servo_log_becomes_a_run_of_axis_y_in_si() {
 }
 
 #[test]
-fn uneven_time_steps_are_told_and_nothing_is_resampled() {
+fn uneven_time_steps_are_reported_and_nothing_is_resampled() {
     let folder = tempfile::tempdir().unwrap();
     let times = (0..1000).map(|k| f64::from(k) * 1e-3 + f64::from(k % 2) * 1e-4);
     let imported = import_run(&log(folder.path(), times), None).unwrap();
@@ -76,7 +76,7 @@ fn ticks_missing_in_a_log_are_gaps() {
 }
 
 #[test]
-fn a_time_that_goes_back_or_is_not_there_is_told_with_its_line() {
+fn a_time_that_goes_back_or_is_not_there_is_reported_with_its_line() {
     let folder = tempfile::tempdir().unwrap();
     let path = log(folder.path(), [0.0, 0.1, 0.1, 0.2]);
     assert_eq!(

@@ -100,7 +100,7 @@ proptest! {
         prop_assert_eq!(a.checked_powi(2), a.checked_mul(a));
     }
 
-    /// The splitting of rows, held against the `csv` crate.
+    /// The splitting of rows, compared with the `csv` crate.
     #[test]
     fn cells_are_split_as_the_csv_crate_splits_them(
         rows in proptest::collection::vec(proptest::collection::vec("[a-z ,\"\n#é]{0,6}", 3), 1..6)

@@ -1,4 +1,4 @@
-//! Parquet tables: the same as CSV, and what is said of a file that is not whole.
+//! Parquet tables: the same as CSV, and what is stated about a file that is not whole.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::path::{Path, PathBuf};

@@ -170,7 +170,7 @@ fn a_unit_or_a_sign_that_the_log_does_not_have_is_refused_with_both() {
 }
 
 #[test]
-fn a_misspelt_key_of_a_sidecar_is_told_with_its_line() {
+fn a_misspelt_key_of_a_sidecar_is_reported_with_its_line() {
     let error = |text: &str| parse_run_meta(Path::new("a.toml"), text).unwrap_err().to_string();
     let old = "schema = 1\nid = \"a\"\nkind = \"wet\"\nstatus = \"complete\"\n";
     assert_eq!(
@@ -369,7 +369,7 @@ fn what_cannot_be_recorded_is_refused_in_words_and_recording_goes_on() {
 }
 
 #[test]
-fn a_tick_with_a_number_that_is_none_is_kept_in_the_file_and_told_as_a_gap() {
+fn a_tick_with_a_number_that_is_none_is_kept_in_the_file_and_reported_as_a_gap() {
     let folder = tempfile::tempdir().unwrap();
     let mut recorder = Recorder::create(folder.path(), meta("run"), layout(), Packing::Lz4).unwrap();
     for tick in 0..10 {
@@ -633,7 +633,7 @@ fn a_run_without_its_end_is_driven_again() {
 }
 
 #[test]
-fn logs_that_were_exchanged_are_told_once_each_and_by_what_they_are() {
+fn logs_that_were_exchanged_are_reported_once_each_and_by_what_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let short = recorded(folder.path(), "045-wet", 0..300, Packing::Lz4);
     let long = recorded(folder.path(), "046-dry", 0..900, Packing::Lz4);

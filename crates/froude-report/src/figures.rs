@@ -130,11 +130,9 @@ fn distinct<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     texts.into_iter().filter(|t| seen.insert(*t)).collect()
 }
 
-/// What a caption says of points that are a sample.
+/// What a caption states about points that are a sample.
 fn drawn_by_chance(section: &SourceSection) -> String {
-    section
-        .sample_of
-        .map_or_else(String::new, |n| format!(" The points are a sample, drawn by chance, of {n} observations."))
+    section.sample_of.map_or_else(String::new, |n| format!(" The points are a random sample of {n} observations."))
 }
 
 /// Every `n`th of many, so that at most `limit` stay.

@@ -26,7 +26,7 @@ pub struct Report {
     pub date: Option<String>,
     /// Paragraphs of the method section.
     pub method: Vec<String>,
-    /// What methods say of the runs that they reduced together, before the sections of their results.
+    /// What methods state about the runs that they reduced together, before the sections of their results.
     pub blocks: Vec<DocumentSection>,
     /// One section per source that was fitted.
     pub sources: Vec<SourceSection>,

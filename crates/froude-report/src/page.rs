@@ -395,7 +395,7 @@ impl Page<'_> {
         }
         let heading = self.open("versions", "Versions", "");
         let caption = self.tables.caption(
-            "Programs that made this report. Together with the fingerprints of the data they allow it to be made again.",
+            "Programs that made this report. Together with the fingerprints of the data they allow it to be reproduced.",
         );
         html! {
             section {

@@ -69,7 +69,7 @@ pub enum RigError {
     /// The board sent nothing for too long.
     #[error(
         "the board at {port} has sent no valid frame for {silent_s:.1} s; its own watchdog stops the carriage. Check power and \
-         cable, then run again: the campaign goes on where it stopped"
+         cable, then run again: the campaign resumes where it stopped"
     )]
     Silent {
         /// The port.
@@ -119,7 +119,7 @@ pub enum RigError {
     /// Another session took the board over.
     #[error(
         "the board at {port} is driven by another program now (session {holder:08x}): this one was silent for longer than the board \
-         waits (suspended?), and the board had stopped the carriage before. End that program, then run again: the campaign goes on where it \
+         waits (suspended?), and the board had stopped the carriage before. End that program, then run again: the campaign resumes where it \
          stopped"
     )]
     TakenOver {
@@ -130,15 +130,15 @@ pub enum RigError {
     },
     /// The board does not know this session any more, nor any other.
     #[error(
-        "the board at {port} has started anew: the torque is off, and the axes are no longer homed. Check its supply and what its hardware \
-         watchdog may have seen, then run again: the campaign goes on where it stopped"
+        "the board at {port} has restarted: the torque is off, and the axes are no longer homed. Check its supply and what its hardware \
+         watchdog may have seen, then run again: the campaign resumes where it stopped"
     )]
     Restarted {
         /// The port.
         port: String,
     },
-    /// The controller does not take the configuration.
-    #[error("the controller does not take the configuration: {0}")]
+    /// The controller does not accept the configuration.
+    #[error("the controller does not accept the configuration: {0}")]
     Config(froude_control::config::ConfigError),
 }
 

@@ -17,7 +17,7 @@
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock; all chance comes from one seed.
 //!
-//! A tow of the wet body at 0.4 m/s, and what the force sensor says of it:
+//! A tow of the wet body at 0.4 m/s, and what the force sensor states about it:
 //!
 //! ```
 //! use froude_control::request::{Move, Request};

@@ -173,7 +173,7 @@ fn the_first_press_stops_and_holds_and_the_campaign_goes_on_from_there() {
     let stopped = hand.begun.last().unwrap().clone();
     assert_eq!(
         error.to_string(),
-        format!("stopped by the operator in {stopped}; run the campaign again to go on from there")
+        format!("stopped by the operator in {stopped}; run the campaign again to resume from there")
     );
     // Stopped under control: at rest, and still holding.
     let log = read_run(&folder.path().join(format!("{stopped}.mcap"))).unwrap();

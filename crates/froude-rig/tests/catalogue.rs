@@ -7,7 +7,7 @@ use froude_rig::catalogue::{Catalogue, Sweep};
 const RUNS: u64 = 5_000;
 
 #[test]
-fn every_injected_fault_is_told_in_time_and_the_carriage_stays_inside() {
+fn every_injected_fault_is_reported_in_time_and_the_carriage_stays_inside() {
     let catalogue = Catalogue::new().unwrap();
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
     let sweep = std::thread::scope(|scope| {

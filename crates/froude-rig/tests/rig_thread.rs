@@ -251,7 +251,7 @@ fn a_stop_is_carried_out_while_who_records_is_held_up() {
         }
     };
     let error = run(folder.path(), &mut rig, &switch, &mut |_| true, &mut watch).unwrap_err();
-    assert_eq!(error.to_string(), "stopped by the operator in 001-tow; run the campaign again to go on from there");
+    assert_eq!(error.to_string(), "stopped by the operator in 001-tow; run the campaign again to resume from there");
     let log = read_run(&folder.path().join("001-tow.mcap")).unwrap();
     assert_eq!((log.meta.status, log.lost_ticks()), (RunStatus::Interrupted, 0));
     assert_eq!(*log.channels["y/state"].values.last().unwrap(), 1.0, "holding");

@@ -329,7 +329,7 @@ fn a_port_that_vanishes_is_an_error_that_says_who_stops_the_carriage() {
 }
 
 #[test]
-fn a_line_without_a_board_is_told_with_what_to_do() {
+fn a_line_without_a_board_is_reported_with_what_to_do() {
     let (ours, _theirs) = UnixStream::pair().unwrap();
     ours.set_read_timeout(Some(Duration::from_millis(2))).unwrap();
     let error = SerialRig::on("a socket", Box::new(ours), config()).map(|_| ()).unwrap_err();
@@ -558,7 +558,7 @@ fn a_board_that_starts_anew_is_told_from_one_that_is_silent() {
         assert!(begun.elapsed() < Duration::from_secs(20));
     };
     assert!(matches!(error, RigError::Restarted { .. }), "{error}");
-    assert!(error.to_string().starts_with("the board at a socket has started anew: the torque is off"), "{error}");
+    assert!(error.to_string().starts_with("the board at a socket has restarted: the torque is off"), "{error}");
     running.end();
 }
 

@@ -1,6 +1,6 @@
 //! Why a record cannot be filtered.
 
-/// Why a record cannot be filtered; each message says what to do.
+/// Why a record cannot be filtered; each message states what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SignalError {

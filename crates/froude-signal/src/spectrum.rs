@@ -1,6 +1,6 @@
 //! Spectra and frequency responses by averaging (Welch).
 //!
-//! Segments of 2ᵏ samples, half overlapping, their mean taken off, under a Hann window. With input u and output y:
+//! Segments of 2ᵏ samples, half overlapping, with their mean subtracted, under a Hann window. With input u and output y:
 //! power densities `P_uu`, `P_yy` \[unit²/Hz\], response `H = P_uy/P_uu` (noise at the output only), coherence
 //! `γ² = |P_uy|²/(P_uu P_yy)`.
 //!

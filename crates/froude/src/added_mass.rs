@@ -11,7 +11,7 @@
 //! | [`several`] | links of a chain, parts of a mesh: six rows and columns each |
 //! | [`spectral`] | bodies of revolution to eight digits and more |
 //! | [`limits`] | unbounded water, rigid lid, φ = 0: side by side, and which holds when |
-//! | [`repair`] | a mesh put right, as a new file |
+//! | [`repair`] | a corrected mesh, as a new file |
 //! | [`record`] | a matrix as an estimate |
 //! | [`page`] | the report |
 

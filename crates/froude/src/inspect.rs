@@ -459,7 +459,7 @@ fn logs(paths: &[PathBuf]) -> Inspection {
     let (mut facts, mut findings) = (Vec::new(), Vec::new());
     facts.push((
         "logs".to_owned(),
-        format!("{} of other programs; what they are, the method says that reads them", paths.len()),
+        format!("{} of other programs; the method that reads them states what they are", paths.len()),
     ));
     for path in paths {
         let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());

@@ -75,11 +75,11 @@ pub struct Outcome {
     pub written: Option<Written>,
     /// Everything that is known about each fitted source.
     pub sources: Vec<SourceResult>,
-    /// What methods say of several of them together.
+    /// What methods state about several of them together.
     pub summaries: Vec<Summary>,
 }
 
-/// What a method says of all results that it has from one source.
+/// What a method states about all results that it has from one source.
 #[derive(Debug, Clone)]
 pub struct Summary {
     /// Which of [`Outcome::sources`].
@@ -272,7 +272,7 @@ fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
     }
 }
 
-/// What a record says of itself that whoever sets it beside others must know.
+/// What a record states about itself that a comparison must take into account.
 fn errors_of(path: &Path, record: &EstimateFile) -> Option<Finding> {
     let mut errors = record.findings.iter().filter(|finding| finding.severity == Severity::Error);
     let first = errors.next()?;

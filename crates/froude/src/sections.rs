@@ -1,4 +1,4 @@
-//! Identification results as the report wants them: points, curves with bands, budget, selection.
+//! Identification results as the report needs them: points, curves with bands, budget, selection.
 
 use std::collections::BTreeSet;
 
@@ -145,7 +145,7 @@ fn error_models(source: &SourceResult) -> Vec<String> {
         let plain = position(&|m| is_plain(m) && m.law.is_nonlinear()).or_else(|| position(&is_plain));
         let has_std = source.data.channels.contains_key(&format!("std_{load}"));
         let assumes = format!(
-            "{}, {load}: {} is fitted to logarithms and takes every point to have {}",
+            "{}, {load}: {} is fitted to logarithms and assumes every point to have {}",
             source.name,
             logarithmic.law.name,
             if has_std { "the relative error of its std column" } else { "the same relative error" }
@@ -158,7 +158,7 @@ fn error_models(source: &SourceResult) -> Vec<String> {
         let unit = unit_text(&source.data, load);
         let support = supported(source, (i, logarithmic), (j, newton), load);
         out.push(format!(
-            "{assumes}, {} is fitted in {unit} and takes every point to have {}; {support}.",
+            "{assumes}, {} is fitted in {unit} and assumes every point to have {}; {support}.",
             newton.law.name,
             if has_std { "the absolute error of that column" } else { "the same absolute error" }
         ));
@@ -498,7 +498,7 @@ fn bands(
     let n = places.rows;
     let mut out = Vec::new();
     for (r, response) in model.law.responses.iter().enumerate() {
-        // Of the scatter: the fewest among the coefficients of this load, those of the clusters, say.
+        // Of the scatter: the fewest among the coefficients of this load, those of the clusters, for example.
         let touches = |j: usize| (0..n).any(|i| slopes[(r * n + i, j)] != 0.0);
         let scatter_dof =
             (0..slopes.ncols()).filter(|&j| touches(j)).map(|j| model.budget[0].dof[j]).fold(f64::INFINITY, f64::min);
@@ -644,8 +644,8 @@ mod tests {
         let said = |source: &SourceResult| error_models(source).concat();
         assert!(
             said(&relative).starts_with(
-                "relative.csv, f_x: power_law_log is fitted to logarithms and takes every point to have the same relative error, \
-                 power_law is fitted in N and takes every point to have the same absolute error; \
+                "relative.csv, f_x: power_law_log is fitted to logarithms and assumes every point to have the same relative error, \
+                 power_law is fitted in N and assumes every point to have the same absolute error; \
                  the residuals support the same relative error ("
             ),
             "{}",

@@ -181,7 +181,7 @@ fn the_hello_tells_board_rate_and_the_last_reset() {
 }
 
 #[test]
-fn at_921600_every_fourth_tick_is_told() {
+fn at_921600_every_fourth_tick_is_reported() {
     let mut bench = Bench::configured();
     let mut ticks = vec![];
     for _ in 0..400 {
@@ -239,7 +239,7 @@ fn requests_that_come_within_a_tick_are_all_answered() {
 }
 
 #[test]
-fn what_the_controller_refuses_is_told_by_name() {
+fn what_the_controller_refuses_is_reported_by_name() {
     let mut bench = Bench::configured();
     let verdict = bench.verdict(&ToBoard::Request { id: 2, request: Request::Home { axis: 7 } });
     assert_eq!(verdict, Verdict::Refused(Refusal::NoSuchAxis));
@@ -255,7 +255,7 @@ fn no_configuration_is_taken_while_an_axis_is_enabled() {
 }
 
 #[test]
-fn a_skipped_tick_is_told_and_counted() {
+fn a_skipped_tick_is_reported_and_counted() {
     let mut bench = Bench::configured();
     bench.board.waiting += 2; // and a third with `tick`
     let said = bench.tick();
@@ -401,7 +401,7 @@ fn what_was_asked_for_before_a_stop_is_not_begun_after_it() {
 }
 
 #[test]
-fn after_its_silence_the_next_one_that_greets_has_the_board_and_the_first_one_is_told() {
+fn after_its_silence_the_next_one_that_greets_has_the_board_and_the_first_one_is_reported() {
     let mut bench = Bench::enabled();
     bench.send(FIRST, &ToBoard::Heartbeat);
     bench.pass(800, None);

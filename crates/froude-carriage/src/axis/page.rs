@@ -78,7 +78,7 @@ pub fn sections(outcome: &AxisModels) -> Vec<DocumentSection> {
     sections
 }
 
-/// Coefficients with the published-style standard deviation beside the honest interval.
+/// Coefficients with the published-style standard deviation beside the realistic interval.
 #[must_use]
 pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> TextTable {
     TextTable {
@@ -112,7 +112,7 @@ pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> 
     }
 }
 
-/// Two masses; behind a gear of which nobody declared the efficiency every row says that it is apparent.
+/// Two masses; behind a gear whose efficiency is not declared every row is marked as apparent.
 #[must_use]
 pub fn flexible_table(report: &FlexibleReport) -> TextTable {
     let mut table =
@@ -221,7 +221,7 @@ mod tests {
         assert_eq!(
             (force.series.len(), residual.series.len()),
             (12, 6),
-            "command and model of six runs, and what is left"
+            "command and model of six runs, and the residual"
         );
         for series in force.series.iter().chain(&residual.series) {
             assert_eq!(series.x.len(), 60, "a run whole");

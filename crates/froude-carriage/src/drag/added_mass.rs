@@ -30,7 +30,7 @@ pub struct AddedMass {
     pub mass_kg: Uncertain,
     /// Its 95 % interval, kg.
     pub interval_95: [f64; 2],
-    /// Ballast that was taken off, kg; `None` where it is not known and is still in the mass.
+    /// Ballast that was subtracted, kg; `None` where it is not known and is still in the mass.
     pub ballast_kg: Option<f64>,
     /// Pairs of runs used.
     pub runs: usize,

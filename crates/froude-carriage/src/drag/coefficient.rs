@@ -176,7 +176,7 @@ fn offset(points: &[Point]) -> Option<Uncertain> {
     Some(Uncertain { value: fit(None)?, standard, dof })
 }
 
-/// D_d from wet-less-dry differences, its scatter held against what the dry repeats show; `None` without a moving point.
+/// D_d from wet-less-dry differences, its scatter compared with what the dry repeats show; `None` without a moving point.
 ///
 /// # Errors
 ///
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_force_beside_the_drag_is_told() {
+    fn a_constant_force_beside_the_drag_is_reported() {
         let points: Vec<Point> = (0..3)
             .flat_map(|k| {
                 [0.1, 0.3, -0.5]

@@ -1,4 +1,4 @@
-//! What drag a campaign can see, said from still and dry repeats alone, before a body is mounted wet.
+//! Which drag a campaign can detect, predicted from still and dry repeats alone, before a body is mounted wet.
 //!
 //! Dry runs of one speed and direction differ by what will scatter the difference of wet and dry. Part of it all runs of a pair share
 //! (mount, hour: standard deviation s_p), part not (s_r). One difference then scatters by √2 √(s_p² + s_r²), its mean over m differences
@@ -6,7 +6,7 @@
 //! those of a two-way layout (cells of speed and direction against pairs, no interaction); s_p = 0 where the mean square between pairs is
 //! not above that of the rest, which then are pooled.
 //!
-//! The prediction is held against the scatter of the wet runs: the ratio of the two variances follows Fisher's F when they agree.
+//! The prediction is compared with the scatter of the wet runs: the ratio of the two variances follows Fisher's F when they agree.
 //!
 //! **Source.** Searle, Casella & McCulloch (1992), *Variance Components*, 4.3; Satterthwaite (1946) for the degrees of freedom of sums.
 

@@ -1,6 +1,6 @@
 //! Why runs of a carriage give no drag.
 
-/// Why runs of a carriage give no drag; each message says what to do.
+/// Why runs of a carriage give no drag; each message states what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DragError {

@@ -1,4 +1,4 @@
-//! Errors of the forces that a carriage measures, as the budget wants them.
+//! Errors of the forces that a carriage measures, as the budget needs them.
 
 use super::coefficient::{Method, Point};
 use super::run::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLARED_ROLLING};

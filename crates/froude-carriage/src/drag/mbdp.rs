@@ -5,7 +5,7 @@
 //!
 //! - **constant**: C, B as printed. **mapped**: C over position.
 //! - **flexible**: eq. 2. The motor side gives the chain's force, the chain's law gives how far the load lags behind, and
-//!   the load's own acceleration is taken off. At constant speed it is the mapped model; it differs on the ramps.
+//!   the load's own acceleration is subtracted. At constant speed it is the mapped model; it differs on the ramps.
 
 use super::coefficient::Point;
 use super::friction::Friction;

@@ -1,4 +1,4 @@
-//! What each method makes of the runs: steady points, how these scatter, and the errors that only it knows.
+//! What each method makes of the runs: steady points, how these scatter, and the errors that only it has.
 //!
 //! The scatter is that of the pairs, each left out in turn, since runs of one pair share mounts and the hour; with one pair that of its runs. It is
 //! not believed below what is known to differ between any two runs: noise and zeros of the sensor, or what the dry repeats show.
@@ -82,7 +82,7 @@ impl<'r, 'a> Tows<'r, 'a> {
         }
     }
 
-    /// What the dry repeats promise of so many points.
+    /// What the dry repeats predict for so many points.
     pub fn promised(&self, points: &[Point], setup: &DragSetup) -> Option<Detectability> {
         predict(&self.means, differences_per_speed(points), pairs(points).len(), setup)
     }
@@ -218,7 +218,7 @@ impl Observed {
         Self { method, points, scatter, errors: Vec::new(), elsewhere: None }
     }
 
-    /// Differences of wet and dry runs; pairs are held against what the dry repeats promise.
+    /// Differences of wet and dry runs; pairs are compared with what the dry repeats predict.
     pub fn of_differences(points: Vec<Point>, promised: Option<&Detectability>, setup: &DragSetup) -> Self {
         let mut out = Self::of(Method::Mcd, points, setup);
         if let (Some(promised), Scatter::Replicates { sets, .. }) = (promised, &mut out.scatter) {

@@ -1,7 +1,7 @@
 //! D_d while the campaign runs, and when it may stop.
 //!
 //! Every look is the whole reduction of the differences so far, with the whole budget: an interval without the errors that all runs
-//! share (efficiency, calibration, buoyancy) would stop a campaign that knows nothing. Looking after every pair and stopping at the first
+//! share (efficiency, calibration, buoyancy) would stop a campaign without information. Looking after every pair and stopping at the first
 //! interval that is short enough is sequential testing: the interval that stops a campaign is one that chance made short. Two things hold
 //! against it: looks only after whole pairs, from the third on, and Bonferroni over the looks that are planned
 //! ([`DragSetup::looks`]), so that all intervals shown cover together with 95 %. The price is some 40 % of width over ten looks. After an

@@ -56,7 +56,7 @@ pub(super) fn reduced(observed: &Observed, setup: &DragSetup) -> Result<Option<R
     }))
 }
 
-/// The points as observations, the drag of the strut taken off: loads of the fluid on the body, against the motion.
+/// The points as observations, with the drag of the strut subtracted: loads of the fluid on the body, against the motion.
 fn observations(points: &[Point], setup: &DragSetup) -> Dataset {
     let strut = setup.strut_n_s2_m2.map_or(0.0, |s| s.value);
     let speed: Vec<f64> = points.iter().map(|p| p.speed_m_s).collect();

@@ -18,7 +18,7 @@ use froude_identify::IdentifyError;
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;
 /// A constant force beside the drag is reported when it exceeds this many standard uncertainties of its own …
-const OFFSET_TOLD: f64 = 3.0;
+const OFFSET_REPORTED: f64 = 3.0;
 /// … and moves D_d by more than this part of it.
 const OFFSET_MATTERS: f64 = 0.005;
 
@@ -33,7 +33,7 @@ pub struct DragReport {
     pub ratios: Vec<f64>,
     /// The method whose estimate is recommended.
     pub recommended: Option<Method>,
-    /// What the dry repeats promised.
+    /// What the dry repeats predict.
     pub detectability: Option<Detectability>,
     /// Whether the wet repeats kept it.
     pub agreement: Option<Agreement>,
@@ -57,7 +57,7 @@ pub fn drag_report(runs: &[DragRun<'_>], setup: &DragSetup) -> Result<DragReport
     drag_by(runs, setup, &Method::ALL)
 }
 
-/// The same by some of the methods; nothing is said of the others.
+/// The same by some of the methods; nothing is stated about the others.
 ///
 /// # Errors
 ///
@@ -82,7 +82,7 @@ pub fn drag_by(runs: &[DragRun<'_>], setup: &DragSetup, methods: &[Method]) -> R
     Ok(judge(runs, setup, coefficients, methods.contains(&Method::Mcd).then_some(&tows), reported))
 }
 
-/// The methods beside each other: which is the best, whether they agree among themselves and with what the dry repeats promised.
+/// The methods beside each other: which is the best, whether they agree among themselves and with what the dry repeats predict.
 ///
 /// `tows` where motor current differences were asked for.
 fn judge(
@@ -240,14 +240,14 @@ fn doubts(
             out.push(Finding::new(Severity::Warning, "few-pairs", format!("{name}: {pairs}; {so}")));
         }
         if let Some(f) = c.offset_n
-            && f.value.abs() > OFFSET_TOLD * f.standard
+            && f.value.abs() > OFFSET_REPORTED * f.standard
             && offset_share(c, f.value) > OFFSET_MATTERS
         {
             out.push(Finding::new(
                 Severity::Warning,
                 "constant-beside-drag",
                 format!(
-                    "{name}: a constant {:+.3} ± {:.3} N stands beside the drag, {:.1} % of D_d: friction that wet and dry do \
+                    "{name}: a constant force of {:+.3} ± {:.3} N remains beside the drag, {:.1} % of D_d: friction that wet and dry do \
                      not share (wheel load, wet strut, a drifting zero)",
                     f.value,
                     f.standard,
@@ -323,7 +323,7 @@ fn swings(rejected: &[(Method, Rejected)]) -> Option<Finding> {
     })
 }
 
-/// Force sensor and motor current measure one drag: a difference beyond both intervals (E_n > 1, ISO 13528:2022, 9.7) is a trouble
+/// Force sensor and motor current measure one drag: a difference beyond both intervals (E_n > 1, ISO 13528:2022, 9.7) is a fault
 /// that neither budget knows.
 fn sensor_against_current(all: &[Coefficient]) -> Option<Finding> {
     let of = |method: Method| {

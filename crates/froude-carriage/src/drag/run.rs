@@ -42,7 +42,7 @@ pub struct DragRun<'a> {
     pub reference_speed_m_s: &'a [f64],
     /// Drive command v_c, V, positive drives towards +y.
     pub command_v: &'a [f64],
-    /// Force sensor, N, resistance to +y motion positive; its zero is not taken off.
+    /// Force sensor, N, resistance to +y motion positive; its zero is not subtracted.
     pub force_n: Option<&'a [f64]>,
     /// What it is for.
     pub kind: RunKind,
@@ -116,7 +116,7 @@ pub enum Ballast {
     },
     /// The wheels carry less in the wet runs.
     Unballasted {
-        /// Wheel load that buoyancy takes off, N.
+        /// Wheel load that buoyancy removes, N.
         unloaded_n: f64,
         /// Rolling coefficient. Declared, the lost friction is put back and its uncertainty kept; `None`: the value
         /// stays as it is and the interval reaches over [`UNDECLARED_ROLLING`].
@@ -173,7 +173,7 @@ pub struct DragSetup {
     pub speed_scale_relative: f64,
     /// Wheel load wet and dry.
     pub ballast: Ballast,
-    /// D_d of the strut alone, N s²/m², taken off; `None`: the coefficient is that of body and strut.
+    /// D_d of the strut alone, N s²/m², subtracted; `None`: the coefficient is that of body and strut.
     pub strut_n_s2_m2: Option<Uncertain>,
     /// Density of the water, kg/m³.
     pub density_kg_m3: f64,

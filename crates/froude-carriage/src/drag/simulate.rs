@@ -5,7 +5,7 @@
 //! grows mid-tank, changes from run to run and wanders, K_T that drifts, a gear that loses, a sensor that drifts.
 //!
 //! **Setting.** Trapezoids of one acceleration, still before and after; pairs of dry and wet runs in turn (dry, wet, wet,
-//! dry). The friction's Coulomb part carries the bump and the run-to-run change unless said otherwise.
+//! dry). The friction's Coulomb part carries the bump and the run-to-run change unless stated otherwise.
 
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -48,7 +48,7 @@ pub struct Scenario {
     pub noise_time_s: f64,
     /// Change of K_T from run to run, standard deviation, as a part.
     pub torque_drift: f64,
-    /// Friction that buoyancy takes off the wheels in wet runs, N.
+    /// Friction that buoyancy removes from the wheels in wet runs, N.
     pub buoyancy_friction_n: f64,
     /// Drift of the sensor over a run: uniform, half-width, N.
     pub sensor_drift_n: f64,

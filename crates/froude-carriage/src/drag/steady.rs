@@ -1,4 +1,4 @@
-//! The steady window of a tow, and the mean over it with an honest uncertainty.
+//! The steady window of a tow, and the mean over it with a realistic uncertainty.
 //!
 //! The window is the longest stretch of constant reference speed, less a first part in which force and flow settle.
 //! The mean over it counts the correlation of its samples ([`froude_fit::series`]).
@@ -215,7 +215,7 @@ pub fn window(run: &DragRun<'_>, settings: SteadySettings) -> Result<Window, Rej
     Ok(Window { first: held.first + dropped, end: held.end - corner })
 }
 
-/// The steady window with the settling of a force taken off: as long as the first fifth differs from the rest, it is
+/// The steady window without the settling of a force: as long as the first fifth differs from the rest, it is
 /// dropped. A slow ripple is then cut to whole periods.
 ///
 /// Differences within `slack` (unit of the force) are let pass: a sensor whose zero is known no better than that.
@@ -319,7 +319,7 @@ pub fn driving_part(
     Ok(left)
 }
 
-/// The stand-still before and after the tow, settling taken off; `None` where there is none long enough.
+/// The stand-still before and after the tow, without settling; `None` where there is none long enough.
 #[must_use]
 pub fn still_windows(run: &DragRun<'_>, settings: SteadySettings) -> [Option<Window>; 2] {
     let still = stretches(run.reference_speed_m_s, |v| v == 0.0);

@@ -67,7 +67,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     } else {
         let has_interval = report.coefficients.iter().any(|c| c.interval_95.is_some());
         let why = if has_interval {
-            "neither the force sensor nor the difference of wet and dry runs states an interval here, and those of the models depend on \
+            "neither the force sensor nor the difference of wet and dry runs gives an interval here, and those of the models depend on \
              their own friction"
         } else {
             "no method can state an interval from these runs"

@@ -4,7 +4,7 @@ use froude_fit::nonlinear::NonlinearError;
 use froude_fit::stream::StreamError;
 use froude_signal::SignalError;
 
-/// Why an axis could not be identified; each message says what to do.
+/// Why an axis could not be identified; each message states what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ServoError {

@@ -2,7 +2,7 @@
 //!
 //! Parameters are moved until the simulated loop gives the recorded command (the force) best. In a stiff loop position
 //! follows the reference whatever the parameters are, and only the force tells them; that is why the residual is that of the
-//! force. The result hangs on the loop: a gain that is not the true one moves the parameters.
+//! force. The result depends on the loop: a gain that is not the true one moves the parameters.
 //!
 //! # Source
 //!

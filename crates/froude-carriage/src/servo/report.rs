@@ -294,7 +294,7 @@ mod tests {
         (rows, chain, scenario)
     }
 
-    /// Twelve runs each; 20 campaigns hold the truth 19 times, less three standard deviations of 1.0.
+    /// Twelve runs each; 20 campaigns contain the truth 19 times, less three standard deviations of 1.0.
     #[test]
     fn intervals_over_runs_hold_the_friction_that_changes_from_run_to_run() {
         let mut inside = 0;
@@ -321,7 +321,7 @@ mod tests {
         assert_eq!(report.spread.runs, None);
         assert_eq!(
             report.findings.last().unwrap(),
-            "the intervals do not hold what changes from run to run: 4 runs are too few, 5 are needed; they are those of blocks \
+            "the intervals do not include what changes from run to run: 4 runs are too few, 5 are needed; they are those of blocks \
              within the runs"
         );
     }

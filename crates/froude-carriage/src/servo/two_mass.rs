@@ -7,7 +7,7 @@
 //!
 //! Only `p` and `u` are measured. **Identified** by prediction error: an observer that runs the model and is corrected at every sample by
 //! the encoder ([`Stepper::innovations`]) predicts the next position, and parameters are moved until the squares of what it fails to
-//! predict are least. A free simulation would carry a force that nobody records along for seconds, and would see it as
+//! predict are least. A free simulation would carry an unrecorded force for seconds, and would see it as
 //! a slow error of speed that no block holds; here it acts once, and what is left is nearly white. How much the observer trusts the encoder, the
 //! ratio of unrecorded force to noise of position, is the one that predicts best.
 //!
@@ -71,7 +71,7 @@ const TRIM_S: f64 = 0.2;
 pub enum Gear {
     /// There is none, or it takes nothing.
     Lossless,
-    /// It takes some and nobody says how much: what lies behind it is found as it appears through it.
+    /// It takes some of the torque, and how much is not declared: what lies behind it is found as it appears through the gear.
     Undeclared,
     /// Declared or calibrated.
     Declared {
@@ -148,7 +148,7 @@ pub struct Split {
 pub struct FlexibleReport {
     /// At the chain: `m`, `M`, `K_e`, `B_e`, `B_sum`, `C_sum`; at the motor: `J_m`, `J_eff`, `B_eff`, `C_eff`; `f_antiresonance`, `f_resonance`.
     ///
-    /// `block_std` and the interval hold the declared inputs' uncertainties, the other two only scatter.
+    /// `block_std` and the interval include the declared inputs' uncertainties, the other two only scatter.
     pub coefficients: Vec<ServoCoefficient>,
     /// Covariance of the first [`CHAIN_PARAMETERS`] of them, at the chain, from scatter.
     pub scatter: Mat<f64>,
@@ -160,7 +160,7 @@ pub struct FlexibleReport {
     pub splits: Vec<Split>,
     /// The axis with these parameters.
     pub axis: TwoMass,
-    /// Whether what lies behind the gear is as it appears through it, because nobody declared its efficiency.
+    /// Whether what lies behind the gear is as it appears through it, because its efficiency is not declared.
     pub is_apparent: bool,
     /// `‖speed − model‖/‖speed‖` of the motor in a free simulation.
     pub relative_speed_error: f64,
@@ -431,7 +431,7 @@ impl<'a> Record<'a> {
         }
         if self.options.gear == Gear::Undeclared {
             findings.push(
-                "no efficiency of the gear is declared: mass, stiffness, damping and friction behind it are apparent, through the gear,                  1/eta times the true ones while the motor drives and eta_b times while it is driven (1.25 and 0.75 for a gear of 0.8 and                  0.75), and their intervals do not include that factor"
+                "no efficiency of the gear is declared: mass, stiffness, damping and friction behind it are apparent, through the gear, 1/eta times the true ones while the motor drives and eta_b times while it is driven (1.25 and 0.75 for a gear of 0.8 and 0.75), and their intervals do not include that factor"
                     .to_owned(),
             );
         }

@@ -1,4 +1,4 @@
-//! Modes of the two-mass carriage from its motor-side response, and the shaper that they ask for.
+//! Modes of the two-mass carriage from its motor-side response, and the input shaper for them.
 //!
 //! Motor side of MCD eq. 2: θ/v_c = k (s² + 2ζ_a ω_a s + ω_a²) / (s (s + b) (s² + 2ζ_p ω_p s + ω_p²)) · e^(−sT).
 //! Its **antiresonance** ω_a = √(K_e/M) is the load swinging on a motor that stands still, which is what a stiff position loop
@@ -23,7 +23,7 @@ pub struct Mode {
     pub damping_std: f64,
 }
 
-/// What the response says of the two masses.
+/// What the response states about the two masses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwoMassModes {
     /// Load on a motor held still: the mode to shape for.

@@ -27,7 +27,7 @@ pub struct GroupScore {
 /// Fewest groups: with two, each would be predicted from a single other one.
 const FEWEST_GROUPS: usize = 3;
 
-/// Predicts each group (a configuration, say) from a fit to all others.
+/// Predicts each group (a configuration, for example) from a fit to all others.
 ///
 /// `groups` has an entry per row. A component is not scorable with fewer than
 /// three groups, or when the others do not determine what a group needs.
@@ -93,7 +93,7 @@ fn not_scored(problem: &Problem, reason: &str) -> Vec<ComponentScore<GroupScore>
     problem.components.iter().map(score).collect()
 }
 
-/// Whether the coefficients do not hang on how the components' scatters compare: no two components share one, nothing is known before,
+/// Whether the coefficients are independent of how the components' scatters compare: no two components share one, nothing is known before,
 /// and every row counts by its square.
 fn is_weighed_alone(problem: &Problem, options: &Options) -> Result<bool, FitError> {
     let is_alone = |block: &Block| block.components.len() == 1 && block.priors.is_empty();

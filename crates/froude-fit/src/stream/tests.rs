@@ -588,8 +588,8 @@ fn what_is_wrong_is_said_with_its_place() {
     let error = clustered_factors(&columns, &three).covariance(0, ClusterKind::Cr3).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "3 clusters; cluster-robust covariance is refused below 5, where its interval is not \
-         honest"
+        "3 clusters; cluster-robust covariance is refused below 5, where its interval is \
+         unreliable"
     );
 }
 

@@ -116,7 +116,7 @@ fn four_clusters_are_refused_in_words() {
     assert_eq!(
         error.to_string(),
         "component \"y\" has 4 clusters; cluster-robust covariance (CR3) is refused below 5, \
-         where its interval is not honest"
+         where its interval is unreliable"
     );
     let none = Problem { cluster: None, ..problem };
     assert_eq!(fit(&none, &with(CovarianceKind::Cr3)).unwrap_err(), FitError::NoClusters);

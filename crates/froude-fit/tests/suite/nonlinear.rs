@@ -339,7 +339,7 @@ fn what_nuisances_undo_is_not_determined() {
 }
 
 #[test]
-fn the_impossible_at_the_start_is_told_and_on_the_way_avoided() {
+fn the_impossible_at_the_start_is_reported_and_on_the_way_avoided() {
     // √ of a negative number beyond 1: the first full step lands there.
     let residuals = |_: usize, b: &[f64]| (b[0] <= 1.0).then(|| vec![0.02 - (1.0 - b[0]).sqrt(), 0.0]);
     let start = |at: f64| [Parameter::new("b", at, 0.01)];
@@ -469,7 +469,7 @@ fn no_number_makes_a_fit_panic() {
 
 /// A fit from a worse minimum is found out by its profile.
 #[test]
-fn a_profile_below_the_solution_is_told() {
+fn a_profile_below_the_solution_is_reported() {
     // Two valleys in b, at −1 (deeper) and near 1, and little between them.
     let residuals = |_: usize, b: &[f64]| Some(vec![0.3 * (b[0] * b[0] - 1.0), 0.05 * (b[0] + 1.0), 1.0]);
     let model = given(1, residuals);

@@ -112,7 +112,7 @@ fn what_it_does_not_take_is_said() {
     let wild = WildOptions::default();
     let fixed = Options { fixed: vec![(1, 0.0)], ..Options::default() };
     let error = wild_cluster(&problem, &fixed, 1, &wild).unwrap_err();
-    assert_eq!(error.to_string(), "an interval does not take a coefficient that is fixed or excluded");
+    assert_eq!(error.to_string(), "an interval does not accept a coefficient that is fixed or excluded");
     let mut rng = rng(1);
     problem.cluster = Some((0..60).map(|_| rng.random_range(0..4)).collect());
     let error = wild_cluster(&problem, &Options::default(), 1, &wild).unwrap_err();

@@ -10,9 +10,9 @@ use crate::uncertainty::coverage_factor;
 /// Coverage factor where no degrees of freedom are stated: two-sided 95 % of the normal distribution.
 pub(super) const NORMAL_COVERAGE: f64 = 1.959_963_984_540_054;
 
-/// What is said in place of E_n where two estimates come from the same observations.
+/// The text in place of E_n where two estimates come from the same observations.
 pub const SAME_DATA: &str = "same data: not independent, E_n not meaningful";
-/// What is said in place of χ² there.
+/// The text in place of χ² there.
 pub(super) const SAME_DATA_JOINTLY: &str = "same data: not independent, χ² not meaningful";
 
 /// A number as one estimate states it.

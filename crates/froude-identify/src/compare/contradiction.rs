@@ -67,7 +67,7 @@ fn digits_exchanged(a: f64, b: f64) -> bool {
 /// Relative difference of density that a dimensional coefficient shows: a tenth of fresh against sea water.
 const DENSITY_MATTERS: f64 = 0.002;
 
-/// Densities of two estimates that differ, where the coefficients go with them.
+/// Densities of two estimates that differ, where the coefficients depend on them.
 pub(super) fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
     let (x, y) = (a.density()?, b.density()?);
     let has_dimension = |e: &Estimate| e.coefficients.values().any(|c| c.unit.contains("kg") || c.unit.contains('N'));
@@ -76,15 +76,15 @@ pub(super) fn density_differs(a: &Estimate, b: &Estimate) -> Option<Finding> {
             Severity::Warning,
             "density-differs",
             format!(
-                "{} was measured in water of {} {}, {} in {} {}: coefficients with kg or N in their unit, and the forces that they give, are proportional \
-                 to the density; scale one of them before comparing",
+                "{} was measured in water of {} {}, {} in {} {}: coefficients with kg or N in their unit, and the forces that they give, depend on \
+                 the density; scale one of them before comparing",
                 a.id, x.value, x.unit, b.id, y.value, y.unit
             ),
         )
     })
 }
 
-/// Forces of a carriage, which knows no axis of the body, beside those in body axes.
+/// Forces of a carriage, which has no axis of the body, beside those in body axes.
 pub(super) fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
     let (chain, body) = match [a, b].map(|e| e.frame.is_chain()) {
         [true, false] => (a, b),
@@ -96,7 +96,7 @@ pub(super) fn axes_not_tied(a: &Estimate, b: &Estimate) -> Option<Finding> {
         "axes-not-tied",
         format!(
             "{} is along the chain of its carriage, {} in body axes: their f_x are compared as if the body had been towed along its x \
-             axis; if it was towed across it, they are two forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign; of runs that are driven already, in \
+             axis; if it was towed across it, they are two different forces. Declare it by travel = \"x\" (or \"y\") in [body] of the carriage's campaign; of runs that are driven already, in \
              a campaign that `froude carriage drag --campaign` names",
             chain.id, body.id
         ),

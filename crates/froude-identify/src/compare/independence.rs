@@ -25,7 +25,7 @@ fn fingerprints<'a>(files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a s
     files.filter(|data| is_observed(data)).map(|data| data.sha256.as_str()).collect()
 }
 
-/// Where an estimate comes from, as far as its record tells.
+/// Where an estimate comes from, as far as its record shows.
 pub(super) struct Origin<'a> {
     /// Fingerprints of its tables or runs.
     tables: BTreeSet<&'a str>,
@@ -51,7 +51,7 @@ pub(super) fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
     all.iter().map(of).collect()
 }
 
-/// True for two models of one source in one record, which nobody takes for independent.
+/// True for two models of one source in one record, which are not independent.
 pub(super) fn is_one_source(a: &Named<'_>, b: &Named<'_>) -> bool {
     std::ptr::eq(a.record, b.record) && a.estimate.source == b.estimate.source
 }
@@ -75,7 +75,7 @@ pub(super) fn have_other_tables([a, b]: [&Origin<'_>; 2]) -> bool {
     !a.tables.is_empty() && !b.tables.is_empty() && a.tables.is_disjoint(&b.tables)
 }
 
-/// True where two estimates come from the same observations, as far as their records tell.
+/// True where two estimates come from the same observations, as far as their records show.
 ///
 /// A record says which files each estimate came from. An old one names its tables, but not which source read which: there a shared table counts where that is plain (one table, or
 /// one source), and else if the sources have the same name or the same observations (number and ranges). Without

@@ -182,7 +182,7 @@ fn a_law_that_gives_no_force_along_or_across_has_no_part_in_the_range() {
     assert!(!c.loads.is_empty() && codes(&c).is_empty(), "{:?}", c.findings);
 }
 
-/// One calibration, declared with two uncertainties: nobody can say which is right.
+/// One calibration, declared with two uncertainties: it is not known which is right.
 #[test]
 fn one_error_with_two_uncertainties_is_said_and_not_taken_out() {
     let mut other = calibrated("b", 41.0, "cal/1");

@@ -12,7 +12,7 @@ use super::{MOST_COMPARED, Named};
 /// Estimates named where nothing could be compared.
 const MOST_NAMED: usize = 6;
 
-/// That no two estimates have anything in common, and what each has: for whoever asked for nothing but a comparison.
+/// That no two estimates have anything in common, and what each has: for a command that asks for a comparison only.
 #[must_use]
 pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
     let is_said = out.findings.iter().any(|f| matches!(f.code.as_str(), "no-common-range" | "not-compared"));
@@ -38,7 +38,7 @@ pub fn nothing_compared(all: &[Named<'_>], out: &Comparison) -> Option<Finding> 
     ))
 }
 
-/// Which estimates stand beside no other, and why: for whoever asked for nothing but a comparison.
+/// Which estimates are compared with no other, and why: for a command that asks for a comparison only.
 #[must_use]
 pub fn left_out(all: &[Named<'_>], out: &Comparison) -> Option<Finding> {
     let of_rows = out.coefficients.iter().flat_map(|row| [&row.first, &row.second]);

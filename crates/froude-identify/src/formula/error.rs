@@ -1,4 +1,4 @@
-//! What can be wrong with a formula, said with the place or the part.
+//! What can be wrong with a formula, stated with the place or the part.
 
 use super::{COEFFICIENT_LIMIT, DEPTH_LIMIT, LENGTH_LIMIT};
 

@@ -1,4 +1,4 @@
-//! What a name in a formula stands for.
+//! What a name in a formula means.
 
 use super::affine::Affine;
 use super::error::FormulaError;

@@ -1,4 +1,4 @@
-//! What all rows of a long table say without a fit: how many there are, the ends of their ranges, what the lints count.
+//! What all rows of a long table show without a fit: how many there are, the ends of their ranges, what the lints count.
 //!
 //! A lint looks at few rows: the fastest, the most turned, those with the largest loads. The first pass finds the ends of every channel, the
 //! second those among rows that move or move fast, which only the first can tell. On these rows the lints themselves are run.
@@ -103,7 +103,7 @@ impl Facts {
             // Links are read from names, viscosity from temperatures: what some rows have, others may lack.
             return Err(refusal(
                 source,
-                "rows that do not all say the same quantities (configurations HkLT beside others, air beside water)",
+                "rows that do not all state the same quantities (configurations HkLT beside others, air beside water)",
             ));
         }
         self.n_read += table.n_rows;

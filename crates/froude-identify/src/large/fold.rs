@@ -1,4 +1,4 @@
-//! The fit of a long table: triangles of all rows, then what their residuals say.
+//! The fit of a long table: triangles of all rows, then what their residuals show.
 
 use froude_fit as fit;
 use froude_fit::faer::{Col, Mat};
@@ -148,7 +148,7 @@ fn refused(law: &ForceLaw, source: &str, columns: &[usize], error: StreamError) 
     IdentifyError::NoFit { source_name: source.to_owned(), model: law.name.clone(), why }
 }
 
-/// What the residuals of all rows say of a model.
+/// What the residuals of all rows state about a model.
 pub(super) struct Residuals {
     /// What gives the leverage of a row, where it follows from the row alone.
     hat: Option<Hat>,

@@ -1,7 +1,7 @@
 //! A tare at other angles than its own.
 //!
 //! Straight ahead a strut only drags; at drift it also pushes sideways, and that force
-//! stays in the loads of the body when the tare knows nothing of it.
+//! stays in the loads of the body when the tare does not contain it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -48,7 +48,7 @@ pub(super) fn beyond_its_angles(
     let beyond = |reach: f64| -> Vec<usize> {
         moving(speed, AT_REST).into_iter().filter(|&i| askew(i) > reach + SAME_ANGLE_RAD).collect()
     };
-    // Of a load that the law does not give, the tare knows nothing at any angle.
+    // Of a load that the law does not give, the tare contains nothing at any angle.
     let stays_in = |load: &str| data.values(load).filter(|_| gives(load).is_none());
     let (side, moment) = (stays_in("f_y"), stays_in("m_z"));
     let rows = beyond(if side.is_some() || moment.is_some() { 0.0 } else { reach });
@@ -66,7 +66,7 @@ pub(super) fn beyond_its_angles(
             let stays_n = |i: usize| -drag_n[i] * angle[i].sin();
             left.extend(size(&rows, &stays_n, side).map(|(most_n, percent)| {
                 format!(
-                    "its side force stays in f_y: for a strut whose drag is the same from all sides up to {most_n:.3} N, {percent:.1} % of the \
+                    "its side force stays in f_y: for a strut whose drag is the same from all sides, up to {most_n:.3} N, {percent:.1} % of the \
                      measured f_y (and of its coefficients), for a streamlined one several times that"
                 )
             }));
@@ -75,7 +75,7 @@ pub(super) fn beyond_its_angles(
             let stays_n = |i: usize| -drag_n[i] * angle[i].sin() - predicted[q * data.rows + i];
             left.extend(size(&beyond(reach), &stays_n, side).map(|(most_n, percent)| {
                 format!(
-                    "its side force differs there: for a strut whose drag is the same from all sides by up to {most_n:.3} N, {percent:.1} % \
+                    "its side force differs there: for a strut whose drag is the same from all sides, by up to {most_n:.3} N, {percent:.1} % \
                      of the measured f_y"
                 )
             }));
@@ -84,7 +84,7 @@ pub(super) fn beyond_its_angles(
             let stays_n = |i: usize| drag_n[i] * angle[i].cos() - predicted[r * data.rows + i];
             left.extend(size(&beyond(reach), &stays_n, along).map(|(most_n, percent)| {
                 format!(
-                    "its drag differs there: for a strut whose drag is the same from all sides by up to {most_n:.3} N, {percent:.1} % of the \
+                    "its drag differs there: for a strut whose drag is the same from all sides, by up to {most_n:.3} N, {percent:.1} % of the \
                      measured f_x"
                 )
             }));

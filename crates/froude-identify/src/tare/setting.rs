@@ -1,4 +1,4 @@
-//! A tare in another setting than its own: another fluid, other speeds or angles, the other way; or one that its own record calls wrong.
+//! A tare in another setting than its own: another fluid, other speeds or angles, the other way; or one whose own record reports errors.
 
 use froude_records::estimate::{Estimate, EstimateFile, Range};
 use froude_records::finding::{Finding, Severity};
@@ -48,7 +48,7 @@ impl Use<'_> {
         format!("{} of {}", rows.len(), counted(self.data.rows, "row", "rows"))
     }
 
-    /// Drag goes with the density: fresh water and the sea differ by 2.7 %. A law that reads the density has that of these rows.
+    /// Drag is proportional to the density: fresh water and the sea differ by 2.7 %. A law that reads the density has that of these rows.
     pub fn other_fluid(&self) -> Option<Finding> {
         let own = self.estimate.density()?.value;
         let here = self.data.values("density")?;
@@ -67,7 +67,7 @@ impl Use<'_> {
         })
     }
 
-    /// The drag of a carriage is along its chain, and taken off along x.
+    /// The drag of a carriage is along its chain, and subtracted along x.
     pub fn along_the_chain(&self) -> Option<Finding> {
         (self.estimate.frame.is_chain()).then(|| {
             let text = format!(

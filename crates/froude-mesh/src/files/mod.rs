@@ -1,6 +1,6 @@
 //! Mesh files of other programs, read and written.
 //!
-//! **Units.** None is applied: coordinates come as the file has them. Whoever calls scales them, and [`crate::plausible`] says when a
+//! **Units.** None is applied: coordinates come as the file has them. The caller scales them, and [`crate::plausible`] says when a
 //! body is so large that it must have been drawn in millimetres.
 //!
 //! | format | extension | what is read | source |
@@ -17,7 +17,7 @@
 //!
 //! **Why our own readers.** Those that the ecosystem has either lose the place of an error (tobj, stl\_io), read text as `f32` (stl\_io),
 //! refuse NaN (stl\_io), allocate by what a header claims or panic on an odd file (mshio, tobj's materials). Where they read a file,
-//! the tests hold ours against them.
+//! the tests compare ours with them.
 //!
 //! Memory is at most some twenty times the size of the file: a panel of twelve short numbers, mirrored twice.
 

@@ -57,7 +57,7 @@ impl Triangles {
         if self.against > self.with {
             let reported = self.with + self.against;
             notes.push(format!(
-                "the normals of {} of {reported} triangles contradict the order of their corners; the order was taken",
+                "the normals of {} of {reported} triangles contradict the order of their corners; the order was used",
                 self.against
             ));
         }

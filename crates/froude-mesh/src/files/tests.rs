@@ -68,9 +68,9 @@ fn stl_is_read_as_text_and_as_bytes() {
 }
 
 #[test]
-fn normals_of_an_stl_against_its_corners_are_told() {
+fn normals_of_an_stl_against_its_corners_are_reported() {
     let text = format!("solid\n{}endsolid", FACET.replace("normal 0 0 1", "normal 0 0 -1"));
-    let told = "the normals of 1 of 1 triangles contradict the order of their corners; the order was taken";
+    let told = "the normals of 1 of 1 triangles contradict the order of their corners; the order was used";
     assert_eq!(good("a.stl", text).notes, [told]);
 }
 
@@ -176,7 +176,7 @@ fn wamit_mirrors_in_both_planes() {
 }
 
 #[test]
-fn wamit_in_feet_with_walls_and_more_lines_is_told() {
+fn wamit_in_feet_with_walls_and_more_lines_is_reported() {
     let text = "one\n1 32.174\n0 -1\n1\n0 0 0 1 0 0 1 1 0 0 1 0\nmore";
     let notes = [
         "GRAV is 32.174: the file is not in metres and seconds (in feet it is 32.17)",
@@ -325,7 +325,7 @@ fn gmsh_is_read_in_its_four_forms() {
 }
 
 #[test]
-fn a_mistake_is_told_with_its_place_and_the_next_step() {
+fn a_mistake_is_reported_with_its_place_and_the_next_step() {
     let correct = "correct the line, or export the file again";
     let told = [
         (

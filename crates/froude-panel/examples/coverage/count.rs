@@ -81,7 +81,7 @@ pub struct Row {
 }
 
 /// The rule that was asked for first: outside orders of 1.5 to 2.5 the finest value is taken for both, with three times its distance from the
-/// others; inside, 1.5 times what extrapolation takes off, and 3 times the change of the extrapolated value.
+/// others; inside, 1.5 times what extrapolation subtracts, and 3 times the change of the extrapolated value.
 fn asked(values: [f64; 3], now: &Converged) -> [Estimate; 2] {
     let [f3, f2, f1] = values;
     if now.order.is_some_and(|p| (1.5..=2.5).contains(&p)) {

@@ -101,7 +101,7 @@ pub struct PlannedRun {
     pub is_ballasted: bool,
     /// Weight over the pulley, N.
     pub hung_weight_n: f64,
-    /// Where that weight rests on the floor, m; `None` where nobody said.
+    /// Where that weight rests on the floor, m; `None` where it is not stated.
     pub floor_m: Option<f64>,
     /// Wait before it, s.
     pub settle_s: f64,

@@ -1,4 +1,4 @@
-//! Version 1 of the record: read, and lifted to the one of today.
+//! Version 1 of the record: read, and converted to the current one.
 //!
 //! It stated one covariance for scatter and budget together, axes and points in words, and not which files an estimate came from. What it did not
 //! say stays unsaid: the point is not stated, no error has a key, and the whole covariance counts as the estimate's own.

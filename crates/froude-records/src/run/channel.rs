@@ -152,8 +152,9 @@ impl Meaning {
     /// A unit of another dimension than the quantity's, a sign against that of a name of Froude's own.
     pub(crate) fn read(s: &Section<'_>, name: &str) -> Result<Self, RecordError> {
         s.only(&["quantity", "unit", "frame", "sign", "clock"])?;
-        let unit =
-            s.text("unit")?.ok_or_else(|| s.missing("unit", "write unit = \"m\", say; \"1\" for counts and codes"))?;
+        let unit = s
+            .text("unit")?
+            .ok_or_else(|| s.missing("unit", "write unit = \"m\", for example; \"1\" for counts and codes"))?;
         let dimension =
             parse_unit(unit).map_err(|e| wrong(s, "unit", format!("is {unit:?}, which cannot be read: {e}")))?;
         let mut out = Self::of(name, unit, LOG);
@@ -188,7 +189,7 @@ fn dimension_of(quantity: &str) -> Option<Dimension> {
     QUANTITIES.iter().find(|(known, _)| *known == quantity).map(|(_, dimension)| *dimension)
 }
 
-/// What an entry of a sidecar says of a channel beside its name, unit and sign.
+/// What an entry of a sidecar states about a channel beside its name, unit and sign.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Words {
     quantity: Option<String>,

@@ -209,7 +209,7 @@ fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
         (Severity::Warning, "time-gaps", text)
     } else if off > EVEN * median_s {
         let text = format!(
-            "{numbers}: the log is not evenly sampled; filters take every step as {:.6} ms, so look into the logger, or resample it",
+            "{numbers}: the log is not evenly sampled; filters assume every step to be {:.6} ms, so check the logger, or resample it",
             1e3 * median_s
         );
         (Severity::Warning, "uneven-time-steps", text)

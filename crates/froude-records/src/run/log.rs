@@ -29,7 +29,7 @@ pub struct RunLog {
     pub lost: Vec<Gap>,
     /// What is known about the run.
     pub meta: RunMeta,
-    /// What speaks against the log as a whole; empty for one that is as it was recorded.
+    /// Faults of the log as a whole; empty for one that is as it was recorded.
     pub doubts: Vec<Doubt>,
 }
 

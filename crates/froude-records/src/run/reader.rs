@@ -5,7 +5,7 @@
 //! ([`RunReader::refuse_damage`]). A tick is taken only when every topic has its message of it.
 //!
 //! **Whether it is the log.** Where the sidecar has the log's SHA-256 the whole file is summed before anything in it is read: one pass
-//! more over the file. All checksums that the file has itself (chunks, data, summary) are held against it
+//! more over the file. All checksums that the file has itself (chunks, data, summary) are checked against it
 //! besides. What does not fit is in [`RunReader::doubts`].
 
 use std::fs::{File, TryLockError};
@@ -167,7 +167,7 @@ impl<R: Read + Seek> RunReader<R> {
         Ok(reader)
     }
 
-    /// What speaks against the log as a whole; settled when the last block has been read.
+    /// Faults of the log as a whole; settled when the last block has been read.
     #[must_use]
     pub fn doubts(&self) -> &[Doubt] {
         &self.doubts
@@ -670,7 +670,7 @@ impl<R: Read + Seek> RunReader<R> {
                     if lost == 0 {
                         "no byte of it came to the file".to_owned()
                     } else {
-                        format!("{lost} bytes of it, from byte {offset} on, are no whole chunk")
+                        format!("{lost} bytes of it, from byte {offset} on, are not a whole chunk")
                     }
                 );
                 if !self.is_unfinished {
@@ -696,7 +696,7 @@ impl<R: Read + Seek> RunReader<R> {
     }
 }
 
-/// What a log says of itself at its beginning; `None` where that cannot be read.
+/// What a log states about itself at its beginning; `None` where that cannot be read.
 pub(crate) fn head_of(path: &Path) -> Result<Option<RunMeta>, RecordError> {
     let failed = |e: std::io::Error| RecordError::Read { path: path.to_owned(), reason: reason(&e) };
     let Some(mut walk) = Walk::new(BufReader::new(File::open(path).map_err(failed)?)).map_err(failed)? else {

@@ -15,7 +15,7 @@ use crate::run::meta::{RunMeta, RunStatus};
 use crate::run::reader::{RunReader, head_of};
 use crate::run::sidecar::{LARGEST_BYTES, read_run_meta};
 
-/// What speaks against a log as a whole.
+/// Faults of a log as a whole.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Doubt {
     /// What sort of thing.

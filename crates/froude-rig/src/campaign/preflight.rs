@@ -71,13 +71,13 @@ impl Expected {
     /// What a sentence about a coast must add where the mass behind it is a guess.
     fn guess(&self) -> String {
         self.assumed_volume_m3.map_or_else(String::new, |v| {
-            format!(". There is no volume in [body]: that of a {:.1} litre body is taken", 1e3 * v)
+            format!(". There is no volume in [body]: that of a {:.1} litre body is assumed", 1e3 * v)
         })
     }
 }
 
 /// Shortest part at constant speed that can be averaged, s: the reduction drops 0.5 s at its start and 0.05 s at its end and needs 1 s
-/// between. A test of the `froude` crate holds this against the reduction's own settings.
+/// between. A test of the `froude` crate compares this with the reduction's own settings.
 pub const SHORTEST_STEADY_S: f64 = 0.5 + 0.05 + 1.0;
 /// Shortest stand-still that gives a zero after a tow, s: 0.5 s until the wake has passed, and 1 s to average. Held as above.
 pub const SHORTEST_STILL_S: f64 = 0.5 + 1.0;
@@ -341,7 +341,8 @@ fn beyond_the_drive(
     let limits = &axis.limits;
     let mut out = Vec::new();
     if command_v > limits.command_v {
-        let text = format!("{what} asks for {command_v:.2} V, the amplifier takes {:.2} V: {advice}", limits.command_v);
+        let text =
+            format!("{what} asks for {command_v:.2} V, the amplifier accepts {:.2} V: {advice}", limits.command_v);
         out.push(("command", text));
     }
     if current_a > limits.current_a {
@@ -367,7 +368,7 @@ fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forec
     let n_m_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
     // Largest command, its root mean square, what the controller is asked, from where, and what to do about too much.
     let (command_v, rms_v, duration_s, asked, from_m, advice) = match run.drive {
-        Drive::Profile { .. } => unreachable!("a tow is no excitation"),
+        Drive::Profile { .. } => unreachable!("a tow is not an excitation"),
         Drive::Pulses { from_m, volts, period_s, duty, duration_s } => (
             volts.abs(),
             volts.abs() * duty.sqrt(),
@@ -649,7 +650,7 @@ mod tests {
     }
 
     #[test]
-    fn a_configuration_that_the_controller_does_not_take_is_told_with_its_key_and_advice_that_can_be_followed() {
+    fn a_configuration_that_the_controller_does_not_take_is_reported_with_its_key_and_advice_that_can_be_followed() {
         let key = r#"unhomed_speed_limit = "0.018 m/s""#;
         let found = objections(&[(key, r#"unhomed_speed_limit = "0.3 m/s""#)]);
         assert_eq!((found[0].id.as_str(), found[0].kind), ("[rig.y]", "controller"));
@@ -664,7 +665,7 @@ mod tests {
         assert_eq!(with(advised), []);
         assert_eq!(with(advised + 0.001).len(), 1);
         let found = objections(&[(r#"shaped_damping = "0.017 1""#, r#"shaped_damping = "0.95 1""#)]);
-        assert_eq!(found[0].text, "controller.shaped_damping is 0.95; the controller takes 0 to 0.9");
+        assert_eq!(found[0].text, "controller.shaped_damping is 0.95; the controller accepts 0 to 0.9");
     }
 
     #[test]
@@ -688,7 +689,7 @@ mod tests {
     }
 
     #[test]
-    fn a_way_that_the_ramps_use_up_is_told_with_a_way_that_is_enough() {
+    fn a_way_that_the_ramps_use_up_is_reported_with_a_way_that_is_enough() {
         let way = |to: f64| objections(&[(r#"distance = "2.2 m""#, &format!("distance = \"{to} m\""))]);
         let short = way(0.6);
         let text = &short.iter().find(|o| o.id.contains("550mm_s")).unwrap().text;
@@ -743,13 +744,17 @@ mod tests {
     }
 
     #[test]
-    fn an_assumed_volume_is_told_where_the_coast_hangs_on_it() {
+    fn an_assumed_volume_is_reported_where_the_coast_hangs_on_it() {
         let far = [(r#"distance = "2.2 m""#, r#"distance = "4.7 m""#)];
         let guessed = told(&far, Some(6.283e-3)).1;
         let coasts: Vec<_> = guessed.iter().filter(|o| o.kind == "coast").collect();
         assert!(!coasts.is_empty());
         for o in coasts {
-            assert!(o.text.ends_with("There is no volume in [body]: that of a 6.3 litre body is taken"), "{}", o.text);
+            assert!(
+                o.text.ends_with("There is no volume in [body]: that of a 6.3 litre body is assumed"),
+                "{}",
+                o.text
+            );
         }
         assert!(told(&far, None).1.iter().all(|o| !o.text.contains("litre")));
     }

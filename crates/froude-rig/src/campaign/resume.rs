@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn an_empty_sidecar_is_put_aside_and_one_that_a_person_broke_is_told_with_its_line() {
+    fn an_empty_sidecar_is_put_aside_and_one_that_a_person_broke_is_reported_with_its_line() {
         for empty in ["", "\0\0\0\0", "\n"] {
             let folder = tempfile::tempdir().unwrap();
             write(folder.path(), Some("log"), None);

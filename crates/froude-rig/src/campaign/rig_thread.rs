@@ -1,4 +1,4 @@
-//! The rig's own thread: it ticks, whatever anybody else waits for.
+//! The rig's own thread: it ticks, whatever else is waiting.
 //!
 //! It carries out the orders of the campaign. Between them a real rig goes on being ticked, so that the board hears from its host and the
 //! telemetry is read while a person is asked, a disk is slow or logs are read; what goes wrong meanwhile is reported at once. A twin

@@ -36,13 +36,13 @@ use froude_records::carriage::plan::{Drive, JOG_S, OperatorStep, PlannedRun, Ste
 #[non_exhaustive]
 pub enum RunnerError {
     /// The operator asked for it.
-    #[error("stopped by the operator in {run}; run the campaign again to go on from there")]
+    #[error("stopped by the operator in {run}; run the campaign again to resume from there")]
     Stopped {
         /// The run.
         run: String,
     },
     /// The operator asked for it while being asked.
-    #[error("stopped by the operator, who was asked: {prompt}; run the campaign again to go on from there")]
+    #[error("stopped by the operator, who was asked: {prompt}; run the campaign again to resume from there")]
     StoppedWaiting {
         /// What was asked.
         prompt: String,
@@ -55,8 +55,8 @@ pub enum RunnerError {
     },
     /// Another program on the line asked for a stop.
     #[error(
-        "another program on the line (session {session:08x}) stopped the carriage in {run}. Ask who wanted it, then run the campaign \
-         again: it goes on from there"
+        "another program on the line (session {session:08x}) stopped the carriage in {run}. Find out who requested it, then run the campaign \
+         again: it resumes from there"
     )]
     StoppedByAnother {
         /// The run.
@@ -66,8 +66,8 @@ pub enum RunnerError {
     },
     /// Another program on the line asked for a stop while nothing was to move.
     #[error(
-        "another program on the line (session {session:08x}) asked for a stop between two runs, while nothing was to move. Ask who wanted \
-         it, then run the campaign again: it goes on from there"
+        "another program on the line (session {session:08x}) asked for a stop between two runs, while nothing was to move. Find out who requested \
+         it, then run the campaign again: it resumes from there"
     )]
     StoppedAtRest {
         /// The other program's session.
@@ -76,7 +76,7 @@ pub enum RunnerError {
     /// A fault while nothing was to move: the operator was asked, or logs were read.
     #[error(
         "fault between two runs, while nothing was to move: {fault:?} (category {category} stop). Remove the cause, then run the \
-         campaign again: it goes on from there"
+         campaign again: it resumes from there"
     )]
     FaultAtRest {
         /// The fault.
@@ -87,7 +87,7 @@ pub enum RunnerError {
     /// The controller latched a fault.
     #[error(
         "fault in {run}: {fault:?} (category {category} stop); the run is kept and marked. Remove the cause, then run the campaign \
-         again: it goes on from there"
+         again: it resumes from there"
     )]
     Fault {
         /// The run.
@@ -133,7 +133,7 @@ pub enum RunnerError {
     /// A move ended elsewhere.
     #[error(
         "{run}: the move to {target_m:.3} m ended at {at_m:.3} m without a fault: something else stopped the carriage. Run the campaign \
-         again: it goes on from there"
+         again: it resumes from there"
     )]
     Elsewhere {
         /// The run.
@@ -226,7 +226,7 @@ pub trait Operator {
 /// What is asked before the first motion.
 const CLEAR: &str = "Homing moves both axes now: both axes are clear, and a person stands at the emergency stop";
 
-/// What is said of logs without a hash.
+/// The message about logs without a hash.
 const EARLIER_VERSION: &str = "runs of an earlier version lie there: they carry no SHA-256 of their logs, so that only the logs' own checksums \
                                vouch for them";
 
@@ -499,7 +499,7 @@ impl<'a> Campaign<'a, '_> {
     }
 }
 
-/// The load of a run: a ballasted wet run carries what buoyancy takes off its wheels.
+/// The load of a run: a ballasted wet run carries the wheel load that buoyancy removes.
 fn load_of(run: &PlannedRun, base: &Load) -> Load {
     use crate::load::{HungWeight, Mounting};
     let mounting = match run.body {
@@ -885,7 +885,7 @@ fn has_begun(sample: &Sample, request: &Request) -> bool {
 /// Whoever watches is shown the samples whose tick is a multiple of this: thirty a second, fewer from a board that sends fewer.
 const SHOWN_EVERY: u64 = 133;
 
-/// What is said of another program on the line.
+/// The message about another program on the line.
 pub(super) fn said_of(stranger: Stranger) -> String {
     match stranger {
         Stranger::TurnedAway(session) => {

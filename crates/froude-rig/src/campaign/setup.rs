@@ -49,7 +49,7 @@ pub enum SetupError {
 ///
 /// # Errors
 ///
-/// [`SetupError::Missing`]: inertia and Coulomb friction must be declared, the coast distance hangs on them.
+/// [`SetupError::Missing`]: inertia and Coulomb friction must be declared, the coast distance depends on them.
 pub fn control(campaign: &CarriageCampaign, towed_kg: f64) -> Result<Config, SetupError> {
     let standard = control_config(&[Load::default(); 2]);
     let [_, short] = standard.axes;
@@ -160,7 +160,7 @@ pub fn in_words(error: &ConfigError, control: &Config) -> (String, String) {
     match *error {
         ConfigError::OutOfRange { axis, quantity, found, low, high } => {
             let (key, unit) = KEYS.iter().find(|k| k.0 == quantity).map_or((quantity, ""), |k| (k.1, k.2));
-            (section(axis), format!("{key} is {found}{unit}; the controller takes {low}{unit} to {high}{unit}"))
+            (section(axis), format!("{key} is {found}{unit}; the controller accepts {low}{unit} to {high}{unit}"))
         }
         ConfigError::NoFriction { axis } => (
             section(axis),

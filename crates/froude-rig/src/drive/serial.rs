@@ -252,7 +252,8 @@ impl SerialRig {
                 Some(Verdict::BadConfiguration) => {
                     return Err(RigError::Port {
                         port: self.port.clone(),
-                        reason: "the board does not take the configuration; check [rig] against its limits".to_owned(),
+                        reason: "the board does not accept the configuration; check [rig] against its limits"
+                            .to_owned(),
                     });
                 }
                 Some(Verdict::NotNow) => self.quieten()?,

@@ -1,6 +1,6 @@
 //! Why releases give no coefficients.
 
-/// Why releases give no coefficients; each message says what to do.
+/// Why releases give no coefficients; each message states what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecayError {

@@ -1,4 +1,4 @@
-//! What is doubtful about a decay test, with the numbers it rests on.
+//! What is doubtful about a decay test, with the numbers that support it.
 
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ use super::run::DecaySetup;
 use super::swings::Swings;
 
 /// Below this ratio of largest to smallest speed, u and u² are correlated by 0.986 and more.
-const TOLD_APART: f64 = 2.0;
+const APART: f64 = 2.0;
 /// A doubt is voiced beyond this many standard deviations of what chance does.
 const BEYOND_CHANCE: f64 = 4.0;
 /// Friction counts as seen at this confidence.
@@ -55,11 +55,11 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
         ));
     }
     let [low, high] = fit.range.speed;
-    if high < TOLD_APART * low {
+    if high < APART * low {
         out.push(warning(
             "damping-not-split",
             format!(
-                "speed amplitudes range from {low:.3} to {high:.3} only, a factor of {TOLD_APART} is needed: {} and {} are not distinguished, \
+                "speed amplitudes range from {low:.3} to {high:.3} only, a factor of {APART} is needed: {} and {} are not distinguished, \
                  only their sum at these speeds is known; release from further out or let it swing longer",
                 fit.names[1], fit.names[2]
             ),
@@ -215,7 +215,7 @@ fn drifting(swings: &Swings, id: &str, setup: &DecaySetup) -> Option<Finding> {
         warning(
             "rest-drifts",
             format!(
-                "run {id:?}: the rest position moves by {over:+.3e} {} while the body swings; both methods take it as fixed",
+                "run {id:?}: the rest position moves by {over:+.3e} {} while the body swings; both methods assume it fixed",
                 setup.axis.position_unit()
             ),
         )

@@ -3,7 +3,7 @@
 //! The largest of noisy samples lies outside the true peak by some standard deviations of the noise. A quartic over
 //! ± 1 rad of phase averages the noise instead: its value at the middle has the variance 225/64 σ²/n, its slope 75/4 σ²/n (in
 //! half-widths). The top of the fitted curve is still above the true one, by half the variance of the slope over the
-//! curvature; that is taken off. What a sine keeps beyond the fourth power moves a peak by 3e-5 of its height.
+//! curvature; that is subtracted. What a sine keeps beyond the fourth power moves a peak by 3e-5 of its height.
 
 /// Half-width of the fit, rad of phase.
 pub const REACH_RAD: f64 = 1.0;
@@ -107,7 +107,7 @@ impl Quartic {
         Some(x)
     }
 
-    /// The turning point, with the noise's push taken off; `noise` is the standard deviation of a sample.
+    /// The turning point, with the noise's bias subtracted; `noise` is the standard deviation of a sample.
     fn turn(&self, noise: f64) -> Option<Spot> {
         let x = self.root(1, 0.0)?;
         let [_, _, curvature] = self.at(x);
@@ -172,7 +172,7 @@ mod tests {
     use rand_pcg::Pcg64;
 
     /// 50 samples in ± 1 rad, noise σ of 5 % of the amplitude: the largest sample lies more than 5 % out. The slope's noise, of variance
-    /// σ² 75/4/50, pushes the quartic's top out by half of that over the curvature 1, and that is taken off; what the choice of the window about the
+    /// σ² 75/4/50, pushes the quartic's top out by half of that over the curvature 1, and that is subtracted; what the choice of the window about the
     /// first top adds stays. The samples' number and the sine's shape change the push by some per cent.
     #[test]
     fn noise_pushes_the_largest_sample_outwards_and_less_the_fitted_turn() {

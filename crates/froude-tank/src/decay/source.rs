@@ -77,7 +77,7 @@ impl Method for FreeDecay {
             fits.push(fit);
         }
         findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));
-        // What both say of a release is said once.
+        // What both state about a release is reported once.
         let mut said: Vec<Finding> = Vec::new();
         for finding in findings {
             if !said.contains(&finding) {
@@ -120,8 +120,8 @@ fn releases(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
         ]
     });
     let left = match fit.method {
-        DecayMethod::OutputError => format!("left of the position, rms [{unit}]"),
-        DecayMethod::Envelope => format!("left of the force, rms [{}]", if unit == "rad" { "N m" } else { "N" }),
+        DecayMethod::OutputError => format!("residual of the position, rms [{unit}]"),
+        DecayMethod::Envelope => format!("residual of the force, rms [{}]", if unit == "rad" { "N m" } else { "N" }),
     };
     let panel = |summary: &RunSummary| {
         let run = runs.iter().find(|run| run.id == summary.id)?;
@@ -159,7 +159,7 @@ fn releases(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
         title: "Releases".to_owned(),
         paragraphs: Vec::new(),
         tables: vec![TextTable {
-            caption: format!("What was used of each release, by {}.", fit.method.name()),
+            caption: format!("Data used of each release, by {}.", fit.method.name()),
             head: ["release", "half cycles", "from [s]"]
                 .map(str::to_owned)
                 .into_iter()

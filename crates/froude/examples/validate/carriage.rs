@@ -155,7 +155,7 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
     );
     claims.holds(
         SECTION,
-        &format!("{head}: MBDP constant, its interval knows (the dry tows tell it)"),
+        &format!("{head}: MBDP constant, its interval includes it (the dry tows show it)"),
         "covers in more than 90 %",
         constant.text(),
         constant.covered.rate() > 0.9,
@@ -179,7 +179,7 @@ fn pinned(claims: &mut Claims, d: f64, seeds: usize) {
     claims.holds(
         SECTION,
         &format!(
-            "{head}: scatter promised by dry repeats alone and that of the wet ones agree (95 % band of their ratio)"
+            "{head}: scatter predicted from dry repeats alone and that of the wet ones agree (95 % band of their ratio)"
         ),
         "more than 90 % of the campaigns",
         format!("{:.1} %", 100.0 * agreeing as f64 / reports.len() as f64),
@@ -312,11 +312,12 @@ fn pairs_of_one_calibration(claims: &mut Claims, pairs: usize) {
     );
 }
 
-/// What the scenario leaves open, as figures without a bar.
+/// What the scenario leaves open, as figures without an acceptance band.
 fn variants(claims: &mut Claims, d: f64, seeds: usize) {
-    for (name, out_and_back, viscous_changes) in
-        [("one way only", false, false), ("out and back, viscous friction changes from run to run too", true, true)]
-    {
+    for (name, out_and_back, viscous_changes) in [
+        ("one direction only", false, false),
+        ("out and back, viscous friction changes from run to run too", true, true),
+    ] {
         let scenario = Scenario { out_and_back, viscous_changes, ..Scenario::pinned(d) };
         let reports = campaigns(&scenario, seeds, |_| {});
         let text = of(&reports, Method::Mcd, d).text();

@@ -9,7 +9,7 @@ pub enum Verdict {
     Miss,
     /// A figure that contradicts a paper or a data set, as expected to be found.
     Finding,
-    /// A figure without a bar.
+    /// A figure without an acceptance band.
     Measured,
     /// The data are not there.
     Skipped,
@@ -85,7 +85,7 @@ impl Claims {
         let mut out = format!(
             "# Validation\n\nThis page is written by `cargo xtask validate`; no figure is typed by hand. Coverage cases ran \
              {repetitions} seeded repetitions. *Pass*: within the band stated before the run. *Miss*: outside it. *Finding*: \
-             a figure that contradicts a paper or a data set. *Measured*: a figure without a bar. *Skipped*: the data are not \
+             a figure that contradicts a paper or a data set. *Measured*: a figure without an acceptance band. *Skipped*: the data are not \
              part of this repository and were not there.\n"
         );
         let mut section = "";
@@ -118,7 +118,7 @@ pub fn with_sections_of(old: &str, new: &str) -> String {
 }
 
 /// Title of the section that a page opens with.
-const OVERVIEW: &str = "What holds";
+const OVERVIEW: &str = "Summary";
 
 /// A page with one screen before its sections: how many lines of each hold, contradict a source, or miss.
 pub fn with_overview(page: &str) -> String {
@@ -146,7 +146,7 @@ pub fn with_overview(page: &str) -> String {
         format!("What misses:\n\n| | claim | expected | found |\n| --- | --- | --- | --- |\n{}", missed.join("\n"))
     };
     format!(
-        "{}\n\n## {OVERVIEW}\n\n{} lines hold, {} contradict a paper or a data set, {} are measured without a bar, {} were skipped, {} miss. {misses}\n\n\
+        "{}\n\n## {OVERVIEW}\n\n{} lines pass, {} contradict a paper or a data set, {} are measured without an acceptance band, {} were skipped, {} miss. {misses}\n\n\
          | section | pass | finding | measured | skipped | miss |\n| --- | --: | --: | --: | --: | --: |\n{table}\n## {}",
         head.trim_end(),
         total[0],

@@ -1,6 +1,6 @@
-//! Coverage: does the 95 % interval hold the truth 95 times in 100?
+//! Coverage: does the 95 % interval contain the truth 95 times in 100?
 //!
-//! Every case repeats a seeded synthetic test and counts, per coefficient, how often the interval holds the truth.
+//! Every case repeats a seeded synthetic test and counts, per coefficient, how often the interval contains the truth.
 //! The count is compared with the binomial distribution at 1 % family-wise (Bonferroni over all coefficients of all
 //! cases that must hold), and every z-score is published. Cluster and heteroscedastic cases are reported as measured.
 
@@ -173,7 +173,7 @@ fn bounded(
     Ok(Case { name: name.to_owned(), coefficients: problem.names, hits, repetitions: repetitions as u64 })
 }
 
-/// Which intervals hold the truth.
+/// Which intervals contain the truth.
 pub fn count(intervals: &[Option<[f64; 2]>], values: &[f64]) -> Vec<u64> {
     intervals
         .iter()

@@ -105,7 +105,7 @@ fn pinned(
     let agreeing = reports.iter().filter(|r| r.agreement.is_some_and(|a| a.is_within_band())).count();
     claims.add(
         SECTION,
-        &format!("{head}: scatter promised by dry repeats alone and that of the wet ones agree"),
+        &format!("{head}: scatter predicted from dry repeats alone and that of the wet ones agree"),
         "about 95 %",
         format!("{agreeing} of {seeds}"),
         Verdict::Measured,

@@ -173,7 +173,7 @@ pub fn added_mass(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>
     claims.add(
         TABLES,
         "C_A on the reference volume 1.2723e-3 m³ a link",
-        "Table 7: 1.2674; the volume was inferred from it, so this is no check",
+        "Table 7: 1.2674; the volume was inferred from it, so this is not a check",
         format!("{c_a:.4}"),
         Verdict::Measured,
     );

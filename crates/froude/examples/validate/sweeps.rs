@@ -67,7 +67,7 @@ fn of(
         // The position of slow runs is filtered at 3 Hz to keep the chain's modes out, the force is not: a bias of the mass that no
         // interval holds. The mass is read from the pulses.
         if name == "M" {
-            claims.add(SECTION, &line, "no bar: runs at constant speed are for friction", found, Verdict::Measured);
+            claims.add(SECTION, &line, "no band: runs at constant speed are for friction", found, Verdict::Measured);
         } else {
             let expected = format!("at least {bar:.3}: 0.95 less the scatter of {n} campaigns");
             claims.holds(SECTION, &line, &expected, found, inside.rate() >= bar);

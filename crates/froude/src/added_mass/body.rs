@@ -1,4 +1,4 @@
-//! One body or mesh: what is computed of it, in which frame, and what comes out.
+//! One body or mesh: what is computed of it, in which frame, and what results.
 
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,7 @@ pub struct BodyJob {
     pub axes: Axes,
     /// Where moments are taken about.
     pub at: Point,
-    /// Metres for a unit of the mesh; `None` where nobody said.
+    /// Metres for a unit of the mesh; `None` where it is not stated.
     pub unit_m: Option<f64>,
     /// How the mesh lies; `None` where nobody said: x forward, z up.
     pub orientation: Option<Orientation>,
@@ -49,7 +49,7 @@ pub struct BodyJob {
     pub wanted: Wanted,
     /// Files to write beside the record: `1`, `nc`, `csv`.
     pub export: Vec<&'static str>,
-    /// Folder of the results; beside the input, unless said.
+    /// Folder of the results; beside the input, unless stated.
     pub out: Option<PathBuf>,
     /// Date for the report.
     pub date: Option<String>,
@@ -95,7 +95,7 @@ pub struct BodyOutcome {
     pub page: PathBuf,
     /// The pressure on the body, and exports.
     pub others: Vec<PathBuf>,
-    /// What is said of a record in another frame that this one has replaced.
+    /// The message about a record in another frame that this one has replaced.
     pub replaced: Option<String>,
 }
 

@@ -57,7 +57,7 @@ fn wave_frame(job: &BodyJob) -> Frame {
     Frame { axes: mesh.wave_axes().vectors(mesh), ..Frame::at([0.0; 3]) }
 }
 
-/// What is said of the exports of one body.
+/// The message about the exports of one body.
 pub(super) fn words(job: &BodyJob) -> Vec<String> {
     let mut out = Vec::new();
     if job.export.iter().any(|e| is_of_waves(e)) {

@@ -34,7 +34,7 @@ pub struct LinksJob {
     pub axes: Axes,
     /// Tolerance, limits.
     pub wanted: Wanted,
-    /// Folder of the results; beside the body file, unless said.
+    /// Folder of the results; beside the body file, unless stated.
     pub out: Option<PathBuf>,
     /// Date for the report.
     pub date: Option<String>,
@@ -74,7 +74,7 @@ pub struct LinksOutcome {
     pub page: PathBuf,
     /// The table of the configurations.
     pub table: PathBuf,
-    /// What is said of a record in another frame that this one has replaced.
+    /// The message about a record in another frame that this one has replaced.
     pub replaced: Option<String>,
 }
 
@@ -144,7 +144,7 @@ fn written(
         progress("least squares over the configurations");
         let done = identify(&Job { date: job.date.clone(), ..Job::new(&campaign) }, &|_| {})?;
         fits.clone_from(&done.file.estimates);
-        // Computed masses have no noise and no instrument: what these two say of tests does not hold for them.
+        // Computed masses have no noise and no instrument: what these two state about tests does not hold for them.
         let is_of_tests = |f: &Finding| f.code == "no-budget" || f.code == "serial-correlation";
         findings.extend(done.file.findings.into_iter().filter(|f| !is_of_tests(f)));
     }
@@ -181,7 +181,7 @@ fn written(
 pub fn no_fits(configurations: usize) -> Option<String> {
     (configurations < FIT).then(|| {
         format!(
-            "No least squares: they take {FIT} configurations at least, such as --links 1..{FIT}, and these are {configurations}. \
+            "No least squares: they need {FIT} configurations at least, such as --links 1..{FIT}, and these are {configurations}. \
              links.csv and campaign.toml are written all the same; there is no campaign-results, and the record holds the matrices alone."
         )
     })

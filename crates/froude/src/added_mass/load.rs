@@ -133,8 +133,8 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
         }
     }
     if !wrong.is_empty() {
-        let rest = wrong.len().saturating_sub(MOST_TOLD);
-        wrong.truncate(MOST_TOLD);
+        let rest = wrong.len().saturating_sub(MOST_REPORTED);
+        wrong.truncate(MOST_REPORTED);
         if rest > 0 {
             wrong.push(format!("  and {rest} more"));
         }
@@ -199,4 +199,4 @@ fn thin_panels(mesh: &Mesh) -> Option<Finding> {
 }
 
 /// Faults of a mesh that are reported one by one.
-const MOST_TOLD: usize = 12;
+const MOST_REPORTED: usize = 12;

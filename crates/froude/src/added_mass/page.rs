@@ -39,7 +39,7 @@ fn kind(refined: &Refined, i: usize) -> f64 {
     (0..3).map(|k| refined.value[3 * (i / 3) + k][3 * (i / 3) + k].abs()).fold(0.0, f64::max)
 }
 
-/// Motions that take water along: not the roll of a body of revolution.
+/// Motions that have added mass: not the roll of a body of revolution.
 fn motions(refined: &Refined) -> impl Iterator<Item = usize> + '_ {
     (0..6).filter(|&i| refined.value[i][i].abs() > NOTHING * kind(refined, i))
 }

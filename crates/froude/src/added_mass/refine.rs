@@ -1,4 +1,4 @@
-//! Finer and finer until the tolerance is met, with the cost stated beforehand.
+//! Meshes refined until the tolerance is met, with the cost stated beforehand.
 
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
@@ -138,7 +138,7 @@ struct Entry {
     order: Option<f64>,
 }
 
-/// Least uncertainty at edges that are not resolved, as part of what extrapolation takes off: an order of 0.8 leaves three times that.
+/// Least uncertainty at edges that are not resolved, as part of what extrapolation subtracts: an order of 0.8 leaves three times that.
 const AT_EDGES: f64 = 3.0;
 /// Residual above which a solution is none.
 pub(super) const LOOSE: f64 = 1e-6;

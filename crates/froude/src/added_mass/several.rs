@@ -1,4 +1,4 @@
-//! Several rigid parts in one flow: the links of the robot, straight or bent, or the parts of a mesh that do not hang together.
+//! Several rigid parts in one flow: the links of the robot, straight or bent, or the disconnected parts of a mesh.
 //!
 //! The matrix has six rows and columns a part, in the part's own axes about its own point: force and moment on one part from the motion of
 //! another.
@@ -78,7 +78,7 @@ pub struct SeveralOutcome {
     pub page: PathBuf,
     /// The matrix as a table, and exports.
     pub others: Vec<PathBuf>,
-    /// What is said of a record in another frame that this one has replaced.
+    /// The message about a record in another frame that this one has replaced.
     pub replaced: Option<String>,
 }
 

@@ -71,7 +71,7 @@ pub struct CalibrationJob {
     pub runs: Vec<PathBuf>,
     /// A campaign other than the copy that lies with the runs.
     pub campaign: Option<PathBuf>,
-    /// Folder of the results; beside the runs, unless said.
+    /// Folder of the results; beside the runs, unless stated.
     pub out: Option<PathBuf>,
     /// Date for the report.
     pub date: Option<String>,

@@ -31,7 +31,7 @@ use froude_records::run::{CAMPAIGN_COPY, LAST_RUN, STOPPED_EARLY};
 pub struct DriveJob {
     /// The campaign.
     pub campaign: PathBuf,
-    /// Folder of the runs; beside the campaign, named after it, unless said.
+    /// Folder of the runs; beside the campaign, named after it, unless stated.
     pub out: Option<PathBuf>,
     /// Host's clock at the start, ns since 1970.
     pub start_unix_ns: u64,
@@ -159,7 +159,7 @@ pub fn prepare_with(job: &DriveJob, plan: &dyn Fn(&CarriagePlan, f64, u64) -> Ve
         .clone()
         .ok_or_else(|| Error::Nothing(format!("{path}: nothing to drive: the campaign has no [rig]")))?;
     let asked = carriage.plan.clone().ok_or_else(|| {
-        Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must say what it is to do"))
+        Error::Nothing(format!("{path}: [rig] says what is driven, [carriage] must state what it is to do"))
     })?;
     if asked.axis as usize == 1 && carriage.rig.x.is_none() {
         return Err(Error::Nothing(format!(

@@ -19,7 +19,7 @@ pub struct ServoJob {
     pub input: Vec<PathBuf>,
     /// Sidecar of a CSV log that is not beside it.
     pub sidecar: Option<PathBuf>,
-    /// Folder of the results; beside the input, unless said.
+    /// Folder of the results; beside the input, unless stated.
     pub out: Option<PathBuf>,
     /// Date for the report.
     pub date: Option<String>,

@@ -65,7 +65,7 @@ pub struct Candidate {
     pub following_error_m: Option<f64>,
     /// Largest speed of the motor in homing, m/s, likewise.
     pub homing_m_s: Option<f64>,
-    /// What speaks against them; nothing if they are fit for the campaign.
+    /// Objections to them; none if they are fit for the campaign.
     pub objections: Vec<String>,
 }
 
@@ -280,7 +280,7 @@ fn cycle_of(log: &RunLog, axis: &AxisConfig, e: &Experiments) -> Result<LimitCyc
     limit_cycle(columns.rate_hz, e.relay_v, hysteresis_rad, &columns.command_v[rows.clone()], &columns.angle_rad[rows])
 }
 
-/// What candidates are held against.
+/// The requirements on candidates.
 struct Bench<'a> {
     plant: &'a [ResponsePoint],
     modes: Option<TwoMassModes>,
@@ -495,7 +495,7 @@ pub fn candidates_table(outcome: &TuneOutcome) -> TextTable {
     let names = outcome.candidates.iter().map(|c| c.name.clone());
     TextTable {
         caption: format!(
-            "Gains of MCD eq. 6 in SI and per count and tick (V); margins on the response measured from {:.1} to {:.0} Hz; following error              and speed of the motor from the campaign's hardest ramps, bare and with the heaviest body, run through the two masses that              the response shows. A margin without a value: the loop does not cross there.",
+            "Gains of MCD eq. 6 in SI and per count and tick (V); margins on the response measured from {:.1} to {:.0} Hz; following error and speed of the motor from the campaign's hardest ramps, bare and with the heaviest body, run through the two masses that the response shows. A margin without a value: the loop does not cross there.",
             outcome.band_hz[0], outcome.band_hz[1]
         ),
         head: std::iter::once("quantity".to_owned()).chain(names).collect(),
@@ -513,7 +513,7 @@ pub fn candidates_table(outcome: &TuneOutcome) -> TextTable {
     }
 }
 
-/// What speaks against each candidate, where its margins come from, and what to write into the campaign.
+/// Objections to each candidate, where its margins come from, and what to write into the campaign.
 #[must_use]
 pub fn tune_sentences(outcome: &TuneOutcome) -> Vec<String> {
     let mut out = Vec::new();
@@ -626,10 +626,10 @@ pub fn modes_table(outcome: &ResonanceOutcome) -> TextTable {
         "its damping [1]",
         "free mode, seen through the driving gear [Hz]",
         "its damping [1]",
-        "free mode, the gear's loss taken out [Hz]",
+        "free mode, corrected for the gear's loss [Hz]",
         "load over motor inertia, seen [1]",
-        "the same, the gear's loss taken out [1]",
-        "left unexplained of the response",
+        "the same, corrected for the gear's loss [1]",
+        "unexplained part of the response",
         "the same, median of the points",
     ]
     .map(|name| vec![name.to_owned()])
@@ -703,7 +703,7 @@ pub fn resonance_sentences(outcome: &ResonanceOutcome) -> Vec<String> {
                 .to_owned(),
         });
         out.push(
-            "Left unexplained is the root mean square of |model/measured − 1| over the points with a coherence above 0.8. Much of it lies in \
+            "The unexplained part is the root mean square of |model/measured − 1| over the points with a coherence above 0.8. Much of it lies in \
              the dip, which friction fills, beside the peak, at the lower end of the band, and with a body at multiples of the load's mode, \
              which the gear makes of its swing; most points are far better, as the median says. It makes the dampings and the depth \
              of the dip uncertain, hardly the place of the dip, which is all that a shaper needs: it takes 10 % of frequency either way."
