@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use froude_control::status::Phase;
 use froude_hydro::fluid::Water;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, of_method, refuse_others};
@@ -305,6 +306,9 @@ fn first_folder(paths: &[PathBuf]) -> PathBuf {
     let first = paths.first().cloned().unwrap_or_default();
     if first.is_dir() { first } else { first.parent().map_or_else(PathBuf::new, Path::to_owned) }
 }
+
+/// State of an exciting axis in a log.
+pub const EXCITING: f64 = Phase::Exciting as u8 as f64;
 
 /// Largest number in a channel of a carriage, SI: no carriage goes a thousand kilometres or pulls a meganewton.
 const LARGEST: f64 = 1e6;
