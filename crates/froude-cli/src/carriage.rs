@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use froude::Error;
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::carriage::tune::{
-    candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
-};
+use froude::carriage::tune::{Experimented, find_resonance, tune};
 use froude::fit::budget::Uncertain;
 use froude::methods::carriage::drag::calibration::encoder_scale;
 use froude::methods::carriage::runs;
+use froude::methods::carriage::tuning::choice::page as gains;
+use froude::methods::carriage::tuning::modes::page as mode_page;
 use froude::pipeline::{Input, Job, Purpose};
 use froude::records::carriage::plan::{PlannedRun, Step};
 use froude::records::page::TextTable;
@@ -315,7 +315,7 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
     let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::TUNE)?;
     let outcome = tune(&job, &switch, &mut person, &mut bar);
     bar.end();
-    let outcome = outcome?;
+    let Experimented { found: outcome, written, .. } = outcome?;
     if is_json {
         let rows: Vec<_> = outcome
             .candidates
@@ -329,7 +329,8 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
                        "following_error_m": c.following_error_m, "homing_speed_m_s": c.homing_m_s, "objections": c.objections})
             })
             .collect();
-        return print::json(&json!({"gains": rows, "recommended": outcome.recommended, "report": outcome.page}));
+        return print::json(&json!({"gains": rows, "recommended": outcome.recommended,
+                                   "estimate": written.estimate, "report": written.report}));
     }
     match &outcome.cycle {
         Ok(c) => say!(
@@ -340,12 +341,12 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
         ),
         Err(error) => say!("relay: {error}"),
     }
-    print::text_table(&candidates_table(&outcome));
+    print::text_table(&gains::candidates_table(&outcome));
     say!("");
-    for sentence in tune_sentences(&outcome) {
+    for sentence in gains::sentences(&outcome) {
         say!("{sentence}");
     }
-    say!("\nReport with the Bode plot: {}", outcome.page.display());
+    print::written(&written);
     Ok(())
 }
 
@@ -353,7 +354,7 @@ fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
     let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::RESONANCE)?;
     let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
     bar.end();
-    let outcome = outcome?;
+    let Experimented { found: outcome, written, .. } = outcome?;
     if is_json {
         let rows: Vec<_> = outcome
             .states
@@ -362,17 +363,18 @@ fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
                 let modes = s.modes.as_ref().ok();
                 json!({"body": s.body, "load_hz": modes.map(|m| m.load.frequency_hz), "load_damping": modes.map(|m| m.load.damping),
                        "free_seen_hz": modes.map(|m| m.free.frequency_hz),
-                       "free_hz": modes.and_then(|m| free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
+                       "free_hz": modes.and_then(|m| mode_page::free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
             })
             .collect();
         return print::json(&json!({"states": rows, "shaped_mode_hz": outcome.proposed.map(|p| p.0),
-                                   "shaped_damping": outcome.proposed.map(|p| p.1), "report": outcome.page}));
+                                   "shaped_damping": outcome.proposed.map(|p| p.1),
+                                   "estimate": written.estimate, "report": written.report}));
     }
-    print::text_table(&modes_table(&outcome));
+    print::text_table(&mode_page::modes_table(&outcome));
     say!("");
-    for sentence in resonance_sentences(&outcome) {
+    for sentence in mode_page::sentences(&outcome) {
         say!("{sentence}");
     }
-    say!("\nReport: {}", outcome.page.display());
+    print::written(&written);
     Ok(())
 }

@@ -330,6 +330,21 @@ fn the_gains_that_tuning_recommends_drive_the_campaign() {
     let found = json(&["carriage", "tune", text(&campaign(folder.path(), &[])), "--yes", "--json"]);
     let gains = found["gains"].as_array().unwrap();
     assert_eq!(found["recommended"], 1, "{found}");
+    // The record has the margins of each, with what the measured response leaves uncertain of them, and is compared like any other.
+    let record = found["estimate"].as_str().unwrap();
+    let written: Value = serde_json::from_str(&std::fs::read_to_string(record).unwrap()).unwrap();
+    let loops: Vec<&Value> = written["estimates"].as_array().unwrap().iter().map(|e| &e["law"]["name"]).collect();
+    assert_eq!(loops, ["loop_as_configured", "loop_shaped", "loop_ziegler_nichols"]);
+    let shaped = &written["estimates"][1];
+    let margin = &shaped["coefficients"]["phase_margin"];
+    assert!(shaped["recommended"] == true && margin["unit"] == "rad", "{shaped}");
+    assert_eq!(margin["value"], gains[1]["phase_margin_rad"]);
+    let (u, bandwidth) = (&margin["standard_uncertainty"], &shaped["coefficients"]["bandwidth"]["value"]);
+    assert!(u.as_f64().is_some_and(|u| u > 0.0 && u < 0.2), "{margin}");
+    assert!(bandwidth.as_f64().unwrap() > gains[1]["crossover_hz"].as_f64().unwrap(), "{shaped}");
+    let compared = json(&["compare", record, record, "--json"]);
+    let rows = compared["comparison"]["coefficients"].as_array().unwrap();
+    assert!(rows.iter().any(|row| row["coefficient"] == "phase_margin"), "{compared}");
     // Its runs are all that it planned, and none of `froude run`'s.
     let runs = json(&["inspect", text(&folder.path().join("campaign-tune")), "--json"]);
     assert_eq!(findings_of(&runs, "campaign-unfinished"), []);
@@ -381,6 +396,14 @@ fn the_free_mode_is_told_as_seen_and_without_the_gears_loss() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[]);
     let found = json(&["carriage", "resonance", text(&campaign), "--yes", "--json"]);
+    let written: Value =
+        serde_json::from_str(&std::fs::read_to_string(found["estimate"].as_str().unwrap()).unwrap()).unwrap();
+    for (estimate, state) in written["estimates"].as_array().unwrap().iter().zip(found["states"].as_array().unwrap()) {
+        let load = &estimate["coefficients"]["load_frequency"];
+        assert_eq!((&load["value"], &load["unit"]), (&state["load_hz"], &"Hz".into()));
+        assert!(load["standard_uncertainty"].as_f64().unwrap() > 0.0, "{load}");
+        assert_eq!(estimate["data"].as_array().unwrap().len(), 1, "each is of its own sweep");
+    }
     let bare = &found["states"][0];
     // Seen at 6.71 √(1 + 2.75/0.8) = 14.1 Hz; 2 % for friction in the dip and beside the peak.
     assert!((bare["free_seen_hz"].as_f64().unwrap() / 14.1 - 1.0).abs() < 0.02, "{bare}");
