@@ -11,6 +11,7 @@ use froude_identify::source::ReadFile;
 use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{BodyState, Declared, Role, RunLog, import_run};
+use froude_records::table::sidecar_of;
 use froude_records::units::Dimension;
 
 use crate::drag::steady::{SteadySettings, window};
@@ -25,6 +26,7 @@ use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_serv
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, servo_log, two_masses};
 
+mod long;
 pub mod page;
 pub mod source;
 
@@ -131,27 +133,17 @@ pub struct AxisModels {
 pub fn of_table(path: &Path, sidecar: Option<&Path>, name: &str) -> Result<AxisModels, MethodError> {
     let imported = import_run(path, sidecar)?;
     let log = &imported.log;
-    let gain = log.meta.constants.get("drive_gain").ok_or_else(|| {
-        let what = "the sidecar must say what force a volt of the command is: [constants] drive_gain = \"35.15 N/V\"";
-        MethodError::input(path, what)
-    })?;
-    let gain_n_v = gain.value;
+    let gain_n_v = force_per_volt_n_v(path, sidecar)?;
     let servo = servo_log(log)?;
     let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
-    let chain = |friction| Chain {
-        // The pinned chain of a record at 1 kHz, scaled with the record's rate.
-        corner_hz: 0.1 * rate_hz,
-        ..Chain::new(gain_n_v, friction)
-    };
-    let asked = [(CONSTANT, Friction::symmetric()), (ASYMMETRIC, Friction::asymmetric())];
-    let fit = |friction| identify_servo(&servo, &chain(friction)).map_err(MethodError::refused);
-    let (models, not_fitted) = each(asked.into_iter().map(|(name, friction)| (name, fit(friction))));
+    let asked = [AxisModel::Symmetric, AxisModel::Asymmetric].map(|model| (model, friction_of(model)));
+    let fit = |friction| identify_servo(&servo, &log_chain(gain_n_v, rate_hz, friction)).map_err(MethodError::refused);
+    let rigid = asked.into_iter().filter_map(|(model, friction)| Some((model.friction()?, fit(friction))));
+    let (models, not_fitted) = each(rigid);
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
     let mut findings = told(&models, imported.findings);
     findings.extend(not_fitted);
-    let mut files = vec![ReadFile::new(path.to_owned(), "table")];
-    let sidecar = sidecar.map_or_else(|| path.with_extension("toml"), Path::to_owned);
-    files.extend(sidecar.exists().then(|| ReadFile::new(sidecar, "sidecar")));
+    let files = files_of_table(path, sidecar);
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain_n_v, None), files.clone());
     Ok(AxisModels {
         estimates: models.iter().map(rigid).collect(),
@@ -163,6 +155,36 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>, name: &str) -> Result<AxisM
         motor: None,
         findings,
     })
+}
+
+/// The friction of a rigid model of a log: an offset of the current is not excluded.
+fn friction_of(model: AxisModel) -> Friction {
+    match model {
+        AxisModel::Asymmetric => Friction::asymmetric(),
+        _ => Friction::symmetric(),
+    }
+}
+
+/// The pinned chain of a record at 1 kHz, scaled with the record's rate.
+fn log_chain(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Chain {
+    Chain { corner_hz: 0.1 * rate_hz, ..Chain::new(force_per_volt_n_v, friction) }
+}
+
+/// What a sidecar says that a volt of the command is, N/V.
+fn force_per_volt_n_v(log: &Path, sidecar: Option<&Path>) -> Result<f64, MethodError> {
+    let gain = sidecar_of(log, sidecar)?.and_then(|sidecar| Some(sidecar.constants.get("drive_gain")?.value_si));
+    gain.ok_or_else(|| {
+        let what = "the sidecar must say what force a volt of the command is: [constants] drive_gain = \"35.15 N/V\"";
+        MethodError::input(log, what)
+    })
+}
+
+/// A log and its sidecar.
+fn files_of_table(path: &Path, sidecar: Option<&Path>) -> Vec<ReadFile> {
+    let mut files = vec![ReadFile::new(path.to_owned(), "table")];
+    let sidecar = sidecar.map_or_else(|| path.with_extension("toml"), Path::to_owned);
+    files.extend(sidecar.exists().then(|| ReadFile::new(sidecar, "sidecar")));
+    files
 }
 
 fn told(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {

@@ -313,6 +313,11 @@ pub const EXCITING: f64 = Phase::Exciting as u8 as f64;
 /// Largest number in a channel of a carriage, SI: no carriage goes a thousand kilometres or pulls a meganewton.
 const LARGEST: f64 = 1e6;
 
+/// Whether a number is beyond any carriage.
+pub(crate) fn implausible(x: f64) -> bool {
+    x.is_nan() || x.abs() > LARGEST
+}
+
 /// A channel of a run, held against what a carriage can be.
 ///
 /// # Errors
@@ -320,7 +325,7 @@ const LARGEST: f64 = 1e6;
 /// No such channel, another dimension, or a sample that no carriage has.
 pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&'l [f64], MethodError> {
     let values = log.channel(name, dimension)?;
-    match values.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
+    match values.iter().position(|x| implausible(*x)) {
         None => Ok(values),
         Some(i) => Err(MethodError::input(
             &log.path,

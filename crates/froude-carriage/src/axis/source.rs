@@ -11,7 +11,7 @@ use froude_records::run::TOW;
 use froude_records::table::sidecar_of;
 
 use super::page::sections;
-use super::{AxisModel, AxisModels, KINDS, of_runs, of_table};
+use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
 use crate::runs::{Runs, read};
 use crate::source::lacking_in;
 
@@ -83,6 +83,12 @@ impl Method for Servo {
                 found.beside = Some(runs.results("servo"));
                 found.is_part = runs.beside > 0;
                 Ok(found)
+            }
+            input if long::is_long(input.path()) => {
+                progress("identifying the axis from a long log");
+                let (path, sidecar) = (input.path(), source.sidecar.as_deref());
+                let gain_n_v = force_per_volt_n_v(path, sidecar)?;
+                long::of_table(path, sidecar, (&source.name, source.kind.name()), gain_n_v, &asked)
             }
             input => {
                 progress("identifying the axis");

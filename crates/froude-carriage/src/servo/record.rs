@@ -21,6 +21,7 @@ use froude_records::estimate::{
 };
 use indexmap::IndexMap;
 
+use crate::servo::long::LongReport;
 use crate::servo::motor::Drive;
 use crate::servo::report::{ServoCoefficient, ServoReport};
 use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport};
@@ -41,16 +42,83 @@ pub fn rigid(
     force_per_volt_n_v: f64,
     drive: Option<&Drive>,
 ) -> Estimate {
+    let fit = RigidFit {
+        coefficients: &report.coefficients,
+        dof: &report.spread.dof,
+        covariance: &report.spread.covariance,
+        pieces: report.spread.pieces(),
+        sigma_n: report.sigma_n,
+        n_rows: report.n_rows,
+        relative_force_error: report.relative_force_error,
+        findings: &report.findings,
+    };
+    let recorded = recorded(source, friction, &fit, force_per_volt_n_v, drive);
+    Estimate {
+        clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
+        derived: effective(report, drive),
+        validity: validity(report.rows.names.iter().zip(&report.rows.columns).map(|((name, _), column)| {
+            let bounds = [f64::INFINITY, f64::NEG_INFINITY];
+            (name.as_str(), column.iter().fold(bounds, |[low, high], x| [low.min(*x), high.max(*x)]))
+        })),
+        diagnostics: Diagnostics { condition_number: report.condition_number, ..recorded.diagnostics },
+        ..recorded
+    }
+}
+
+/// The same of a record of hours, whose rows were not kept; its force per volt is taken as exact. `coefficients` are those of the report with
+/// their intervals.
+#[must_use]
+pub fn long(
+    source: &str,
+    friction: &str,
+    (report, coefficients): (&LongReport, &[ServoCoefficient]),
+    findings: &[String],
+    force_per_volt_n_v: f64,
+) -> Estimate {
+    let fit = RigidFit {
+        coefficients,
+        dof: &vec![report.dof; coefficients.len()],
+        covariance: &report.covariance,
+        pieces: format!("HAC with a lag of {:.1} s", report.hac_lag_s),
+        sigma_n: report.sigma_n,
+        n_rows: report.n_rows,
+        relative_force_error: report.relative_force_error,
+        findings,
+    };
+    let ranges = report.names.iter().zip(&report.ranges).map(|((name, _), range)| (name.as_str(), *range));
+    Estimate { validity: validity(ranges), ..recorded(source, friction, &fit, force_per_volt_n_v, None) }
+}
+
+/// The fit of a rigid model as its record wants it.
+struct RigidFit<'a> {
+    coefficients: &'a [ServoCoefficient],
+    dof: &'a [f64],
+    covariance: &'a Mat<f64>,
+    /// What was taken as one piece of evidence.
+    pieces: String,
+    sigma_n: f64,
+    n_rows: usize,
+    relative_force_error: f64,
+    findings: &'a [String],
+}
+
+fn recorded(
+    source: &str,
+    friction: &str,
+    fit: &RigidFit<'_>,
+    force_per_volt_n_v: f64,
+    drive: Option<&Drive>,
+) -> Estimate {
     let method = format!("servo_{}", friction.replace(' ', "_"));
-    let names: Vec<String> = report.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
-    let coefficients = report.coefficients.iter().zip(&names).zip(&report.spread.dof).map(|((c, name), dof)| {
+    let names: Vec<String> = fit.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
+    let coefficients = fit.coefficients.iter().zip(&names).zip(fit.dof).map(|((c, name), dof)| {
         let label = (*name != c.name).then(|| c.name.clone());
         (name.clone(), Coefficient { label, ..with_drive(c, *dof, drive) })
     });
     let formula = formula(&names);
     let constants = IndexMap::from([("force_per_volt".to_owned(), measured(force_per_volt_n_v, "N/V"))]);
-    let fewest = report.spread.dof.iter().copied().reduce(f64::min).and_then(finite);
-    let errors = drive.map_or_else(IndexMap::new, |drive| errors_of(drive, report));
+    let fewest = fit.dof.iter().copied().reduce(f64::min).and_then(finite);
+    let errors = drive.map_or_else(IndexMap::new, |drive| errors_of(drive, fit.coefficients));
     let exact = errors
         .is_empty()
         .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike".to_owned());
@@ -64,18 +132,14 @@ pub fn rigid(
         },
         law: law(&method, formula, constants),
         coefficients: coefficients.collect(),
-        type_a: type_a(names, &report.spread.covariance, &report.spread.dof, report.spread.pieces()),
+        type_a: type_a(names, fit.covariance, fit.dof, fit.pieces.clone()),
         errors,
-        clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
-        sigma: IndexMap::from([(LOAD.to_owned(), measured(report.sigma_n, "N"))]),
+        sigma: IndexMap::from([(LOAD.to_owned(), measured(fit.sigma_n, "N"))]),
         dof: IndexMap::from([(LOAD.to_owned(), fewest)]),
-        n_observations: report.n_rows,
-        derived: effective(report, drive),
-        validity: validity(report),
+        n_observations: fit.n_rows,
         diagnostics: Diagnostics {
-            condition_number: report.condition_number,
-            relative_residual: IndexMap::from([(LOAD.to_owned(), report.relative_force_error)]),
-            notes: exact.into_iter().chain(report.findings.iter().cloned()).collect(),
+            relative_residual: IndexMap::from([(LOAD.to_owned(), fit.relative_force_error)]),
+            notes: exact.into_iter().chain(fit.findings.iter().cloned()).collect(),
             ..Diagnostics::default()
         },
         ..on_the_chain()
@@ -88,9 +152,9 @@ fn radii(name: &str) -> f64 {
 }
 
 /// Errors of the declared drive: K_T and amplifier, and the radius that makes counts into metres and torques into forces.
-fn errors_of(drive: &Drive, report: &ServoReport) -> IndexMap<String, SharedError> {
+fn errors_of(drive: &Drive, coefficients: &[ServoCoefficient]) -> IndexMap<String, SharedError> {
     let error = |name: &str, quantity: &str, relative: f64, times: &dyn Fn(&str) -> f64| {
-        let sensitivity = report.coefficients.iter().map(|c| vec![times(&c.name) * c.value]).collect();
+        let sensitivity = coefficients.iter().map(|c| vec![times(&c.name) * c.value]).collect();
         let error = SharedError {
             name: name.to_owned(),
             quantity: quantity.to_owned(),
@@ -275,16 +339,17 @@ fn effective(report: &ServoReport, drive: Option<&Drive>) -> IndexMap<String, De
     crate::servo::report::effective(report, &drive.motor).into_iter().map(of).collect()
 }
 
-/// Range of the speeds and accelerations of the rows, from the columns of the regression.
-fn validity(report: &ServoReport) -> IndexMap<String, Range> {
-    let range = |name: &str, key: &str, unit: &str| {
-        let j = report.rows.names.iter().position(|(own, _)| own == name)?;
-        let column = &report.rows.columns[j];
-        let low = column.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+/// Range of the speeds and accelerations of the rows, from those of the columns of the regression.
+fn validity<'a>(columns: impl Iterator<Item = (&'a str, [f64; 2])>) -> IndexMap<String, Range> {
+    let range = |(name, [low, high]): (&str, [f64; 2])| {
+        let (key, unit) = match name {
+            "M" => ("v_y_dot", "m/s^2"),
+            "F_v" => ("v_y", "m/s"),
+            _ => return None,
+        };
         (low <= high).then(|| (key.to_owned(), Range { low, high, unit: unit.to_owned() }))
     };
-    [range("M", "v_y_dot", "m/s^2"), range("F_v", "v_y", "m/s")].into_iter().flatten().collect()
+    columns.filter_map(range).collect()
 }
 
 /// Scatter as a record holds it; `None` where it is not finite.
