@@ -8,23 +8,77 @@ use std::path::{Path, PathBuf};
 use froude_fit::series::mean;
 use froude_identify::method::MethodError;
 use froude_identify::source::ReadFile;
-use froude_records::estimate::Estimate;
+use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{BodyState, Declared, Role, RunLog, import_run};
+use froude_records::table::sidecar_of;
 use froude_records::units::Dimension;
 
 use crate::drag::steady::{SteadySettings, window};
+use crate::reduction::rig_key;
 use crate::runs::{Runs, column, for_drag, mounts};
 use crate::servo::chain::Rows;
-use crate::servo::motor::MotorSide;
+use crate::servo::motor::{Drive, MotorSide};
 use crate::servo::record;
 use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::two_mass::FlexibleReport;
 use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo};
-use crate::source::files_of;
+use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, servo_log, two_masses};
 
+mod long;
 pub mod page;
+pub mod source;
+
+/// A model of an axis that can be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AxisModel {
+    /// Rigid, one Coulomb friction.
+    Symmetric,
+    /// Rigid, friction of its own each way.
+    Asymmetric,
+    /// Rigid, Coulomb friction mapped over the travel.
+    OverPosition,
+    /// Motor and load with a chain between them.
+    TwoMass,
+}
+
+impl AxisModel {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Symmetric, Self::Asymmetric, Self::OverPosition, Self::TwoMass];
+
+    /// Its name in files, which is that of its law.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Symmetric => "servo_symmetric",
+            Self::Asymmetric => "servo_asymmetric",
+            Self::OverPosition => "servo_over_position",
+            Self::TwoMass => record::TWO_MASS,
+        }
+    }
+
+    /// What it is, in words.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Symmetric => "rigid axis, one Coulomb friction",
+            Self::Asymmetric => "rigid axis, friction of its own each way",
+            Self::OverPosition => "rigid axis, friction mapped over the travel",
+            Self::TwoMass => "motor and load with a chain between them",
+        }
+    }
+
+    /// How its friction is called; `None` of the two masses.
+    const fn friction(self) -> Option<&'static str> {
+        match self {
+            Self::Symmetric => Some(CONSTANT),
+            Self::Asymmetric => Some(ASYMMETRIC),
+            Self::OverPosition => Some(OVER_POSITION),
+            Self::TwoMass => None,
+        }
+    }
+}
 
 /// One fitted model with its title.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,49 +119,34 @@ pub struct AxisModels {
     pub repeatability: Vec<Repeatability>,
     /// The drive, where it is declared.
     pub motor: Option<MotorSide>,
-    /// An estimate for each model, with the role of the files that it is fitted to.
-    pub estimates: Vec<(Estimate, &'static str)>,
-    /// Files that were read.
-    pub files: Vec<ReadFile>,
+    /// An estimate for each model, with the files that it is fitted to.
+    pub estimates: Vec<(Estimate, Vec<ReadFile>)>,
     /// What is doubtful.
     pub findings: Vec<Finding>,
 }
 
-/// Models of a log of another program, which says by its sidecar what force a volt of the command is.
+/// Rigid models of a log of another program, called `name`; its sidecar says what force a volt of the command is.
 ///
 /// # Errors
 ///
 /// A log that cannot be read, without the force per volt, or that no model can be fitted to.
-pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, MethodError> {
+pub fn of_table(path: &Path, sidecar: Option<&Path>, name: &str) -> Result<AxisModels, MethodError> {
     let imported = import_run(path, sidecar)?;
     let log = &imported.log;
-    let gain = log.meta.constants.get("drive_gain").ok_or_else(|| {
-        let what = "the sidecar must state the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
-        MethodError::input(path, what)
-    })?;
-    let gain_n_v = gain.value;
+    let gain_n_v = force_per_volt_n_v(path, sidecar)?;
     let servo = servo_log(log)?;
     let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
-    let chain = |friction| Chain {
-        // The pinned chain of a record at 1 kHz, scaled with the record's rate.
-        corner_hz: 0.1 * rate_hz,
-        ..Chain::new(gain_n_v, friction)
-    };
-    let asked = [(CONSTANT, Friction::symmetric()), (ASYMMETRIC, Friction::asymmetric())];
-    let fit = |friction| identify_servo(&servo, &chain(friction)).map_err(MethodError::refused);
-    let (models, not_fitted) = each(asked.into_iter().map(|(name, friction)| (name, fit(friction))));
+    let asked = [AxisModel::Symmetric, AxisModel::Asymmetric].map(|model| (model, friction_of(model)));
+    let fit = |friction| identify_servo(&servo, &log_chain(gain_n_v, rate_hz, friction)).map_err(MethodError::refused);
+    let rigid = asked.into_iter().filter_map(|(model, friction)| Some((model.friction()?, fit(friction))));
+    let (models, not_fitted) = each(rigid);
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
     let mut findings = reported(&models, imported.findings);
     findings.extend(not_fitted);
-    let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let rigid = |m: &Model| (record::rigid(&name, &m.name, &m.report, gain_n_v, None), "table");
-    let estimates = models.iter().map(rigid).collect();
-    let mut files = vec![ReadFile::new(path.to_owned(), "table")];
-    let sidecar = sidecar.map_or_else(|| path.with_extension("toml"), Path::to_owned);
-    files.extend(sidecar.exists().then(|| ReadFile::new(sidecar, "sidecar")));
+    let files = files_of_table(path, sidecar);
+    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain_n_v, None), files.clone());
     Ok(AxisModels {
-        estimates,
-        files,
+        estimates: models.iter().map(rigid).collect(),
         models,
         rigid_mounts: Vec::new(),
         flexible: None,
@@ -116,6 +155,36 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>) -> Result<AxisModels, Metho
         motor: None,
         findings,
     })
+}
+
+/// The friction of a rigid model of a log: an offset of the current is not excluded.
+fn friction_of(model: AxisModel) -> Friction {
+    match model {
+        AxisModel::Asymmetric => Friction::asymmetric(),
+        _ => Friction::symmetric(),
+    }
+}
+
+/// The pinned chain of a record at 1 kHz, scaled with the record's rate.
+fn log_chain(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Chain {
+    Chain { corner_hz: 0.1 * rate_hz, ..Chain::new(force_per_volt_n_v, friction) }
+}
+
+/// What a sidecar says that a volt of the command is, N/V.
+fn force_per_volt_n_v(log: &Path, sidecar: Option<&Path>) -> Result<f64, MethodError> {
+    let gain = sidecar_of(log, sidecar)?.and_then(|sidecar| Some(sidecar.constants.get("drive_gain")?.value_si));
+    gain.ok_or_else(|| {
+        let what = "the sidecar must state the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
+        MethodError::input(log, what)
+    })
+}
+
+/// A log and its sidecar.
+fn files_of_table(path: &Path, sidecar: Option<&Path>) -> Vec<ReadFile> {
+    let mut files = vec![ReadFile::new(path.to_owned(), "table")];
+    let sidecar = sidecar.map_or_else(|| path.with_extension("toml"), Path::to_owned);
+    files.extend(sidecar.exists().then(|| ReadFile::new(sidecar, "sidecar")));
+    files
 }
 
 fn reported(models: &[Model], mut findings: Vec<Finding>) -> Vec<Finding> {
@@ -169,12 +238,12 @@ const KNOT_M: f64 = 0.25;
 /// Most stretches between knots: on ways longer than 250 m they are longer.
 const MOST_STRETCHES: usize = 1000;
 
-/// Models of the axis, from runs of a carriage.
+/// These models of what runs of a carriage say of their axis, called `name`.
 ///
 /// # Errors
 ///
 /// Runs that do not say what rig they come from, or that no model can be fitted to.
-pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
+pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModels, MethodError> {
     let constants = runs.logs.iter().find_map(|log| log.meta.moving_axis()).ok_or_else(|| {
         MethodError::input(&runs.folder, "the runs do not state which rig they come from (their .toml has no [rig])")
     })?;
@@ -183,11 +252,14 @@ pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
     let slow = if slow.is_empty() { runs.logs.iter().filter(|l| l.meta.role == Role::Dry).collect() } else { slow };
     let (mut models, mut not_fitted) = (Vec::new(), Vec::new());
     if !slow.is_empty() {
-        let map = knots(&slow).map(|knots_m| Friction { knots_m, ..Friction::default() });
-        let asked =
-            [(CONSTANT, Ok(Friction::default())), (ASYMMETRIC, Ok(Friction::asymmetric())), (OVER_POSITION, map)];
+        let friction = |model: AxisModel| match model {
+            AxisModel::Asymmetric => Ok(Friction::asymmetric()),
+            AxisModel::OverPosition => knots(&slow).map(|knots_m| Friction { knots_m, ..Friction::default() }),
+            _ => Ok(Friction::default()),
+        };
+        let rigid = asked.iter().filter_map(|model| Some((model.friction()?, friction(*model))));
         (models, not_fitted) =
-            each(asked.into_iter().map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
+            each(rigid.map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
     }
     let mut findings = reported(&models, runs.findings.clone());
     findings.extend(varies(&models));
@@ -202,26 +274,28 @@ pub fn of_runs(runs: &Runs) -> Result<AxisModels, MethodError> {
                 .to_owned(),
         ));
     }
-    let (flexible, why_not) = two_masses(&runs.logs);
+    let (flexible, why_not) = if asked.contains(&AxisModel::TwoMass) { two_masses(&runs.logs) } else { (None, None) };
     findings.extend(some_or_error(!models.is_empty() || flexible.is_some(), not_fitted)?);
     findings.extend(why_not);
     if let Some(report) = &flexible {
         findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
     }
     let repeatability = repeatability(&slow, &motor)?;
-    let of_folder = || {
-        let beside = runs.results("servo");
-        beside.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
-    };
-    let name = runs.campaign.as_ref().map_or_else(of_folder, |campaign| campaign.name.clone());
     let gain_n_v = motor.force_per_volt_n_v();
-    let of_slow = slow.first().map_or("", |log| log.meta.role.name());
-    let rigid = |m: &Model| (record::rigid(&name, &m.name, &m.report, gain_n_v, Some(&motor)), of_slow);
-    let two_mass = |report: &FlexibleReport| (record::two_mass(&name, report), Role::Excitation.name());
+    let files = |logs: &[&RunLog]| -> Vec<ReadFile> { logs.iter().copied().map(file_of).collect() };
+    let part = |d: &Declared| d.standard_uncertainty / d.value;
+    let drive = Drive {
+        motor,
+        torque_relative: part(&constants.torque_constant_n_m_a).hypot(part(&constants.amplifier_a_v)),
+        radius_relative: part(&constants.sprocket_radius_m),
+        rig: rig_key(runs, Some(constants)).unwrap_or_else(|| format!("{OWN}rig")),
+    };
+    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain_n_v, Some(&drive)), files(&slow));
+    let excited: Vec<&RunLog> = pulses(&runs.logs).into_iter().collect();
+    let two_mass = |report: &FlexibleReport| (record::two_mass(name, report), files(&excited));
     let estimates = models.iter().map(rigid).chain(flexible.as_ref().map(two_mass)).collect();
     Ok(AxisModels {
         estimates,
-        files: files_of(runs),
         models,
         rigid_mounts: mounts(slow.iter().copied()),
         flexible,

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use crate::drag::calibration::record::Known;
 use crate::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
 use crate::drag::coefficient::Method;
 use crate::drag::report::{DragReport, drag_by};
@@ -210,8 +211,7 @@ pub fn setup_of(campaign: Option<&Campaign>, axis: Option<&AxisConstants>) -> Dr
 }
 
 /// Standard uncertainty of a campaign's weights, as a part; 0.1 % where it declares none, as of shop weights.
-#[must_use]
-pub fn declared_weight_relative(campaign: Option<&Campaign>) -> f64 {
+fn declared_weight_relative(campaign: Option<&Campaign>) -> f64 {
     let plan = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref());
     plan.and_then(|p| p.calibration.as_ref()).map_or(1e-3, weight_relative)
 }
@@ -222,14 +222,31 @@ pub fn weight_relative(calibration: &froude_records::carriage::Calibration) -> f
 }
 
 /// Key of the error of the declared weights: campaigns that declare the same weights on a carriage of the same size hung the same ones.
-#[must_use]
-pub fn weights_key(campaign: Option<&Campaign>) -> Option<String> {
+fn weights_key(campaign: Option<&Campaign>) -> Option<String> {
     let carriage = campaign?.carriage.as_ref()?;
     let calibration = carriage.plan.as_ref()?.calibration.as_ref()?;
     let axis = &carriage.rig.y;
     let size = (axis.travel_m, axis.constants.sprocket_radius_m.value, axis.constants.counts_per_revolution);
     let text = format!("{:?} {:e} {size:?}", calibration.weights_n, calibration.weight_standard_n);
     Some(format!("weights/{}", short_key(text.as_bytes())))
+}
+
+/// Loss of the campaign's pulley, as a part of the weight; [`PULLEY_LOSS`] where it declares none.
+fn pulley_loss(campaign: Option<&Campaign>) -> Uncertain {
+    let plan = campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref());
+    let declared = plan.and_then(|p| p.calibration.as_ref()).and_then(|c| c.pulley_loss);
+    declared.map_or(PULLEY_LOSS, |p| Uncertain::new(p.value, p.standard_uncertainty))
+}
+
+/// What is known of the errors of a campaign's calibration, on the rig of this key: campaigns that take the same loss on one rig have one pulley.
+#[must_use]
+pub fn known_of_calibration(campaign: Option<&Campaign>, rig: Option<&str>) -> Known {
+    let loss = pulley_loss(campaign);
+    Known {
+        weight_relative: declared_weight_relative(campaign),
+        weights: weights_key(campaign),
+        pulley: rig.map(|rig| format!("{rig}/pulley {:e} {:e}", loss.value, loss.standard)),
+    }
 }
 
 /// Calibration from the runs with weights; a finding where there are such runs and they do not calibrate.
@@ -256,15 +273,12 @@ pub fn calibration_from(
     if readings.is_empty() {
         return (None, None);
     }
-    let declared =
-        campaign.and_then(|c| c.carriage.as_ref()).and_then(|c| c.plan.as_ref()).and_then(|p| p.calibration.as_ref());
     let weight_relative = declared_weight_relative(campaign);
     let asked = CalibrationSetup {
         ideal_force_per_volt_n: setup.ideal_force_per_volt_n,
+        ideal_relative: setup.torque_constant_relative.hypot(setup.speed_scale_relative),
         weight_relative,
-        pulley_loss: declared
-            .and_then(|c| c.pulley_loss)
-            .map_or(PULLEY_LOSS, |p| Uncertain::new(p.value, p.standard_uncertainty)),
+        pulley_loss: pulley_loss(campaign),
         steady: setup.steady,
     };
     match readings.calibrate(&asked) {
@@ -294,26 +308,30 @@ fn calibrated_by(runs: &Runs) -> Result<Option<String>, MethodError> {
     Ok((!sums.is_empty()).then(|| format!("force_per_volt/{}", short_key(sums.join(" ").as_bytes()))))
 }
 
+/// Key of the rig: campaigns that declare the same constants drove the same one. Runs without their campaign say theirs themselves (`axis`).
+#[must_use]
+pub fn rig_key(runs: &Runs, axis: Option<&AxisConstants>) -> Option<String> {
+    let carriage = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref());
+    let AxisConstants {
+        torque_constant_n_m_a,
+        amplifier_a_v,
+        gear_ratio,
+        sprocket_radius_m,
+        counts_per_revolution,
+        ..
+    } = carriage.map(|c| &c.rig.y.constants).or(axis)?;
+    let all = [torque_constant_n_m_a, amplifier_a_v, gear_ratio, sprocket_radius_m];
+    Some(format!("rig/{}", short_key(format!("{all:?} {counts_per_revolution}").as_bytes())))
+}
+
 /// Keys of the errors that other campaigns may have too. Campaigns that declare the same constants drove the same rig, with the same sensor.
 fn keys(runs: &Runs, axis: Option<&AxisConstants>) -> Result<ErrorKeys, MethodError> {
     let carriage = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref());
-    let used = carriage.map(|c| &c.rig.y.constants).or(axis);
     let sensor = carriage.and_then(|c| c.rig.force_sensor.as_ref()).filter(|sensor| sensor.gain_standard.is_some());
     let key = |what: &str, text: String| format!("{what}/{}", short_key(text.as_bytes()));
     Ok(ErrorKeys {
         calibration: calibrated_by(runs)?,
-        rig: used.map(|c| {
-            let AxisConstants {
-                torque_constant_n_m_a,
-                amplifier_a_v,
-                gear_ratio,
-                sprocket_radius_m,
-                counts_per_revolution,
-                ..
-            } = c;
-            let all = [torque_constant_n_m_a, amplifier_a_v, gear_ratio, sprocket_radius_m];
-            key("rig", format!("{all:?} {counts_per_revolution}"))
-        }),
+        rig: rig_key(runs, axis),
         sensor: sensor.map(|sensor| key("sensor", format!("{sensor:?}"))),
     })
 }

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use froude_control::status::Phase;
 use froude_hydro::fluid::Water;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, of_method, refuse_others};
@@ -306,8 +307,16 @@ fn first_folder(paths: &[PathBuf]) -> PathBuf {
     if first.is_dir() { first } else { first.parent().map_or_else(PathBuf::new, Path::to_owned) }
 }
 
+/// State of an exciting axis in a log.
+pub const EXCITING: f64 = Phase::Exciting as u8 as f64;
+
 /// Largest number in a channel of a carriage, SI: no carriage goes a thousand kilometres or pulls a meganewton.
 const LARGEST: f64 = 1e6;
+
+/// Whether a number is beyond any carriage.
+pub(crate) fn implausible(x: f64) -> bool {
+    x.is_nan() || x.abs() > LARGEST
+}
 
 /// A channel of a run, checked against what a carriage can reach.
 ///
@@ -316,7 +325,7 @@ const LARGEST: f64 = 1e6;
 /// No such channel, another dimension, or a sample that no carriage has.
 pub fn column<'l>(log: &'l RunLog, name: &str, dimension: Dimension) -> Result<&'l [f64], MethodError> {
     let values = log.channel(name, dimension)?;
-    match values.iter().position(|x| x.is_nan() || x.abs() > LARGEST) {
+    match values.iter().position(|x| implausible(*x)) {
         None => Ok(values),
         Some(i) => Err(MethodError::input(
             &log.path,

@@ -6,7 +6,7 @@ use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, Fluid, Identify, Input, Source};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{Role, TOW};
+use froude_records::run::{Role, RunLog, TOW};
 
 use crate::reduction::page::sections;
 use crate::reduction::{Reduction, reduce};
@@ -86,8 +86,8 @@ fn roles() -> Vec<Role> {
     Role::ALL.into_iter().filter(is_needed).collect()
 }
 
-/// What a method needs and the runs do not have, in words.
-fn why_not(method: CarriageMethod, runs: &Runs) -> String {
+/// What is needed and the runs do not have, in words.
+pub(crate) fn lacking_in(needs: &[Need], runs: &Runs) -> Option<String> {
     let files = |role: &str| {
         let of_role = runs.logs.iter().filter(|log| log.meta.role.name() == role);
         of_role
@@ -96,10 +96,8 @@ fn why_not(method: CarriageMethod, runs: &Runs) -> String {
             })
             .collect()
     };
-    match lacking(needs(method), files).as_slice() {
-        [] => "their windows give no point for it".to_owned(),
-        lacking => lacking.join("; "),
-    }
+    let lacking = lacking(needs, files);
+    (!lacking.is_empty()).then(|| lacking.join("; "))
 }
 
 /// Reduces the runs of a source: a result for each method, in the order asked for.
@@ -119,13 +117,16 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
         let Some(i) = fitted.iter().position(|(coefficient, _)| coefficient.method == method) else {
             // Whoever names no method gets those that the runs allow.
             if !source.methods.is_empty() {
-                let text = format!("{} ({}): {}", method.name(), method.words(), why_not(method, runs));
+                let why = lacking_in(needs(method), runs);
+                let why = why.unwrap_or_else(|| "their windows give no point for it".to_owned());
+                let text = format!("{} ({}): {why}", method.name(), method.words());
                 report.findings.push(Finding::new(Severity::Warning, "not-fitted", text));
             }
             continue;
         };
         let (coefficient, estimate) = fitted.swap_remove(i);
-        out.push(SourceResult { files: files.clone(), ..result(source, coefficient, estimate, runs.logs.len()) });
+        let result = result(source, coefficient, estimate, runs.logs.len());
+        out.push(SourceResult { files: files.clone(), ..result }.into());
     }
     let folder = source.input.path().display();
     if runs.campaign.is_none() {
@@ -175,7 +176,13 @@ fn passed_over(campaign: &Campaign, source: &Source) -> Option<Finding> {
 /// The logs of runs, each in its role.
 #[must_use]
 pub fn files_of(runs: &Runs) -> Vec<ReadFile> {
-    runs.logs.iter().map(|log| ReadFile::new(log.path.clone(), log.meta.role.name())).collect()
+    runs.logs.iter().map(file_of).collect()
+}
+
+/// The log of a run in its role.
+#[must_use]
+pub fn file_of(log: &RunLog) -> ReadFile {
+    ReadFile::new(log.path.clone(), log.meta.role.name())
 }
 
 /// A result of the report under the name of the source.

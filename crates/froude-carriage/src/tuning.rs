@@ -8,14 +8,23 @@
 //! | [`gains`]    | gains by loop shaping on the measured response; Ziegler–Nichols beside | the same, ch. 6            |
 //! | [`tracking`] | following error and speed of a ramp on the identified two masses     | MCD eq. 2, eq. 6; simulated |
 //! | [`resonance`] | two-mass modes from the response; the shaper that they ask for     | MCD eq. 2; Singer & Seering 1990 |
+//! | [`experiment`] | what a relay and a sweep logged                                  |                               |
+//! | [`candidate`], [`choice`] | gains held against response and ramps; which to use     |                               |
+//! | [`modes`]    | modes bare, dry and wet                                            |                               |
 //!
 //! **Frame.** Drive command v_c \[V\] to motor angle θ \[rad\], as MCD eq. 6 has them.
 //! **Units.** SI; frequencies at the faces in Hz.
 //!
 //! Not here: driving the rig (`froude-rig`).
 
+pub mod candidate;
+pub mod choice;
+pub mod experiment;
 pub mod gains;
 pub mod margins;
+pub mod modes;
+mod objections;
+mod record;
 pub mod relay;
 pub mod resonance;
 pub mod response;

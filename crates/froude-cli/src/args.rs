@@ -29,10 +29,10 @@ pub enum Verb {
         #[arg(default_value = "froude-demo")]
         dir: PathBuf,
     },
-    /// Fit every force model asked for, choose, and write estimate.json and report.html.
+    /// Fit every force model asked for, choose, and write estimate.json and report.html; identify the servo of a log.
     #[command(after_help = "Examples:\n  froude identify campaign.toml\n  froude identify tow.csv --models quadratic")]
     Identify {
-        /// A campaign (.toml) or a bare table (.csv, .parquet).
+        /// A campaign (.toml), a bare table (.csv, .parquet), or a servo's log whose sidecar names time, position and command.
         input: PathBuf,
         /// Folder of the results [default: INPUT-results beside the input].
         #[arg(long)]

@@ -3,18 +3,14 @@
 use std::path::PathBuf;
 
 use froude::Error;
-use froude::carriage::calibrate::{CalibrationJob, calibrate, polarity};
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::carriage::servo::{ServoJob, identify};
-use froude::carriage::tune::{
-    candidates_table, find_resonance, free_without_loss, modes_table, resonance_sentences, tune, tune_sentences,
-};
+use froude::carriage::tune::{Experimented, find_resonance, tune};
 use froude::fit::budget::Uncertain;
-use froude::methods::carriage::axis::page::{coefficient_table, flexible_table, repeatability_table};
-use froude::methods::carriage::drag::calibration::{Jog, encoder_scale};
+use froude::methods::carriage::drag::calibration::encoder_scale;
 use froude::methods::carriage::runs;
-use froude::methods::carriage::servo::report::effective;
-use froude::pipeline::{Input, Job};
+use froude::methods::carriage::tuning::choice::page as gains;
+use froude::methods::carriage::tuning::modes::page as mode_page;
+use froude::pipeline::{Input, Job, Purpose};
 use froude::records::carriage::plan::{PlannedRun, Step};
 use froude::records::page::TextTable;
 use froude::records::run::Role;
@@ -27,7 +23,6 @@ use crate::args::{CarriageJob, Experiment};
 use crate::mistaken::{self, Takes};
 use crate::out::say;
 use crate::print;
-use crate::side_by_side::verdicts;
 use crate::stage::Stage;
 
 /// `froude run`.
@@ -249,7 +244,8 @@ fn minutes(seconds: f64) -> String {
 pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
     match job {
         CarriageJob::Identify { input, sidecar, out } => {
-            servo(input.clone(), sidecar, out, is_json).map_err(|error| mistaken::SERVO.explain(error, &input))
+            let job = Job { sidecar, purpose: Some(Purpose::Servo), ..servo(&input, out) };
+            crate::identify(job, is_json, false).map_err(|error| mistaken::SERVO.explain(error, &input))
         }
         CarriageJob::Drag { runs, campaign, out } => {
             let job = Job { out, ..Job::of(Input::Runs { paths: runs.clone(), campaign }) };
@@ -260,123 +256,26 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
             if let Some(measured) = measured {
                 scale(&runs, &measured, &measured_standard, &counted).map_err(explain)?;
             }
-            let date = Some(crate::today());
-            calibration(&CalibrationJob { runs: runs.clone(), campaign, out, date }, is_json).map_err(explain)
+            let input = Input::Runs { paths: runs.clone(), campaign };
+            let job = Job { out, purpose: Some(Purpose::Calibration), ..Job::of(input) };
+            crate::identify(job, is_json, false).map_err(explain)
         }
         CarriageJob::Tune(e) => tuning(e, is_json),
         CarriageJob::Resonance(e) => modes(e, is_json),
     }
 }
 
-fn servo(input: Vec<PathBuf>, sidecar: Option<PathBuf>, out: Option<PathBuf>, is_json: bool) -> Result<(), Error> {
-    let bar = crate::spinner();
-    bar.set_message("identifying");
-    let done = identify(&ServoJob { input, sidecar, out, date: Some(crate::today()) })?;
-    let (outcome, written) = (&done.axis, &done.written);
-    bar.finish_and_clear();
-    let coefficients = |c: &[froude::methods::carriage::servo::ServoCoefficient]| -> Vec<serde_json::Value> {
-        c.iter()
-            .map(|c| {
-                json!({"name": c.name, "unit": c.unit, "value": c.value, "interval_95": c.interval,
-                            "std_white": c.classical_std, "std_hac": c.hac_std, "std_blocks": c.block_std})
-            })
-            .collect()
-    };
-    if is_json {
-        let models: Vec<_> = outcome
-            .models
-            .iter()
-            .map(|m| {
-                json!({"friction": m.name, "relative_force_error": m.report.relative_force_error,
-                       "coefficients": coefficients(&m.report.coefficients),
-                       "effective": outcome.motor.as_ref().map(|motor| coefficients(&effective(&m.report, motor)))})
-            })
-            .collect();
-        let flexible = outcome.flexible.as_ref().map(|f| {
-            json!({"coefficients": coefficients(&f.coefficients), "relative_speed_error": f.relative_speed_error,
-                   "splits": f.splits.iter().map(|s| json!({"name": s.name, "is_identified": s.is_identified,
-                       "share_of_motor": s.is_identified.then_some(s.share_of_motor), "interval_95": s.interval})).collect::<Vec<_>>()})
-        });
-        return print::json(&json!({"models": models, "two_mass": flexible, "findings": outcome.findings,
-                   "estimate": written.estimate, "report": written.report}));
-    }
-    for model in &outcome.models {
-        let error = froude::records::number::percent(model.report.relative_force_error);
-        say!("\nRigid, friction {}{} (relative force error {error})", model.name, runs::mounted(&outcome.rigid_mounts));
-        print::text_table(&coefficient_table(String::new(), &model.report.coefficients));
-        if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == "symmetric") {
-            say!("\nAt the motor's shaft");
-            print::text_table(&coefficient_table(String::new(), &effective(&model.report, motor)));
+/// Folders of runs and runs, or one log of another program, whose results lie beside it.
+fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Job {
+    let is_log = |path: &&PathBuf| path.extension().is_some_and(|e| e == "csv" || e == "parquet");
+    match input {
+        [log] if is_log(&log) => {
+            let stem = log.file_stem().unwrap_or_default().to_string_lossy();
+            let beside = log.with_file_name(format!("{stem}-servo"));
+            Job { out: Some(out.unwrap_or(beside)), ..Job::new(log) }
         }
+        runs => Job { out, ..Job::of(Input::Runs { paths: runs.to_vec(), campaign: None }) },
     }
-    if let Some(f) = &outcome.flexible {
-        say!("\nTwo masses, from the motor's side{}", runs::mounted(&outcome.two_mass_mounts));
-        print::text_table(&flexible_table(f));
-        for s in &f.splits {
-            let share =
-                if s.is_identified { format!("{:.2}", s.share_of_motor) } else { "not identifiable".to_owned() };
-            say!("  {}: {share}", s.name);
-        }
-    }
-    if !outcome.repeatability.is_empty() {
-        say!("\nRepeatability");
-        print::text_table(&repeatability_table(&outcome.repeatability));
-    }
-    print::findings(&outcome.findings);
-    print::written(written);
-    Ok(())
-}
-
-fn calibration(job: &CalibrationJob, is_json: bool) -> Result<(), Error> {
-    let outcome = calibrate(job)?;
-    if is_json {
-        let calibration = outcome.calibration.as_ref().map(|c| {
-            json!({"force_per_volt_n": c.force_per_volt.force_per_volt_n.value,
-                   "standard_uncertainty_n": c.force_per_volt.force_per_volt_n.standard, "interval_95": c.interval_95,
-                   "efficiency": c.efficiency.value, "friction_n": c.friction_n, "driving_runs": c.used,
-                   "overhauled_runs": c.overhauled})
-        });
-        let jogs: Vec<_> = outcome
-            .jogs
-            .iter()
-            .map(|j| json!({"run": j.id, "command_v": j.command_v, "way_m": j.way_m, "is_right": j.verdict == Jog::Right}))
-            .collect();
-        let written = outcome.written.as_ref();
-        return print::json(&json!({"calibration": calibration, "jogs": jogs, "findings": outcome.file_findings(),
-                                   "estimate": written.map(|w| &w.estimate), "report": written.map(|w| &w.report)}));
-    }
-    for j in &outcome.jogs {
-        let polarity = polarity(&j.verdict);
-        say!("{}: {:.2} V moved {:.2} mm: polarity {polarity}", j.id, j.command_v, 1e3 * j.way_m);
-    }
-    if let Some(c) = &outcome.calibration {
-        use froude::records::number::{interval, short_form};
-        let k = c.force_per_volt.force_per_volt_n;
-        say!(
-            "{} N/V, 95 % interval {} N/V, from {} ({} overhauled left out)",
-            short_form(k.value, k.standard),
-            interval(c.interval_95),
-            counted(c.used, "driving run", "driving runs"),
-            c.overhauled
-        );
-        say!(
-            "gear efficiency {} against the ideal {:.4} N/V; carriage friction {:.3} N",
-            short_form(c.efficiency.value, c.efficiency.standard),
-            outcome.ideal_force_per_volt_n,
-            c.friction_n
-        );
-        for note in &c.notes {
-            say!("{note}");
-        }
-    }
-    if let Some(comparison) = &outcome.file.comparison {
-        verdicts(comparison);
-    }
-    print::findings(outcome.file_findings());
-    if let Some(written) = &outcome.written {
-        print::written(written);
-    }
-    Ok(())
 }
 
 /// Sprocket radius that makes the counted distances the measured one.
@@ -416,7 +315,7 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
     let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::TUNE)?;
     let outcome = tune(&job, &switch, &mut person, &mut bar);
     bar.end();
-    let outcome = outcome?;
+    let Experimented { found: outcome, written, .. } = outcome?;
     if is_json {
         let rows: Vec<_> = outcome
             .candidates
@@ -430,7 +329,8 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
                        "following_error_m": c.following_error_m, "homing_speed_m_s": c.homing_m_s, "objections": c.objections})
             })
             .collect();
-        return print::json(&json!({"gains": rows, "recommended": outcome.recommended, "report": outcome.page}));
+        return print::json(&json!({"gains": rows, "recommended": outcome.recommended,
+                                   "estimate": written.estimate, "report": written.report}));
     }
     match &outcome.cycle {
         Ok(c) => say!(
@@ -441,12 +341,12 @@ fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
         ),
         Err(error) => say!("relay: {error}"),
     }
-    print::text_table(&candidates_table(&outcome));
+    print::text_table(&gains::candidates_table(&outcome));
     say!("");
-    for sentence in tune_sentences(&outcome) {
+    for sentence in gains::sentences(&outcome) {
         say!("{sentence}");
     }
-    say!("\nReport with the Bode plot: {}", outcome.page.display());
+    print::written(&written);
     Ok(())
 }
 
@@ -454,7 +354,7 @@ fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
     let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::RESONANCE)?;
     let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
     bar.end();
-    let outcome = outcome?;
+    let Experimented { found: outcome, written, .. } = outcome?;
     if is_json {
         let rows: Vec<_> = outcome
             .states
@@ -463,17 +363,18 @@ fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
                 let modes = s.modes.as_ref().ok();
                 json!({"body": s.body, "load_hz": modes.map(|m| m.load.frequency_hz), "load_damping": modes.map(|m| m.load.damping),
                        "free_seen_hz": modes.map(|m| m.free.frequency_hz),
-                       "free_hz": modes.and_then(|m| free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
+                       "free_hz": modes.and_then(|m| mode_page::free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
             })
             .collect();
         return print::json(&json!({"states": rows, "shaped_mode_hz": outcome.proposed.map(|p| p.0),
-                                   "shaped_damping": outcome.proposed.map(|p| p.1), "report": outcome.page}));
+                                   "shaped_damping": outcome.proposed.map(|p| p.1),
+                                   "estimate": written.estimate, "report": written.report}));
     }
-    print::text_table(&modes_table(&outcome));
+    print::text_table(&mode_page::modes_table(&outcome));
     say!("");
-    for sentence in resonance_sentences(&outcome) {
+    for sentence in mode_page::sentences(&outcome) {
         say!("{sentence}");
     }
-    say!("\nReport: {}", outcome.page.display());
+    print::written(&written);
     Ok(())
 }

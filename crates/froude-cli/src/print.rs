@@ -2,6 +2,7 @@
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::Error;
+use froude::identify::answer::Answer;
 use froude::identify::source::SourceResult;
 use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::{Outcome, Summary};
@@ -55,6 +56,9 @@ pub fn right(text: String) -> Cell {
 
 /// The coefficient tables or the summaries, records side by side, the findings, and where the report lies.
 pub fn outcome(outcome: &Outcome, all: bool) {
+    for of_none in outcome.summaries.iter().filter(|summary| summary.sources.is_empty()) {
+        summary(&of_none.section);
+    }
     for (i, result) in outcome.sources.iter().enumerate() {
         match outcome.summaries.iter().find(|summary| summary.sources.contains(&i)) {
             Some(Summary { sources, section }) if sources.start == i => summary(section),
@@ -85,6 +89,10 @@ pub fn written(Written { estimate, report, .. }: &Written) {
 /// What a method states about all its results: its tables, then its sentences.
 fn summary(section: &DocumentSection) {
     for table in &section.tables {
+        // One table says by its columns what it is, several do not.
+        if section.tables.len() > 1 {
+            say!("\n{}", table.caption);
+        }
         text_table(table);
     }
     say!("");
@@ -93,18 +101,14 @@ fn summary(section: &DocumentSection) {
     }
 }
 
-fn source(source: &SourceResult) {
-    say!("\n{} ({})", source.name, observations(source.data.observations()));
-    if let Some(r) = &source.recommendation {
-        let is_recommended = source.estimates[r.index].recommended;
-        say!("  {}: {}", if is_recommended { "recommended" } else { "method" }, r.reason);
-        if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
-            say!("  cross-validation: {why}");
-        }
+fn source(answer: &Answer) {
+    say!("\n{} ({})", answer.name(), observations(answer.observations()));
+    if let Some(source) = answer.fitted() {
+        choice(source);
     }
     // Of several models the recommended one; of a method's only one, that.
-    let (shown, others): (Vec<&Estimate>, Vec<&Estimate>) =
-        source.estimates.iter().partition(|e| e.recommended || source.estimates.len() == 1);
+    let all = answer.estimates();
+    let (shown, others): (Vec<&Estimate>, Vec<&Estimate>) = all.iter().partition(|e| e.recommended || all.len() == 1);
     for estimate in shown {
         say!("{}", coefficients(estimate));
         for combination in &estimate.undetermined {
@@ -115,8 +119,19 @@ fn source(source: &SourceResult) {
     if !others.is_empty() {
         say!("  also fitted: {} (see the report)", others.join(", "));
     }
-    for n in &source.not_fitted {
+    for n in answer.fitted().iter().flat_map(|source| &source.not_fitted) {
         say!("  not fitted: {}: {}", n.model, n.why);
+    }
+}
+
+/// Which of the fitted models, and why.
+fn choice(source: &SourceResult) {
+    if let Some(r) = &source.recommendation {
+        let is_recommended = source.estimates[r.index].recommended;
+        say!("  {}: {}", if is_recommended { "recommended" } else { "method" }, r.reason);
+        if let Some(why) = source.scores[r.index].note.as_ref().filter(|_| source.data.configurations().len() > 1) {
+            say!("  cross-validation: {why}");
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 mod bench;
-use bench::{SIX_FRICTION_SPEEDS, SIX_SPEEDS, findings_of, froude, is_called, json, text};
+use bench::{SIX_FRICTION_SPEEDS, SIX_SPEEDS, findings_of, froude, is_called, json, refusal, text};
 
 /// The example, shortened: two speeds, three pairs, one weight, short waits.
 fn campaign(folder: &Path, changes: &[(&str, &str)]) -> PathBuf {
@@ -78,48 +78,78 @@ fn a_campaign_is_driven_and_its_drag_is_the_twins() {
     assert!(report.contains("Uncertainty budget") && report.contains("C_D"));
 
     let known = json(&["carriage", "calibrate", text(&runs), "--json"]);
-    let efficiency = known["calibration"]["efficiency"].as_f64().unwrap();
+    let record = &known;
+    let efficiency = record["estimates"][0]["derived"]["efficiency"]["value"].as_f64().unwrap();
     assert!((efficiency - 0.8).abs() < 0.03, "{known}");
-    assert!(known["jogs"].as_array().unwrap().iter().all(|j| j["is_right"] == true), "{known}");
-    let record: Value =
-        serde_json::from_str(&std::fs::read_to_string(known["estimate"].as_str().unwrap()).unwrap()).unwrap();
+    let polarity = findings_of(&known, "polarity");
+    assert!(
+        !polarity.is_empty() && polarity.iter().all(|(_, said)| said.ends_with("the polarity is right")),
+        "{polarity:?}"
+    );
     let calibrated = &record["estimates"][0]["coefficients"]["force_per_volt"];
     let part = |key: &str| calibrated[key].as_f64().unwrap();
-    assert_eq!(calibrated["value"], known["calibration"]["force_per_volt_n"]);
     assert!((part("type_a").hypot(part("type_b")) / part("standard_uncertainty") - 1.0).abs() < 1e-9, "{calibrated}");
+    // The weights and, since nothing was lowered that weighs less than the friction, the pulley.
     let errors = record["estimates"][0]["errors"].as_object().unwrap();
-    assert!(errors.keys().all(|key| key.starts_with("weights/")), "{errors:?}");
+    let kinds = ["weights/", "rig/"];
+    assert!(errors.keys().zip(kinds).all(|(key, kind)| key.starts_with(kind)), "{errors:?}");
     // The drive declares a gear of 0.8 ± 0.05: the weights say the same, better.
     let declared = &record["estimates"][1]["coefficients"]["force_per_volt"];
     assert!(declared["standard_uncertainty"].as_f64().unwrap() > 2.0 * part("standard_uncertainty"), "{declared}");
     let rows = record["comparison"]["coefficients"].as_array().unwrap();
     assert!(rows.len() == 1 && rows[0]["e_n"].as_f64().unwrap().abs() < 1.0, "{rows:?}");
     assert_eq!(record["comparison"]["verdicts"][0]["agree"], true);
-    let page = std::fs::read_to_string(known["report"].as_str().unwrap()).unwrap();
+    let page = std::fs::read_to_string(folder.path().join("campaign-runs-calibration/report.html")).unwrap();
     assert!(page.contains("Force per volt") && page.contains(" agree within their uncertainties"));
 
     let servo = json(&["carriage", "identify", text(&runs), "--json"]);
-    let models = servo["models"].as_array().unwrap();
-    assert_eq!(models.len(), 3);
-    assert!(servo["two_mass"].is_object(), "{servo}");
-    let record = std::fs::read_to_string(servo["estimate"].as_str().unwrap()).unwrap();
-    let record: Value = serde_json::from_str(&record).unwrap();
-    let laws: Vec<&Value> = record["estimates"].as_array().unwrap().iter().map(|e| &e["law"]["name"]).collect();
+    let laws: Vec<&Value> = servo["estimates"].as_array().unwrap().iter().map(|e| &e["law"]["name"]).collect();
     assert_eq!(laws, ["servo_symmetric", "servo_asymmetric", "servo_over_position", "servo_two_mass"]);
-    let two_mass = &record["estimates"][3];
-    let of = |found: &Value, name: &str| {
-        let all = found["coefficients"].as_array().unwrap();
-        all.iter().find(|c| c["name"] == name).unwrap()["std_blocks"].as_f64().unwrap()
-    };
+    let written = std::fs::read_to_string(folder.path().join("campaign-runs-servo/estimate.json")).unwrap();
+    assert_eq!(serde_json::from_str::<Value>(&written).unwrap(), servo, "what is printed is what is written");
+    let two_mass = &servo["estimates"][3];
     let load = &two_mass["coefficients"]["M"];
-    let (held, said) = (load["standard_uncertainty"].as_f64().unwrap(), of(&servo["two_mass"], "M"));
-    assert!((held / said - 1.0).abs() < 1e-12, "{held} {said}");
     let part = |key: &str| load[key].as_f64().unwrap();
-    assert!((part("type_a").hypot(part("type_b")) / said - 1.0).abs() < 1e-9, "{load}");
+    assert!((part("type_a").hypot(part("type_b")) / part("standard_uncertainty") - 1.0).abs() < 1e-9, "{load}");
+    let rigid = &servo["estimates"][0];
+    // K_T, the amplifier and the radius are declared: what is not known of them is no scatter, and shared by all that the rig tells.
+    let errors: Vec<&String> = rigid["errors"].as_object().unwrap().keys().collect();
     assert!(
-        record["estimates"][0]["derived"]["J_eff"]["value"].is_number()
-            && !two_mass["data"].as_array().unwrap().is_empty()
+        errors.len() == 2 && errors[1].ends_with("/torque_constant") && errors[0].ends_with("/sprocket_radius"),
+        "{errors:?}"
     );
+    let mass = &rigid["coefficients"]["M"];
+    let part = |key: &str| mass[key].as_f64().unwrap();
+    assert!(
+        part("type_b") > 0.0
+            && (part("type_a").hypot(part("type_b")) / part("standard_uncertainty") - 1.0).abs() < 1e-12,
+        "{mass}"
+    );
+    assert!(rigid["derived"]["J_eff"]["value"].is_number(), "{rigid}");
+    // Each says the runs that it is fitted to, and no others.
+    let roles = |estimate: &Value| -> Vec<String> {
+        let keys = estimate["data"].as_array().unwrap().iter().map(|key| key.as_str().unwrap());
+        keys.map(|key| servo["data"][key]["role"].as_str().unwrap().to_owned()).collect()
+    };
+    assert!(!roles(rigid).is_empty() && roles(rigid).iter().all(|role| role == "friction"), "{:?}", roles(rigid));
+    assert_eq!(roles(two_mass), ["excitation"]);
+
+    // The same models are sources of a campaign, beside those of the drag.
+    let source = folder.path().join("source.toml");
+    let text_of = |methods: &str| {
+        format!(
+            "schema = 1\nname = \"axis\"\n[[source]]\nname = \"rig\"\nkind = \"towing\"\nruns = \"campaign-runs\"\nmethod = {methods}\n"
+        )
+    };
+    std::fs::write(&source, text_of(r#"["servo_two_mass", "mcd", "servo_symmetric"]"#)).unwrap();
+    let sourced = json(&["identify", text(&source), "--json"]);
+    let ids: Vec<&Value> = sourced["estimates"].as_array().unwrap().iter().map(|e| &e["id"]).collect();
+    assert_eq!(ids, ["rig/servo_two_mass", "rig/servo_symmetric", "rig/mcd"]);
+    for (own, other) in [(0, 3), (1, 0)] {
+        for key in ["coefficients", "type_a", "errors", "derived", "law"] {
+            assert_eq!(sourced["estimates"][own][key], servo["estimates"][other][key], "{key}");
+        }
+    }
 }
 
 #[test]
@@ -300,6 +330,21 @@ fn the_gains_that_tuning_recommends_drive_the_campaign() {
     let found = json(&["carriage", "tune", text(&campaign(folder.path(), &[])), "--yes", "--json"]);
     let gains = found["gains"].as_array().unwrap();
     assert_eq!(found["recommended"], 1, "{found}");
+    // The record has the margins of each, with what the measured response leaves uncertain of them, and is compared like any other.
+    let record = found["estimate"].as_str().unwrap();
+    let written: Value = serde_json::from_str(&std::fs::read_to_string(record).unwrap()).unwrap();
+    let loops: Vec<&Value> = written["estimates"].as_array().unwrap().iter().map(|e| &e["law"]["name"]).collect();
+    assert_eq!(loops, ["loop_as_configured", "loop_shaped", "loop_ziegler_nichols"]);
+    let shaped = &written["estimates"][1];
+    let margin = &shaped["coefficients"]["phase_margin"];
+    assert!(shaped["recommended"] == true && margin["unit"] == "rad", "{shaped}");
+    assert_eq!(margin["value"], gains[1]["phase_margin_rad"]);
+    let (u, bandwidth) = (&margin["standard_uncertainty"], &shaped["coefficients"]["bandwidth"]["value"]);
+    assert!(u.as_f64().is_some_and(|u| u > 0.0 && u < 0.2), "{margin}");
+    assert!(bandwidth.as_f64().unwrap() > gains[1]["crossover_hz"].as_f64().unwrap(), "{shaped}");
+    let compared = json(&["compare", record, record, "--json"]);
+    let rows = compared["comparison"]["coefficients"].as_array().unwrap();
+    assert!(rows.iter().any(|row| row["coefficient"] == "phase_margin"), "{compared}");
     // Its runs are all that it planned, and none of `froude run`'s.
     let runs = json(&["inspect", text(&folder.path().join("campaign-tune")), "--json"]);
     assert_eq!(findings_of(&runs, "campaign-unfinished"), []);
@@ -351,6 +396,14 @@ fn the_free_mode_is_reported_as_seen_and_without_the_gears_loss() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[]);
     let found = json(&["carriage", "resonance", text(&campaign), "--yes", "--json"]);
+    let written: Value =
+        serde_json::from_str(&std::fs::read_to_string(found["estimate"].as_str().unwrap()).unwrap()).unwrap();
+    for (estimate, state) in written["estimates"].as_array().unwrap().iter().zip(found["states"].as_array().unwrap()) {
+        let load = &estimate["coefficients"]["load_frequency"];
+        assert_eq!((&load["value"], &load["unit"]), (&state["load_hz"], &"Hz".into()));
+        assert!(load["standard_uncertainty"].as_f64().unwrap() > 0.0, "{load}");
+        assert_eq!(estimate["data"].as_array().unwrap().len(), 1, "each is of its own sweep");
+    }
     let bare = &found["states"][0];
     // Seen at 6.71 √(1 + 2.75/0.8) = 14.1 Hz; 2 % for friction in the dip and beside the peak.
     assert!((bare["free_seen_hz"].as_f64().unwrap() / 14.1 - 1.0).abs() < 0.02, "{bare}");
@@ -366,12 +419,43 @@ fn anyones_servo_log_is_identified_with_intervals() {
     let log = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/emps/emps.csv");
     let out = folder.path().join("servo");
     let found = json(&["carriage", "identify", text(&log), "--out", text(&out), "--json"]);
-    let symmetric = &found["models"][0];
-    assert_eq!(symmetric["friction"], "symmetric");
-    let mass = &symmetric["coefficients"][0];
-    assert_eq!(mass["name"], "M");
+    let symmetric = &found["estimates"][0];
+    assert_eq!(symmetric["law"]["name"], "servo_symmetric");
+    let mass = &symmetric["coefficients"]["M"];
     assert!((mass["value"].as_f64().unwrap() - 95.1089).abs() < 0.1085, "{mass}");
     assert!(out.join("report.html").exists());
+}
+
+/// A log says by its sidecar what it is: the same verb that fits tables of observations identifies the servo, with the same numbers.
+#[test]
+fn a_sidecar_tells_a_servo_log_from_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/emps");
+    let [csv, toml] = ["csv", "toml"].map(|extension| folder.path().join("emps.csv").with_extension(extension));
+    std::fs::copy(example.join("emps.csv"), &csv).unwrap();
+    std::fs::copy(example.join("emps.toml"), &toml).unwrap();
+    let of_verb = json(&["carriage", "identify", text(&csv), "--json"]);
+    assert_eq!(json(&["identify", text(&csv), "--json"]), of_verb);
+    let campaign = folder.path().join("axis.toml");
+    let source = "schema = 1\nname = \"axis\"\n[[source]]\nname = \"EMPS\"\nkind = \"towing\"\ntable = \"emps.csv\"\n";
+    std::fs::write(&campaign, source).unwrap();
+    let sourced = json(&["identify", text(&campaign), "--json"]);
+    assert_eq!(sourced["estimates"][1]["id"], "EMPS/servo_asymmetric");
+    assert_eq!(sourced["estimates"][0]["coefficients"], of_verb["estimates"][0]["coefficients"]);
+
+    // Without the force per volt it is still a servo's log, and without a command it is neither.
+    let sidecar = std::fs::read_to_string(&toml).unwrap();
+    std::fs::write(&toml, sidecar.replace("drive_gain", "gain")).unwrap();
+    let told = format!(
+        "froude: {}: the sidecar must say what force a volt of the command is: [constants] drive_gain = \"35.15 N/V\"\n",
+        text(&csv)
+    );
+    assert_eq!(refusal(&["identify", text(&csv)]), told);
+    std::fs::write(&toml, sidecar.replace("name = \"command\"", "name = \"u\"")).unwrap();
+    let told = refusal(&["identify", text(&csv)]);
+    let neither = "a load is missing: a force f_x, f_y, f_z [N] or a moment m_x, m_y, m_z [N m]; name its column so, or map it with a sidecar. \
+                   A sidecar that names time, position and command makes it the log of a servo";
+    assert!(told.contains(neither), "{told}");
 }
 
 /// The halves of a record are two records of one axis: what they state about it is compared like any other estimates, with the same numbers as on the page.
@@ -389,28 +473,14 @@ fn two_records_of_a_servo_are_compared() {
         let csv = folder.path().join(format!("{name}.csv"));
         std::fs::write(&csv, format!("{head}\n{}\n", rows.join("\n"))).unwrap();
         std::fs::write(csv.with_extension("toml"), text_of("emps.toml")).unwrap();
-        let found = json(&["carriage", "identify", text(&csv), "--json"]);
-        let path = found["estimate"].as_str().unwrap().to_owned();
-        let record: Value = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
-        for (model, estimate) in found["models"].as_array().unwrap().iter().zip(record["estimates"].as_array().unwrap())
-        {
-            for said in model["coefficients"].as_array().unwrap() {
-                let name = said["name"].as_str().unwrap().replace('+', "_pos").replace('-', "_neg");
-                let held = &estimate["coefficients"][&name];
-                assert_eq!(
-                    (&said["value"], &said["interval_95"]),
-                    (&held["value"], &held["interval_95"]),
-                    "{said} {held}"
-                );
-            }
-            assert_eq!(
-                estimate["type_a"]["names"].as_array().unwrap().len(),
-                model["coefficients"].as_array().unwrap().len()
-            );
+        let record = json(&["carriage", "identify", text(&csv), "--json"]);
+        for estimate in record["estimates"].as_array().unwrap() {
+            let coefficients = estimate["coefficients"].as_object().unwrap();
+            assert_eq!(estimate["type_a"]["names"].as_array().unwrap().len(), coefficients.len());
             assert!(estimate["law"]["outputs"]["drive_force"]["formula"].as_str().unwrap().starts_with("M*v_y_dot + "));
         }
         assert_eq!(record["data"]["d1"]["role"], "table");
-        records.push(path);
+        records.push(text(&folder.path().join(format!("{name}-servo/estimate.json"))).to_owned());
     }
     let out = json(&["compare", &records[0], &records[1], "--json"]);
     let c = &out["comparison"];

@@ -14,7 +14,7 @@ use crate::law::{Law, held_within, settled};
 use crate::profile::State;
 
 /// Reference speed at which the friction feed-forward is whole, m/s.
-const FULL_FRICTION_M_S: f64 = 2e-3;
+pub const FULL_FRICTION_M_S: f64 = 2e-3;
 const PER_FULL_FRICTION: f64 = 1.0 / FULL_FRICTION_M_S;
 
 /// Memory of the loop.

@@ -6,7 +6,7 @@ use crate::shaper::Shaper;
 
 /// Corner of the speed estimate that limits and fault detection use, Hz. Its delay (2 ms) at the paper's largest acceleration is
 /// 2 mm/s; a count is then 1.2 mm/s, not 9.9.
-const SPEED_FILTER_HZ: f64 = 80.0;
+pub const SPEED_FILTER_HZ: f64 = 80.0;
 
 /// What one tick needs to know of an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -64,3 +64,5 @@ pub mod tick;
 pub mod travel;
 
 pub use controller::Controller;
+pub use feedback::FULL_FRICTION_M_S;
+pub use law::SPEED_FILTER_HZ;

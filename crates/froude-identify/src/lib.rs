@@ -12,6 +12,7 @@
 //! Not here: file formats (`froude-records`), formulas of drag (`froude-hydro`), algebra (`froude-fit`).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod answer;
 pub mod bootstrap;
 pub mod columns;
 mod common;

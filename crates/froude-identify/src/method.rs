@@ -1,8 +1,8 @@
 //! The one seam: whatever makes estimates of a source is a [`Method`].
 //!
 //! A source of a campaign names a table or runs, and for runs its methods. Each method reduces what it is given to observations, fits them by
-//! the common regression with the common budget ([`crate::seam`]), and gives [`Found`]: for each answer data, fits, estimates and files, and what
-//! it states about all of them. After it there is one comparison, one record, one page and one writer.
+//! the common regression with the common budget ([`crate::seam`]), or makes its estimates by a fit of its own; it gives [`Found`]: an [`Answer`]
+//! for each name, and what it states about all of them. After it there is one comparison, one record, one page and one writer.
 
 use std::path::PathBuf;
 
@@ -12,8 +12,8 @@ use froude_records::finding::Finding;
 use froude_records::page::DocumentSection;
 use froude_records::text::counted;
 
+use crate::answer::Answer;
 use crate::error::IdentifyError;
-use crate::source::SourceResult;
 
 /// A way from a source to estimates.
 pub trait Method: Sync {
@@ -95,8 +95,8 @@ pub fn lacking<'a>(needs: &[Need], files: impl Fn(&str) -> Vec<Box<dyn Fn(&str) 
 /// What a method found in a source.
 #[derive(Default)]
 pub struct Found {
-    /// A result for each name that was asked for.
-    pub results: Vec<SourceResult>,
+    /// An answer for each name that was asked for.
+    pub results: Vec<Answer>,
     /// What it states about all of them together, on the terminal and at the head of the page; the results alone where there is nothing.
     pub summary: Option<DocumentSection>,
     /// What else belongs on the page.

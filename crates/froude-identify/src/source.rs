@@ -329,9 +329,15 @@ fn no_load(data: &Dataset, source: &Source, moving: &[&str]) -> IdentifyError {
     let has_motion =
         ["speed", "v_x", "v_y", "v_z", "w_x", "w_y", "w_z"].iter().any(|name| data.channels.contains_key(*name));
     let lacks = if loads.is_empty() {
-        "a load is missing: a force f_x, f_y, f_z [N] or a moment m_x, m_y, m_z [N m]; name its column so, or map it with a \
-         sidecar"
-            .to_owned()
+        let servo = if data.channels.contains_key("time") {
+            ". A sidecar that names time, position and command makes it the log of a servo"
+        } else {
+            ""
+        };
+        format!(
+            "a load is missing: a force f_x, f_y, f_z [N] or a moment m_x, m_y, m_z [N m]; name its column so, or map it with a \
+             sidecar{servo}"
+        )
     } else if !has_motion {
         format!(
             "the motion is missing for {}: speed [m/s] (with angle [deg]), or v_x, v_y, v_z [m/s], w_x, w_y, w_z [rad/s]; \

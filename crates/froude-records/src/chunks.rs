@@ -16,7 +16,7 @@ use crate::error::{Place, RecordError, utf8};
 use crate::fast_csv::{FastCsvError, Layout, Lines, Memory, Reader};
 use crate::parquet_table;
 use crate::sidecar::Sidecar;
-use crate::table::{Format, Table, mapping};
+use crate::table::{Format, Table, sidecar_of};
 
 /// Bytes of CSV read at a time: some 10,000 rows, whose columns stay in the caches.
 const CHUNK_BYTES: usize = 1 << 20;
@@ -33,7 +33,7 @@ pub fn for_each_chunk<E: From<RecordError>>(
     sidecar: Option<&Path>,
     each: &mut dyn FnMut(Table) -> Result<(), E>,
 ) -> Result<(), E> {
-    let mapping = mapping(path, sidecar)?;
+    let mapping = sidecar_of(path, sidecar)?;
     match Format::of(path)? {
         Format::Csv => csv(path, mapping.as_ref(), each),
         Format::Parquet => parquet_table::for_each_chunk(path, mapping.as_ref(), each),

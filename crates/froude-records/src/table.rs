@@ -167,7 +167,7 @@ impl Table {
 ///
 /// See [`RecordError`]: every message names file, line and column.
 pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
-    let mapping = mapping(path, sidecar)?;
+    let mapping = sidecar_of(path, sidecar)?;
     match Format::of(path)? {
         Format::Csv => csv_table::read_csv(path, mapping.as_ref()),
         Format::Parquet => parquet_table::read_parquet(path, mapping.as_ref()),
@@ -175,7 +175,11 @@ pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordEr
 }
 
 /// The sidecar of a table: the one given, or the `.toml` of the same name beside it.
-pub(crate) fn mapping(path: &Path, sidecar: Option<&Path>) -> Result<Option<Sidecar>, RecordError> {
+///
+/// # Errors
+///
+/// A sidecar that cannot be read.
+pub fn sidecar_of(path: &Path, sidecar: Option<&Path>) -> Result<Option<Sidecar>, RecordError> {
     let beside = path.with_extension("toml");
     match sidecar {
         Some(given) => sidecar::read_sidecar(given).map(Some),

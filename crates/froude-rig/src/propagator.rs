@@ -6,9 +6,11 @@
 //!
 //! **Frame.** Chain coordinate: motor position q = Rθ/n, load position y. **Units.** SI; the rotor counts as the mass J_m (n/R)².
 
+use froude_signal::exponential::{Square, exponential};
+
 /// Rows and columns of the augmented system: Δq, Δy, v_q, v_y, then the constants s₀ = q₀ − y₀, f_q, f_y.
 const N: usize = 7;
-type Matrix = [[f64; N]; N];
+type Matrix = Square<N>;
 
 /// The linear two-mass system.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,49 +89,6 @@ impl Linear {
         }
         exponential(a)
     }
-}
-
-/// e^A by halving until the norm is below 1/2, Taylor's series to 1/18! and squaring back.
-fn exponential(mut a: Matrix) -> Matrix {
-    let norm = a.iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let mut halvings = 0;
-    while norm / f64::from(1_u32 << halvings) > 0.5 && halvings < 30 {
-        halvings += 1;
-    }
-    let scale = 1.0 / f64::from(1_u32 << halvings);
-    for row in &mut a {
-        for x in row {
-            *x *= scale;
-        }
-    }
-    let mut sum = identity();
-    for order in (1..=18).rev() {
-        sum = product(&a, &sum);
-        for row in &mut sum {
-            for x in row {
-                *x /= f64::from(order);
-            }
-        }
-        for (i, row) in sum.iter_mut().enumerate() {
-            row[i] += 1.0;
-        }
-    }
-    for _ in 0..halvings {
-        sum = product(&sum, &sum);
-    }
-    sum
-}
-
-fn identity() -> Matrix {
-    let mut m = [[0.0; N]; N];
-    for (i, row) in m.iter_mut().enumerate() {
-        row[i] = 1.0;
-    }
-    m
-}
-
-fn product(a: &Matrix, b: &Matrix) -> Matrix {
-    core::array::from_fn(|i| core::array::from_fn(|j| (0..N).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@
 //! | [`decimate`]        | zero-phase FIR low-pass, every q-th sample                        | zeros                   |
 //! | [`stream`]          | the same chain a chunk at a time, in bounded memory               | as above                |
 //! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
+//! | [`exponential`]     | exact step of a linear system whose inputs stand still             | –                       |
 //! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
 //!
 //! **Units.** A rate is in Hz, a time in s, the values are whatever they were.
@@ -30,6 +31,7 @@ mod convolve;
 pub mod decimate;
 pub mod differences;
 mod error;
+pub mod exponential;
 pub mod gaussian;
 mod lanes;
 mod pages;

@@ -1,5 +1,7 @@
 //! The list of all methods, and the one that a source asks for.
 
+use froude_carriage::axis::source::{Servo, is_servo_log};
+use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::identify_source;
@@ -8,14 +10,18 @@ use froude_records::nearest::meant;
 use froude_tank::decay::source::FreeDecay;
 
 use crate::Error;
+use crate::pipeline::Purpose;
 
 /// Names of the methods that read runs of a method.
 pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
     METHODS.iter().filter(|method| method.runs() == runs).flat_map(|method| method.names()).copied().collect()
 }
 
-/// All methods that read runs; the first is that of runs whose source names none.
-const METHODS: [&dyn Method; 2] = [&Carriage, &FreeDecay];
+/// All methods that read runs.
+const METHODS: [&dyn Method; 4] = [&Carriage, &Servo, &KnownWeights, &FreeDecay];
+
+/// A method with the names that it is asked for.
+pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);
 
 /// The rows of a table, fitted with every law that the campaign asks for.
 struct Table;
@@ -46,27 +52,41 @@ impl Method for Table {
     ) -> Result<Found, MethodError> {
         let mut result = identify_source(campaign, source, &|model| progress(&format!("fitting {model}")))?;
         let findings = std::mem::take(&mut result.findings);
-        Ok(Found { results: vec![result], findings, ..Found::default() })
+        Ok(Found { results: vec![result.into()], findings, ..Found::default() })
     }
 }
 
-/// The method of a source with the names that it is asked for.
+/// The methods of a source, each with the names that it is asked for; `purpose` is what is asked of a source that names none.
 ///
 /// # Errors
 ///
-/// A name that no method answers to, one twice, or names of two methods: these need runs of two kinds, and so two sources.
-pub(crate) fn of(source: &Source) -> Result<(&'static dyn Method, Vec<&'static str>), Error> {
-    if !matches!(source.input, Input::Runs { .. }) {
-        return Ok((&Table, vec!["table"]));
+/// A sidecar that cannot be read; a name that no method answers to, one twice, or names of methods that read runs of two kinds, and so need two
+/// sources.
+pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>, Error> {
+    match &source.input {
+        Input::Runs { .. } if source.methods.is_empty() => {
+            let method: &dyn Method = match purpose {
+                Some(Purpose::Servo) => &Servo,
+                Some(Purpose::Calibration) => &KnownWeights,
+                None => &Carriage,
+            };
+            Ok(vec![(method, method.names().to_vec())])
+        }
+        Input::Runs { .. } => named(source),
+        Input::Table(log) if purpose == Some(Purpose::Servo) || is_servo_log(log, source.sidecar.as_deref())? => {
+            Ok(vec![(&Servo, Servo::OF_LOGS.to_vec())])
+        }
+        _ => Ok(vec![(&Table, vec!["table"])]),
     }
+}
+
+/// The methods that a source of runs names, in the order of their first names.
+fn named(source: &Source) -> Result<Vec<Asked>, Error> {
     let refuse = |i: usize, what: String| {
         let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);
         Err(Error::Identify(froude_identify::IdentifyError::Campaign { place, what }))
     };
-    if source.methods.is_empty() {
-        return Ok((METHODS[0], METHODS[0].names().to_vec()));
-    }
-    let mut asked: Vec<(&'static dyn Method, &'static str)> = Vec::new();
+    let mut out: Vec<Asked> = Vec::new();
     for (i, name) in source.methods.iter().enumerate() {
         let known = || METHODS.iter().flat_map(|method| method.names().iter().map(move |name| (*method, *name)));
         let Some((method, name)) = known().find(|(_, known)| known == name) else {
@@ -75,10 +95,11 @@ pub(crate) fn of(source: &Source) -> Result<(&'static dyn Method, Vec<&'static s
             let advice = meant(name, names()).unwrap_or_else(|| format!("there are {all}"));
             return refuse(i, format!("method {name:?} is not known; {advice}"));
         };
-        if asked.iter().any(|(_, other)| *other == name) {
+        if out.iter().any(|(_, names)| names.contains(&name)) {
             return refuse(i, format!("method {name:?} is named twice"));
         }
-        if let Some((first, other)) = asked.first().filter(|(first, _)| first.names() != method.names()) {
+        if let Some((first, names)) = out.first().filter(|(first, _)| first.runs() != method.runs()) {
+            let other = names[0];
             let kinds = [first.words(other), method.words(name)];
             return refuse(
                 i,
@@ -88,8 +109,10 @@ pub(crate) fn of(source: &Source) -> Result<(&'static dyn Method, Vec<&'static s
                 ),
             );
         }
-        asked.push((method, name));
+        match out.iter_mut().find(|(known, _)| known.names() == method.names()) {
+            Some((_, names)) => names.push(name),
+            None => out.push((method, vec![name])),
+        }
     }
-    let method = asked[0].0;
-    Ok((method, asked.into_iter().map(|(_, name)| name).collect()))
+    Ok(out)
 }

@@ -5,6 +5,7 @@
 
 use std::path::Path;
 
+use froude_identify::answer::Answer;
 use froude_identify::source::SourceResult;
 use froude_identify::validity;
 use froude_records::campaign::Campaign;
@@ -13,14 +14,14 @@ use froude_records::units::{Dimension, Unit, parse_unit};
 
 use crate::Error;
 
-/// One table per source, each with a file name of its own.
+/// One table per fitted source, each with a file name of its own.
 ///
 /// # Errors
 ///
 /// A channel that the model needs and the data lack: not after a fit.
-pub fn tables(sources: &[SourceResult], campaign: &Campaign) -> Result<Vec<Table>, Error> {
+pub fn tables(sources: &[Answer], campaign: &Campaign) -> Result<Vec<Table>, Error> {
     let mut out: Vec<Table> = Vec::new();
-    for source in sources {
+    for source in sources.iter().filter_map(Answer::fitted) {
         let mut table = table(source, campaign)?;
         // "day 1" and "day-1" are two sources and one file name, and "Day 1" is the same one to some disks.
         let same = |name: &Path| name.to_string_lossy().to_lowercase();

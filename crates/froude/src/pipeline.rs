@@ -4,9 +4,10 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use froude_identify::answer::Answer;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared, too_many};
-use froude_identify::method::{Found, observes};
-use froude_identify::source::{SourceResult, asked_models};
+use froude_identify::method::{Found, Method, observes};
+use froude_identify::source::asked_models;
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
@@ -26,7 +27,7 @@ use crate::{observations, results, sections};
 pub enum Input {
     /// A campaign (`.toml`) or a bare table (`.csv`, `.parquet`).
     File(PathBuf),
-    /// Runs of a carriage, by all methods that they allow.
+    /// Runs of a carriage, by all methods of the job's purpose that they allow.
     Runs {
         /// Folders of runs, or runs.
         paths: Vec<PathBuf>,
@@ -35,6 +36,15 @@ pub enum Input {
     },
     /// Records, which are set side by side; nothing is fitted.
     Records(Vec<PathBuf>),
+}
+
+/// What is asked of runs, or of a log, where no campaign names methods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// Inertia, friction and flexibility of the axis.
+    Servo,
+    /// Force per volt of the drive, and polarity.
+    Calibration,
 }
 
 /// What to identify and where the results go.
@@ -48,6 +58,9 @@ pub struct Job {
     pub sidecar: Option<PathBuf>,
     /// Models for a bare table, or instead of the campaign's.
     pub models: Vec<String>,
+    /// What is asked of runs or of a log that no campaign names methods for: unless said, their drag of runs, and of a log what its sidecar makes
+    /// of it.
+    pub purpose: Option<Purpose>,
     /// Date for the report's title page, as text; the pipeline reads no clock.
     pub date: Option<String>,
 }
@@ -62,7 +75,7 @@ impl Job {
     /// A job with nothing but its input.
     #[must_use]
     pub fn of(input: Input) -> Self {
-        Self { input, out: None, sidecar: None, models: Vec::new(), date: None }
+        Self { input, out: None, sidecar: None, models: Vec::new(), purpose: None, date: None }
     }
 }
 
@@ -73,8 +86,8 @@ pub struct Outcome {
     pub file: EstimateFile,
     /// Where it lies, with report, figures and observations; `None` where nobody asked for files.
     pub written: Option<Written>,
-    /// Everything that is known about each fitted source.
-    pub sources: Vec<SourceResult>,
+    /// Every answer that was found, with everything that is known about its fit.
+    pub sources: Vec<Answer>,
     /// What methods state about several of them together.
     pub summaries: Vec<Summary>,
 }
@@ -125,11 +138,12 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     }
     let mut gathered = Gathered::default();
     for source in &campaign.sources {
-        gathered.take(source, &campaign, &mut files, matches!(job.input, Input::Records(_)), progress)?;
+        gathered.take(source, &campaign, &mut files, job, progress)?;
     }
     let Gathered { sources, summaries, blocks, published, mut findings, beside, is_part } = gathered;
     findings.extend(laws_not_asked(&campaign));
-    if sources.is_empty() && published.is_empty() {
+    // What a method says without an estimate is an answer too: jogs show the polarity.
+    if sources.is_empty() && published.is_empty() && summaries.is_empty() {
         let path = campaign.path.display();
         let instead = campaign.carriage.as_ref().map_or_else(String::new, |_| {
             format!("; it drives a carriage: froude run {path}, and of its runs froude carriage drag FOLDER")
@@ -137,7 +151,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         return Err(Error::Nothing(format!("{path}: the campaign has no [[source]]{instead}")));
     }
     progress("comparing the sources");
-    let estimates: Vec<Estimate> = sources.iter().flat_map(|s| s.estimates.iter().cloned()).collect();
+    let estimates: Vec<Estimate> = sources.iter().flat_map(|s| s.estimates().iter().cloned()).collect();
     let fitted = EstimateFile { data: files.into_map(), ..EstimateFile::of(estimates) };
     let mut all = vec![("this campaign".to_owned(), fitted)];
     all.extend(published);
@@ -167,7 +181,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
 /// What the sources gave.
 #[derive(Default)]
 struct Gathered {
-    sources: Vec<SourceResult>,
+    sources: Vec<Answer>,
     summaries: Vec<Summary>,
     blocks: Vec<DocumentSection>,
     /// Records beside them, as they are called.
@@ -184,7 +198,7 @@ impl Gathered {
         source: &Source,
         campaign: &Campaign,
         files: &mut DataFiles<'_>,
-        is_all: bool,
+        job: &Job,
         progress: &dyn Fn(&str),
     ) -> Result<(), Error> {
         let step = |step: &str| match source.name.as_str() {
@@ -201,21 +215,35 @@ impl Gathered {
             files.key(path, "record")?;
             self.findings.extend(errors_of(path, &record));
             // Whoever asks for records and nothing else knows that they are.
+            let is_all = matches!(job.input, Input::Records(_));
             self.findings.extend((!is_all).then(|| froude_identify::source::published_note(source)));
             self.published.push((relative(path, &campaign.path), record));
             return Ok(());
         }
-        let (method, asked) = method::of(source)?;
-        let Found { mut results, summary, blocks, findings, beside, is_part } =
-            method.identify(campaign, source, &asked, &step)?;
+        for (method, asked) in method::of(source, job.purpose)? {
+            let found = method.identify(campaign, source, &asked, &step)?;
+            self.add(method, found, files, source, campaign.sources.len() == 1)?;
+        }
+        Ok(())
+    }
+
+    /// Adds what a method found in a source; of several sources each says whose its section is.
+    fn add(
+        &mut self,
+        method: &dyn Method,
+        found: Found,
+        files: &mut DataFiles<'_>,
+        source: &Source,
+        is_one: bool,
+    ) -> Result<(), Error> {
+        let Found { mut results, summary, blocks, findings, beside, is_part } = found;
         for result in &mut results {
-            for estimate in &mut result.estimates {
+            let read = result.files().to_vec();
+            for estimate in result.estimates_mut() {
                 let needs = method.needs(&estimate.method.name);
-                estimate.data = files.keys_of(&result.files, |role| observes(needs, role))?;
+                estimate.data = files.keys_of(&read, |role| observes(needs, role))?;
             }
         }
-        // Of several sources each says whose its section is.
-        let is_one = campaign.sources.len() == 1;
         let titled = |section: DocumentSection| {
             let title = if is_one { section.title.clone() } else { format!("{}: {}", source.name, section.title) };
             DocumentSection { title, ..section }

@@ -79,16 +79,6 @@ pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), Error>) -> Res
     Ok(folder.take_place()?)
 }
 
-/// Writes nothing but a report into `out`; where it lies.
-///
-/// # Errors
-///
-/// As [`replace`].
-pub fn write_page(out: &Path, html: &str) -> Result<PathBuf, Error> {
-    replace(out, |folder| Ok(write_atomically(&folder.join("report.html"), html.as_bytes())?))?;
-    Ok(out.join("report.html"))
-}
-
 /// Writes record, observations, figures and report into `out`.
 ///
 /// # Errors

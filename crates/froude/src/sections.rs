@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use froude_fit::faer::Mat;
 use froude_identify::IdentifyError;
+use froude_identify::answer::{Answer, Made};
 use froude_identify::dataset::{Dataset, unit_text};
 use froude_identify::diagnosis::{FEWEST_FOR_SCATTER, unevenness};
 use froude_identify::regression::ModelFit;
@@ -47,12 +48,12 @@ pub fn report(
             continue;
         }
         let line = InputFile { path: d.path.clone(), sha256: d.sha256.clone(), ..InputFile::default() };
-        let readers = sources.iter().filter(|s| s.files.first().is_some_and(|f| f.path.ends_with(&d.path)));
+        let readers = sources.iter().filter(|s| s.files().first().is_some_and(|f| f.path.ends_with(&d.path)));
         let lines: Vec<InputFile> = readers
             .map(|s| InputFile {
-                n_rows: Some(s.n_read),
-                n_used: Some(s.data.observations()),
-                source: Some(s.name.clone()),
+                n_rows: s.fitted().map(|fitted| fitted.n_read),
+                n_used: Some(s.observations()),
+                source: Some(s.name().to_owned()),
                 ..line.clone()
             })
             .collect();
@@ -74,12 +75,12 @@ pub fn report(
     })
 }
 
-fn subtitle(sources: &[SourceResult], published: &[Estimate]) -> String {
-    let observations: usize = sources.iter().map(|s| s.data.observations()).sum();
+fn subtitle(sources: &[Answer], published: &[Estimate]) -> String {
+    let observations: usize = sources.iter().map(Answer::observations).sum();
     if sources.is_empty() {
         return format!("{} side by side", counted(published.len(), "estimate", "estimates"));
     }
-    let name = |s: &SourceResult| s.estimates.first().map_or_else(|| s.name.clone(), |e| e.source.clone());
+    let name = |s: &Answer| s.estimates().first().map_or_else(|| s.name().to_owned(), |e| e.source.clone());
     let names: BTreeSet<String> = sources.iter().map(name).collect();
     let mut out = format!(
         "{} from {}",
@@ -92,7 +93,13 @@ fn subtitle(sources: &[SourceResult], published: &[Estimate]) -> String {
     out
 }
 
-fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
+fn method(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
+    let sources: Vec<&SourceResult> = answers.iter().filter_map(Answer::fitted).collect();
+    if sources.is_empty() && !answers.is_empty() {
+        return vec![
+            "Each estimate says by its method, its law and its signs how it was made and what it gives.".to_owned(),
+        ];
+    }
     let mut out = vec![
         "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
          A body towed at speed U under the angle θ has the velocity v = (U cos θ, −U sin θ) through the water."
@@ -123,7 +130,7 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
                 .to_owned(),
         );
     }
-    out.extend(sources.iter().flat_map(error_models));
+    out.extend(sources.iter().copied().flat_map(error_models));
     if let Some(rho) = campaign.fluid.density_kg_m3 {
         out.push(format!("Water density {rho} kg/m³ is stated by the campaign."));
     }
@@ -211,7 +218,29 @@ fn supported(
     format!("{verdict} ({numbers})")
 }
 
-fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
+fn section(answer: &Answer) -> Result<SourceSection, IdentifyError> {
+    match answer {
+        Answer::Fitted(source) => fitted(source),
+        Answer::Made(made) => Ok(self::made(made)),
+    }
+}
+
+/// An estimate that a method made itself: it knows what goes into it.
+fn made(made: &Made) -> SourceSection {
+    let Made { name, estimate, .. } = made;
+    let facts = [("Rows", estimate.n_observations.to_string()), ("Covariance", estimate.covariance_kind().to_owned())];
+    SourceSection {
+        name: name.clone(),
+        kind: estimate.kind.clone(),
+        facts: facts.map(|(fact, value)| (fact.to_owned(), value)).to_vec(),
+        estimates: vec![estimate.clone()],
+        budget: budget_of(estimate),
+        recommendation: estimate.method.words.clone(),
+        ..SourceSection::default()
+    }
+}
+
+fn fitted(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
     let chosen = source.recommendation.as_ref().map(|r| r.index);
     let mut out = SourceSection {
         name: source.name.clone(),
@@ -708,7 +737,7 @@ mod tests {
         // A speed that was run straight ahead only: no line against angle, but its points.
         table += "1.7,0,-14.45,0.0\n1.7,0,-14.46,0.01\n";
         let (_, source) = identified("drift", &table, &["quadratic"]);
-        let section = section(&source).unwrap();
+        let section = fitted(&source).unwrap();
         let speeds: Vec<f64> = section
             .curves
             .iter()

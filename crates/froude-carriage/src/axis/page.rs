@@ -11,30 +11,15 @@ use crate::servo::ServoCoefficient;
 use crate::servo::report::effective;
 use crate::servo::two_mass::FlexibleReport;
 
-/// A section for each model, and how well runs repeat.
+/// The axis on the page: its models in tables, which is the summary; how each was fitted, with its figure.
 #[must_use]
-pub fn sections(outcome: &AxisModels) -> Vec<DocumentSection> {
-    let mut sections = Vec::new();
+pub fn sections(outcome: &AxisModels) -> (DocumentSection, Vec<DocumentSection>) {
+    let mut tables = Vec::new();
     for model in &outcome.models {
         let r = &model.report;
-        let mut paragraphs = vec![format!(
-            "{} rows at {} Hz; relative force error {}.",
-            number::count(r.n_rows),
-            number::plain(r.rate_hz, 4),
-            number::percent(r.relative_force_error)
-        )];
-        if let Some(w) = &r.whiteness {
-            paragraphs.push(format!(
-                "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of least squares with white noise are realistic \
-                 only where that p is large; the intervals are those of {}.",
-                w.r1,
-                w.lags,
-                w.ljung_box,
-                number::p_value(w.p),
-                r.spread.pieces()
-            ));
-        }
-        let mut tables = vec![coefficient_table(format!("Rigid model, friction {}.", model.name), &r.coefficients)];
+        let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
+        let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
+        tables.push(coefficient_table(caption, &r.coefficients));
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
             tables.push(coefficient_table(
                 "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers."
@@ -42,45 +27,63 @@ pub fn sections(outcome: &AxisModels) -> Vec<DocumentSection> {
                 &effective(r, motor),
             ));
         }
-        sections.push(DocumentSection {
-            title: format!("Rigid, friction {}{}", model.name, mounted(&outcome.rigid_mounts)),
-            paragraphs,
-            tables,
-            charts: vec![force_chart(model)],
-        });
     }
-    if let Some(f) = &outcome.flexible {
-        let splits = f.splits.iter().map(|s| {
-            format!(
-                "Split {}: {}.",
-                s.name,
-                if s.is_identified {
-                    format!("{:.2}, interval {}", s.share_of_motor, number::interval(s.interval))
-                } else {
-                    "not identifiable from the motor's side".to_owned()
-                }
-            )
-        });
-        sections.push(DocumentSection {
-            title: format!("Two masses{}", mounted(&outcome.two_mass_mounts)),
-            paragraphs: splits.collect(),
-            tables: vec![flexible_table(f)],
-            charts: Vec::new(),
-        });
-    }
+    tables.extend(outcome.flexible.as_ref().map(|f| flexible_table(f, &mounted(&outcome.two_mass_mounts))));
     if !outcome.repeatability.is_empty() {
-        sections.push(DocumentSection {
-            title: "Repeatability".to_owned(),
-            tables: vec![repeatability_table(&outcome.repeatability)],
-            ..DocumentSection::default()
-        });
+        tables.push(repeatability_table(&outcome.repeatability));
     }
-    sections
+    let summary = DocumentSection {
+        title: "Axis by every model".to_owned(),
+        paragraphs: outcome.flexible.iter().flat_map(splits).collect(),
+        tables,
+        charts: Vec::new(),
+    };
+    let fit = |model: &Model| DocumentSection {
+        title: format!("Rigid, friction {}{}", model.name, mounted(&outcome.rigid_mounts)),
+        paragraphs: of_fit(model),
+        tables: Vec::new(),
+        charts: vec![force_chart(model)],
+    };
+    (summary, outcome.models.iter().map(fit).collect())
+}
+
+/// How a rigid model was fitted, and what its residuals say.
+fn of_fit(model: &Model) -> Vec<String> {
+    let r = &model.report;
+    let mut out = vec![format!(
+        "{} rows at {} Hz; relative force error {}.",
+        number::count(r.n_rows),
+        number::plain(r.rate_hz, 4),
+        number::percent(r.relative_force_error)
+    )];
+    out.extend(r.whiteness.as_ref().map(|w| {
+        format!(
+            "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of least squares with white noise are realistic \
+             only where that p is large; the intervals are those of {}.",
+            w.r1,
+            w.lags,
+            w.ljung_box,
+            number::p_value(w.p),
+            r.spread.pieces()
+        )
+    }));
+    out
+}
+
+/// How friction and damping are shared between motor and load.
+fn splits(f: &FlexibleReport) -> impl Iterator<Item = String> {
+    f.splits.iter().map(|s| {
+        let share = if s.is_identified {
+            format!("{:.2}, interval {}", s.share_of_motor, number::interval(s.interval))
+        } else {
+            "not identifiable from the motor's side".to_owned()
+        };
+        format!("Split {}: {share}.", s.name)
+    })
 }
 
 /// Coefficients with the published-style standard deviation beside the realistic interval.
-#[must_use]
-pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> TextTable {
+fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> TextTable {
     TextTable {
         caption,
         head: [
@@ -113,10 +116,9 @@ pub fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> 
 }
 
 /// Two masses; behind a gear whose efficiency is not declared every row is marked as apparent.
-#[must_use]
-pub fn flexible_table(report: &FlexibleReport) -> TextTable {
-    let mut table =
-        coefficient_table("Motor, chain and load from motor-side signals.".to_owned(), &report.coefficients);
+fn flexible_table(report: &FlexibleReport, mounted: &str) -> TextTable {
+    let caption = format!("Two masses: motor, chain and load from motor-side signals{mounted}.");
+    let mut table = coefficient_table(caption, &report.coefficients);
     if report.is_apparent {
         for (row, c) in table.rows.iter_mut().zip(&report.coefficients) {
             // The rotor lies before the gear, and frequencies do not care.
@@ -129,8 +131,7 @@ pub fn flexible_table(report: &FlexibleReport) -> TextTable {
 }
 
 /// Repeats by speed and direction.
-#[must_use]
-pub fn repeatability_table(cells: &[Repeatability]) -> TextTable {
+fn repeatability_table(cells: &[Repeatability]) -> TextTable {
     TextTable {
         caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run."
             .to_owned(),

@@ -23,6 +23,7 @@ use froude_fit::{CovarianceKind, Fit, Options, Prior, Problem, fit};
 use froude_records::text::counted;
 
 pub mod record;
+pub mod source;
 
 use super::error::DragError;
 use super::fsm::reach;
@@ -51,6 +52,8 @@ pub struct ForcePerVolt {
 pub struct CalibrationSetup {
     /// (n/R)·K_T·K_amp, N/V: the efficiency is stated relative to it.
     pub ideal_force_per_volt_n: f64,
+    /// Its standard uncertainty, as a part: that of K_T, of the amplifier and of the sprocket's radius.
+    pub ideal_relative: f64,
     /// Standard uncertainty of the weights, as a part (mass, gravity, buoyancy in air).
     pub weight_relative: f64,
     /// Friction of the pulley as a part of the weight, where the runs do not measure it.
@@ -66,10 +69,12 @@ pub struct Calibration {
     pub force_per_volt: ForcePerVolt,
     /// Its 95 % interval, N/V.
     pub interval_95: [f64; 2],
-    /// Efficiency that it stands for: over the ideal force per volt.
+    /// Efficiency that it stands for: over the ideal force per volt, whose own uncertainty is in it.
     pub efficiency: Uncertain,
-    /// Part of the standard uncertainty from the scatter of the runs and the pulley, N/V.
+    /// Part of the standard uncertainty from the scatter of the runs, N/V; with that of the pulley where the runs measure it.
     pub type_a: f64,
+    /// Part from the declared loss of a pulley that the runs do not measure, N/V; 0 where they do.
+    pub from_pulley: f64,
     /// Degrees of freedom of that part.
     pub type_a_dof: f64,
     /// Pulley's loss: as declared, sharpened by light weights both ways.
@@ -185,31 +190,38 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let loss = setup.pulley_loss;
     // The declared loss is of the weight, the coefficient is in volts: it takes k from a first fit.
     let first = fitted(&driving, loss, setup.ideal_force_per_volt_n)?;
-    let k = 1.0 / take(&first, 1)?.value;
-    if k <= 0.0 {
+    let first_k = 1.0 / take(&first, 1)?.value;
+    if first_k <= 0.0 {
         return Err(DragError::Calibration(format!(
             "lifting up to {:.1} N needs no more command than lifting nothing: check that the weights hung free over the whole travel (floor), \
              and check counts_per_revolution, which gives the distance travelled",
             weights[1]
         )));
     }
-    let fitted = fitted(&driving, loss, k)?;
+    let fitted = fitted(&driving, loss, first_k)?;
     let inverse = take(&fitted, 1)?;
     let k = 1.0 / inverse.value;
-    let type_a = k * k * inverse.standard;
+    let of_fit = k * k * inverse.standard;
+    // Lifting tells 1/k + λ/k alone: an error of λ is one of k, ∂k/∂λ = k²/k, and no scatter of the runs.
+    let from_pulley = if is_pulley_measured { 0.0 } else { k * k / first_k * loss.standard };
+    let type_a = (of_fit * of_fit - from_pulley * from_pulley).max(0.0).sqrt();
     let from_weight = k * setup.weight_relative;
-    let entries = [(type_a * type_a, inverse.dof), (from_weight * from_weight, f64::INFINITY)];
+    let known = |standard: f64| (standard * standard, f64::INFINITY);
+    let entries = [(type_a * type_a, inverse.dof), known(from_pulley), known(from_weight)];
     let combined = froude_fit::propagate::expanded(&entries, 0.95);
     let slope = take(&fitted, 2)?;
     let pulley_loss = Uncertain { value: slope.value * k, standard: slope.standard * k, dof: slope.dof };
     let force = Uncertain { value: k, standard: combined.standard, dof: combined.dof };
     let ideal = setup.ideal_force_per_volt_n;
+    let of_ideal = [entries.as_slice(), &[known(k * setup.ideal_relative)]].concat();
+    let of_efficiency = froude_fit::propagate::expanded(&of_ideal, 0.95);
     let friction_v = take(&fitted, 0)?.value;
     Ok(Calibration {
         force_per_volt: ForcePerVolt { force_per_volt_n: force },
         interval_95: [k - combined.expanded, k + combined.expanded],
-        efficiency: Uncertain { value: k / ideal, standard: force.standard / ideal, dof: force.dof },
+        efficiency: Uncertain { value: k / ideal, standard: of_efficiency.standard / ideal, dof: of_efficiency.dof },
         type_a,
+        from_pulley,
         type_a_dof: inverse.dof,
         pulley_loss,
         is_pulley_measured,
@@ -380,11 +392,28 @@ mod tests {
         let runs: Vec<_> = logged.iter().map(Logged::view).filter(keep).collect();
         let setup = CalibrationSetup {
             ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
+            ideal_relative: 0.02,
             weight_relative: 0.0,
             pulley_loss: PULLEY_LOSS,
             steady: SteadySettings::default(),
         };
         calibrate(&runs, &setup)
+    }
+
+    /// Lifting alone tells (1 + λ)/k: the scatter of quiet runs is nothing, and what is left is the declared loss of the pulley. The efficiency
+    /// has the 2 % of K_T in it as well.
+    #[test]
+    fn what_is_declared_of_pulley_and_constants_is_no_scatter() {
+        let lifting = calibrated(&quiet(), &[0.0, 20.0], |_| true).unwrap();
+        let k = lifting.force_per_volt.force_per_volt_n;
+        assert!(!lifting.is_pulley_measured && lifting.type_a < 0.1 * lifting.from_pulley, "{lifting:?}");
+        // ∂k/∂λ = k/(1 + λ); the weight of the prior is that of a first fit, whose k is within 1 %.
+        assert!((lifting.from_pulley / (k.value * PULLEY_LOSS.standard) - 1.0).abs() < 0.02, "{lifting:?}");
+        assert!((lifting.type_a.hypot(lifting.from_pulley) / k.standard - 1.0).abs() < 1e-12, "{lifting:?}");
+        let of_constants = (lifting.efficiency.relative().powi(2) - k.relative().powi(2)).sqrt();
+        assert!((of_constants - 0.02).abs() < 1e-12, "{of_constants}");
+        let both = calibrated(&quiet(), &[0.0, 1.5, 20.0], |_| true).unwrap();
+        assert!(both.is_pulley_measured && both.from_pulley == 0.0, "{both:?}");
     }
 
     /// Without noise to speak of, only the pulley's declared loss (0.3 % of the weight) is left, and light weights lowered

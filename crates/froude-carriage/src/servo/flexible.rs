@@ -20,6 +20,7 @@
 //! Golub & Van Loan (2013), *Matrix Computations*, 9.3 (exponential by scaling and squaring); Anderson & Moore (1979), *Optimal
 //! Filtering*, 4.4 (the stationary gain). The gear's law is that of the carriage's twin.
 
+use froude_signal::exponential::exponential;
 use std::f64::consts::TAU;
 
 use crate::servo::error::ServoError;
@@ -180,7 +181,7 @@ impl Stepper {
             [0.0; 6],
         ];
         let over = |step_s: f64| {
-            let whole = exponential(&generator.map(|row| row.map(|x| x * step_s)));
+            let whole = exponential(generator.map(|row| row.map(|x| x * step_s)));
             Linear {
                 transition: std::array::from_fn(|i| std::array::from_fn(|j| whole[i][j])),
                 response: std::array::from_fn(|f| std::array::from_fn(|i| whole[i][STATES + f])),
@@ -363,34 +364,6 @@ impl Stepper {
             side: [side(f_m, motor_limit_n), side(f_l, load_limit_n)],
         }
     }
-}
-
-type Square = [[f64; 6]; 6];
-
-/// `e^A` of a matrix: Taylor's series on a 2⁻ˢ-th of it, squared s times.
-fn exponential(a: &Square) -> Square {
-    let size = a.iter().map(|row| row.iter().map(|x| x.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let halvings = if size > 0.25 { (size / 0.25).log2().ceil() as i32 } else { 0 };
-    let a = a.map(|row| row.map(|x| x * 0.5_f64.powi(halvings)));
-    let mut out: Square = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j))));
-    let mut term = out;
-    // 0.25¹²/12! is 1e-16.
-    for k in 1..=12 {
-        term = product(&term, &a).map(|row| row.map(|x| x / f64::from(k)));
-        for i in 0..6 {
-            for j in 0..6 {
-                out[i][j] += term[i][j];
-            }
-        }
-    }
-    for _ in 0..halvings {
-        out = product(&out, &out);
-    }
-    out
-}
-
-fn product(a: &Square, b: &Square) -> Square {
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
 #[cfg(test)]

@@ -8,6 +8,26 @@ const UNEVEN: f64 = 0.01;
 /// Rates that a record can have, Hz: what is beyond them counts no samples.
 const RATES_HZ: [f64; 2] = [1e-3, 1e7];
 
+/// Whether a step is the mean one, but for the digits of the clock.
+pub(crate) fn is_even(step_s: f64, mean_s: f64) -> bool {
+    (step_s - mean_s).abs() <= UNEVEN * mean_s
+}
+
+/// Rate of a mean step, Hz.
+///
+/// # Errors
+///
+/// [`ServoError::Setting`] for a rate that no record has.
+pub(crate) fn rate_of(mean_s: f64) -> Result<f64, ServoError> {
+    let rate_hz = mean_s.recip();
+    let [least, most] = RATES_HZ;
+    if !(least..=most).contains(&rate_hz) {
+        let must = "samples are between a thousandth and ten million a second: check the unit of time";
+        return Err(ServoError::Setting { what: "rate of the record (Hz)", found: rate_hz, must });
+    }
+    Ok(rate_hz)
+}
+
 /// One record, columns of equal length.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ServoLog {
@@ -44,18 +64,11 @@ impl ServoLog {
         let mean_s = (self.time_s[n - 1] - self.time_s[0]) / (n - 1) as f64;
         for pair in self.time_s.windows(2) {
             let step_s = pair[1] - pair[0];
-            let is_even = (step_s - mean_s).abs() <= UNEVEN * mean_s;
-            if !is_even {
+            if !is_even(step_s, mean_s) {
                 return Err(ServoError::Uneven { time_s: pair[0], step_s, mean_s });
             }
         }
-        let rate_hz = mean_s.recip();
-        let [least, most] = RATES_HZ;
-        if !(least..=most).contains(&rate_hz) {
-            let must = "samples are between a thousandth and ten million a second: check the unit of time";
-            return Err(ServoError::Setting { what: "rate of the record (Hz)", found: rate_hz, must });
-        }
-        Ok(rate_hz)
+        rate_of(mean_s)
     }
 
     /// The samples of a range.

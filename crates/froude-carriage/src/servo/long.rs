@@ -45,10 +45,18 @@ pub struct LongReport {
     pub classical: Vec<f64>,
     /// Standard deviations by HAC.
     pub hac: Vec<f64>,
+    /// Their covariance.
+    pub covariance: Mat<f64>,
+    /// Degrees of freedom of that: Bartlett's window leaves 1.5 rows for each of its lag and one.
+    pub dof: f64,
     /// Lag of HAC, s.
     pub hac_lag_s: f64,
     /// Standard deviation of the residuals, N.
     pub sigma_n: f64,
+    /// `‖force − model‖/‖force‖`.
+    pub relative_force_error: f64,
+    /// Least and largest value of each regressor.
+    pub ranges: Vec<[f64; 2]>,
     /// Rows of the regression.
     pub n_rows: usize,
     /// Their rate, Hz.
@@ -98,6 +106,9 @@ pub struct LongServo {
     decimated: Decimated,
     rows: Accumulator,
     windows: Windows,
+    /// Sum of the squares of the force.
+    squares_n2: f64,
+    ranges: Vec<[f64; 2]>,
 }
 
 /// Decimated columns that wait for each other, and for the record's end to be far enough away.
@@ -147,6 +158,8 @@ impl LongServo {
             decimated: Decimated { force_n: Vec::new(), columns: vec![Vec::new(); names.len()], in_front: trim },
             rows: Accumulator::new(Shape { regressors: names.len(), responses: 1 }),
             windows: Windows::new(names.len(), (lag_s * row_rate_hz).round() as usize),
+            squares_n2: 0.0,
+            ranges: vec![[f64::INFINITY, f64::NEG_INFINITY]; names.len()],
             chain: chain.clone(),
             names,
         })
@@ -219,6 +232,10 @@ impl LongServo {
         let response = &force_n[dropped..ready];
         self.rows.push(&regressors, &[response])?;
         self.windows.push(&regressors, response);
+        self.squares_n2 += response.iter().map(|f| f * f).sum::<f64>();
+        for (range, column) in self.ranges.iter_mut().zip(&regressors) {
+            *range = column.iter().fold(*range, |[low, high], x| [low.min(*x), high.max(*x)]);
+        }
         force_n.drain(..ready);
         for column in columns {
             column.drain(..ready);
@@ -259,8 +276,14 @@ impl LongServo {
         let middle = Mat::from_fn(p, p, |i, j| dof * middle[i * p + j]);
         let inverse_gram = inverse_gram(&solution);
         let rate_hz = self.rate_hz / self.chain.decimation as f64;
+        let covariance = &inverse_gram * middle * &inverse_gram;
+        let windows = rows as f64 / (self.windows.lag + 1) as f64;
         Ok(LongReport {
-            hac: diagonal_roots(&(&inverse_gram * middle * &inverse_gram)),
+            hac: diagonal_roots(&covariance),
+            covariance,
+            dof: (1.5 * windows).min(solution.dof),
+            relative_force_error: (solution.residual_squares / self.squares_n2).sqrt(),
+            ranges: self.ranges,
             hac_lag_s: self.windows.lag as f64 / rate_hz,
             names: self.names,
             coefficients: solution.coefficients,
@@ -470,6 +493,7 @@ mod tests {
         same(&report.coefficients, &whole.coefficients);
         same(&report.classical, &whole.standard);
         same(&report.hac, &expected);
+        same(&[report.relative_force_error], &[rows.relative_error(&whole.coefficients)]);
     }
 
     #[test]

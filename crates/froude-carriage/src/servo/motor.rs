@@ -49,6 +49,19 @@ impl MotorSide {
     }
 }
 
+/// A drive as it is declared, with what is not known of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// Its constants.
+    pub motor: MotorSide,
+    /// Standard uncertainty of `K_T K_amp`, as a part.
+    pub torque_relative: f64,
+    /// That of `R`, as a part.
+    pub radius_relative: f64,
+    /// Key of the rig: what has the same one has the same errors.
+    pub rig: String,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,17 +9,20 @@
 //! | `servo_over_position` | `F_c` a line between knots over the travel: no formula                         |
 //! | `servo_two_mass`      | motor and load with a chain between them (MCD eq. 2 and 3): no formula          |
 //!
-//! The force per volt of the rigid models is taken as exact: an error of it scales all coefficients alike.
+//! An error of the force per volt scales all coefficients of a rigid model alike, one of the sprocket's radius those of speed and acceleration
+//! twice: they are type B, by the key of the rig, so that two records of one rig have them in common. Of a log without a rig nothing is
+//! known of them, and the force per volt is taken as exact.
 
 use froude_fit::faer::Mat;
-use froude_fit::propagate::effective_dof;
+use froude_fit::propagate::{effective_dof, expanded};
 use froude_records::estimate::{
     Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, OWN, Output,
     Range, SharedError, Signs, Status, TypeA,
 };
 use indexmap::IndexMap;
 
-use crate::servo::motor::MotorSide;
+use crate::servo::long::LongReport;
+use crate::servo::motor::Drive;
 use crate::servo::report::{ServoCoefficient, ServoReport};
 use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport};
 
@@ -29,24 +32,96 @@ pub const TWO_MASS: &str = "servo_two_mass";
 /// The load that the laws give.
 const LOAD: &str = "drive_force";
 
-/// A rigid model as an estimate of `source`; `friction` names its law, `force_per_volt_n_v` is what made volts into forces.
+/// A rigid model as an estimate of `source`; `friction` names its law, `force_per_volt_n_v` is what made volts into forces, `drive` what is
+/// declared of it.
 #[must_use]
 pub fn rigid(
     source: &str,
     friction: &str,
     report: &ServoReport,
     force_per_volt_n_v: f64,
-    motor: Option<&MotorSide>,
+    drive: Option<&Drive>,
+) -> Estimate {
+    let fit = RigidFit {
+        coefficients: &report.coefficients,
+        dof: &report.spread.dof,
+        covariance: &report.spread.covariance,
+        pieces: report.spread.pieces(),
+        sigma_n: report.sigma_n,
+        n_rows: report.n_rows,
+        relative_force_error: report.relative_force_error,
+        findings: &report.findings,
+    };
+    let recorded = recorded(source, friction, &fit, force_per_volt_n_v, drive);
+    Estimate {
+        clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
+        derived: effective(report, drive),
+        validity: validity(report.rows.names.iter().zip(&report.rows.columns).map(|((name, _), column)| {
+            let bounds = [f64::INFINITY, f64::NEG_INFINITY];
+            (name.as_str(), column.iter().fold(bounds, |[low, high], x| [low.min(*x), high.max(*x)]))
+        })),
+        diagnostics: Diagnostics { condition_number: report.condition_number, ..recorded.diagnostics },
+        ..recorded
+    }
+}
+
+/// The same of a record of hours, whose rows were not kept; its force per volt is taken as exact. `coefficients` are those of the report with
+/// their intervals.
+#[must_use]
+pub fn long(
+    source: &str,
+    friction: &str,
+    (report, coefficients): (&LongReport, &[ServoCoefficient]),
+    findings: &[String],
+    force_per_volt_n_v: f64,
+) -> Estimate {
+    let fit = RigidFit {
+        coefficients,
+        dof: &vec![report.dof; coefficients.len()],
+        covariance: &report.covariance,
+        pieces: format!("HAC with a lag of {:.1} s", report.hac_lag_s),
+        sigma_n: report.sigma_n,
+        n_rows: report.n_rows,
+        relative_force_error: report.relative_force_error,
+        findings,
+    };
+    let ranges = report.names.iter().zip(&report.ranges).map(|((name, _), range)| (name.as_str(), *range));
+    Estimate { validity: validity(ranges), ..recorded(source, friction, &fit, force_per_volt_n_v, None) }
+}
+
+/// The fit of a rigid model as its record wants it.
+struct RigidFit<'a> {
+    coefficients: &'a [ServoCoefficient],
+    dof: &'a [f64],
+    covariance: &'a Mat<f64>,
+    /// What was taken as one piece of evidence.
+    pieces: String,
+    sigma_n: f64,
+    n_rows: usize,
+    relative_force_error: f64,
+    findings: &'a [String],
+}
+
+fn recorded(
+    source: &str,
+    friction: &str,
+    fit: &RigidFit<'_>,
+    force_per_volt_n_v: f64,
+    drive: Option<&Drive>,
 ) -> Estimate {
     let method = format!("servo_{}", friction.replace(' ', "_"));
-    let names: Vec<String> = report.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
-    let coefficients = report.coefficients.iter().zip(&names).zip(&report.spread.dof).map(|((c, name), dof)| {
+    let names: Vec<String> = fit.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
+    let coefficients = fit.coefficients.iter().zip(&names).zip(fit.dof).map(|((c, name), dof)| {
         let label = (*name != c.name).then(|| c.name.clone());
-        (name.clone(), Coefficient { label, ..coefficient(c, finite(*dof)) })
+        (name.clone(), Coefficient { label, ..with_drive(c, *dof, drive) })
     });
     let formula = formula(&names);
     let constants = IndexMap::from([("force_per_volt".to_owned(), measured(force_per_volt_n_v, "N/V"))]);
-    let fewest = report.spread.dof.iter().copied().reduce(f64::min).and_then(finite);
+    let fewest = fit.dof.iter().copied().reduce(f64::min).and_then(finite);
+    let errors = drive.map_or_else(IndexMap::new, |drive| errors_of(drive, fit.coefficients));
+    let exact = errors
+        .is_empty()
+        .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike".to_owned());
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
@@ -57,24 +132,60 @@ pub fn rigid(
         },
         law: law(&method, formula, constants),
         coefficients: coefficients.collect(),
-        type_a: type_a(names, &report.spread.covariance, &report.spread.dof, report.spread.pieces()),
-        clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
-        sigma: IndexMap::from([(LOAD.to_owned(), measured(report.sigma_n, "N"))]),
+        type_a: type_a(names, fit.covariance, fit.dof, fit.pieces.clone()),
+        errors,
+        sigma: IndexMap::from([(LOAD.to_owned(), measured(fit.sigma_n, "N"))]),
         dof: IndexMap::from([(LOAD.to_owned(), fewest)]),
-        n_observations: report.n_rows,
-        derived: effective(report, motor),
-        validity: validity(report),
+        n_observations: fit.n_rows,
         diagnostics: Diagnostics {
-            condition_number: report.condition_number,
-            relative_residual: IndexMap::from([(LOAD.to_owned(), report.relative_force_error)]),
-            notes: std::iter::once(
-                "the force per volt is taken as exact: an error of it scales all coefficients alike".to_owned(),
-            )
-            .chain(report.findings.iter().cloned())
-            .collect(),
+            relative_residual: IndexMap::from([(LOAD.to_owned(), fit.relative_force_error)]),
+            notes: exact.into_iter().chain(fit.findings.iter().cloned()).collect(),
             ..Diagnostics::default()
         },
         ..on_the_chain()
+    }
+}
+
+/// How often the sprocket's radius goes into a coefficient: once into the force, and once more into a speed or an acceleration.
+fn radii(name: &str) -> f64 {
+    if name == "M" || name.starts_with("F_v") { -2.0 } else { -1.0 }
+}
+
+/// Errors of the declared drive: K_T and amplifier, and the radius that makes counts into metres and torques into forces.
+fn errors_of(drive: &Drive, coefficients: &[ServoCoefficient]) -> IndexMap<String, SharedError> {
+    let error = |name: &str, quantity: &str, relative: f64, times: &dyn Fn(&str) -> f64| {
+        let sensitivity = coefficients.iter().map(|c| vec![times(&c.name) * c.value]).collect();
+        let error = SharedError {
+            name: name.to_owned(),
+            quantity: quantity.to_owned(),
+            kind: ErrorKind::B,
+            covariance: vec![vec![relative * relative]],
+            dof: None,
+            limits: None,
+            sensitivity,
+        };
+        (relative > 0.0).then(|| (format!("{}/{quantity}", drive.rig), error))
+    };
+    let torque = error("K_T and amplifier gain, declared", "torque_constant", drive.torque_relative, &|_| 1.0);
+    let radius = error("length of an encoder count", "sprocket_radius", drive.radius_relative, &radii);
+    torque.into_iter().chain(radius).collect()
+}
+
+/// A coefficient with what the declared drive adds to its scatter.
+fn with_drive(c: &ServoCoefficient, dof: f64, drive: Option<&Drive>) -> Coefficient {
+    let declared =
+        drive.map(|drive| c.value.abs() * drive.torque_relative.hypot(radii(&c.name) * drive.radius_relative));
+    match declared {
+        Some(type_b) if type_b > 0.0 && c.block_std.is_finite() => {
+            let all = expanded(&[(c.block_std * c.block_std, dof), (type_b * type_b, f64::INFINITY)], 0.95);
+            Coefficient {
+                standard_uncertainty: Some(all.standard),
+                type_b: Some(type_b),
+                interval_95: finite(all.expanded).map(|half| [c.value - half, c.value + half]),
+                ..coefficient(c, finite(all.dof))
+            }
+        }
+        _ => coefficient(c, finite(dof)),
     }
 }
 
@@ -203,31 +314,42 @@ fn derived(c: &ServoCoefficient, formula: String) -> Derived {
     }
 }
 
-/// J_eff, B_eff and C_eff, where the drive is declared.
-fn effective(report: &ServoReport, motor: Option<&MotorSide>) -> IndexMap<String, Derived> {
-    let Some(motor) = motor else { return IndexMap::new() };
-    let ratio = motor.m_rad();
+/// J_eff, B_eff and C_eff, where the drive is declared. The radius that made a force of a torque makes it one again, and speeds rates: only K_T and
+/// the amplifier err in them.
+fn effective(report: &ServoReport, drive: Option<&Drive>) -> IndexMap<String, Derived> {
+    let Some(drive) = drive else { return IndexMap::new() };
+    let ratio = drive.motor.m_rad();
     let of = |c: ServoCoefficient| {
         let (from, power) = match c.name.as_str() {
             "J_eff" => ("M", 2),
             "B_eff" => ("F_v", 2),
             _ => ("F_c", 1),
         };
-        (c.name.clone(), derived(&c, format!("{from}*({ratio:e} m/rad)^{power}")))
+        let dof =
+            report.coefficients.iter().zip(&report.spread.dof).find(|(own, _)| own.name == from).map(|(_, dof)| *dof);
+        let torque_alone = Drive { radius_relative: 0.0, ..drive.clone() };
+        let whole = with_drive(&c, dof.unwrap_or(f64::INFINITY), Some(&torque_alone));
+        let number = Derived {
+            standard_uncertainty: whole.standard_uncertainty,
+            interval_95: whole.interval_95,
+            ..derived(&c, format!("{from}*({ratio:e} m/rad)^{power}"))
+        };
+        (c.name.clone(), number)
     };
-    crate::servo::report::effective(report, motor).into_iter().map(of).collect()
+    crate::servo::report::effective(report, &drive.motor).into_iter().map(of).collect()
 }
 
-/// Range of the speeds and accelerations of the rows, from the columns of the regression.
-fn validity(report: &ServoReport) -> IndexMap<String, Range> {
-    let range = |name: &str, key: &str, unit: &str| {
-        let j = report.rows.names.iter().position(|(own, _)| own == name)?;
-        let column = &report.rows.columns[j];
-        let low = column.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+/// Range of the speeds and accelerations of the rows, from those of the columns of the regression.
+fn validity<'a>(columns: impl Iterator<Item = (&'a str, [f64; 2])>) -> IndexMap<String, Range> {
+    let range = |(name, [low, high]): (&str, [f64; 2])| {
+        let (key, unit) = match name {
+            "M" => ("v_y_dot", "m/s^2"),
+            "F_v" => ("v_y", "m/s"),
+            _ => return None,
+        };
         (low <= high).then(|| (key.to_owned(), Range { low, high, unit: unit.to_owned() }))
     };
-    [range("M", "v_y_dot", "m/s^2"), range("F_v", "v_y", "m/s")].into_iter().flatten().collect()
+    columns.filter_map(range).collect()
 }
 
 /// Scatter as a record holds it; `None` where it is not finite.

@@ -247,16 +247,18 @@ fn findings(coefficients: &[ServoCoefficient], whiteness: Option<&Whiteness>, sp
             spread.pieces()
         ));
     }
-    for c in coefficients {
-        let must_resist = c.name == "M" || c.name.starts_with("F_") && c.name != "F_s";
-        if must_resist && c.interval[1] < 0.0 {
-            out.push(format!(
-                "{} = {:.4} {} is negative: check the sign of position or command",
-                c.name, c.value, c.unit
-            ));
-        }
-    }
+    out.extend(negative(coefficients));
     out
+}
+
+/// What resists must not drive: a sentence for each coefficient that does beyond its interval.
+pub(crate) fn negative(coefficients: &[ServoCoefficient]) -> impl Iterator<Item = String> {
+    let must_resist = |c: &&ServoCoefficient| c.name == "M" || c.name.starts_with("F_") && c.name != "F_s";
+    coefficients
+        .iter()
+        .filter(must_resist)
+        .filter(|c| c.interval[1] < 0.0)
+        .map(|c| format!("{} = {:.4} {} is negative: check the sign of position or command", c.name, c.value, c.unit))
 }
 
 #[cfg(test)]

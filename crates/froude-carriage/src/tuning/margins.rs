@@ -107,6 +107,20 @@ pub fn margins(plant: &[ResponsePoint], gains: &LoopGains) -> Margins {
     out
 }
 
+/// Bandwidth of the closed loop, Hz: the highest frequency at which |L/(1 + L)| falls through 1/√2; `None` where it does not in the measured band.
+#[must_use]
+pub fn bandwidth_hz(plant: &[ResponsePoint], gains: &LoopGains) -> Option<f64> {
+    let level = |p: &ResponsePoint| {
+        let l = p.plant_rad_v * gains.response_v_rad(p.frequency_hz);
+        (l / (1.0 + l)).norm().ln() + 0.5 * std::f64::consts::LN_2
+    };
+    let falls = plant.windows(2).rev().find_map(|pair| {
+        let (a, b) = (level(&pair[0]), level(&pair[1]));
+        crossing(a, b).filter(|_| a > b).map(|t| (pair, t))
+    });
+    falls.map(|(pair, t)| between(pair[0].frequency_hz.ln(), pair[1].frequency_hz.ln(), t).exp())
+}
+
 /// Where a line from `a` to `b` crosses zero, as a part of the way.
 fn crossing(a: f64, b: f64) -> Option<f64> {
     (a != b && (a > 0.0) != (b > 0.0)).then(|| a / (a - b))
@@ -114,4 +128,31 @@ fn crossing(a: f64, b: f64) -> Option<f64> {
 
 fn between(a: f64, b: f64, part: f64) -> f64 {
     a + (b - a) * part
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// P = 1/s with K_p = 2π·5 Hz: the loop is 5 Hz over i f, its closed loop a first-order lag with its corner there.
+    #[test]
+    fn an_integrator_has_its_crossover_for_a_bandwidth() {
+        let point = |i: i32| {
+            let frequency_hz = 1.02_f64.powi(i);
+            let plant_rad_v = 1.0 / Complex64::new(0.0, 2.0 * PI * frequency_hz);
+            ResponsePoint { frequency_hz, plant_rad_v, coherence: 1.0, relative_std: 0.01 }
+        };
+        let plant: Vec<ResponsePoint> = (0..200).map(point).collect();
+        let gains = LoopGains {
+            proportional_v_rad: 2.0 * PI * 5.0,
+            derivative_v_s_rad: 0.0,
+            integral_v_rad_s: 0.0,
+            derivative_filter_hz: 100.0,
+            tick_s: 0.0,
+        };
+        // Between points 2 % apart the logarithm of the modulus is taken as straight.
+        assert!((bandwidth_hz(&plant, &gains).unwrap() / 5.0 - 1.0).abs() < 1e-4);
+        assert!((margins(&plant, &gains).crossover_hz.unwrap() / 5.0 - 1.0).abs() < 1e-12);
+        assert_eq!(bandwidth_hz(&plant[..50], &gains), None);
+    }
 }

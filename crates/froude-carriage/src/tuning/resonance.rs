@@ -30,6 +30,8 @@ pub struct TwoMassModes {
     pub load: Mode,
     /// Both masses free: the peak on the motor side.
     pub free: Mode,
+    /// Correlation of the load's frequency and damping, and the free ones.
+    pub correlation: [[f64; 4]; 4],
     /// M (R/n)²/J_m = (ω_p/ω_a)² − 1.
     pub inertia_ratio: f64,
     /// Acceleration of the motor alone per volt, rad/(s² V).
@@ -114,9 +116,16 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
         damping: p[z],
         damping_std: std(z),
     };
+    let correlation = std::array::from_fn(|a| {
+        std::array::from_fn(|b| {
+            let both = std(2 + a) * std(2 + b);
+            covariance.covariance(2 + a, 2 + b).filter(|_| both > 0.0).map_or(f64::from(u8::from(a == b)), |c| c / both)
+        })
+    });
     Ok(TwoMassModes {
         load: mode(2, 3),
         free: mode(4, 5),
+        correlation,
         inertia_ratio: (free_hz / load_hz).powi(2) - 1.0,
         gain_rad_s2_v: p[0].exp(),
         viscous_1_s: p[1].exp(),
@@ -127,6 +136,13 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
 }
 
 impl TwoMassModes {
+    /// Standard uncertainties in the order of [`Self::correlation`].
+    #[must_use]
+    pub fn standards(&self) -> [f64; 4] {
+        let (load, free) = (self.load, self.free);
+        [load.frequency_std_hz, load.damping_std, free.frequency_std_hz, free.damping_std]
+    }
+
     /// θ/v_c of the fitted model, rad/V.
     #[must_use]
     pub fn response_rad_v(&self, frequency_hz: f64) -> Complex64 {

@@ -73,7 +73,7 @@ impl Method for FreeDecay {
             let mut result = record::result(&fit, campaign, source, best == Some(method))?;
             result.files.clone_from(&files);
             findings.append(&mut result.findings);
-            out.push(result);
+            out.push(result.into());
             fits.push(fit);
         }
         findings.extend(fits.first().zip(fits.get(1)).and_then(|(a, b)| a.disagrees_with(b)));

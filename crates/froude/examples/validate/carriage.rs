@@ -390,6 +390,7 @@ fn weights(claims: &mut Claims, seeds: usize) {
     let truth = scenario.force_per_volt_n();
     let setup = CalibrationSetup {
         ideal_force_per_volt_n: scenario.ideal_force_per_volt_n,
+        ideal_relative: 0.0,
         weight_relative: 0.0005,
         pulley_loss: DECLARED_PULLEY,
         steady: SteadySettings::default(),

@@ -48,7 +48,7 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
     let half = |c: &froude::records::estimate::Coefficient| c.interval_95.map_or(f64::NAN, |[a, b]| 0.5 * (b - a));
     claims.near(SECTION, "half-width of its 95 % interval, log–log", half(&log), 0.05, 0.01, "issue");
     claims.near(SECTION, "half-width of its 95 % interval, newtons", half(&newton), 0.10, 0.02, "issue");
-    let frame: Vec<_> = done.sources.iter().filter(|s| s.name == "mounting frame").collect();
+    let frame: Vec<_> = done.sources.iter().filter_map(|s| s.fitted()).filter(|s| s.name == "mounting frame").collect();
     for source in &frame {
         for (model, estimate) in source.models.iter().zip(&source.estimates) {
             let n = source.data.rows;

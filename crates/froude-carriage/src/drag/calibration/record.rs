@@ -1,7 +1,9 @@
 //! The force per volt as an estimate: calibrated with known weights, and as the constants of the drive declare it.
 //!
-//! Two calibrations whose campaigns declare the same weights have the error of the weights in common, by its key.
+//! Two calibrations whose campaigns declare the same weights have the error of the weights in common, by its key, and two on one rig that of the
+//! pulley that neither measured.
 
+use froude_fit::distribution::coverage_factor;
 use froude_records::estimate::{
     Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, MethodUsed, OWN, Output, SharedError, Signs,
     Status, TypeA,
@@ -12,23 +14,40 @@ use super::Calibration;
 use crate::drag::run::{DragSetup, Efficiency, UNDECLARED_EFFICIENCY};
 
 /// Name of the coefficient and of its law: `drive_force = force_per_volt · command`.
-const FORCE_PER_VOLT: &str = "force_per_volt";
+pub(super) const FORCE_PER_VOLT: &str = "force_per_volt";
 
-/// The calibration as an estimate of `source`; `weight_relative` is the standard uncertainty of the weights as a part, `weights_key` the key of
-/// that error where the campaign declares them.
+/// What is known of the errors of a calibration beside its scatter.
+#[derive(Debug, Clone, Default)]
+pub struct Known {
+    /// Standard uncertainty of the weights, as a part.
+    pub weight_relative: f64,
+    /// Key of that error, where a campaign declares the weights.
+    pub weights: Option<String>,
+    /// Key of the error of the pulley's loss, where the rig is known.
+    pub pulley: Option<String>,
+}
+
+/// The calibration as an estimate of `source`.
 #[must_use]
-pub fn calibrated(source: &str, c: &Calibration, weight_relative: f64, weights_key: Option<String>) -> Estimate {
+pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
     let k = c.force_per_volt.force_per_volt_n;
-    let from_weights = k.value * weight_relative;
-    let weights = SharedError {
-        name: "known weights".to_owned(),
-        quantity: "hung_weight".to_owned(),
+    let from_weights = k.value * known.weight_relative;
+    let error = |name: &str, quantity: &str, standard: f64| SharedError {
+        name: name.to_owned(),
+        quantity: quantity.to_owned(),
         kind: ErrorKind::B,
-        covariance: vec![vec![from_weights * from_weights]],
+        covariance: vec![vec![standard * standard]],
         dof: None,
         limits: None,
         sensitivity: vec![vec![1.0]],
     };
+    let own = |key: &Option<String>, name: &str| key.clone().unwrap_or_else(|| format!("{OWN}{name}"));
+    let mut errors =
+        IndexMap::from([(own(&known.weights, "weights"), error("known weights", "hung_weight", from_weights))]);
+    if c.from_pulley > 0.0 {
+        let loss = error("declared loss of the pulley", "pulley_loss", c.from_pulley);
+        errors.insert(own(&known.pulley, "pulley"), loss);
+    }
     let coefficient = Coefficient {
         label: None,
         value: Some(k.value),
@@ -37,7 +56,7 @@ pub fn calibrated(source: &str, c: &Calibration, weight_relative: f64, weights_k
         nuisance: false,
         standard_uncertainty: Some(k.standard),
         type_a: Some(c.type_a),
-        type_b: Some(from_weights),
+        type_b: Some(from_weights.hypot(c.from_pulley)),
         interval_95: Some(c.interval_95),
         effective_dof: finite(k.dof),
     };
@@ -46,16 +65,20 @@ pub fn calibrated(source: &str, c: &Calibration, weight_relative: f64, weights_k
         value: Some(c.efficiency.value),
         unit: "1".to_owned(),
         standard_uncertainty: Some(c.efficiency.standard),
-        interval_95: Some(c.interval_95.map(|x| x * c.efficiency.value / k.value)),
+        interval_95: {
+            let half = coverage_factor(0.95, c.efficiency.dof) * c.efficiency.standard;
+            Some([c.efficiency.value - half, c.efficiency.value + half])
+        },
     };
     Estimate {
         type_a: Some(TypeA {
             names: vec![FORCE_PER_VOLT.to_owned()],
             matrix: vec![vec![c.type_a * c.type_a]],
             dof: vec![finite(c.type_a_dof)],
-            kind: "HC3, the declared loss of the pulley as a prior".to_owned(),
+            kind: if c.is_pulley_measured { "HC3, the declared loss of the pulley as a prior" } else { "HC3" }
+                .to_owned(),
         }),
-        errors: IndexMap::from([(weights_key.unwrap_or_else(|| format!("{OWN}weights")), weights)]),
+        errors,
         n_observations: c.used,
         derived: IndexMap::from([("efficiency".to_owned(), efficiency)]),
         diagnostics: Diagnostics { notes: c.notes.clone(), ..Diagnostics::default() },

@@ -1,0 +1,252 @@
+//! A servo's log of more rows than are kept: rigid models, read in chunks in bounded memory.
+//!
+//! Twice through the file: once for its clock, whose mean step every filter needs, and once for all models together ([`LongServo`]). Coefficients
+//! equal those of the log in memory; the intervals are those of HAC with the lag of a block, since blocks would need all rows at once. There is
+//! no test of whiteness and no figure of the force.
+
+use std::path::Path;
+
+use froude_fit::distribution::coverage_factor;
+use froude_identify::answer::Made;
+use froude_identify::large::MOST_KEPT;
+use froude_identify::method::{Found, MethodError};
+use froude_records::chunks::{for_each_chunk, has_more_rows};
+use froude_records::finding::{Finding, Severity};
+use froude_records::number;
+use froude_records::page::{DocumentSection, TextTable};
+use froude_records::table::Table;
+use froude_records::units::Dimension;
+
+use super::{AxisModel, friction_of, log_chain};
+use crate::runs::implausible;
+use crate::servo::log::{is_even, rate_of};
+use crate::servo::report::negative;
+use crate::servo::{LongReport, LongServo, ServoCoefficient, ServoError, record};
+
+/// Whether a log has more rows than are kept.
+pub(super) fn is_long(path: &Path) -> bool {
+    has_more_rows(path, MOST_KEPT)
+}
+
+/// Steps of the clock, s.
+struct Clock {
+    rows: usize,
+    first_s: f64,
+    last_s: f64,
+    /// The shortest and the longest, each with the time before it.
+    shortest: (f64, f64),
+    longest: (f64, f64),
+}
+
+/// A column of an axis, as `y/name` or by its name alone.
+fn column<'t>(table: &'t Table, name: &str, dimension: Dimension) -> Result<&'t [f64], MethodError> {
+    let of_axis = format!("y/{name}");
+    let is_there = table.columns.iter().any(|column| column.name == of_axis);
+    let values = table.number(if is_there { &of_axis } else { name }, dimension)?;
+    match values.iter().position(|x| implausible(*x)) {
+        None => Ok(values),
+        Some(i) => {
+            let what = format!(
+                "{name} is {:e} {dimension} in line {}, which no axis has: the log is damaged, or its unit is wrong",
+                values[i],
+                table.line_of_row.get(i).copied().unwrap_or_default()
+            );
+            Err(MethodError::input(&table.path, what))
+        }
+    }
+}
+
+/// The clock of a log.
+fn clock(path: &Path, sidecar: Option<&Path>) -> Result<Clock, MethodError> {
+    let mut out = Clock {
+        rows: 0,
+        first_s: f64::NAN,
+        last_s: f64::NAN,
+        shortest: (f64::INFINITY, f64::NAN),
+        longest: (f64::NEG_INFINITY, f64::NAN),
+    };
+    for_each_chunk(path, sidecar, &mut |table| {
+        for &time_s in table.number("time", Dimension::TIME)? {
+            if out.rows == 0 {
+                out.first_s = time_s;
+            } else {
+                let step = (time_s - out.last_s, out.last_s);
+                out.shortest = if step.0 < out.shortest.0 { step } else { out.shortest };
+                out.longest = if step.0 > out.longest.0 { step } else { out.longest };
+            }
+            out.last_s = time_s;
+            out.rows += 1;
+        }
+        Ok::<(), MethodError>(())
+    })?;
+    Ok(out)
+}
+
+impl Clock {
+    fn mean_s(&self) -> f64 {
+        (self.last_s - self.first_s) / self.rows.saturating_sub(1) as f64
+    }
+
+    /// Rate of the log, Hz; its steps must be even.
+    fn rate_hz(&self) -> Result<f64, ServoError> {
+        let mean_s = self.mean_s();
+        for (step_s, time_s) in [self.shortest, self.longest] {
+            if !is_even(step_s, mean_s) {
+                return Err(ServoError::Uneven { time_s, step_s, mean_s });
+            }
+        }
+        rate_of(mean_s)
+    }
+
+    fn finding(&self) -> Finding {
+        let [mean_ms, shortest_ms, longest_ms] = [self.mean_s(), self.shortest.0, self.longest.0].map(|s| 1e3 * s);
+        let text = format!(
+            "time steps are {mean_ms:.6} ms in the mean, {shortest_ms:.6} ms at least and {longest_ms:.6} ms at most: even"
+        );
+        Finding::new(Severity::Note, "time-steps", text)
+    }
+}
+
+/// Rigid models of a long log, called `name`, whose volt is a force of `gain_n_v`.
+pub(super) fn of_table(
+    path: &Path,
+    sidecar: Option<&Path>,
+    (name, kind): (&str, &str),
+    gain_n_v: f64,
+    asked: &[AxisModel],
+) -> Result<Found, MethodError> {
+    let clock = clock(path, sidecar)?;
+    let rate_hz = clock.rate_hz().map_err(MethodError::refused)?;
+    let rigid = asked.iter().filter_map(|model| Some((model.friction()?, friction_of(*model))));
+    let mut under_way = rigid
+        .map(|(words, friction)| Ok((words, LongServo::new(&log_chain(gain_n_v, rate_hz, friction), rate_hz)?)))
+        .collect::<Result<Vec<_>, ServoError>>()
+        .map_err(MethodError::refused)?;
+    for_each_chunk(path, sidecar, &mut |table| {
+        let position_m = column(&table, "position", Dimension::LENGTH)?;
+        let command_v = column(&table, "command", Dimension::VOLTAGE)?;
+        under_way
+            .iter_mut()
+            .try_for_each(|(_, servo)| servo.push(position_m, command_v, None))
+            .map_err(MethodError::refused)
+    })?;
+    let text = format!(
+        "the log has {} rows, more than the {} that are kept: it was read in chunks. Its intervals are those of HAC, with no test whether residuals \
+         are white, and without a figure of the force",
+        number::count(clock.rows),
+        number::count(MOST_KEPT)
+    );
+    let mut out =
+        Found { findings: vec![clock.finding(), Finding::new(Severity::Note, "long-log", text)], ..Found::default() };
+    let mut tables = Vec::new();
+    for (words, servo) in under_way {
+        let report = servo.finish().map_err(MethodError::refused)?;
+        let coefficients = coefficients(&report);
+        let doubts: Vec<String> = negative(&coefficients).collect();
+        let said = doubts.iter().map(|text| Finding::new(Severity::Warning, "servo", format!("{words}: {text}")));
+        out.findings.extend(said);
+        tables.push(coefficient_table(words, &report, &coefficients));
+        let mut estimate = record::long(name, words, (&report, &coefficients), &doubts, gain_n_v);
+        kind.clone_into(&mut estimate.kind);
+        let name = format!("{name}, {}", estimate.method.name);
+        out.results.push(Made { name, estimate, files: super::files_of_table(path, sidecar) }.into());
+    }
+    out.summary =
+        Some(DocumentSection { title: "Axis by every model".to_owned(), tables, ..DocumentSection::default() });
+    Ok(out)
+}
+
+/// Values with the intervals of HAC.
+fn coefficients(report: &LongReport) -> Vec<ServoCoefficient> {
+    let coverage = coverage_factor(0.95, report.dof);
+    let of = |(j, (name, unit)): (usize, &(String, &'static str))| {
+        let (value, half) = (report.coefficients[j], coverage * report.hac[j]);
+        ServoCoefficient {
+            name: name.clone(),
+            unit,
+            value,
+            classical_std: report.classical[j],
+            hac_std: report.hac[j],
+            block_std: report.hac[j],
+            interval: [value - half, value + half],
+        }
+    };
+    report.names.iter().enumerate().map(of).collect()
+}
+
+fn coefficient_table(words: &str, report: &LongReport, coefficients: &[ServoCoefficient]) -> TextTable {
+    let row = |c: &ServoCoefficient| {
+        vec![
+            c.name.clone(),
+            c.unit.to_owned(),
+            number::short_form(c.value, c.hac_std),
+            number::interval(c.interval),
+            number::significant(c.classical_std, 2),
+            number::significant(c.hac_std, 2),
+        ]
+    };
+    TextTable {
+        caption: format!(
+            "Rigid model, friction {words} (relative force error {}), {} rows at {} Hz, HAC with a lag of {:.1} s.",
+            number::percent(report.relative_force_error),
+            number::count(report.n_rows),
+            number::plain(report.rate_hz, 4),
+            report.hac_lag_s
+        ),
+        head: ["coefficient", "unit", "value", "95 % interval (HAC)", "std (white noise)", "std (HAC)"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: coefficients.iter().map(row).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use super::*;
+    use crate::axis::of_table as in_memory;
+
+    /// Both sides round alike but in another order: some 20,000 roundings times a condition of some 100.
+    const TOLERANCE: f64 = 1e-9;
+
+    #[test]
+    fn a_log_in_chunks_gives_what_it_gives_in_memory() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("log.csv");
+        let mut text = "time [s],position [m],command [V]\n".to_owned();
+        for i in 0..(MOST_KEPT + 5000) {
+            let t = 1e-3 * i as f64;
+            let x = 0.2 * (1.3 * t).sin() + 0.1 * (3.1 * t).sin();
+            let v = 0.26 * (1.3 * t).cos() + 0.31 * (3.1 * t).cos();
+            let a = -0.338 * (1.3 * t).sin() - 0.961 * (3.1 * t).sin();
+            let u = (6.0 * a + 2.0 * v + 2.5 * v.signum() + 0.3 + 0.1 * (17.0 * t).sin()) / 6.0;
+            writeln!(text, "{t:.3},{x:.9},{u:.9}").unwrap();
+        }
+        std::fs::write(&path, text).unwrap();
+        let sidecar = "schema = 1\n[constants]\ndrive_gain = \"6 N/V\"\n[columns]\n\"time [s]\" = { name = \"time\", unit = \"s\" }\n\
+                       \"position [m]\" = { name = \"position\", unit = \"m\" }\n\"command [V]\" = { name = \"command\", unit = \"V\" }\n";
+        std::fs::write(path.with_extension("toml"), sidecar).unwrap();
+        assert!(is_long(&path));
+        let asked = [AxisModel::Symmetric, AxisModel::Asymmetric];
+        let found = of_table(&path, None, ("log", "towing"), 6.0, &asked).unwrap();
+        let whole = in_memory(&path, None, "log").unwrap();
+        assert_eq!(found.results.len(), whole.estimates.len());
+        for (found, (expected, files)) in found.results.iter().zip(&whole.estimates) {
+            let [estimate] = found.estimates() else { panic!("one estimate") };
+            assert_eq!((&estimate.id, found.files()), (&expected.id, files.as_slice()));
+            assert_eq!(estimate.n_observations, expected.n_observations);
+            for ((name, c), (own, e)) in estimate.coefficients.iter().zip(&expected.coefficients) {
+                let (value, known) = (c.value.unwrap(), e.value.unwrap());
+                assert_eq!(name, own);
+                assert!((value - known).abs() <= TOLERANCE * known.abs().max(1.0), "{name}: {value} {known}");
+                // HAC and the resampled blocks are two estimates of one scatter.
+                let ratio = c.standard_uncertainty.unwrap() / e.standard_uncertainty.unwrap();
+                assert!((0.5..2.0).contains(&ratio), "{name}: {ratio}");
+            }
+            let [sigma, known] = [estimate, expected].map(|e| e.sigma["drive_force"].value);
+            assert!((sigma / known - 1.0).abs() < TOLERANCE, "{sigma} {known}");
+        }
+        assert!(found.findings.iter().any(|f| f.code == "long-log"));
+    }
+}

@@ -1,0 +1,151 @@
+//! Gains side by side on the page and on the terminal, what speaks against each, and the open loop.
+
+use std::f64::consts::TAU;
+
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+
+use super::Tuned;
+use crate::tuning::candidate::Candidate;
+use crate::tuning::margins::open_loop;
+
+/// Gains, margins, what a count of the encoder does to the command, and the ramps; a column for each candidate.
+#[must_use]
+pub fn candidates_table(outcome: &Tuned) -> TextTable {
+    type Of = fn(&Candidate) -> Option<f64>;
+    let quantities: [(&str, Of); 19] = [
+        ("K_p [V/rad]", |c| Some(c.gains.proportional_v_rad)),
+        ("K_d [V s/rad]", |c| Some(c.gains.derivative_v_s_rad)),
+        ("K_i [V/(rad s)]", |c| Some(c.gains.integral_v_rad_s)),
+        ("derivative filter [Hz]", |c| Some(c.gains.derivative_filter_hz)),
+        ("K_p [V/count]", |c| Some(c.counts.proportional)),
+        ("K_d [V s/count]", |c| Some(c.counts.derivative)),
+        ("K_i [V/(count tick)]", |c| Some(c.counts.integral)),
+        ("command per count [V]", |c| Some(c.volts_per_count)),
+        ("crossover [Hz]", |c| c.margins.crossover_hz),
+        ("phase margin [°]", |c| c.margins.phase_rad.map(f64::to_degrees)),
+        ("gain margin [1]", |c| c.margins.gain),
+        ("gain may fall to [1]", |c| c.margins.gain_reduction),
+        ("delay margin [ms]", |c| c.margins.delay_s.map(|s| 1e3 * s)),
+        ("maximum sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
+        ("phase margin, heaviest body [°]", |c| c.heaviest?.phase_rad.map(f64::to_degrees)),
+        ("integral feeds swings below [Hz]", |c| Some(c.gains.feeding_hz())),
+        ("following error in ramps [mm]", |c| c.following_error_m.map(|m| 1e3 * m)),
+        ("motor's speed in homing [mm/s]", |c| c.homing_m_s.map(|v| 1e3 * v)),
+        ("objections", |c| Some(c.objections.len() as f64)),
+    ];
+    let cell = |x: Option<f64>| x.map_or_else(|| number::MISSING.to_owned(), |x| number::significant(x, 3));
+    let names = outcome.candidates.iter().map(|c| c.name.clone());
+    TextTable {
+        caption: format!(
+            "Gains of MCD eq. 6 in SI and per count and tick (V); margins on the response measured from {:.1} to {:.0} Hz; following error and speed of the motor from the campaign's hardest ramps, bare and with the heaviest body, run through the two masses that \
+             the response shows. A margin without a value: the loop does not cross there.",
+            outcome.band_hz[0], outcome.band_hz[1]
+        ),
+        head: std::iter::once("quantity".to_owned()).chain(names).collect(),
+        rows: quantities
+            .iter()
+            .map(|(name, of)| match *name {
+                "objections" => std::iter::once((*name).to_owned())
+                    .chain(outcome.candidates.iter().map(|c| c.objections.len().to_string()))
+                    .collect(),
+                _ => {
+                    std::iter::once((*name).to_owned()).chain(outcome.candidates.iter().map(|c| cell(of(c)))).collect()
+                }
+            })
+            .collect(),
+    }
+}
+
+/// Objections to each candidate, where its margins come from, and what to write into the campaign.
+#[must_use]
+pub fn sentences(outcome: &Tuned) -> Vec<String> {
+    let mut out = Vec::new();
+    for c in &outcome.candidates {
+        if c.is_extended {
+            out.push(format!(
+                "{}: its loop is not whole within the measured {:.1} to {:.0} Hz; its margins beyond are the fitted two-mass model's.",
+                c.name, outcome.band_hz[0], outcome.band_hz[1]
+            ));
+        }
+        if let Some(load_hz) = c.lowest_load_hz.filter(|hz| *hz < c.gains.feeding_hz()) {
+            out.push(format!(
+                "{}: below {:.1} Hz the integral's lag is more than the derivative's lead, and the load with the heaviest body swings at \
+                 {load_hz:.1} Hz: the loop feeds that swing, friction alone damps it. K_i below {} V/(rad s) would not.",
+                c.name,
+                c.gains.feeding_hz(),
+                number::significant(c.gains.derivative_v_s_rad * (TAU * load_hz).powi(2), 2)
+            ));
+        }
+        if !c.objections.is_empty() {
+            out.push(format!("{}: {}.", c.name, c.objections.join("; ")));
+        }
+    }
+    out.extend(outcome.unshaped.as_ref().map(|e| format!("Nothing was shaped on the response: {e}.")));
+    match outcome.recommended.map(|i| &outcome.candidates[i]) {
+        Some(c) if c.name == outcome.candidates[0].name => {
+            out.push("Recommended: the gains as configured.".to_owned());
+        }
+        Some(c) => {
+            let d = |x: f64| number::significant(x, 3);
+            out.push(format!(
+                "Recommended ({}): [rig.y.controller] proportional = \"{} V/rad\", derivative = \"{} V s/rad\", integral = \"{} V/(rad s)\", \
+                 derivative_filter = \"{} Hz\".",
+                c.name,
+                d(c.gains.proportional_v_rad),
+                d(c.gains.derivative_v_s_rad),
+                d(c.gains.integral_v_rad_s),
+                d(c.gains.derivative_filter_hz)
+            ));
+            if outcome.candidates[0].objections.is_empty() {
+                out.push(
+                    "The gains as configured also meet every requirement: there is no need to change them.".to_owned(),
+                );
+            }
+        }
+        None => out.push("None of these gains is recommended.".to_owned()),
+    }
+    out
+}
+
+/// The section of the page: table, sentences and the open loop.
+#[must_use]
+pub fn section(outcome: &Tuned) -> DocumentSection {
+    let mut panels = [
+        ChartPanel { y_label: "|L| [1]".to_owned(), y_scale: Scale::Logarithmic, ..ChartPanel::default() },
+        ChartPanel { y_label: "phase of L [°]".to_owned(), ..ChartPanel::default() },
+    ];
+    for c in &outcome.candidates {
+        let points = open_loop(&outcome.plant, &c.gains);
+        let x: Vec<f64> = points.iter().map(|p| p.frequency_hz).collect();
+        let series =
+            |y: Vec<f64>| Series { name: c.name.clone(), mark: Mark::Line, x: x.clone(), y, ..Series::default() };
+        panels[0].series.push(series(points.iter().map(|p| p.modulus).collect()));
+        panels[1].series.push(series(points.iter().map(|p| p.phase_rad.to_degrees()).collect()));
+    }
+    let cycle = match &outcome.cycle {
+        Ok(c) => format!(
+            "The relay's limit cycle: {} periods of {} s (± {} s), amplitude {} rad; K_u = {} V/rad at {} Hz.",
+            c.cycles,
+            number::plain(c.period_s, 4),
+            number::significant(c.period_std_s, 1),
+            number::plain(c.amplitude_rad, 3),
+            number::plain(c.ultimate_gain_v_rad, 3),
+            number::plain(1.0 / c.period_s, 3)
+        ),
+        Err(error) => format!("The relay gave no limit cycle: {error}."),
+    };
+    DocumentSection {
+        title: "Gains".to_owned(),
+        paragraphs: std::iter::once(cycle).chain(sentences(outcome)).collect(),
+        tables: vec![candidates_table(outcome)],
+        charts: vec![Chart {
+            name: "bode".to_owned(),
+            title: "Open loop".to_owned(),
+            caption: "Open loop L = C·P: the controller's own response times the measured one of the drive.".to_owned(),
+            x_label: "frequency [Hz]".to_owned(),
+            x_scale: Scale::Logarithmic,
+            panels: panels.to_vec(),
+        }],
+    }
+}

@@ -1,0 +1,113 @@
+//! A loop as an estimate: its margins with what the measured response leaves uncertain of them, and its gains.
+
+use froude_records::estimate::{Derived, Diagnostics, Estimate, Law, Measured, MethodUsed};
+use num_complex::Complex64;
+
+use super::{BY_CYCLE, CONFIGURED, Tuned};
+use crate::tuning::candidate::Candidate;
+use crate::tuning::margins::{bandwidth_hz, margins};
+use crate::tuning::record::{Reading, of_response};
+use crate::tuning::{LoopGains, ResponsePoint};
+
+/// What is read off the open loop.
+const READINGS: usize = 7;
+
+/// An estimate for each candidate, called after where its gains come from, so that those of two days are compared each with its own.
+#[must_use]
+pub fn estimates(source: &str, tuned: &Tuned) -> Vec<Estimate> {
+    let of = |(i, c): (usize, &Candidate)| estimate(source, tuned, c, tuned.recommended == Some(i));
+    tuned.candidates.iter().enumerate().map(of).collect()
+}
+
+fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Estimate {
+    let law = match c.name.as_str() {
+        CONFIGURED => "loop_as_configured",
+        BY_CYCLE => "loop_ziegler_nichols",
+        _ => "loop_shaped",
+    };
+    // Beyond the measured band the margins are a model's, whose errors the points do not tell.
+    let covariance = (!c.is_extended).then(|| covariance(&tuned.plant, &c.gains));
+    let mut readings = readings(&tuned.plant, &c.gains);
+    if c.is_extended {
+        // What the model extended is what the candidate was judged by; its bandwidth was not measured.
+        let m = &c.margins;
+        let judged =
+            [m.crossover_hz, None, m.phase_rad, m.gain, m.gain_reduction, m.delay_s, Some(m.largest_sensitivity)];
+        readings.iter_mut().zip(judged).for_each(|(reading, value)| reading.2 = value);
+    }
+    let of_response = of_response(source, (law, ("open_loop", "1")), &readings, covariance.as_deref(), tuned.band_hz);
+    let measured = |name: &str, value: f64, unit: &str| (name.to_owned(), Measured { value, unit: unit.to_owned() });
+    let g = &c.gains;
+    let constants = [
+        measured("proportional", g.proportional_v_rad, "V/rad"),
+        measured("derivative", g.derivative_v_s_rad, "V s/rad"),
+        measured("integral", g.integral_v_rad_s, "V/(rad s)"),
+        measured("derivative_filter", g.derivative_filter_hz, "Hz"),
+        measured("tick", g.tick_s, "s"),
+    ];
+    let foreseen = |name: &str, value: Option<f64>, unit: &str| {
+        let formula = "the hardest ramps through the two masses that the response shows".to_owned();
+        let number = Derived { formula, value, unit: unit.to_owned(), standard_uncertainty: None, interval_95: None };
+        (name.to_owned(), number)
+    };
+    let extended = c.is_extended.then(|| {
+        "the loop is not whole within the measured band: its margins beyond are the fitted two-mass model's".to_owned()
+    });
+    Estimate {
+        method: MethodUsed {
+            name: "tuning".to_owned(),
+            version: 1,
+            words: format!("margins on the measured response; gains {}", c.name),
+        },
+        law: Law { constants: constants.into(), ..of_response.law },
+        n_observations: tuned.plant.len(),
+        derived: [foreseen("following_error", c.following_error_m, "m"), foreseen("homing_speed", c.homing_m_s, "m/s")]
+            .into(),
+        diagnostics: Diagnostics {
+            notes: extended.into_iter().chain(c.objections.iter().cloned()).collect(),
+            ..Diagnostics::default()
+        },
+        recommended,
+        reason: recommended.then(|| "it keeps all that is asked for".to_owned()),
+        ..of_response
+    }
+}
+
+/// Margins of a loop on a response.
+fn readings(plant: &[ResponsePoint], gains: &LoopGains) -> [Reading; READINGS] {
+    let m = margins(plant, gains);
+    [
+        ("crossover", "Hz", m.crossover_hz),
+        ("bandwidth", "Hz", bandwidth_hz(plant, gains)),
+        ("phase_margin", "rad", m.phase_rad),
+        ("gain_margin", "1", m.gain),
+        ("gain_reduction", "1", m.gain_reduction),
+        ("delay_margin", "s", m.delay_s),
+        ("largest_sensitivity", "1", Some(m.largest_sensitivity)),
+    ]
+}
+
+/// Covariance of the margins: each point of the response moved by its standard uncertainty, in modulus and in phase.
+fn covariance(plant: &[ResponsePoint], gains: &LoopGains) -> Vec<Vec<f64>> {
+    let base = readings(plant, gains);
+    let mut out = vec![vec![0.0; READINGS]; READINGS];
+    let mut moved = plant.to_vec();
+    for i in 0..plant.len() {
+        let u = plant[i].relative_std;
+        if u.is_nan() || u <= 0.0 {
+            continue;
+        }
+        for factor in [Complex64::new(1.0 + u, 0.0), Complex64::from_polar(1.0, u)] {
+            moved[i].plant_rad_v = plant[i].plant_rad_v * factor;
+            let found = readings(&moved, gains);
+            // A margin that is lost or found by the step has no slope.
+            let step: [f64; READINGS] =
+                std::array::from_fn(|j| found[j].2.zip(base[j].2).map_or(0.0, |(moved, base)| moved - base));
+            for (row, a) in out.iter_mut().zip(step) {
+                row.iter_mut().zip(step).for_each(|(entry, b)| *entry += a * b);
+            }
+        }
+        moved[i] = plant[i];
+    }
+    out
+}
