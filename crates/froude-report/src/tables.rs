@@ -8,9 +8,9 @@ use indexmap::IndexMap;
 use maud::{Markup, html};
 
 use crate::figures::{budget_rows, ranked_inputs, share};
-use crate::input::{BudgetRow, SelectionRow, SourceSection};
 use crate::symbol::{Rich, Style, symbol, unit_text};
 use froude_records::number::{self, MISSING};
+use froude_records::page::{BudgetRow, SelectionRow, SourceSection};
 
 /// Most models side by side in one table.
 const MOST_COLUMNS: usize = 6;
