@@ -6,6 +6,7 @@
 
 pub mod axis;
 pub mod drag;
+pub mod live;
 pub mod reduction;
 pub mod runs;
 pub mod servo;

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use froude_control::status::Phase;
-use froude_hydro::fluid::Water;
+use froude_hydro::fluid;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, of_method, refuse_others};
 use froude_records::RecordError;
-use froude_records::campaign::{BodyAxis, Campaign, read_campaign};
+use froude_records::campaign::{BodyAxis, Campaign, Fluid, read_campaign};
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{
     BodyState, CAMPAIGN_COPY, Direction, DoubtKind, Role, RunLog, RunMeta, RunReader, RunStatus, TOW, read_run_meta,
@@ -386,12 +386,8 @@ pub fn for_drag(log: &RunLog) -> Result<Option<drag::DragRun<'_>>, MethodError> 
 #[must_use]
 pub fn density_kg_m3(campaign: Option<&Campaign>) -> f64 {
     let fluid = campaign.map(|c| &c.fluid);
-    let stated = fluid.and_then(|f| f.density_kg_m3);
-    stated.unwrap_or_else(|| {
-        let temperature = fluid.and_then(|f| f.temperature_degc).unwrap_or(20.0);
-        let salinity = fluid.and_then(|f| f.salinity_g_kg).unwrap_or(0.0);
-        Water::at(temperature, salinity).map_or(998.2, |w| w.density_kg_m3)
-    })
+    let of = |value: fn(&Fluid) -> Option<f64>| fluid.and_then(value);
+    fluid::density_kg_m3(of(|f| f.density_kg_m3), of(|f| f.temperature_degc), of(|f| f.salinity_g_kg))
 }
 
 /// What rode on the carriage, for a heading: ", bare carriage", ", body dry and body wet"; empty where no run says.

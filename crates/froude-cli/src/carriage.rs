@@ -28,7 +28,7 @@ use crate::stage::Stage;
 /// `froude run`.
 pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_json: bool) -> Result<(), Error> {
     let job = drive_job(campaign, out);
-    let prepared = prepare(&job).map_err(|error| mistaken::RUN.explain(error, &[job.campaign]))?;
+    let prepared = prepare(&job).map_err(|error| mistaken::RUN.explain(error.into(), &[job.campaign]))?;
     let stage = if check { None } else { Some(Stage::set(&prepared, yes, prepared.steps.len())?) };
     if !is_json {
         preflight(&prepared);
@@ -305,7 +305,7 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
 
 fn experiment(e: &Experiment, takes: &Takes) -> Result<(DriveJob, Stage), Error> {
     let job = drive_job(e.campaign.clone(), e.out.clone());
-    let prepared = prepare(&job).map_err(|error| takes.explain(error, std::slice::from_ref(&e.campaign)))?;
+    let prepared = prepare(&job).map_err(|error| takes.explain(error.into(), std::slice::from_ref(&e.campaign)))?;
     let runs = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
     let stage = Stage::set(&prepared, e.yes, runs.min(3))?;
     Ok((job, stage))

@@ -44,6 +44,19 @@ pub enum FluidError {
     },
 }
 
+/// Density of fresh water at 20 degC, kg/m³, rounded: what stands in where none can be computed.
+const FRESH_KG_M3: f64 = 998.2;
+
+/// Density of the water of a test, kg/m³: the stated one; else that at the stated temperature and salinity, 20 degC and 0 g/kg where these
+/// are not stated either.
+#[must_use]
+pub fn density_kg_m3(stated_kg_m3: Option<f64>, temperature_degc: Option<f64>, salinity_g_kg: Option<f64>) -> f64 {
+    stated_kg_m3.unwrap_or_else(|| {
+        let water = Water::at(temperature_degc.unwrap_or(20.0), salinity_g_kg.unwrap_or(0.0));
+        water.map_or(FRESH_KG_M3, |w| w.density_kg_m3)
+    })
+}
+
 /// The water of a test.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Water {

@@ -27,6 +27,7 @@ pub mod large;
 pub mod law;
 pub mod lint;
 pub mod method;
+pub mod page;
 pub mod record;
 pub mod reduce;
 pub mod regression;

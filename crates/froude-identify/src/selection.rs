@@ -23,7 +23,7 @@ use crate::regression::ModelFit;
 /// Level below which an F test rejects the simpler model.
 const REJECTED_BELOW: f64 = 0.01;
 /// AICc differences below this are no evidence.
-const NO_EVIDENCE_BELOW: f64 = 2.0;
+pub(crate) const NO_EVIDENCE_BELOW: f64 = 2.0;
 
 /// Prediction of left-out observations by one model, by component.
 #[derive(Debug, Clone, PartialEq)]

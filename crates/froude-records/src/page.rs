@@ -2,6 +2,12 @@
 //!
 //! Whoever has a result says every word and every number of it here; a page or a terminal shows them. Nothing is computed or drawn.
 
+mod observation;
+mod source;
+
+pub use observation::{Abscissa, Against, Curve, Point};
+pub use source::{BudgetRow, SelectionRow, SourceSection};
+
 /// A section.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DocumentSection {

@@ -12,8 +12,9 @@ mod residuals;
 use froude_records::estimate::Estimate;
 
 use crate::canvas::Canvas;
-use crate::input::{Report, ReportError, SourceSection};
+use crate::input::{Report, ReportError};
 use froude_records::page::Chart;
+use froude_records::page::SourceSection;
 
 use budget::budget_drawing;
 pub(crate) use budget::{budget_rows, ranked_inputs, share};

@@ -39,7 +39,6 @@ mod tables;
 pub mod verdict;
 
 pub use figures::{Figure, figures};
-pub use input::{
-    Abscissa, Against, BudgetRow, Curve, InputFile, Point, Report, ReportError, SelectionRow, SourceSection,
-};
+pub use froude_records::page::{Abscissa, Against, BudgetRow, Curve, Point, SelectionRow, SourceSection};
+pub use input::{InputFile, Report, ReportError};
 pub use page::{file_stem, html};

@@ -11,11 +11,12 @@ use maud::{Markup, PreEscaped, html};
 
 use crate::document::{section_text, sheet};
 use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs, recommended, slug};
-use crate::input::{InputFile, Report, ReportError, SourceSection};
+use crate::input::{InputFile, Report, ReportError};
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
 use crate::verdict::verdict_words;
 use froude_records::number;
+use froude_records::page::SourceSection;
 
 pub(crate) const STYLE: &str = include_str!("report.css");
 

@@ -3,6 +3,8 @@
 //! | module        | what                                                                        |
 //! |---------------|-----------------------------------------------------------------------------|
 //! | [`preflight`] | travel, coast, speed, command, current and heating of every run, before it moves |
+//! | [`prepare`]   | a campaign read, planned and checked, or what speaks against it                 |
+//! | [`drive`]     | what passed, driven into its own folder                                         |
 //! | [`lock`]      | one drive at a time into a folder                                               |
 //! | [`runner`]    | drives and records one run after the other; stops                              |
 //! | `resume`      | what lies of a run already, and putting aside what is not complete              |
@@ -15,9 +17,12 @@
 //! **Order.** Dry and wet runs stand in ABBA blocks (dry, wet, wet, dry), so that a drift that is linear in time falls out of
 //! each pair's difference (MCD eq. 8); within a block the speeds come in a drawn order, so that it does not look like speed.
 
+pub mod drive;
+pub mod error;
 mod hand_over;
 pub mod lock;
 pub mod preflight;
+pub mod prepare;
 mod recording;
 mod resume;
 mod rig_thread;

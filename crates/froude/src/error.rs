@@ -49,17 +49,13 @@ pub enum Error {
     #[error(transparent)]
     Tuning(#[from] froude_carriage::tuning::TuningError),
 
-    /// The rig cannot be set up as the campaign declares it.
+    /// A campaign cannot be driven.
     #[error(transparent)]
-    Setup(#[from] froude_rig::campaign::setup::SetupError),
+    Campaign(#[from] froude_rig::campaign::error::CampaignError),
 
     /// A campaign stopped before its end.
     #[error(transparent)]
     Runner(#[from] froude_rig::campaign::runner::RunnerError),
-
-    /// Somebody else drives into the folder.
-    #[error(transparent)]
-    Lock(#[from] froude_rig::campaign::lock::LockError),
 
     /// A mesh file cannot be read.
     #[error(transparent)]
@@ -161,6 +157,7 @@ impl Error {
             Self::Record(e) => !e.is_output(),
             Self::Identify(froude_identify::IdentifyError::Record(e)) => !e.is_output(),
             Self::Method(e) => e.is_bad_input(),
+            Self::Campaign(e) => e.is_bad_input(),
             Self::Identify(_)
             | Self::NotEmpty { .. }
             | Self::NotOurs { .. }
@@ -169,12 +166,11 @@ impl Error {
             | Self::Drag(_)
             | Self::Servo(_)
             | Self::Tuning(_)
-            | Self::Setup(_)
             | Self::Mesh(_)
             | Self::Sections(_)
             | Self::Tank(_)
             | Self::Chain(_) => true,
-            Self::Runner(_) | Self::Lock(_) | Self::Report(_) | Self::Output { .. } | Self::HalfWay { .. } => false,
+            Self::Runner(_) | Self::Report(_) | Self::Output { .. } | Self::HalfWay { .. } => false,
         }
     }
 

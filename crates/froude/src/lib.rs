@@ -28,6 +28,7 @@ pub mod methods {
 }
 
 pub mod added_mass;
+mod campaign_page;
 pub mod carriage;
 mod data_files;
 pub mod demo;
@@ -37,7 +38,6 @@ mod method;
 mod observations;
 pub mod pipeline;
 pub mod results;
-mod sections;
 pub mod twin;
 
 pub use error::Error;

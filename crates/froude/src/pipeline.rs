@@ -20,7 +20,7 @@ use crate::Error;
 use crate::data_files::DataFiles;
 use crate::method;
 use crate::results::Written;
-use crate::{observations, results, sections};
+use crate::{campaign_page, observations, results};
 
 /// What a job reads.
 #[derive(Debug, Clone)]
@@ -170,7 +170,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         campaign.name = outcome.file.estimates.first().map_or_else(String::new, |e| e.source.clone());
     }
     let records: Vec<Estimate> = all.iter().flat_map(|(_, record)| record.estimates.iter().cloned()).collect();
-    let report = sections::report(&campaign, &outcome, records, blocks, job.date.clone())?;
+    let report = campaign_page::report(&campaign, &outcome, records, blocks, job.date.clone())?;
     let html = froude_report::html(&report)?;
     let figures = froude_report::figures(&report)?;
     let tables = observations::tables(&outcome.sources, &campaign)?;

@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 
 use super::{Drawing, MOST_ROWS, distinct, recommended};
 use crate::canvas::{Align, Canvas, WHITE, shortened, text_width};
-use crate::input::{BudgetRow, SourceSection};
 use crate::plot::{
     AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, WIDTH, category, draw_legend,
     legend_height,
@@ -12,6 +11,7 @@ use crate::plot::{
 use crate::symbol::{Rich, symbol};
 use crate::tables::counted;
 use froude_records::number;
+use froude_records::page::{BudgetRow, SourceSection};
 
 /// The rows of the budget that the report shows first: those of the recommended
 /// model, else of the first model in the budget.

@@ -4,9 +4,9 @@ use maud::{Markup, html};
 
 use super::{Tables, head_unit, html_symbol, union};
 use crate::figures::{budget_rows, ranked_inputs, share};
-use crate::input::{BudgetRow, SourceSection};
 use crate::symbol::unit_text;
 use froude_records::number::{self, MISSING};
+use froude_records::page::{BudgetRow, SourceSection};
 
 /// Shares of a variance below this are rounding: double precision, squared, with room.
 const ROUNDING: f64 = 1e-20;

@@ -3,9 +3,9 @@
 use maud::{Markup, html};
 
 use super::{Tables, html_symbol, union};
-use crate::input::{SelectionRow, SourceSection};
 use crate::symbol::unit_text;
 use froude_records::number::{self, MISSING};
+use froude_records::page::{SelectionRow, SourceSection};
 
 impl Tables {
     /// The contest of the models.

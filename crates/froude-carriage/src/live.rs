@@ -1,0 +1,127 @@
+//! D_d while its campaign is driven, and whether enough is known of it.
+
+use std::path::{Path, PathBuf};
+
+use froude_records::campaign::Campaign;
+use froude_records::carriage::plan::PlannedRun;
+use froude_records::carriage::{CarriageCampaign, CarriagePlan, Directions};
+use froude_records::run::{BodyState, LAST_RUN, Role, RunMeta, STOPPED_EARLY, read_run};
+use froude_records::write::write_atomically;
+
+use crate::drag::calibration::Readings;
+use crate::drag::detectability::DryMean;
+use crate::drag::mcd;
+use crate::drag::online::OnLine;
+use crate::drag::run::DragSetup;
+use crate::reduction::{calibration_from, setup_of};
+use crate::runs::for_drag;
+
+/// D_d while the campaign runs: every wet run with its dry partner gives a point.
+pub struct Live {
+    online: Option<OnLine>,
+    setup: DragSetup,
+    campaign: Campaign,
+    folder: PathBuf,
+    /// Runs whose partner has not been driven yet; a log of megabytes is read again when it has.
+    waiting: Vec<Waiting>,
+    calibration: Readings,
+    is_calibrated: bool,
+    /// Differences seen, whether they gave a point or not.
+    differences: usize,
+    per_pair: usize,
+}
+
+/// A run that waits for its partner.
+struct Waiting {
+    path: PathBuf,
+    meta: RunMeta,
+}
+
+impl Live {
+    /// Nothing is known yet of a campaign that `carriage` drives as `asked`; what is known is noted in `folder`.
+    #[must_use]
+    pub fn new(campaign: &Campaign, carriage: &CarriageCampaign, asked: &CarriagePlan, folder: &Path) -> Self {
+        let axis = if asked.axis as usize == 0 { Some(&carriage.rig.y) } else { carriage.rig.x.as_ref() };
+        let constants = axis.map(|axis| &axis.constants);
+        let directions = if asked.directions == Directions::Both { 2 } else { 1 };
+        Self {
+            online: asked.stop_at_relative_half_width.map(|target| OnLine::new(target, directions)),
+            setup: DragSetup { looks: asked.repeats, ..setup_of(Some(campaign), constants) },
+            campaign: campaign.clone(),
+            folder: folder.to_owned(),
+            waiting: Vec::new(),
+            calibration: Readings::default(),
+            is_calibrated: false,
+            differences: 0,
+            per_pair: asked.speed_m_s.len() * directions,
+        }
+    }
+
+    /// Reads the run again from its file and asks whether enough is known. A run that gives no point only gives none.
+    pub fn after(&mut self, path: &Path, run: &PlannedRun) -> Option<String> {
+        self.online.as_ref()?;
+        if !matches!(run.role, Role::Dry | Role::Wet | Role::Calibration) {
+            return None;
+        }
+        let log = read_run(path).ok()?;
+        if run.role == Role::Calibration {
+            if let Ok(Some(run)) = for_drag(&log) {
+                self.calibration.push(&run, self.setup.steady);
+            }
+            return None;
+        }
+        self.calibrate();
+        let online = self.online.as_mut()?;
+        if let Ok(Some(run)) = for_drag(&log)
+            && let Some(mean) = DryMean::of(&run, &self.setup)
+        {
+            online.push_dry(mean);
+        }
+        let partner = self.waiting.iter().position(|other| {
+            other.meta.carriage.pair == log.meta.carriage.pair
+                && other.meta.carriage.target_speed_m_s == log.meta.carriage.target_speed_m_s
+                && other.meta.carriage.direction == log.meta.carriage.direction
+        });
+        let Some(partner) = partner else {
+            self.waiting.push(Waiting { path: path.to_owned(), meta: log.meta });
+            return None;
+        };
+        let other = read_run(&self.waiting.swap_remove(partner).path);
+        self.differences += 1;
+        if let Ok(other) = &other
+            && let (wet, dry) = if log.meta.mounted.body == BodyState::Wet { (&log, other) } else { (other, &log) }
+            && let (Ok(Some(wet)), Ok(Some(dry))) = (for_drag(wet), for_drag(dry))
+            && let Ok(point) = mcd::point(&wet, &dry, self.setup.force_per_volt_n(), self.setup.steady)
+        {
+            online.push(point);
+        }
+        // A look is taken after whole pairs only, also where a run of them gave no point.
+        if !self.differences.is_multiple_of(self.per_pair) {
+            return None;
+        }
+        let status = online.status(&self.setup)?;
+        if !status.may_stop {
+            return None;
+        }
+        let why = format!(
+            "D_d = {:.2} ± {:.2} N s²/m² after {} pairs: its 95 % interval is as narrow as asked; the remaining pairs are left out",
+            status.value,
+            status.half_width.unwrap_or(f64::NAN),
+            status.pairs
+        );
+        // A folder that cannot be written to has stopped the recorder long before; then the report does without.
+        let said = format!("{why}\n{LAST_RUN}{}\n", run.id);
+        let _ = write_atomically(&self.folder.join(STOPPED_EARLY), said.as_bytes());
+        Some(why)
+    }
+
+    /// Force per volt of the weights, as the report will take them, before the first look.
+    fn calibrate(&mut self) {
+        if self.is_calibrated {
+            return;
+        }
+        self.is_calibrated = true;
+        let (calibration, _) = calibration_from(&self.calibration, Some(&self.campaign), &self.setup);
+        self.setup.calibration = calibration.map(|c| c.force_per_volt);
+    }
+}

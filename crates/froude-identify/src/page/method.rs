@@ -1,0 +1,53 @@
+//! What a page says of the method.
+
+use froude_records::campaign::Campaign;
+
+use super::error_models::error_models;
+use crate::answer::Answer;
+use crate::source::SourceResult;
+
+/// The sentences on frame, fit, uncertainty, selection and error models that hold for these sources.
+#[must_use]
+pub fn sentences(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
+    let sources: Vec<&SourceResult> = answers.iter().filter_map(Answer::fitted).collect();
+    if sources.is_empty() && !answers.is_empty() {
+        return vec![
+            "The method, the law and the signs of each estimate state how it was made and what it gives.".to_owned(),
+        ];
+    }
+    let mut out = vec![
+        "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
+         A body towed at speed U under the angle θ has the velocity v = (U cos θ, −U sin θ) through the water."
+            .to_owned(),
+    ];
+    if sources.is_empty() {
+        return out;
+    }
+    out.push(
+        "Coefficients are estimated by least squares with orthogonal factorisation. Each load component has its own \
+         residual standard deviation and degrees of freedom. Type A uncertainty comes from the scatter about the law; \
+         type B from the declared budget, whose shared errors do not average down (GUM, JCGM 100:2008). Intervals are \
+         95 %, from Student's t with effective degrees of freedom (Welch–Satterthwaite)."
+            .to_owned(),
+    );
+    let bounded = sources.iter().flat_map(|s| &s.models).any(|m| m.options.bounds.iter().any(|b| b.lower == 0.0));
+    if bounded {
+        out.push(
+            "Coefficients are bounded below by zero, as the campaign asks. A value at its bound is the \
+             constrained fit; its interval is that of the unconstrained fit, cut at the bound."
+                .to_owned(),
+        );
+    }
+    if sources.iter().any(|s| s.models.len() > 1) {
+        out.push(
+            "Among several force models the one with the fewest coefficients is recommended whose AICc lies within 2 of the \
+             smallest (smaller differences are no evidence), unless an F test rejects it inside the best model at 1 % in some load."
+                .to_owned(),
+        );
+    }
+    out.extend(sources.iter().copied().flat_map(error_models));
+    if let Some(rho) = campaign.fluid.density_kg_m3 {
+        out.push(format!("Water density {rho} kg/m³ is stated by the campaign."));
+    }
+    out
+}
