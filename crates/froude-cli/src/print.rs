@@ -77,14 +77,20 @@ pub fn outcome(outcome: &Outcome, all: bool) {
 }
 
 /// Where record and page lie.
-pub fn written(Written { estimate, report, .. }: &Written) {
+pub fn written(Written { estimate, report, exports, .. }: &Written) {
     say!("\nestimates {}", estimate.display());
     say!("report    {}", report.display());
+    for export in exports {
+        say!("export    {}", export.display());
+    }
 }
 
 /// What a method says of all its results: its tables, then its sentences.
 fn summary(section: &DocumentSection) {
     for table in &section.tables {
+        if !table.caption.is_empty() {
+            say!("\n{}", wrapped(&table.caption));
+        }
         text_table(table);
     }
     say!("");

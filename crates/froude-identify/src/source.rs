@@ -57,6 +57,35 @@ pub struct SourceResult {
     pub files: Vec<ReadFile>,
 }
 
+impl SourceResult {
+    /// Of estimates that were computed: they rest on no observations, and nothing was fitted.
+    #[must_use]
+    pub fn computed(name: String, kind: SourceKind, estimates: Vec<Estimate>, files: Vec<ReadFile>) -> Self {
+        Self {
+            name,
+            kind,
+            data: Dataset::default(),
+            n_read: 0,
+            models: Vec::new(),
+            not_fitted: Vec::new(),
+            estimates,
+            tests: Vec::new(),
+            scores: Vec::new(),
+            blocks: Vec::new(),
+            recommendation: None,
+            validity: IndexMap::new(),
+            findings: Vec::new(),
+            files,
+        }
+    }
+
+    /// Whether anything was fitted to observations.
+    #[must_use]
+    pub fn is_fitted(&self) -> bool {
+        !self.models.is_empty()
+    }
+}
+
 /// A file that was read for a source.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReadFile {

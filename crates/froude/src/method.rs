@@ -1,5 +1,6 @@
 //! The list of all methods, and the one that a source asks for.
 
+use froude_added_mass::source::AddedMass;
 use froude_carriage::source::Carriage;
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::identify_source;
@@ -56,8 +57,10 @@ impl Method for Table {
 ///
 /// A name that no method answers to, one twice, or names of two methods: these need runs of two kinds, and so two sources.
 pub(crate) fn of(source: &Source) -> Result<(&'static dyn Method, Vec<&'static str>), Error> {
-    if !matches!(source.input, Input::Runs { .. }) {
-        return Ok((&Table, vec!["table"]));
+    match source.input {
+        Input::Runs { .. } => {}
+        Input::Mesh(_) => return Ok((&AddedMass, AddedMass.names().to_vec())),
+        _ => return Ok((&Table, vec!["table"])),
     }
     let refuse = |i: usize, what: String| {
         let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);

@@ -13,14 +13,14 @@ use froude_records::units::{Dimension, Unit, parse_unit};
 
 use crate::Error;
 
-/// One table per source, each with a file name of its own.
+/// One table per fitted source, each with a file name of its own.
 ///
 /// # Errors
 ///
 /// A channel that the model needs and the data lack: not after a fit.
 pub fn tables(sources: &[SourceResult], campaign: &Campaign) -> Result<Vec<Table>, Error> {
     let mut out: Vec<Table> = Vec::new();
-    for source in sources {
+    for source in sources.iter().filter(|source| source.is_fitted()) {
         let mut table = table(source, campaign)?;
         // "day 1" and "day-1" are two sources and one file name, and "Day 1" is the same one to some disks.
         let same = |name: &Path| name.to_string_lossy().to_lowercase();
@@ -98,16 +98,20 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
 /// Characters of a source's name in that of a file: disks take 255, and a number may follow.
 const LONGEST_NAME: usize = 100;
 
-/// `observations-` and the source's name, as far as every file system takes it.
+/// `observations-` and the source's name.
 fn file_name(source: &str) -> String {
     // The source of a bare table is named after its file.
     let stem = source.trim_end_matches(".csv").trim_end_matches(".parquet");
-    let safe: String = stem
+    format!("observations-{}.csv", in_a_file_name(stem))
+}
+
+/// A source's name, as far as every file system takes it.
+pub(crate) fn in_a_file_name(source: &str) -> String {
+    source
         .chars()
         .take(LONGEST_NAME)
         .map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' })
-        .collect();
-    format!("observations-{safe}.csv")
+        .collect()
 }
 
 fn number(name: &str, si: &[f64], unit: Unit) -> Column {

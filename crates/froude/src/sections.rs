@@ -49,6 +49,7 @@ pub fn report(
         let line = InputFile { path: d.path.clone(), sha256: d.sha256.clone(), ..InputFile::default() };
         let readers = sources.iter().filter(|s| s.files.first().is_some_and(|f| f.path.ends_with(&d.path)));
         let lines: Vec<InputFile> = readers
+            .filter(|s| s.is_fitted())
             .map(|s| InputFile {
                 n_rows: Some(s.n_read),
                 n_used: Some(s.data.observations()),
@@ -81,11 +82,13 @@ fn subtitle(sources: &[SourceResult], published: &[Estimate]) -> String {
     }
     let name = |s: &SourceResult| s.estimates.first().map_or_else(|| s.name.clone(), |e| e.source.clone());
     let names: BTreeSet<String> = sources.iter().map(name).collect();
-    let mut out = format!(
-        "{} from {}",
-        counted(observations, "observation", "observations"),
-        counted(names.len(), "source", "sources")
-    );
+    let estimates = sources.iter().map(|s| s.estimates.len()).sum();
+    let what = if sources.iter().any(SourceResult::is_fitted) {
+        counted(observations, "observation", "observations")
+    } else {
+        counted(estimates, "estimate", "estimates")
+    };
+    let mut out = format!("{what} from {}", counted(names.len(), "source", "sources"));
     if !published.is_empty() {
         out += &format!(", beside {}", counted(published.len(), "published estimate", "published estimates"));
     }
@@ -93,6 +96,12 @@ fn subtitle(sources: &[SourceResult], published: &[Estimate]) -> String {
 }
 
 fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
+    let computed = sources.iter().filter(|s| !s.is_fitted()).flat_map(|s| &s.estimates);
+    let computed: Vec<String> = computed.map(|e| format!("{}: {}.", e.source, e.method.words)).collect();
+    // Nothing was measured or fitted: of loads and least squares there is nothing to say.
+    if !computed.is_empty() && computed.len() == sources.len() {
+        return computed;
+    }
     let mut out = vec![
         "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
          A body towed at speed U under the angle θ has the velocity v = (U cos θ, −U sin θ) through the water."
@@ -124,6 +133,7 @@ fn method(campaign: &Campaign, sources: &[SourceResult]) -> Vec<String> {
         );
     }
     out.extend(sources.iter().flat_map(error_models));
+    out.extend(computed);
     if let Some(rho) = campaign.fluid.density_kg_m3 {
         out.push(format!("Water density {rho} kg/m³ is stated by the campaign."));
     }
@@ -237,6 +247,10 @@ fn section(source: &SourceResult) -> Result<SourceSection, IdentifyError> {
 }
 
 fn facts(source: &SourceResult) -> Vec<(String, String)> {
+    if !source.is_fitted() {
+        let notes = source.estimates.iter().flat_map(|e| &e.diagnostics.notes);
+        return notes.map(|note| ("Computation".to_owned(), note.clone())).collect();
+    }
     let mut out = vec![
         ("Observations".to_owned(), format!("{} used of {} read", source.data.observations(), source.n_read)),
         ("Configurations".to_owned(), {

@@ -140,7 +140,7 @@ pub fn calibrate(job: &CalibrationJob) -> Result<CalibrationOutcome, Error> {
     if let Some(calibration) = &outcome.calibration {
         outcome.file = recorded(calibration, &setup, &runs, &outcome.findings)?;
         let html = document(&outcome, calibration, &setup.name, job.date.clone()).html()?;
-        outcome.written = Some(results::write(&out, &outcome.file, &[], &[], &html)?);
+        outcome.written = Some(results::write(&out, &outcome.file, &[], &[], &[], &html)?);
     }
     Ok(outcome)
 }

@@ -57,7 +57,7 @@ pub fn identify(job: &ServoJob) -> Result<ServoOutcome, Error> {
     };
     let file = recorded(&axis)?;
     let html = document(&axis, &first, job.date.clone()).html()?;
-    let written = results::write(&out, &file, &[], &[], &html)?;
+    let written = results::write(&out, &file, &[], &[], &[], &html)?;
     Ok(ServoOutcome { axis, file, written })
 }
 

@@ -3,16 +3,104 @@
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
-use froude_panel::matrix::AddedMass;
-use froude_panel::mirror::{Mirror, positive_part};
-use froude_panel::problem::{Frame, Problem, Report, Solution};
-use froude_panel::study::{SLOW, Size, study};
-use froude_panel::tank::{Surface, Tank};
-use froude_panel::{fast, is_plain, solve};
-use froude_records::number;
+use froude_mesh::sections::SectionError;
 
-use super::family::{Family, Member};
-use crate::Error;
+use crate::family::{Family, Member};
+use crate::matrix::AddedMass;
+use crate::mirror::{Mirror, positive_part};
+use crate::problem::{Frame, Problem, Report, Solution};
+use crate::study::{SLOW, Size, study};
+use crate::tank::{Surface, Tank, TankError};
+use crate::{fast, is_plain, solve};
+
+/// Why there is no matrix at all.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RefineError {
+    /// The dimensions give no body.
+    #[error(transparent)]
+    Sections(#[from] SectionError),
+    /// The body does not fit into the tank.
+    #[error(transparent)]
+    Tank(#[from] TankError),
+    /// The coarsest mesh has more panels than are allowed.
+    #[error(
+        "the coarsest mesh has {coarsest} panels, and {most} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
+         three meshes, or {coarsest} for a value without"
+    )]
+    TooFine {
+        /// Its panels.
+        coarsest: usize,
+        /// Those of the third.
+        third: usize,
+        /// How many are allowed.
+        most: usize,
+    },
+    /// Not even the coarsest mesh fits into the memory.
+    #[error(transparent)]
+    Memory(NoMemory),
+    /// The equations were not solved.
+    #[error(
+        "the equations of {panels} panels were not solved: after {iterations} iterations the residual is {residual:.1e} of the right-hand side; \
+         panels that nearly touch others make them nearly singular; give such places finer panels, or a gap of a panel's size"
+    )]
+    Unsolved {
+        /// Panels.
+        panels: usize,
+        /// Iterations.
+        iterations: usize,
+        /// Norm of what is left over that of the right-hand side.
+        residual: f64,
+    },
+    /// A family without a member.
+    #[error("the body has no mesh")]
+    NoMesh,
+}
+
+/// A mesh that does not fit into the memory.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "{panels} panels would take {} of memory and {} may be used; some {fits} panels would fit",
+    size_text(*.needed_bytes), size_text(*.free_bytes)
+)]
+pub struct NoMemory {
+    /// Its panels.
+    pub panels: usize,
+    /// What it would take.
+    pub needed_bytes: f64,
+    /// What may be used.
+    pub free_bytes: f64,
+    /// Panels that would fit.
+    pub fits: usize,
+}
+
+/// Bytes as a person says them.
+fn size_text(bytes: f64) -> String {
+    let (size, unit) = [(1e9, "GB"), (1e6, "MB")].into_iter().find(|(size, _)| bytes >= *size).unwrap_or((1e3, "kB"));
+    let number = bytes / size;
+    let digits = usize::from(number < 9.95);
+    format!("{number:.digits$} {unit}")
+}
+
+/// Why the refinement ended above the tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Stop {
+    /// The next mesh has more panels than are allowed.
+    #[error("the next mesh has {panels} panels, and {most} are allowed (--most-panels)")]
+    Panels {
+        /// Its panels.
+        panels: usize,
+        /// How many are allowed.
+        most: usize,
+    },
+    /// The next mesh does not fit into the memory.
+    #[error(transparent)]
+    Memory(NoMemory),
+    /// It was the finest that is made.
+    #[error("no finer mesh is made")]
+    Finest,
+}
 
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,7 +190,7 @@ pub struct Refined {
     /// Whether it is within the tolerance.
     pub is_within: bool,
     /// Why it is not, where it is not.
-    pub stopped: Option<String>,
+    pub stopped: Option<Stop>,
     /// The finest mesh that was solved on.
     pub finest: Finest,
 }
@@ -141,7 +229,7 @@ struct Entry {
 /// Least uncertainty at edges that are not resolved, as part of what extrapolation takes off: an order of 0.8 leaves three times that.
 const AT_EDGES: f64 = 3.0;
 /// Residual above which a solution is none.
-pub(super) const LOOSE: f64 = 1e-6;
+pub const LOOSE: f64 = 1e-6;
 /// Time of a near pair and of a pair of boxes over a whole solution, one thread, s: as measured on a processor with AVX-512.
 const NEAR_S: f64 = 25e-9;
 const FAR_S: f64 = 40e-6;
@@ -179,7 +267,8 @@ pub fn free_memory_bytes() -> Option<f64> {
 }
 
 /// Memory that may be used now, bytes.
-pub(super) fn memory_bytes(wanted: &Wanted) -> f64 {
+#[must_use]
+pub fn memory_bytes(wanted: &Wanted) -> f64 {
     wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY)
 }
 
@@ -187,7 +276,7 @@ pub(super) fn memory_bytes(wanted: &Wanted) -> f64 {
 const WALL_CELL: f64 = 0.25;
 
 /// The problem of a mesh about the origin of its frame, and what is solved of the mesh: its part on the positive side of its own planes.
-fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, Problem), Error> {
+fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, Problem), RefineError> {
     let mesh = &member.mesh;
     let frame = [Frame::at([0.0; 3])];
     let whole = |mirrors: &[Mirror]| Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, mirrors);
@@ -214,7 +303,7 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
 ///
 /// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
 /// panels than are allowed.
-pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, Error> {
+pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, RefineError> {
     let length_m = extent(&family.member(0)?.mesh.mesh);
     let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
     let is_foreign = matches!(family, Family::Mesh(_));
@@ -227,10 +316,7 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             if steps.is_empty() {
                 return Err(too_fine(family, wanted)?);
             }
-            stopped = Some(format!(
-                "the next mesh has {panels} panels, and {} are allowed (--most-panels)",
-                wanted.most_panels
-            ));
+            stopped = Some(Stop::Panels { panels, most: wanted.most_panels });
             break;
         }
         let member = family.member(number)?;
@@ -239,15 +325,11 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         let free = memory_bytes(wanted);
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
-            let why = format!(
-                "{panels} panels would take {} GB of memory and {} GB may be used; some {fits} panels would fit",
-                number::plain(forecast.memory_bytes / 1e9, 2),
-                number::plain(free / 1e9, 2)
-            );
+            let why = NoMemory { panels, needed_bytes: forecast.memory_bytes, free_bytes: free, fits };
             if steps.is_empty() {
-                return Err(Error::Nothing(why));
+                return Err(RefineError::Memory(why));
             }
-            stopped = Some(why);
+            stopped = Some(Stop::Memory(why));
             break;
         }
         told(&format!(
@@ -258,11 +340,8 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         ));
         let solution = solve(&problem);
         if solution.report.residual > LOOSE {
-            return Err(Error::Nothing(format!(
-                "the equations of {panels} panels were not solved: after {} iterations the residual is {:.1e} of the right-hand side; panels that \
-                 nearly touch others make them nearly singular; give such places finer panels, or a gap of a panel's size",
-                solution.report.iterations, solution.report.residual
-            )));
+            let Report { iterations, residual, .. } = solution.report;
+            return Err(RefineError::Unsolved { panels, iterations, residual });
         }
         steps.push(Step {
             panels: member.mesh.mesh.panels.len(),
@@ -278,13 +357,13 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
         }
     }
     let Some(finest) = finest else {
-        return Err(Error::Nothing("the body has no mesh".to_owned()));
+        return Err(RefineError::NoMesh);
     };
     let entries = entries(&steps, length_m, is_foreign);
     let worst = worst(&entries, least_m5);
     let is_within = worst <= wanted.tolerance;
     if !is_within && stopped.is_none() {
-        stopped = Some("no finer mesh is made".to_owned());
+        stopped = Some(Stop::Finest);
     }
     let shared = if steps.len() > 1 { vec![entries.map(|row| row.map(|e| e.shared))] } else { Vec::new() };
     Ok(Refined {
@@ -301,13 +380,9 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     })
 }
 
-fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
+fn too_fine(family: &Family, wanted: &Wanted) -> Result<RefineError, RefineError> {
     let (coarsest, third) = (family.panels(0)?, family.panels(2)?);
-    Ok(Error::Nothing(format!(
-        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
-         three meshes, or {coarsest} for a value without",
-        wanted.most_panels
-    )))
+    Ok(RefineError::TooFine { coarsest, third, most: wanted.most_panels })
 }
 
 /// What each mesh would take, up to the panels allowed: panels of the body, and the forecast.
@@ -315,7 +390,7 @@ fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
 /// # Errors
 ///
 /// Dimensions that give no body, and a mesh of more panels than are allowed.
-pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, Error> {
+pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, RefineError> {
     let mut out = Vec::new();
     for number in 0..family.members() {
         let panels = family.panels(number)?;
@@ -365,7 +440,7 @@ fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
 }
 
 /// Part of what turning takes, the largest of a body or ρV(L/2)², that a rotation is judged as at least: the roll of a slender body.
-pub(super) const ZERO: f64 = 1e-2;
+pub const ZERO: f64 = 1e-2;
 
 /// Largest uncertainty of an entry over √(A_ii A_jj); `least_m5` is what turning a body of this size may take.
 fn worst(entries: &[[Entry; 6]; 6], least_m5: f64) -> f64 {

@@ -3,9 +3,8 @@
 //! The matrix has six rows and columns a part, in the part's own axes about its own point: force and moment on one part from the motion of
 //! another.
 
-use std::path::{Path, PathBuf};
-
 use froude_hydro::similarity::GRAVITY_M_S2;
+use froude_identify::method::Export;
 use froude_mesh::Mesh;
 use froude_mesh::measure::Measure;
 use froude_mesh::parts::parts;
@@ -14,30 +13,28 @@ use froude_mesh::sections::Resolution;
 use froude_mesh::vector::{norm, sub};
 use froude_panel::chain::{Chain, DiagonalForm, diagonal_form, whole};
 use froude_panel::convergence::Converged;
+use froude_panel::family::Family;
 use froude_panel::matrix::AddedMass;
-use froude_panel::problem::{Frame, Problem, Solution};
+use froude_panel::problem::{Frame, Problem, Report, Solution};
+use froude_panel::refine::{LOOSE, ZERO};
 use froude_panel::solve;
 use froude_panel::study::{Size, study};
 use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
-use froude_records::estimate::{
-    Coefficient, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Status, keyed,
-};
+use froude_records::estimate::{Coefficient, Estimate, Interval, Law, Measured, MethodUsed, ReferencePoint, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
-use froude_report::document::Document;
+use froude_records::page::TextTable;
 use indexmap::IndexMap;
 
-use super::body::BodyJob;
-use super::exports::{of_parts_for_program, words_of_parts};
-use super::family::{Family, robot};
+use super::exports::{export, of_parts_for_program, words_of_parts};
 use super::frame::{Axes, sentence};
-use super::links::{default_out, no_density};
 use super::load::{is_body_file, load, of_a_mesh_only};
-use super::record::{MOTIONS, mesh_file, of_the_mesh, replaces_another_frame, signs, unit};
-use super::refine::{LOOSE, ZERO};
-use crate::Error;
+use super::options::Asked;
+use super::record::{MOTIONS, signs, unit};
+use super::shape::robot;
+use super::source::Water;
+use crate::error::AddedMassError;
 
 /// What moves apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,16 +67,12 @@ pub struct SeveralOutcome {
     pub tables: Vec<TextTable>,
     /// Sentences.
     pub notes: Vec<String>,
+    /// Doubts.
+    pub findings: Vec<Finding>,
     /// The record.
-    pub file: EstimateFile,
-    /// Where it lies.
-    pub estimate: PathBuf,
-    /// Where the page lies.
-    pub page: PathBuf,
-    /// The matrix as a table, and exports.
-    pub others: Vec<PathBuf>,
-    /// What is said of a record in another frame that this one has replaced.
-    pub replaced: Option<String>,
+    pub estimate: Estimate,
+    /// The matrix as a table, and what was asked for beside it.
+    pub exports: Vec<Export>,
 }
 
 /// Multiples of the coarsest cells: three similar meshes.
@@ -93,40 +86,35 @@ struct Level {
     solution: Solution,
 }
 
-/// Computes, and writes `estimate.json`, `report.html`, `added-mass.csv` and what else is asked for.
+/// Computes; the estimate is called after `source`, or after the body where that is empty.
 ///
 /// # Errors
 ///
-/// See [`Error`].
-pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<SeveralOutcome, Error> {
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
-    crate::results::can_be_written(&out)?;
+/// See [`AddedMassError`].
+pub fn several(
+    job: &Asked,
+    apart: Apart,
+    water: &Water,
+    source: &str,
+    told: &dyn Fn(&str),
+) -> Result<SeveralOutcome, AddedMassError> {
     let loaded = match apart {
         Apart::Links { joint_angle_rad } => links_of(job, joint_angle_rad)?,
         Apart::Parts => parts_of(job)?,
     };
-    let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
+    let density_kg_m3 = water.density_kg_m3(job, loaded.density_kg_m3)?;
     let mut levels = Vec::new();
     for (size, problem) in loaded.problems {
         told(&format!("{} panels, {} parts", problem.facets.len(), problem.frames.len()));
         let solution = solve(&problem);
         if solution.report.residual > LOOSE {
-            return Err(Error::Nothing(format!(
-                "{}: the equations were not solved: after {} iterations the residual is {:.1e} of the right-hand side; parts that nearly touch \
-                 make them nearly singular; give a gap of a panel's size",
-                job.input.display(),
-                solution.report.iterations,
-                solution.report.residual
-            )));
+            let Report { iterations, residual, .. } = solution.report;
+            return Err(AddedMassError::Unsolved { path: job.input.clone(), iterations, residual });
         }
         levels.push(Level { size, solution });
     }
     let Some(finest) = levels.last().map(|l| l.solution.clone()) else {
-        return Err(Error::Nothing(format!(
-            "{}: no mesh of it fits --most-panels {}",
-            job.input.display(),
-            job.wanted.most_panels
-        )));
+        return Err(AddedMassError::NoMeshFits { path: job.input.clone(), most: job.wanted.most_panels });
     };
     let n = finest.matrix.len();
     let sizes: Vec<f64> = levels.iter().map(|l| l.size).collect();
@@ -186,55 +174,22 @@ pub fn several(job: &BodyJob, apart: Apart, told: &dyn Fn(&str)) -> Result<Sever
         Apart::Links { .. } => format!("each part's own axes: {}", own_axes(job.axes)),
         Apart::Parts => job.axes.words(job.orientation.unwrap_or_default()),
     };
-    let file = EstimateFile {
-        data: keyed(vec![mesh_file(&job.input)?]),
-        versions: crate::results::versions(),
-        findings,
-        ..EstimateFile::of(vec![of_the_mesh(record(
-            &name,
-            &loaded.parts,
-            &value,
-            &uncertainty,
-            density_kg_m3,
-            meshes,
-            &frame,
-            &notes,
-        ))])
-    };
-    let place = sentence(&frame, "each part's own point");
-    let page = Document {
-        sort: "Added mass · potential flow".to_owned(),
-        title: name.clone(),
-        subtitle: "part by part".to_owned(),
-        date: job.date.clone(),
-        sections: vec![DocumentSection {
-            title: "Matrix".to_owned(),
-            paragraphs: std::iter::once(place.clone()).chain(notes.iter().cloned()).collect(),
-            tables: tables.clone(),
-            ..DocumentSection::default()
-        }],
-        findings: file.findings.clone(),
-    };
+    let source = if source.is_empty() { &name } else { source };
+    let estimate = record(source, &loaded.parts, &value, &uncertainty, density_kg_m3, meshes, &frame, &notes);
     let mut outcome = SeveralOutcome {
-        name,
         density_kg_m3,
-        place,
+        place: sentence(&frame, "each part's own point"),
         parts: loaded.parts,
         value,
         uncertainty,
         tables,
         notes,
-        replaced: replaces_another_frame(&out, &file),
-        file,
-        estimate: PathBuf::new(),
-        page: PathBuf::new(),
-        others: Vec::new(),
+        findings,
+        estimate,
+        exports: Vec::new(),
+        name,
     };
-    let also = |folder: &Path| exports(&outcome, job, folder);
-    let written = crate::results::write_also(&out, &outcome.file, &[], &[], &page.html()?, &also)?;
-    outcome.estimate = written.estimate;
-    outcome.page = written.report;
-    outcome.others = written.others;
+    outcome.exports = exports(&outcome, job)?;
     Ok(outcome)
 }
 
@@ -251,7 +206,7 @@ struct Several {
 }
 
 /// Axes of the result in those of the mesh, or of a link.
-fn axes_of(job: &BodyJob) -> [[f64; 3]; 3] {
+fn axes_of(job: &Asked) -> [[f64; 3]; 3] {
     job.axes.vectors(job.orientation.unwrap_or_default())
 }
 
@@ -263,19 +218,18 @@ const fn own_axes(axes: Axes) -> &'static str {
     }
 }
 
-fn links_of(job: &BodyJob, angle_rad: f64) -> Result<Several, Error> {
-    let why =
-        || Error::Nothing(format!("{}: a chain is a body file of shape \"robot\" with --links", job.input.display()));
+fn links_of(job: &Asked, angle_rad: f64) -> Result<Several, AddedMassError> {
+    let why = || AddedMassError::NoChain { path: job.input.clone() };
     if !is_body_file(&job.input) {
         return Err(why());
     }
     of_a_mesh_only(job)?;
     let body = read_body(&job.input)?;
-    let (Shape::Robot { .. }, Some(links)) = (body.shape, job.links) else { return Err(why()) };
+    let (Shape::Robot { .. }, Some(&links)) = (body.shape, job.links.first()) else { return Err(why()) };
     Ok(Several { density_kg_m3: body.density_kg_m3, ..chain(&body.name, &body.shape, links, angle_rad, job)? })
 }
 
-fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> Result<Several, Error> {
+fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &Asked) -> Result<Several, AddedMassError> {
     let robot = robot(shape);
     let mut problems = Vec::new();
     for along in LEVELS {
@@ -289,7 +243,7 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
             break;
         }
         let problem = chain.problem(true).or_else(|_| chain.problem(false));
-        problems.push((LEVELS[0] as f64 / along as f64, problem.map_err(|e| Error::Nothing(e.to_string()))?));
+        problems.push((LEVELS[0] as f64 / along as f64, problem?));
     }
     let mut parts = vec!["tail".to_owned()];
     parts.extend((1..=links).map(|k| format!("link {k}")));
@@ -305,17 +259,14 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
     Ok(Several { size, name, density_kg_m3: None, parts, problems, notes, findings: Vec::new() })
 }
 
-fn parts_of(job: &BodyJob) -> Result<Several, Error> {
+fn parts_of(job: &Asked) -> Result<Several, AddedMassError> {
     let loaded = load(job)?;
     let Family::Mesh(mesh) = loaded.family else {
-        return Err(Error::Nothing(format!("{}: --apart takes a mesh of several closed parts", job.input.display())));
+        return Err(AddedMassError::NoParts { path: job.input.clone() });
     };
     let found = parts(&mesh);
     if found.len() < 2 {
-        return Err(Error::Nothing(format!(
-            "{}: the mesh hangs together, it has one part; leave --apart out",
-            job.input.display()
-        )));
+        return Err(AddedMassError::OnePart { path: job.input.clone() });
     }
     let mut problems = Vec::new();
     let mut frames: Vec<Frame> = Vec::new();
@@ -505,7 +456,6 @@ fn record(
                 if meshes > 1 { ", extrapolated" } else { "" }
             ),
         },
-        n_observations: meshes,
         coefficients,
         diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },
         recommended: true,
@@ -514,15 +464,14 @@ fn record(
     }
 }
 
-/// Writes the matrix for other programs; the names of the files.
-fn exports(outcome: &SeveralOutcome, job: &BodyJob, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+/// The matrix for other programs.
+fn exports(outcome: &SeveralOutcome, job: &Asked) -> Result<Vec<Export>, AddedMassError> {
     // Zeros without a sign.
     let rows: Vec<Vec<f64>> =
         outcome.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a + 0.0).collect()).collect();
     let mut formats = vec!["csv"];
     formats.extend(job.export.iter().filter(|e| **e != "csv"));
-    let mut names = Vec::new();
-    for extension in formats {
+    let of = |extension: &'static str| {
         let turned = of_parts_for_program(&rows, extension, job);
         let file = AddedMassFile {
             density_kg_m3: outcome.density_kg_m3,
@@ -532,9 +481,7 @@ fn exports(outcome: &SeveralOutcome, job: &BodyJob, folder: &Path) -> Result<Vec
             zero_frequency: Some(&turned),
             infinite_frequency: Some(&turned),
         };
-        let name = PathBuf::from(format!("added-mass.{extension}"));
-        file.write(&folder.join(&name))?;
-        names.push(name);
-    }
-    Ok(names)
+        export(&file, extension)
+    };
+    formats.into_iter().map(of).collect()
 }

@@ -2,16 +2,13 @@
 
 use std::path::Path;
 
+use froude_panel::refine::Refined;
 use froude_records::estimate::{
-    Coefficient, DataFile, Diagnostics, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed,
-    ReferencePoint, Signs, Status, TypeA,
+    Coefficient, Diagnostics, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed, ReferencePoint,
+    Signs, Status, TypeA,
 };
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
-
-use super::links::file_name;
-use super::refine::Refined;
-use crate::Error;
 
 /// Coverage factor of a numerical uncertainty: it is stated as an interval of 95 %.
 const COVERAGE: f64 = 2.0;
@@ -49,32 +46,27 @@ pub struct About {
     pub surroundings: String,
 }
 
-/// The one file that the matrices of a record come from.
-pub(super) fn mesh_file(path: &Path) -> Result<DataFile, Error> {
-    Ok(DataFile { role: Some("mesh".to_owned()), ..DataFile::of(path, &file_name(path))? })
-}
-
 /// What the signs of a matrix mean.
 pub(super) fn signs() -> Signs {
     Signs("loads of the fluid on the body are minus the matrix times the accelerations".to_owned())
 }
 
-/// An estimate that came from it, and from what was made of it on the way.
-pub(super) fn of_the_mesh(estimate: Estimate) -> Estimate {
-    Estimate { data: vec!["d1".to_owned()], ..estimate }
-}
-
-/// The frame of a record that lies in a folder already, in words.
+/// The frame of a record, in words.
 fn place_of(file: &EstimateFile) -> Option<String> {
     file.estimates.last().map(|e| format!("{}; moments about {}", e.frame.words, e.point.words))
 }
 
-/// A sentence where a folder holds a record in another frame than a new one, which takes its place: the two look alike, and the entries of
-/// one are not those of the other. To be asked before the new one is written.
+/// The frame of the record that lies in a folder, in words; to be asked before another takes its place.
 #[must_use]
-pub fn replaces_another_frame(out: &Path, new: &EstimateFile) -> Option<String> {
-    let (before, now) = (place_of(&read_estimates(&out.join("estimate.json")).ok()?)?, place_of(new)?);
-    (before != now).then(|| {
+pub fn place_in(out: &Path) -> Option<String> {
+    place_of(&read_estimates(&out.join("estimate.json")).ok()?)
+}
+
+/// A sentence where a record in another frame has taken the place of one in a folder: the two look alike, and the entries of one are not those
+/// of the other.
+#[must_use]
+pub fn replaces_another_frame(out: &Path, before: &str, new: &EstimateFile) -> Option<String> {
+    (place_of(new)? != before).then(|| {
         format!(
             "The earlier record in {} is replaced. It had another frame: {before}. To keep both, give each its folder with --out.",
             out.display()
@@ -161,7 +153,6 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
                 if refined.steps.len() > 1 { ", extrapolated" } else { "" }
             ),
         },
-        n_observations: refined.steps.len(),
         coefficients,
         type_a: covariance,
         diagnostics: Diagnostics {

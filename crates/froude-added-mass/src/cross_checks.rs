@@ -6,11 +6,10 @@ use froude_hydro::tabulated::circular_cylinder_added_mass_m3;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
+use froude_panel::refine::Refined;
 use froude_records::body::Shape;
 use froude_records::number;
 use froude_records::page::TextTable;
-
-use super::refine::Refined;
 
 /// An ellipsoid in the body's box whose volume differs by more than this part is no yardstick.
 const LIKE: f64 = 0.3;

@@ -2,11 +2,11 @@
 
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
+use froude_panel::refine::Refined;
 use froude_panel::revolution::{Revolution, Stretch, rounded_cylinder, solve as modes, spheroid};
 use froude_records::body::Shape;
 
 use super::record::MOTIONS;
-use super::refine::Refined;
 
 /// A matrix over ρ about the middle of the body, and the uncertainty of its entries as part of √(A_ii A_jj).
 #[derive(Debug, Clone, Copy, PartialEq)]
