@@ -1007,7 +1007,10 @@ fn options_that_say_nothing_sensible_are_told_what_they_take() {
         &["--density", "1 kg/m^3", "--at", "1 m, 2 m"],
         "--at \"1 m, 2 m\": write cg, cb, or three lengths: \"0 m, 0 m, -0.2 m\"",
     );
-    mesh(&["--density", "1 kg/m^3", "--at", "1 m, 2, 3 m"], "--at \"2\": `2` has no unit; write for example `2 m`");
+    mesh(
+        &["--density", "1 kg/m^3", "--at", "1 m, 2, 3 m"],
+        "--at \"1 m, 2, 3 m\": `2` has no unit; write for example `2 m`",
+    );
     mesh(&["--density", "1 kg/m^3", "--surface", "3 s"], "--surface \"3 s\": expected a length (m), found a time (s)");
     let tank = "--tank says how deep the water is, and not where the body lies in it: add --surface, the height of the water's surface over the \
                 origin of the mesh, such as --surface \"0.5 m\"";
