@@ -9,9 +9,7 @@ use froude_mesh::files::ReadError;
 use froude_mesh::plausible::{Crosses, TooLarge};
 use froude_mesh::sections::SectionError;
 use froude_panel::chain::ChainError;
-use froude_panel::mirror::Across;
 use froude_panel::refine::RefineError;
-use froude_panel::tank::TankError;
 use froude_records::RecordError;
 use froude_records::added_mass_options::GivenOption;
 
@@ -33,12 +31,6 @@ pub enum AddedMassError {
     /// The chain cannot be bent so.
     #[error(transparent)]
     Chain(#[from] ChainError),
-    /// Panels lie across a mirror plane.
-    #[error(transparent)]
-    Across(#[from] Across),
-    /// The body does not fit into the tank.
-    #[error(transparent)]
-    Tank(#[from] TankError),
     /// No mesh could be solved on.
     #[error(transparent)]
     Refine(#[from] RefineError),
@@ -213,28 +205,6 @@ pub enum AddedMassError {
     OnePart {
         /// The mesh.
         path: PathBuf,
-    },
-    /// Parts of which no mesh is small enough.
-    #[error("{}: no mesh of it fits --most-panels {most}", .path.display())]
-    NoMeshFits {
-        /// The body or mesh.
-        path: PathBuf,
-        /// How many panels are allowed.
-        most: usize,
-    },
-    /// Equations of parts that were not solved.
-    #[error(
-        "{}: the equations were not solved: after {iterations} iterations the residual is {residual:.1e} of the right-hand side; parts that nearly \
-         touch make them nearly singular; give a gap of a panel's size",
-        .path.display()
-    )]
-    Unsolved {
-        /// The body or mesh.
-        path: PathBuf,
-        /// Iterations.
-        iterations: usize,
-        /// Norm of what is left over that of the right-hand side.
-        residual: f64,
     },
 
     /// A target of a repair of another format.

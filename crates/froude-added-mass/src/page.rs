@@ -9,7 +9,7 @@ use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Seri
 use super::body::BodyOutcome;
 use super::limits;
 use super::links::{Configuration, LinksOutcome, no_fits};
-use super::record::{MOTIONS, unit};
+use super::record::{MOTIONS, diagonal_head, diagonal_name, entry_name};
 use super::several::SeveralOutcome;
 
 /// A point in words; what is less than a nanometre is nothing.
@@ -79,7 +79,7 @@ pub fn dimensionless_table(refined: &Refined, length_m: f64) -> TextTable {
             let [of_volume, of_length] =
                 if i < 3 { [v, length_m.powi(3)] } else { [v * length_m.powi(2), length_m.powi(5)] };
             let of = |size: f64| with_uncertainty(refined.value[i][i] / size, refined.uncertainty[i][i] / size);
-            vec![MOTIONS[i].to_owned(), of(of_volume), of(of_length)]
+            vec![diagonal_name(i), of(of_volume), of(of_length)]
         })
         .collect();
     TextTable {
@@ -109,7 +109,7 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
         })
         .collect();
     let head = ["panels", "unknowns", "iterations"].map(str::to_owned).into_iter();
-    let masses = (0..6).map(|i| format!("A{0}{0} [{1}]", i + 1, unit(i, i).replace('*', " ").replace("^2", "²")));
+    let masses = (0..6).map(diagonal_head);
     TextTable {
         caption: "Meshes from the coarsest on. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): a flag, no estimate \
                   of the error."
@@ -125,7 +125,7 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
     let panels: Vec<f64> = refined.steps.iter().map(|s| s.panels as f64).collect();
     let mut series: Vec<Series> = motions(refined)
         .map(|i| Series {
-            name: MOTIONS[i].to_owned(),
+            name: diagonal_name(i),
             x: panels.clone(),
             y: refined.steps.iter().map(|s| (s.added_mass.matrix[i][i] / refined.value[i][i] - 1.0).abs()).collect(),
             ..Series::default()
@@ -156,7 +156,7 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
 #[must_use]
 pub fn convergence_words(refined: &Refined) -> Vec<String> {
     let orders: Vec<String> =
-        motions(refined).filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?))).collect();
+        motions(refined).filter_map(|i| Some(format!("{} {:.2}", entry_name((i, i)), refined.order[i][i]?))).collect();
     let mut out = vec![if refined.steps.len() == 1 {
         "One mesh only: there is no numerical uncertainty; three meshes give one.".to_owned()
     } else if orders.is_empty() {

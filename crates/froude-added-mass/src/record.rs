@@ -79,8 +79,28 @@ fn entries() -> impl Iterator<Item = (usize, usize)> + Clone {
     (0..6).flat_map(|i| (i..6).map(move |j| (i, j)))
 }
 
-fn entry_name((i, j): (usize, usize)) -> String {
+/// `A11` … `A66`.
+#[must_use]
+pub fn entry_name((i, j): (usize, usize)) -> String {
     format!("A{}{}", i + 1, j + 1)
+}
+
+/// The same of several parts, six rows and columns each: `A22_1_3`, the sway force on the first part from the sway of the third.
+#[must_use]
+pub fn entry_name_of_parts((i, j): (usize, usize)) -> String {
+    format!("{}_{}_{}", entry_name((i % 6, j % 6)), i / 6 + 1, j / 6 + 1)
+}
+
+/// An entry of the diagonal with its motion and its unit, as the head of a column: `A22 sway [kg]`.
+#[must_use]
+pub fn diagonal_head(i: usize) -> String {
+    format!("{} {} [{}]", entry_name((i, i)), MOTIONS[i], if i < 3 { "kg" } else { "kg m²" })
+}
+
+/// The same without its unit, as the name of a row: `A22 sway`.
+#[must_use]
+pub fn diagonal_name(i: usize) -> String {
+    format!("{} {}", entry_name((i, i)), MOTIONS[i])
 }
 
 /// Covariance of the entries: on its diagonal the squares of their standard uncertainties, beside it what they have in common. `None` where

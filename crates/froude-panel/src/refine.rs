@@ -5,9 +5,11 @@ use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
 use froude_mesh::sections::SectionError;
 
+use crate::chain::ChainError;
+use crate::convergence::Converged;
 use crate::family::{Family, Member};
 use crate::matrix::AddedMass;
-use crate::mirror::{Mirror, positive_part};
+use crate::mirror::{Across, Mirror, positive_part};
 use crate::problem::{Frame, Problem, Report, Solution};
 use crate::study::{SLOW, Size, study};
 use crate::tank::{Surface, Tank, TankError};
@@ -20,6 +22,12 @@ pub enum RefineError {
     /// The dimensions give no body.
     #[error(transparent)]
     Sections(#[from] SectionError),
+    /// The chain cannot be bent so.
+    #[error(transparent)]
+    Chain(#[from] ChainError),
+    /// Panels lie across a mirror plane.
+    #[error(transparent)]
+    Across(#[from] Across),
     /// The body does not fit into the tank.
     #[error(transparent)]
     Tank(#[from] TankError),
@@ -228,8 +236,10 @@ struct Entry {
 
 /// Least uncertainty at edges that are not resolved, as part of what extrapolation takes off: an order of 0.8 leaves three times that.
 const AT_EDGES: f64 = 3.0;
+/// Meshes that an uncertainty to be trusted asks for.
+const ENOUGH: usize = 3;
 /// Residual above which a solution is none.
-pub const LOOSE: f64 = 1e-6;
+const LOOSE: f64 = 1e-6;
 /// Time of a near pair and of a pair of boxes over a whole solution, one thread, s: as measured on a processor with AVX-512.
 const NEAR_S: f64 = 25e-9;
 const FAR_S: f64 = 40e-6;
@@ -297,40 +307,50 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
     Ok((mesh.mesh.clone(), whole(&wanted.mirrors)))
 }
 
-/// Refines until the tolerance holds, or panels, memory or members end; `told` hears of every step before it starts.
-///
-/// # Errors
-///
-/// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
-/// panels than are allowed.
-pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, RefineError> {
-    let length_m = extent(&family.member(0)?.mesh.mesh);
-    let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
-    let is_foreign = matches!(family, Family::Mesh(_));
-    let mut steps: Vec<Step> = Vec::new();
-    let mut finest = None;
-    let mut stopped = None;
-    for number in 0..family.members() {
-        let panels = family.panels(number)?;
+/// Several parts on one mesh after the other, each finer than the one before.
+pub trait Levels {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// Panels of one, without making it.
+    ///
+    /// # Errors
+    ///
+    /// Dimensions that give no body.
+    fn panels(&self, number: usize) -> Result<usize, RefineError>;
+
+    /// One of them, and the size of its cells over those of the coarsest.
+    ///
+    /// # Errors
+    ///
+    /// Dimensions that give no body; a body that does not fit into its tank.
+    fn problem(&self, number: usize) -> Result<(f64, Problem), RefineError>;
+}
+
+/// Solves one level after the other until `is_enough` of what was solved, or panels, memory or levels end; why it ended before.
+fn climb<L>(
+    levels: usize,
+    panels_of: &dyn Fn(usize) -> Result<usize, RefineError>,
+    level: &dyn Fn(usize) -> Result<(L, Problem), RefineError>,
+    wanted: &Wanted,
+    told: &dyn Fn(&str),
+    mut is_enough: impl FnMut(usize, L, Problem, Solution) -> bool,
+) -> Result<Option<Stop>, RefineError> {
+    for number in 0..levels {
+        let panels = panels_of(number)?;
         if panels > wanted.most_panels {
-            if steps.is_empty() {
-                return Err(too_fine(family, wanted)?);
+            if number == 0 {
+                return Err(too_fine(panels, panels_of(ENOUGH - 1)?, wanted));
             }
-            stopped = Some(Stop::Panels { panels, most: wanted.most_panels });
-            break;
+            return Ok(Some(Stop::Panels { panels, most: wanted.most_panels }));
         }
-        let member = family.member(number)?;
-        let (solved, problem) = problem(family, &member, wanted)?;
+        let (level, problem) = level(number)?;
         let forecast = forecast(&problem);
         let free = memory_bytes(wanted);
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
             let why = NoMemory { panels, needed_bytes: forecast.memory_bytes, free_bytes: free, fits };
-            if steps.is_empty() {
-                return Err(RefineError::Memory(why));
-            }
-            stopped = Some(Stop::Memory(why));
-            break;
+            return if number == 0 { Err(RefineError::Memory(why)) } else { Ok(Some(Stop::Memory(why))) };
         }
         told(&format!(
             "{panels} panels, {} unknowns: some {} and {:.0} MB",
@@ -343,19 +363,44 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
             let Report { iterations, residual, .. } = solution.report;
             return Err(RefineError::Unsolved { panels, iterations, residual });
         }
-        steps.push(Step {
-            panels: member.mesh.mesh.panels.len(),
-            unknowns: problem.facets.len(),
-            size: member.size,
-            iterations: solution.report.iterations,
-            added_mass: solution.added_mass(0).seen_from(&wanted.frame),
-            measure: Measure::of(&member.mesh.mesh),
-        });
-        finest = Some(Finest { mesh: solved, mirrors: problem.mirrors, solution });
-        if steps.len() >= 3 && worst(&entries(&steps, length_m, is_foreign), least_m5) <= wanted.tolerance {
-            break;
+        if is_enough(panels, level, problem, solution) {
+            return Ok(None);
         }
     }
+    Ok(None)
+}
+
+/// Refines until the tolerance holds, or panels, memory or members end; `told` hears of every step before it starts.
+///
+/// # Errors
+///
+/// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
+/// panels than are allowed.
+pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<Refined, RefineError> {
+    let length_m = extent(&family.member(0)?.mesh.mesh);
+    let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
+    let is_foreign = matches!(family, Family::Mesh(_));
+    let mut steps: Vec<Step> = Vec::new();
+    let mut finest = None;
+    let level = |number: usize| {
+        let member = family.member(number)?;
+        let (mesh, problem) = problem(family, &member, wanted)?;
+        Ok(((member, mesh), problem))
+    };
+    let panels_of = |number: usize| Ok(family.panels(number)?);
+    let mut stopped =
+        climb(family.members(), &panels_of, &level, wanted, told, |_, (member, mesh), solved, solution| {
+            steps.push(Step {
+                panels: member.mesh.mesh.panels.len(),
+                unknowns: solved.facets.len(),
+                size: member.size,
+                iterations: solution.report.iterations,
+                added_mass: solution.added_mass(0).seen_from(&wanted.frame),
+                measure: Measure::of(&member.mesh.mesh),
+            });
+            finest = Some(Finest { mesh, mirrors: solved.mirrors, solution });
+            steps.len() >= ENOUGH && worst(&entries(&steps, length_m, is_foreign), least_m5) <= wanted.tolerance
+        })?;
     let Some(finest) = finest else {
         return Err(RefineError::NoMesh);
     };
@@ -380,9 +425,92 @@ pub fn refine(family: &Family, wanted: &Wanted, told: &dyn Fn(&str)) -> Result<R
     })
 }
 
-fn too_fine(family: &Family, wanted: &Wanted) -> Result<RefineError, RefineError> {
-    let (coarsest, third) = (family.panels(0)?, family.panels(2)?);
-    Ok(RefineError::TooFine { coarsest, third, most: wanted.most_panels })
+/// The matrix of several parts with its numerical uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RefinedParts {
+    /// Entries over ρ, extrapolated where the meshes allow, six rows and columns a part: m³, m⁴, m⁵.
+    pub value: Vec<Vec<f64>>,
+    /// Their numerical uncertainty, as an expanded one; infinite where there is one mesh only.
+    pub uncertainty: Vec<Vec<f64>>,
+    /// Panels of the meshes, from the coarsest on.
+    pub panels: Vec<usize>,
+    /// Largest uncertainty of an entry over √(A_ii A_jj), as the tolerance counts it.
+    pub worst: f64,
+    /// Why it is not within the tolerance, where it is not.
+    pub stopped: Option<Stop>,
+    /// The solution on the finest mesh.
+    pub finest: Solution,
+}
+
+/// Refines several parts as [`refine`] does one body; `size` is that of one part.
+///
+/// # Errors
+///
+/// As [`refine`].
+pub fn refine_parts(
+    levels: &dyn Levels,
+    size: Size,
+    wanted: &Wanted,
+    told: &dyn Fn(&str),
+) -> Result<RefinedParts, RefineError> {
+    let (mut sizes, mut panels, mut solutions) = (Vec::new(), Vec::new(), Vec::new());
+    let (panels_of, level) = (|number: usize| levels.panels(number), |number: usize| levels.problem(number));
+    let mut stopped = climb(levels.count(), &panels_of, &level, wanted, told, |of_body, cells, _, solution| {
+        sizes.push(cells);
+        panels.push(of_body);
+        solutions.push(solution);
+        solutions.len() >= ENOUGH && worst_of_parts(&parts_of(&sizes, &solutions, size), size) <= wanted.tolerance
+    })?;
+    let Some(finest) = solutions.last().cloned() else {
+        return Err(RefineError::NoMesh);
+    };
+    let entries = parts_of(&sizes, &solutions, size);
+    let worst = worst_of_parts(&entries, size);
+    let is_within = worst <= wanted.tolerance;
+    if !is_within && stopped.is_none() {
+        stopped = Some(Stop::Finest);
+    }
+    let of = |k: usize| entries.iter().map(|row| row.iter().map(|e| e[k]).collect()).collect();
+    Ok(RefinedParts {
+        value: of(0),
+        uncertainty: of(1),
+        panels,
+        worst,
+        stopped: stopped.filter(|_| !is_within),
+        finest,
+    })
+}
+
+/// Values and uncertainties of the entries of parts; of one mesh no uncertainty.
+fn parts_of(sizes: &[f64], solutions: &[Solution], size: Size) -> Vec<Vec<[f64; 2]>> {
+    match solutions {
+        [] => Vec::new(),
+        [only] => only.matrix.iter().map(|row| row.iter().map(|a| [*a, f64::INFINITY]).collect()).collect(),
+        _ => {
+            let entries = study(sizes, solutions, size).entries;
+            let of = |c: &Converged| [c.extrapolated.value, c.extrapolated.uncertainty];
+            entries.iter().map(|row| row.iter().map(of).collect()).collect()
+        }
+    }
+}
+
+/// As for one body: a roll that hardly resists counts as a part of what turning a part of this size takes.
+fn worst_of_parts(entries: &[Vec<[f64; 2]>], size: Size) -> f64 {
+    let half = 0.5 * size.length_m;
+    let least = |i: usize| size.volume_m3 * if i % 6 < 3 { 1.0 } else { half * half };
+    let own = |i: usize| entries[i][i][0].abs().max(ZERO * least(i));
+    let mut out = 0.0_f64;
+    for (i, row) in entries.iter().enumerate() {
+        for (j, [_, uncertainty]) in row.iter().enumerate() {
+            let part = uncertainty / (own(i) * own(j)).sqrt();
+            out = if part.is_nan() { f64::INFINITY } else { out.max(part) };
+        }
+    }
+    out
+}
+
+const fn too_fine(coarsest: usize, third: usize, wanted: &Wanted) -> RefineError {
+    RefineError::TooFine { coarsest, third, most: wanted.most_panels }
 }
 
 /// What each mesh would take, up to the panels allowed: panels of the body, and the forecast.
@@ -396,7 +524,7 @@ pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, 
         let panels = family.panels(number)?;
         if panels > wanted.most_panels {
             if out.is_empty() {
-                return Err(too_fine(family, wanted)?);
+                return Err(too_fine(panels, family.panels(ENOUGH - 1)?, wanted));
             }
             break;
         }
@@ -440,7 +568,7 @@ fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
 }
 
 /// Part of what turning takes, the largest of a body or ρV(L/2)², that a rotation is judged as at least: the roll of a slender body.
-pub const ZERO: f64 = 1e-2;
+const ZERO: f64 = 1e-2;
 
 /// Largest uncertainty of an entry over √(A_ii A_jj); `least_m5` is what turning a body of this size may take.
 fn worst(entries: &[[Entry; 6]; 6], least_m5: f64) -> f64 {
