@@ -152,6 +152,7 @@ fn identify(source: &Source, methods: &[CarriageMethod], progress: &dyn Fn(&str)
         findings: std::mem::take(&mut report.findings),
         beside: Some(runs.results("drag")),
         is_part: runs.beside > 0,
+        ..Found::default()
     })
 }
 

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand};
+use clap::{Arg, ArgAction, ArgMatches, Command, Parser, Subcommand};
+use froude::records::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 
 /// What stands below the help.
 const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input.";
@@ -186,57 +187,14 @@ pub struct Experiment {
 pub struct AddedMassArgs {
     /// A body file (.toml), or a closed mesh: STL, OBJ, PLY, WAMIT .gdf, Nemoh .dat, Gmsh .msh.
     pub input: PathBuf,
-    /// Links of a robot: 3, or 1..9 for a table with its least squares, or 1,3,6.
-    #[arg(long, value_name = "K|A..B|K,K")]
-    pub links: Option<String>,
-    /// Density of the water, with its unit [default: the body file's].
-    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
-    pub density: Option<String>,
-    /// Axes of the result, x forward in all: ned and fossen have y to starboard and z down, enu has y to port and z up [default: those of the mesh].
-    #[arg(long, value_enum)]
-    pub axes: Option<BodyAxes>,
-    /// Reference point of the moments: cg (of the body file), cb (centre of buoyancy), or "0 m, 0 m, -0.2 m" in the axes of the mesh [default: its origin].
-    #[arg(long, value_name = "cg|cb|X, Y, Z", allow_hyphen_values = true)]
-    pub at: Option<String>,
-    /// Unit of a mesh whose file states none: m, mm, cm, in.
-    #[arg(long)]
-    pub unit: Option<String>,
-    /// Axis of the mesh that points forward [default: x].
-    #[arg(long, value_enum, allow_hyphen_values = true)]
-    pub forward: Option<MeshAxis>,
-    /// Axis of the mesh that points up [default: z].
-    #[arg(long, value_enum, allow_hyphen_values = true)]
-    pub up: Option<MeshAxis>,
+    #[command(flatten)]
+    pub options: AddedMassOptions,
     /// What --up was called.
     #[arg(long, hide = true)]
     pub z: Option<String>,
     /// What --at was called.
     #[arg(long, hide = true, allow_hyphen_values = true)]
     pub origin: Option<String>,
-    /// Largest numerical uncertainty of an entry: "1 %".
-    #[arg(long, default_value = "1 %", value_name = "QUANTITY", allow_hyphen_values = true)]
-    pub tolerance: String,
-    /// Largest number of panels.
-    #[arg(long, default_value_t = 120_000)]
-    pub most_panels: usize,
-    /// Height of the water's surface above the origin of the mesh; the zero- and infinite-frequency limits are computed.
-    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
-    pub surface: Option<String>,
-    /// A closed tank, length along x, breadth along y, depth of water, with the origin of the mesh in its middle: "1.5 m x 0.9 m x 1 m"; with --surface.
-    #[arg(long, value_name = "L x B x D")]
-    pub tank: Option<String>,
-    /// Angle of every joint about z; gives the link-by-link matrix of the bent chain.
-    #[arg(long, value_name = "QUANTITY", allow_hyphen_values = true)]
-    pub joint_angle: Option<String>,
-    /// Give the link-by-link matrix of the straight chain.
-    #[arg(long)]
-    pub chain: bool,
-    /// Treat the disconnected parts of a mesh as separate bodies.
-    #[arg(long)]
-    pub apart: bool,
-    /// Files to write beside the record: wamit, capytaine, csv.
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub export: Vec<Export>,
     /// Only check the mesh and state what each resolution would require.
     #[arg(long)]
     pub check: bool,
@@ -251,47 +209,43 @@ pub struct AddedMassArgs {
     pub out: Option<PathBuf>,
 }
 
-/// Axes of a body, x forward.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum BodyAxes {
-    /// y to starboard, z down (SNAME).
-    Ned,
-    /// The same.
-    Fossen,
-    /// y to port, z up (ROS REP 103).
-    Enu,
+/// What is asked of an added mass: a flag for every option that a campaign may have.
+#[derive(Debug)]
+pub struct AddedMassOptions(pub Vec<GivenOption>);
+
+impl clap::Args for AddedMassOptions {
+    fn augment_args(command: Command) -> Command {
+        ADDED_MASS_OPTIONS.iter().fold(command, |command, option| {
+            let flag = Arg::new(option.name).long(option.flag).help(option.help);
+            command.arg(match option.takes {
+                None => flag.action(ArgAction::SetTrue),
+                Some(takes) => {
+                    let flag = flag.value_name(takes).allow_hyphen_values(true).action(ArgAction::Set);
+                    if option.words.is_empty() { flag } else { flag.value_parser(option.words.to_vec()) }
+                }
+            })
+        })
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
 }
 
-/// A direction along an axis of a mesh.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum MeshAxis {
-    /// Along x.
-    #[value(name = "x")]
-    X,
-    /// Against x.
-    #[value(name = "-x")]
-    AgainstX,
-    /// Along y.
-    #[value(name = "y")]
-    Y,
-    /// Against y.
-    #[value(name = "-y")]
-    AgainstY,
-    /// Along z.
-    #[value(name = "z")]
-    Z,
-    /// Against z.
-    #[value(name = "-z")]
-    AgainstZ,
-}
+impl clap::FromArgMatches for AddedMassOptions {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let given = ADDED_MASS_OPTIONS.iter().filter_map(|option| {
+            let text = match option.takes {
+                None => matches.get_flag(option.name).then(|| "true".to_owned())?,
+                Some(_) => matches.get_one::<String>(option.name)?.clone(),
+            };
+            Some(GivenOption { name: option.name.to_owned(), text, place: None })
+        });
+        Ok(Self(given.collect()))
+    }
 
-/// A format of other programs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Export {
-    /// WAMIT's `.1`, ULEN 1 m.
-    Wamit,
-    /// NetCDF as Capytaine writes it.
-    Capytaine,
-    /// CSV with a unit in every header.
-    Csv,
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
 }

@@ -96,14 +96,20 @@ fn run(cli: Cli) -> Result<(), Error> {
 
 /// `identify`, `compare` and `carriage drag`: one job, one way through it, one outcome, printed or as its record.
 fn identify(job: Job, is_json: bool, all: bool) -> Result<(), Error> {
-    let bar = spinner();
-    let outcome = pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?;
-    bar.finish_and_clear();
+    let outcome = identified(job)?;
     if is_json {
         return print::json(&outcome.file);
     }
     print::outcome(&outcome, all);
     Ok(())
+}
+
+/// The same, not yet printed.
+fn identified(job: Job) -> Result<pipeline::Outcome, Error> {
+    let bar = spinner();
+    let outcome = pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?;
+    bar.finish_and_clear();
+    Ok(outcome)
 }
 
 /// What shows that the program works.

@@ -81,9 +81,12 @@ pub fn outcome(outcome: &Outcome, all: bool) {
 }
 
 /// Where record and page lie.
-pub fn written(Written { estimate, report, .. }: &Written) {
+pub fn written(Written { estimate, report, exports, .. }: &Written) {
     say!("\nestimates {}", estimate.display());
     say!("report    {}", report.display());
+    for export in exports {
+        say!("export    {}", export.display());
+    }
 }
 
 /// What a method states about all its results: its tables, then its sentences.
@@ -92,6 +95,9 @@ fn summary(section: &DocumentSection) {
         // One table says by its columns what it is, several do not.
         if section.tables.len() > 1 {
             say!("\n{}", table.caption);
+        }
+        if !table.caption.is_empty() {
+            say!("\n{}", wrapped(&table.caption));
         }
         text_table(table);
     }

@@ -101,12 +101,23 @@ pub struct Found {
     pub summary: Option<DocumentSection>,
     /// What else belongs on the page.
     pub blocks: Vec<DocumentSection>,
+    /// Files for other programs, which lie beside the record.
+    pub exports: Vec<Export>,
     /// What is doubtful about the runs, or about the results together.
     pub findings: Vec<Finding>,
     /// Where results go when no folder was named, of a source that no campaign names.
     pub beside: Option<PathBuf>,
     /// True where more lies there than was named: such a result takes the place of no other.
     pub is_part: bool,
+}
+
+/// A file for another program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Export {
+    /// Its name in the folder of the results; where several sources have one of that name, the source's stands before it.
+    pub name: String,
+    /// What it holds.
+    pub content: Vec<u8>,
 }
 
 /// Why a method gives no estimates; each message states what to do.

@@ -44,11 +44,20 @@ pub fn section(answer: &Answer) -> Result<SourceSection, IdentifyError> {
 /// An estimate that a method made itself: it knows what goes into it.
 fn made(made: &Made) -> SourceSection {
     let Made { name, estimate, .. } = made;
-    let facts = [("Rows", estimate.n_observations.to_string()), ("Covariance", estimate.covariance_kind().to_owned())];
+    let fact = |name: &str, value: String| (name.to_owned(), value);
+    let facts = if estimate.n_observations == 0 {
+        // Nothing was observed: the notes state how it was computed.
+        estimate.diagnostics.notes.iter().map(|note| fact("Computation", note.clone())).collect()
+    } else {
+        vec![
+            fact("Rows", estimate.n_observations.to_string()),
+            fact("Covariance", estimate.covariance_kind().to_owned()),
+        ]
+    };
     SourceSection {
         name: name.clone(),
         kind: estimate.kind.clone(),
-        facts: facts.map(|(fact, value)| (fact.to_owned(), value)).to_vec(),
+        facts,
         estimates: vec![estimate.clone()],
         budget: budget::of_estimate(estimate),
         recommendation: estimate.method.words.clone(),

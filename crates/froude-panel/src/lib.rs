@@ -16,6 +16,8 @@
 //! | [`matrix`] | the 6 × 6 matrix, moved to another point, symmetric part | Newman 1977, 4.13 |
 //! | [`convergence`] | error of a value from similar meshes | Richardson 1911; Roache 1994 |
 //! | [`study`] | the matrices of similar meshes put together | |
+//! | [`family`] | similar meshes of a body, each finer than the one before | |
+//! | [`refine`] | finer and finer until the tolerance is met, with the cost stated beforehand | |
 //! | [`tank`] | a body between walls, under both limits of the water surface | images |
 //! | [`chain`] | all links of a robot, straight or bent; error of a diagonal form | our derivation |
 //!
@@ -33,12 +35,14 @@ pub mod convergence;
 pub mod dense;
 pub mod elliptic;
 mod expansion;
+pub mod family;
 pub mod fast;
 mod gmres;
 pub mod influence;
 pub mod matrix;
 pub mod mirror;
 pub mod problem;
+pub mod refine;
 pub mod revolution;
 pub mod study;
 pub mod tank;

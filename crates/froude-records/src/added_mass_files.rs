@@ -118,14 +118,22 @@ impl<'a> AddedMassFile<'a> {
     ///
     /// [`RecordError::AddedMass`] for content that cannot be written, [`RecordError::Write`] for a disk that does not take it.
     pub fn write(&self, path: &Path) -> Result<(), RecordError> {
+        write_atomically(path, &self.bytes(path)?)
+    }
+
+    /// The bytes of the format that a file's name ends in.
+    ///
+    /// # Errors
+    ///
+    /// [`RecordError::AddedMass`] for content that cannot be written.
+    pub fn bytes(&self, path: &Path) -> Result<Vec<u8>, RecordError> {
         let content = match path.extension().and_then(|e| e.to_str()) {
             Some("1") => self.wamit().map(String::into_bytes),
             Some("csv") => self.csv().map(String::into_bytes),
             Some("nc") => self.netcdf(),
             _ => Err(AddedMassError::Format),
         };
-        let content = content.map_err(|reason| RecordError::AddedMass { path: path.to_owned(), reason })?;
-        write_atomically(path, &content)
+        content.map_err(|reason| RecordError::AddedMass { path: path.to_owned(), reason })
     }
 
     /// The limits that are there, zero first, with their names.

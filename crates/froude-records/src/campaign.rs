@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
+use crate::added_mass_options::GivenOption;
 use crate::campaign_toml;
 use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError, read_bytes, utf8};
@@ -159,6 +160,8 @@ pub struct Source {
     pub tare: Option<Tare>,
     /// What swings in its releases, for the methods of free decay.
     pub decay: Option<DecaySpec>,
+    /// What is asked of its mesh.
+    pub added_mass: Vec<GivenOption>,
     /// What is to be run.
     pub plan: Vec<PlanBlock>,
     /// Where it stands in the campaign.
@@ -288,7 +291,7 @@ pub enum Input {
     },
     /// A folder of CFD cases.
     Cases(PathBuf),
-    /// A surface mesh.
+    /// A surface mesh, or a body file.
     Mesh(PathBuf),
 }
 
@@ -552,6 +555,14 @@ impl Campaign {
         Self::bare(vec![Source::bare(String::new(), Input::Runs { paths, campaign })])
     }
 
+    /// The campaign that a mesh or a body file stands for: one source, called as the body is.
+    #[must_use]
+    pub fn of_mesh(path: &Path, added_mass: Vec<GivenOption>) -> Self {
+        let bare = Source::bare(String::new(), Input::Mesh(path.to_owned()));
+        let source = Source { kind: SourceKind::Potential, added_mass, ..bare };
+        Self { path: path.to_owned(), ..Self::bare(vec![source]) }
+    }
+
     /// The campaign that records stand for, which are set side by side.
     #[must_use]
     pub fn of_records(paths: &[PathBuf]) -> Self {
@@ -621,6 +632,7 @@ impl Source {
             uncertainty: Vec::new(),
             tare: None,
             decay: None,
+            added_mass: Vec::new(),
             plan: Vec::new(),
         }
     }

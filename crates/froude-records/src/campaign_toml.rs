@@ -7,6 +7,7 @@ use indexmap::IndexMap;
 use toml::Spanned;
 use toml::de::DeValue;
 
+use crate::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 use crate::campaign::{
     AngleOffset, BodyAxis, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, DecaySpec, Fluid, Identify, Input,
     LinkSpec, Motion, PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare,
@@ -148,7 +149,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 17] = [
+const SOURCE_KEYS: [&str; 18] = [
     "name",
     "kind",
     "table",
@@ -165,6 +166,7 @@ const SOURCE_KEYS: [&str; 17] = [
     "uncertainty",
     "tare",
     "decay",
+    "added_mass",
     "plan",
 ];
 
@@ -219,10 +221,13 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     // What belongs to the rows of a table would be passed over.
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
     let of_table = of_tables.into_iter().find_map(|key| s.get(key).map(|value| (key, value)));
-    if let (Some((key, value)), Input::Runs { .. }) = (of_table, &input) {
+    if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
+        return Err(s.wrong(key, value, format!("belongs to the rows of a table; {instead}")));
+    }
+    if let (Some(value), false) = (s.get("added_mass"), matches!(input, Input::Mesh(_))) {
         let problem =
-            "belongs to the rows of a table; the budget of runs follows from the campaign that they were driven by";
-        return Err(s.wrong(key, value, problem));
+            "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
+        return Err(s.wrong("added_mass", value, problem));
     }
     let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     if let (Some(value), false) = (s.get("decay"), is_decay) {
@@ -242,6 +247,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         uncertainty: s.sections("uncertainty")?.iter().map(budget_entry).collect::<Result<_, _>>()?,
         tare,
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
+        added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
         plan: s.sections("plan")?.iter().map(plan_block).collect::<Result<_, _>>()?,
         place: INPUTS
             .into_iter()
@@ -249,6 +255,37 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
             .map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
         input,
     })
+}
+
+/// Why an input has no rows that something could be said of.
+fn why_no_rows(input: &Input) -> Option<&'static str> {
+    match input {
+        Input::Runs { .. } => Some("the budget of runs follows from the campaign that they were driven by"),
+        Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
+        _ => None,
+    }
+}
+
+/// `[source.added_mass]`: the options of the verb, as texts, whole numbers, switches and lists of texts.
+fn added_mass(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
+    s.only(&ADDED_MASS_OPTIONS.map(|option| option.name))?;
+    let mut out = Vec::new();
+    for (name, _, value) in s.entries() {
+        let takes = ADDED_MASS_OPTIONS.iter().find(|option| option.name == name).and_then(|option| option.takes);
+        let text = match value.get_ref() {
+            DeValue::Boolean(false) if takes.is_none() => continue,
+            DeValue::Boolean(true) if takes.is_none() => "true".to_owned(),
+            _ if takes.is_none() => {
+                return Err(s.wrong(name, value, format!("is {}; expected true or false", found(value))));
+            }
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str().replace('_', ""),
+            DeValue::Array(list) => list.iter().map(|v| s.as_text(name, v)).collect::<Result<Vec<_>, _>>()?.join(","),
+            _ => s.as_text(name, value)?.to_owned(),
+        };
+        let place = Some(s.source.place(value.span().start));
+        out.push(GivenOption { name: name.to_owned(), text, place });
+    }
+    Ok(out)
 }
 
 /// `[source.decay]`: what is displaced and let go.

@@ -5,7 +5,7 @@
 //!
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
-//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`] |
+//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`], its options of added mass [`added_mass_options`] |
 //! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | body (TOML)     | [`body`]                                   |
@@ -17,6 +17,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod added_mass_files;
+pub mod added_mass_options;
 mod assemble;
 pub mod body;
 pub mod campaign;

@@ -31,6 +31,7 @@ pub fn report(
         let line = InputFile { path: d.path.clone(), sha256: d.sha256.clone(), ..InputFile::default() };
         let readers = sources.iter().filter(|s| s.files().first().is_some_and(|f| f.path.ends_with(&d.path)));
         let lines: Vec<InputFile> = readers
+            .filter(|s| s.observations() > 0)
             .map(|s| InputFile {
                 n_rows: s.fitted().map(|fitted| fitted.n_read),
                 n_used: Some(s.observations()),
@@ -63,11 +64,12 @@ fn subtitle(sources: &[Answer], published: &[Estimate]) -> String {
     }
     let name = |s: &Answer| s.estimates().first().map_or_else(|| s.name().to_owned(), |e| e.source.clone());
     let names: BTreeSet<String> = sources.iter().map(name).collect();
-    let mut out = format!(
-        "{} from {}",
-        counted(observations, "observation", "observations"),
-        counted(names.len(), "source", "sources")
-    );
+    let what = if observations > 0 {
+        counted(observations, "observation", "observations")
+    } else {
+        counted(sources.iter().map(|s| s.estimates().len()).sum(), "estimate", "estimates")
+    };
+    let mut out = format!("{what} from {}", counted(names.len(), "source", "sources"));
     if !published.is_empty() {
         out += &format!(", beside {}", counted(published.len(), "published estimate", "published estimates"));
     }

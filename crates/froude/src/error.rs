@@ -57,22 +57,6 @@ pub enum Error {
     #[error(transparent)]
     Runner(#[from] froude_rig::campaign::runner::RunnerError),
 
-    /// A mesh file cannot be read.
-    #[error(transparent)]
-    Mesh(#[from] froude_mesh::files::ReadError),
-
-    /// The body does not fit into the tank.
-    #[error(transparent)]
-    Tank(#[from] froude_panel::tank::TankError),
-
-    /// The chain cannot be bent so.
-    #[error(transparent)]
-    Chain(#[from] froude_panel::chain::ChainError),
-
-    /// The dimensions give no body.
-    #[error(transparent)]
-    Sections(#[from] froude_mesh::sections::SectionError),
-
     /// The report could not be drawn.
     #[error(transparent)]
     Report(#[from] froude_report::ReportError),
@@ -148,6 +132,12 @@ impl From<MethodError> for Error {
     }
 }
 
+impl From<froude_added_mass::AddedMassError> for Error {
+    fn from(error: froude_added_mass::AddedMassError) -> Self {
+        MethodError::from(error).into()
+    }
+}
+
 impl Error {
     /// True where the input is at fault (exit code 2), false where the machine is (exit code 1).
     #[must_use]
@@ -165,11 +155,7 @@ impl Error {
             | Self::OfAnotherMethod { .. }
             | Self::Drag(_)
             | Self::Servo(_)
-            | Self::Tuning(_)
-            | Self::Mesh(_)
-            | Self::Sections(_)
-            | Self::Tank(_)
-            | Self::Chain(_) => true,
+            | Self::Tuning(_) => true,
             Self::Runner(_) | Self::Report(_) | Self::Output { .. } | Self::HalfWay { .. } => false,
         }
     }

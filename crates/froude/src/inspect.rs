@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_added_mass::options::Asked;
 use froude_identify::reduce::{Observations, reduce};
 use froude_identify::source::{asked_models, check_budget, laws};
 use froude_identify::{columns, lint, validity};
@@ -400,7 +401,10 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
             }
             out.models = record.estimates.iter().map(|e| e.id.clone()).collect();
         }
-        Input::Runs { .. } | Input::Cases(_) | Input::Mesh(_) => {}
+        Input::Mesh(path) => {
+            Asked::read(path, &source.added_mass)?;
+        }
+        Input::Runs { .. } | Input::Cases(_) => {}
     }
     Ok((out, findings))
 }

@@ -23,11 +23,11 @@ pub use froude_rig as rig;
 
 /// The methods that make estimates of sources, by what they are measured with.
 pub mod methods {
+    pub use froude_added_mass as added_mass;
     pub use froude_carriage as carriage;
     pub use froude_tank as tank;
 }
 
-pub mod added_mass;
 mod campaign_page;
 pub mod carriage;
 mod data_files;

@@ -1,5 +1,6 @@
 //! The list of all methods, and the one that a source asks for.
 
+use froude_added_mass::source::AddedMass;
 use froude_carriage::axis::source::{Servo, is_servo_log};
 use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
@@ -76,6 +77,7 @@ pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>
         Input::Table(log) if purpose == Some(Purpose::Servo) || is_servo_log(log, source.sidecar.as_deref())? => {
             Ok(vec![(&Servo, Servo::OF_LOGS.to_vec())])
         }
+        Input::Mesh(_) => Ok(vec![(&AddedMass, AddedMass.names().to_vec())]),
         _ => Ok(vec![(&Table, vec!["table"])]),
     }
 }

@@ -99,16 +99,20 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
 /// Characters of a source's name in that of a file: disks take 255, and a number may follow.
 const LONGEST_NAME: usize = 100;
 
-/// `observations-` and the source's name, as far as every file system takes it.
+/// `observations-` and the source's name.
 fn file_name(source: &str) -> String {
     // The source of a bare table is named after its file.
     let stem = source.trim_end_matches(".csv").trim_end_matches(".parquet");
-    let safe: String = stem
+    format!("observations-{}.csv", in_a_file_name(stem))
+}
+
+/// A source's name, as far as every file system takes it.
+pub(crate) fn in_a_file_name(source: &str) -> String {
+    source
         .chars()
         .take(LONGEST_NAME)
         .map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' })
-        .collect();
-    format!("observations-{safe}.csv")
+        .collect()
 }
 
 fn number(name: &str, si: &[f64], unit: Unit) -> Column {

@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use froude_identify::answer::Answer;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared, too_many};
-use froude_identify::method::{Found, Method, observes};
+use froude_identify::method::{Export, Found, Method, observes};
 use froude_identify::source::asked_models;
+use froude_records::added_mass_options::GivenOption;
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
@@ -33,6 +34,13 @@ pub enum Input {
         paths: Vec<PathBuf>,
         /// A campaign other than the copy that lies with them.
         campaign: Option<PathBuf>,
+    },
+    /// A body file or a mesh, of which added mass is computed.
+    Mesh {
+        /// The file.
+        path: PathBuf,
+        /// What is asked of it.
+        options: Vec<GivenOption>,
     },
     /// Records, which are set side by side; nothing is fitted.
     Records(Vec<PathBuf>),
@@ -77,6 +85,16 @@ impl Job {
     pub fn of(input: Input) -> Self {
         Self { input, out: None, sidecar: None, models: Vec::new(), purpose: None, date: None }
     }
+
+    /// Where the results will lie, as far as that is known before the input is read.
+    #[must_use]
+    pub fn folder(&self) -> Option<PathBuf> {
+        match (&self.out, &self.input) {
+            (None, Input::File(path)) => Some(default_out(path, "results")),
+            (None, Input::Mesh { path, .. }) => Some(default_out(path, "added-mass")),
+            (out, _) => out.clone(),
+        }
+    }
 }
 
 /// What came out.
@@ -110,10 +128,7 @@ pub struct Summary {
 /// See [`Error`].
 pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let mut campaign = campaign_of(job)?;
-    let out = match (&job.out, &job.input) {
-        (None, Input::File(path)) => Some(default_out(path)),
-        (out, _) => out.clone(),
-    };
+    let out = job.folder();
     if let Some(out) = &out {
         results::can_be_written(out)?;
         reads_nothing_in(out, &campaign)?;
@@ -133,14 +148,15 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         _ => relative(path, &campaign.path),
     };
     let mut files = DataFiles::new(&named_as);
-    if is_campaign(&campaign.path) {
+    // A body file is no campaign, and has no key.
+    if is_campaign(&campaign.path) && !campaign.key.is_empty() {
         files.key(&campaign.path, "campaign")?;
     }
     let mut gathered = Gathered::default();
     for source in &campaign.sources {
         gathered.take(source, &campaign, &mut files, job, progress)?;
     }
-    let Gathered { sources, summaries, blocks, published, mut findings, beside, is_part } = gathered;
+    let Gathered { sources, summaries, blocks, exports, published, mut findings, beside, is_part } = gathered;
     findings.extend(laws_not_asked(&campaign));
     // What a method says without an estimate is an answer too: jogs show the polarity.
     if sources.is_empty() && published.is_empty() && summaries.is_empty() {
@@ -150,12 +166,14 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         });
         return Err(Error::Nothing(format!("{path}: the campaign has no [[source]]{instead}")));
     }
+    // Matrices of one body, or of one and more links, are no sources to be held against each other.
+    let is_one = campaign.sources.len() == 1 && published.is_empty();
     progress("comparing the sources");
     let estimates: Vec<Estimate> = sources.iter().flat_map(|s| s.estimates().iter().cloned()).collect();
     let fitted = EstimateFile { data: files.into_map(), ..EstimateFile::of(estimates) };
     let mut all = vec![("this campaign".to_owned(), fitted)];
     all.extend(published);
-    let comparison = side_by_side(&all, &job.input)?;
+    let comparison = if is_one { None } else { side_by_side(&all, &job.input)? };
     findings.extend(comparison.iter().flat_map(|c| c.findings.iter().cloned()));
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let (_, fitted) = all.remove(0);
@@ -174,7 +192,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let html = froude_report::html(&report)?;
     let figures = froude_report::figures(&report)?;
     let tables = observations::tables(&outcome.sources, &campaign)?;
-    outcome.written = Some(results::write(&out, &outcome.file, &tables, &figures, &html)?);
+    outcome.written = Some(results::write(&out, &outcome.file, &tables, &figures, &exports, &html)?);
     Ok(outcome)
 }
 
@@ -184,6 +202,7 @@ struct Gathered {
     sources: Vec<Answer>,
     summaries: Vec<Summary>,
     blocks: Vec<DocumentSection>,
+    exports: Vec<Export>,
     /// Records beside them, as they are called.
     published: Vec<(String, EstimateFile)>,
     findings: Vec<Finding>,
@@ -236,7 +255,7 @@ impl Gathered {
         source: &Source,
         is_one: bool,
     ) -> Result<(), Error> {
-        let Found { mut results, summary, blocks, findings, beside, is_part } = found;
+        let Found { mut results, summary, blocks, exports, findings, beside, is_part } = found;
         for result in &mut results {
             let read = result.files().to_vec();
             for estimate in result.estimates_mut() {
@@ -254,11 +273,25 @@ impl Gathered {
             self.summaries.push(Summary { sources: first..self.sources.len(), section: titled(section) });
         }
         self.blocks.extend(blocks.into_iter().map(titled));
+        for export in exports {
+            let name = if is_one { export.name } else { self.export_name(&source.name, &export.name) };
+            self.exports.push(Export { name, ..export });
+        }
         let of_source = |f: Finding| if source.name.is_empty() { f } else { f.of_source(&source.name) };
         self.findings.extend(findings.into_iter().map(of_source));
         self.beside = self.beside.take().or(beside);
         self.is_part |= is_part;
         Ok(())
+    }
+}
+
+impl Gathered {
+    /// A name that no other export has: the source's before the file's own, and a number where two sources come to the same one.
+    fn export_name(&self, source: &str, name: &str) -> String {
+        let source = observations::in_a_file_name(source);
+        let names = std::iter::once(format!("{source}-{name}")).chain((2..).map(|k| format!("{source}-{k}-{name}")));
+        let is_free = |name: &String| self.exports.iter().all(|other| !other.name.eq_ignore_ascii_case(name));
+        names.into_iter().find(is_free).unwrap_or_default()
     }
 }
 
@@ -369,7 +402,7 @@ fn laws_not_asked(campaign: &Campaign) -> Option<Finding> {
     })
 }
 
-/// A campaign as it is read, or the one that a bare table, runs or records stand for.
+/// A campaign as it is read, or the one that a bare table, runs, a mesh or records stand for.
 ///
 /// # Errors
 ///
@@ -379,6 +412,7 @@ pub fn campaign_of(job: &Job) -> Result<Campaign, Error> {
         Input::File(path) if is_campaign(path) => read_campaign(path)?,
         Input::File(table) => Campaign::of_table(table, job.sidecar.clone()),
         Input::Runs { paths, campaign } => Campaign::of_runs(paths.clone(), campaign.clone()),
+        Input::Mesh { path, options } => Campaign::of_mesh(path, options.clone()),
         Input::Records(paths) => Campaign::of_records(paths),
     })
 }
@@ -387,9 +421,9 @@ fn is_campaign(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
-fn default_out(input: &Path) -> PathBuf {
+fn default_out(input: &Path, what: &str) -> PathBuf {
     let stem = input.file_stem().map_or_else(|| "froude".to_owned(), |s| s.to_string_lossy().into_owned());
-    input.with_file_name(format!("{stem}-results"))
+    input.with_file_name(format!("{stem}-{what}"))
 }
 
 /// A path as seen from the campaign's folder, where it lies below it.

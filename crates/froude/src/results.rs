@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_identify::method::Export;
 use froude_records::csv_table::write_csv;
 use froude_records::estimate::EstimateFile;
 use froude_records::folder::UnfinishedFolder;
@@ -33,8 +34,8 @@ pub struct Written {
     pub figures: Vec<PathBuf>,
     /// A table of observations per fitted source.
     pub observations: Vec<PathBuf>,
-    /// What else the job makes.
-    pub others: Vec<PathBuf>,
+    /// Files for other programs.
+    pub exports: Vec<PathBuf>,
 }
 
 /// Says before a long computation whether its results can be written; nothing is left of the trial.
@@ -79,7 +80,7 @@ pub fn replace(out: &Path, fill: impl FnOnce(&Path) -> Result<(), Error>) -> Res
     Ok(folder.take_place()?)
 }
 
-/// Writes record, observations, figures and report into `out`.
+/// Writes record, observations, figures, exports and report into `out`.
 ///
 /// # Errors
 ///
@@ -89,25 +90,9 @@ pub fn write(
     file: &EstimateFile,
     observations: &[Table],
     figures: &[Figure],
+    exports: &[Export],
     html: &str,
 ) -> Result<Written, Error> {
-    write_also(out, file, observations, figures, html, &|_| Ok(Vec::new()))
-}
-
-/// The same with files of the job's own: `also` writes them into the folder that it is given, and returns their names.
-///
-/// # Errors
-///
-/// As [`replace`], and those of `also`.
-pub fn write_also(
-    out: &Path,
-    file: &EstimateFile,
-    observations: &[Table],
-    figures: &[Figure],
-    html: &str,
-    also: &dyn Fn(&Path) -> Result<Vec<PathBuf>, Error>,
-) -> Result<Written, Error> {
-    let mut others = Vec::new();
     replace(out, |folder| {
         write_estimates(&folder.join("estimate.json"), file)?;
         for table in observations {
@@ -121,7 +106,9 @@ pub fn write_also(
             write_atomically(&folder.join("figures").join(&figure.file_name), figure.svg.as_bytes())?;
         }
         write_atomically(&folder.join("report.html"), html.as_bytes())?;
-        others = also(folder)?;
+        for export in exports {
+            write_atomically(&folder.join(&export.name), &export.content)?;
+        }
         Ok(())
     })?;
     Ok(Written {
@@ -129,6 +116,6 @@ pub fn write_also(
         report: out.join("report.html"),
         figures: figures.iter().map(|f| out.join("figures").join(&f.file_name)).collect(),
         observations: observations.iter().map(|t| out.join(&t.path)).collect(),
-        others: others.iter().map(|name| out.join(name)).collect(),
+        exports: exports.iter().map(|export| out.join(&export.name)).collect(),
     })
 }

@@ -1,6 +1,7 @@
 //! What a page says of the method.
 
 use froude_records::campaign::Campaign;
+use indexmap::IndexSet;
 
 use super::error_models::error_models;
 use crate::answer::Answer;
@@ -10,10 +11,12 @@ use crate::source::SourceResult;
 #[must_use]
 pub fn sentences(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
     let sources: Vec<&SourceResult> = answers.iter().filter_map(Answer::fitted).collect();
+    let made = answers.iter().filter(|answer| answer.fitted().is_none()).flat_map(Answer::estimates);
+    let made = made.map(|estimate| format!("{}: {}.", estimate.source, estimate.method.words));
+    let made: IndexSet<String> = made.collect();
+    // Nothing was fitted to loads: of least squares there is nothing to say.
     if sources.is_empty() && !answers.is_empty() {
-        return vec![
-            "The method, the law and the signs of each estimate state how it was made and what it gives.".to_owned(),
-        ];
+        return made.into_iter().collect();
     }
     let mut out = vec![
         "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
@@ -46,6 +49,7 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
         );
     }
     out.extend(sources.iter().copied().flat_map(error_models));
+    out.extend(made);
     if let Some(rho) = campaign.fluid.density_kg_m3 {
         out.push(format!("Water density {rho} kg/m³ is stated by the campaign."));
     }

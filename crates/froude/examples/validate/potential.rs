@@ -3,9 +3,10 @@
 use std::error::Error;
 use std::path::Path;
 
-use froude::added_mass::frame::Axes;
-use froude::added_mass::links::{Configuration, LinksJob, LinksOutcome, links};
-use froude::added_mass::refine::Wanted;
+use froude::methods::added_mass::links::{Configuration, LinksOutcome, links};
+use froude::methods::added_mass::options::Asked;
+use froude::methods::added_mass::source::Water;
+use froude::panel::refine::Wanted;
 use froude::records::csv_table::read_csv;
 use froude::records::units::Dimension;
 
@@ -51,17 +52,10 @@ pub fn all(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Box<dyn E
     smooth(claims)
 }
 
-fn run(body: &Path, links_of: Vec<usize>, out: &Path) -> Result<LinksOutcome, Box<dyn Error>> {
-    let job = LinksJob {
-        body: body.to_owned(),
-        links: links_of,
-        density_kg_m3: None,
-        wanted: Wanted { tolerance: 0.005, ..Wanted::default() },
-        axes: Axes::Mesh,
-        out: Some(out.to_owned()),
-        date: None,
-    };
-    Ok(links(&job, &|_| {})?)
+fn run(body: &Path, links_of: Vec<usize>) -> Result<LinksOutcome, Box<dyn Error>> {
+    let wanted = Wanted { tolerance: 0.005, ..Wanted::default() };
+    let asked = Asked { links: links_of, wanted, ..Asked::of(body) };
+    Ok(links(&asked, &Water::default(), "", &|_| {})?)
 }
 
 /// Against the other code: within its digits and ours a pass, within what two extrapolations may differ by a finding.
@@ -102,16 +96,15 @@ fn surge(c: &Configuration) -> f64 {
 }
 
 fn necked(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Box<dyn Error>> {
-    let scratch = tempfile::tempdir()?;
     let body = root.join("examples/mamba-necked/body.toml");
     let numbers: Vec<usize> = (1..=9).filter(|k| full || k % 2 == 1).collect();
-    let done = run(&body, numbers.clone(), &scratch.path().join("out"))?;
+    let done = run(&body, numbers.clone())?;
     for c in &done.configurations {
         let (sway, axial) = NECKED[c.links - 1];
         independent(claims, TABLE, c, sway, axial);
     }
     let coefficient = |model: &str, name: &str| {
-        let fit = done.fits.iter().find(|e| e.law.name == model);
+        let fit = done.fits.iter().flat_map(|fits| &fits.estimates).find(|e| e.law.name == model);
         fit.and_then(|e| e.coefficients.get(name)?.value).ok_or_else(|| format!("no {model}/{name}"))
     };
     claims.near(
@@ -186,7 +179,7 @@ fn smooth(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
     let scratch = tempfile::tempdir()?;
     let body = scratch.path().join("smooth.toml");
     std::fs::write(&body, SMOOTH_BODY)?;
-    let done = run(&body, SMOOTH_ONE.map(|s| s.0).to_vec(), &scratch.path().join("out"))?;
+    let done = run(&body, SMOOTH_ONE.map(|s| s.0).to_vec())?;
     for (c, (_, sway, axial)) in done.configurations.iter().zip(SMOOTH_ONE) {
         independent(claims, SMOOTH, c, sway, axial);
     }

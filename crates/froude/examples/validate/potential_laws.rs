@@ -2,17 +2,18 @@
 
 use std::error::Error;
 
-use froude::added_mass::body::{BodyJob, body};
-use froude::added_mass::frame::{Axes, Point};
-use froude::added_mass::refine::Wanted;
 use froude::hydro::ellipsoid::ellipsoid_added_mass;
 use froude::hydro::near_wall::{Boundary, Direction, sphere_far_from_plane};
 use froude::mesh::robot::ModularRobot;
 use froude::mesh::sections::{Resolution, SectionBody};
+use froude::methods::added_mass::body::body;
+use froude::methods::added_mass::options::Asked;
+use froude::methods::added_mass::source::Water;
 use froude::panel::chain::{Chain, diagonal_form};
 use froude::panel::convergence::converged;
 use froude::panel::mirror::{Kind, Mirror, positive_part};
 use froude::panel::problem::{FIXED, Frame, Problem};
+use froude::panel::refine::Wanted;
 use froude::panel::revolution::{capsule, solve as modes, spheroid};
 use froude::panel::{fast, solve};
 
@@ -182,22 +183,14 @@ fn pool(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
     let scratch = tempfile::tempdir()?;
     let input = scratch.path().join("smooth.toml");
     std::fs::write(&input, crate::potential::SMOOTH_BODY)?;
-    let job = BodyJob {
-        input,
-        links: Some(2),
-        density_kg_m3: None,
-        axes: Axes::Mesh,
-        at: Point::At([0.0; 3]),
-        unit_m: None,
-        orientation: None,
+    let asked = Asked {
+        links: vec![2],
         surface_m: Some(0.5),
         tank_m: Some([1.5, 0.9, 1.0]),
         wanted: Wanted { tolerance: 0.01, ..Wanted::default() },
-        export: Vec::new(),
-        out: Some(scratch.path().join("out")),
-        date: None,
+        ..Asked::of(&input)
     };
-    let done = body(&job, &|_| {})?;
+    let done = body(&asked, &Water::default(), "", &|_| {})?;
     let value = |case: usize, i: usize| done.cases[case].refined.value[i][i];
     for (case, i, name, other) in
         [(1, 0, "μ_x, lid", 3.75), (1, 1, "μ_y, lid", 0.65), (2, 0, "μ_x, φ = 0", 1.55), (2, 1, "μ_y, φ = 0", 0.43)]

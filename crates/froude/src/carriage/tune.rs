@@ -133,6 +133,6 @@ fn write(
         findings: runs.findings.clone(),
         ..Document::default()
     };
-    let written = results::write(&report_of(prepared), &file, &[], &[], &document.html()?)?;
+    let written = results::write(&report_of(prepared), &file, &[], &[], &[], &document.html()?)?;
     Ok((file, written))
 }

@@ -4,12 +4,12 @@ use froude_mesh::Mesh;
 use froude_mesh::check::extent;
 use froude_mesh::plausible::crosses;
 use froude_panel::mirror::{Kind, Mirror};
+use froude_panel::refine::Placed;
 use froude_panel::tank::{Surface, Tank};
 
-use super::body::BodyJob;
 use super::frame::Direction;
-use super::refine::Placed;
-use crate::Error;
+use super::options::Asked;
+use crate::error::AddedMassError;
 
 /// Distance from the water's surface that is none, as part of the body's extent.
 const ROUNDING: f64 = 1e-9;
@@ -24,7 +24,7 @@ pub(super) struct Surrounding {
 }
 
 /// The cases of a job; a body that the surface meets, or that lies above it, is refused.
-pub(super) fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding>, Error> {
+pub(super) fn surroundings(job: &Asked, mesh: &Mesh) -> Result<Vec<Surrounding>, AddedMassError> {
     let deep = Surrounding {
         title: "Deeply submerged".to_owned(),
         words: "unbounded water".to_owned(),
@@ -37,32 +37,19 @@ pub(super) fn surroundings(job: &BodyJob, mesh: &Mesh) -> Result<Vec<Surrounding
     let (axis, at_m) = (up.axis, up.sign() * surface_m);
     let letter = ["x", "y", "z"][axis];
     if let Some(crossing) = crosses(mesh, axis, at_m) {
-        return Err(Error::Nothing(format!(
-            "{}: {crossing}: the body pierces the water's surface; bodies that float are not computed here, submerge it",
-            job.input.display()
-        )));
+        return Err(AddedMassError::Pierces { path: job.input.clone(), crossing });
     }
     let is_above = mesh.vertices.iter().any(|v| up.coordinate(*v) > surface_m);
     if is_above {
-        return Err(Error::Nothing(format!(
-            "{}: the body lies above the water's surface at {letter} = {at_m} m; give --surface the height of the surface over the origin of the \
-             mesh, and --up the axis of the mesh that points up, as --up -z",
-            job.input.display()
-        )));
+        return Err(AddedMassError::Above { path: job.input.clone(), letter, at_m });
     }
     let slack_m = ROUNDING * extent(mesh);
     let touching = mesh.panels.iter().position(|p| mesh.corners(*p).all(|c| (c[axis] - at_m).abs() <= slack_m));
     if let Some(panel) = touching {
-        return Err(Error::Nothing(format!(
-            "{}: panel {panel} lies in the water's surface at {letter} = {at_m} m: bodies that float are not computed here, submerge it",
-            job.input.display()
-        )));
+        return Err(AddedMassError::Touches { path: job.input.clone(), panel, letter, at_m });
     }
     if job.tank_m.is_some() && up != Direction::Z {
-        return Err(Error::Nothing(format!(
-            "{}: in a tank the z axis of the mesh must point up, and here {up} does; export the mesh with z up",
-            job.input.display()
-        )));
+        return Err(AddedMassError::TankUp { path: job.input.clone(), up });
     }
     let place = match job.tank_m {
         Some([l, b, d]) => {

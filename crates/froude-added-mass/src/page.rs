@@ -1,18 +1,16 @@
 //! The report of an added mass: matrix, convergence, configurations.
 
 use froude_mesh::Vec3;
-use froude_records::estimate::{Estimate, EstimateFile};
+use froude_panel::refine::Refined;
+use froude_records::estimate::Estimate;
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
-use froude_report::document::Document;
 
 use super::body::BodyOutcome;
-use super::links::{Configuration, no_fits};
-use super::record::{MOTIONS, unit};
-use super::refine::Refined;
-
-/// Sort of page.
-const SORT: &str = "Added mass · potential flow";
+use super::limits;
+use super::links::{Configuration, LinksOutcome, no_fits};
+use super::record::{MOTIONS, diagonal_head, diagonal_name, entry_name};
+use super::several::SeveralOutcome;
 
 /// A point in words; what is less than a nanometre is nothing.
 #[must_use]
@@ -81,7 +79,7 @@ pub fn dimensionless_table(refined: &Refined, length_m: f64) -> TextTable {
             let [of_volume, of_length] =
                 if i < 3 { [v, length_m.powi(3)] } else { [v * length_m.powi(2), length_m.powi(5)] };
             let of = |size: f64| with_uncertainty(refined.value[i][i] / size, refined.uncertainty[i][i] / size);
-            vec![MOTIONS[i].to_owned(), of(of_volume), of(of_length)]
+            vec![diagonal_name(i), of(of_volume), of(of_length)]
         })
         .collect();
     TextTable {
@@ -111,7 +109,7 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
         })
         .collect();
     let head = ["panels", "unknowns", "iterations"].map(str::to_owned).into_iter();
-    let masses = (0..6).map(|i| format!("A{0}{0} [{1}]", i + 1, unit(i, i).replace('*', " ").replace("^2", "²")));
+    let masses = (0..6).map(diagonal_head);
     TextTable {
         caption: "Meshes, the coarsest first. The last column is the largest raw asymmetry |A_ij − A_ji|/√(A_ii A_jj): an indicator, not an estimate \
                   of the error."
@@ -127,7 +125,7 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
     let panels: Vec<f64> = refined.steps.iter().map(|s| s.panels as f64).collect();
     let mut series: Vec<Series> = motions(refined)
         .map(|i| Series {
-            name: MOTIONS[i].to_owned(),
+            name: diagonal_name(i),
             x: panels.clone(),
             y: refined.steps.iter().map(|s| (s.added_mass.matrix[i][i] / refined.value[i][i] - 1.0).abs()).collect(),
             ..Series::default()
@@ -158,7 +156,7 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
 #[must_use]
 pub fn convergence_words(refined: &Refined) -> Vec<String> {
     let orders: Vec<String> =
-        motions(refined).filter_map(|i| Some(format!("{} {:.2}", MOTIONS[i], refined.order[i][i]?))).collect();
+        motions(refined).filter_map(|i| Some(format!("{} {:.2}", entry_name((i, i)), refined.order[i][i]?))).collect();
     let mut out = vec![if refined.steps.len() == 1 {
         "One mesh only: there is no numerical uncertainty; three meshes give one.".to_owned()
     } else if orders.is_empty() {
@@ -265,103 +263,79 @@ fn links_chart(configurations: &[Configuration], density_kg_m3: f64) -> Chart {
     }
 }
 
-/// The report over configurations.
+/// What is said of a table of configurations: at the head, and of each.
 #[must_use]
-pub fn links(
-    name: &str,
-    density_kg_m3: f64,
-    place: &str,
-    configurations: &[Configuration],
-    fits: &[Estimate],
-    file: &EstimateFile,
-    date: Option<String>,
-) -> Document {
-    let mut sections = vec![DocumentSection {
+pub fn links(outcome: &LinksOutcome) -> (DocumentSection, Vec<DocumentSection>) {
+    let LinksOutcome { name, density_kg_m3, place, configurations, fits, .. } = outcome;
+    let rho = *density_kg_m3;
+    let mut head = DocumentSection {
         title: "Configurations".to_owned(),
-        paragraphs: vec![format!("Density {density_kg_m3} kg/m³. {place}")],
-        tables: vec![links_table(configurations, density_kg_m3)],
-        charts: vec![links_chart(configurations, density_kg_m3)],
-    }];
-    if let Some(why) = no_fits(configurations.len()) {
-        sections.push(DocumentSection {
-            title: "Least squares".to_owned(),
-            paragraphs: vec![why],
-            ..DocumentSection::default()
-        });
-    } else {
-        sections.push(DocumentSection {
-            title: "Least squares".to_owned(),
-            paragraphs: vec![
-                "Details, residuals and the choice among the laws: campaign-results/report.html.".to_owned(),
-            ],
-            tables: vec![fits_table(fits)],
-            ..DocumentSection::default()
-        });
-    }
-    for c in configurations {
-        sections.push(DocumentSection {
+        paragraphs: vec![format!("{name}, density {rho} kg/m³. {place}")],
+        tables: vec![links_table(configurations, rho)],
+        charts: vec![links_chart(configurations, rho)],
+    };
+    head.paragraphs.extend(no_fits(configurations.len()));
+    head.tables.extend(fits.iter().map(|fits| fits_table(&fits.estimates)));
+    let mut blocks: Vec<DocumentSection> = configurations
+        .iter()
+        .map(|c| DocumentSection {
             title: c.name.clone(),
             paragraphs: convergence_words(&c.refined),
-            tables: vec![matrix_table(&c.refined, density_kg_m3), steps_table(&c.refined, density_kg_m3)],
+            tables: vec![matrix_table(&c.refined, rho), steps_table(&c.refined, rho)],
             charts: Vec::new(),
-        });
+        })
+        .collect();
+    if let (Some(block), Some(last)) = (blocks.last_mut(), configurations.last()) {
+        block.charts.push(convergence_chart(&last.refined));
     }
-    if let Some(last) = configurations.last() {
-        let chart = convergence_chart(&last.refined);
-        sections.push(DocumentSection {
-            title: format!("Convergence of {}", last.name),
-            charts: vec![chart],
-            ..Default::default()
-        });
-    }
-    Document {
-        sort: SORT.to_owned(),
-        title: name.to_owned(),
-        subtitle: "by number of links".to_owned(),
-        date,
-        sections,
-        findings: file.findings.clone(),
-    }
+    (head, blocks)
 }
 
-/// The report of one body.
+/// What is said of one body.
 #[must_use]
-pub fn body(outcome: &BodyOutcome, date: Option<String>) -> Document {
+pub fn body(outcome: &BodyOutcome) -> DocumentSection {
     let rho = outcome.density_kg_m3;
-    let first = &outcome.cases[0];
-    let mut sections = vec![DocumentSection {
-        title: "Result".to_owned(),
-        paragraphs: std::iter::once(outcome.place.clone()).chain(outcome.notes.iter().cloned()).collect(),
-        tables: vec![super::limits::table(&outcome.cases, rho).unwrap_or_else(|| matrix_table(&first.refined, rho))],
+    let mut out = DocumentSection {
+        title: "Added mass".to_owned(),
+        paragraphs: vec![format!("{}, density {rho} kg/m³.", outcome.name), outcome.place.clone()],
+        tables: limits::table(&outcome.cases, rho).into_iter().collect(),
         charts: Vec::new(),
-    }];
-    for case in &outcome.cases {
-        sections.push(DocumentSection {
-            title: case.title.clone(),
-            paragraphs: std::iter::once(format!("{}.", case.surroundings))
-                .chain(convergence_words(&case.refined))
-                .collect(),
-            // The only matrix stands above, as the result.
-            tables: (outcome.cases.len() > 1)
-                .then(|| matrix_table(&case.refined, rho))
-                .into_iter()
-                .chain([dimensionless_table(&case.refined, outcome.length_m), steps_table(&case.refined, rho)])
-                .collect(),
-            charts: vec![convergence_chart(&case.refined)],
-        });
+    };
+    let is_one = outcome.cases.len() == 1;
+    for (i, case) in outcome.cases.iter().enumerate() {
+        let of_case = |table: TextTable| {
+            let caption = if is_one {
+                table.caption
+            } else {
+                format!("{} ({}). {}", case.title, case.surroundings, table.caption)
+            };
+            TextTable { caption, ..table }
+        };
+        let tables = [
+            matrix_table(&case.refined, rho),
+            dimensionless_table(&case.refined, outcome.length_m),
+            steps_table(&case.refined, rho),
+        ];
+        out.tables.extend(tables.map(of_case));
+        let words = convergence_words(&case.refined);
+        out.paragraphs.push(format!("{} ({}). {}", case.title, case.surroundings, words.join(" ")));
+        let chart = convergence_chart(&case.refined);
+        let name = if is_one { chart.name } else { format!("{}-{}", chart.name, i + 1) };
+        out.charts.push(Chart { name, title: format!("{}: {}", case.title, chart.title), ..chart });
     }
-    sections.push(DocumentSection {
-        title: "Body".to_owned(),
-        paragraphs: Vec::new(),
+    out.tables.extend(outcome.tables.iter().cloned());
+    out.paragraphs.extend(outcome.notes.iter().cloned());
+    out
+}
+
+/// What is said of several parts.
+#[must_use]
+pub fn several(outcome: &SeveralOutcome) -> DocumentSection {
+    let head = [format!("{}, density {} kg/m³.", outcome.name, outcome.density_kg_m3), outcome.place.clone()];
+    DocumentSection {
+        title: "Added mass, part by part".to_owned(),
+        paragraphs: head.into_iter().chain(outcome.notes.iter().cloned()).collect(),
         tables: outcome.tables.clone(),
         charts: Vec::new(),
-    });
-    Document {
-        sort: SORT.to_owned(),
-        title: outcome.name.clone(),
-        subtitle: String::new(),
-        date,
-        sections,
-        findings: outcome.file.findings.clone(),
     }
 }

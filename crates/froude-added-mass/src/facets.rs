@@ -4,13 +4,13 @@ use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::mirror::{Kind, Mirror};
 use froude_panel::problem::{Frame, Problem};
+use froude_panel::refine::{Wanted, forecast, memory_bytes};
 use froude_records::number;
 use froude_records::page::TextTable;
 
 use super::body::Case;
 use super::load::WARP;
-use super::record::MOTIONS;
-use super::refine::{Wanted, forecast, memory_bytes};
+use super::record::diagonal_name;
 
 /// Angle between facets from which an edge is an edge of the body, rad: seven segments to a circle still count as round.
 const CREASE_RAD: f64 = 50.0 * core::f64::consts::PI / 180.0;
@@ -46,7 +46,7 @@ pub(super) fn geometry(
             // Less than nothing is not left of an entry.
             let apart = (4.0 / 3.0 * (round[i][i] - flat[i][i])).max(-value);
             vec![
-                MOTIONS[i].to_owned(),
+                diagonal_name(i),
                 number::plain(density_kg_m3 * value, 6),
                 percent_of(case.refined.uncertainty[i][i], value).replace('+', ""),
                 percent_of(apart, value),

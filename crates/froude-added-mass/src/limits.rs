@@ -10,7 +10,7 @@ use froude_records::number;
 use froude_records::page::TextTable;
 
 use super::body::Case;
-use super::record::MOTIONS;
+use super::record::diagonal_name;
 
 /// ω²d/g below which the lid, and above which φ = 0, is a fair picture.
 const SLOW: f64 = 0.1;
@@ -23,7 +23,7 @@ pub fn table(cases: &[Case], density_kg_m3: f64) -> Option<TextTable> {
     let rows = (0..6)
         .map(|i| {
             let deep = first.refined.value[i][i];
-            let mut row = vec![MOTIONS[i].to_owned(), number::plain(density_kg_m3 * deep, 6)];
+            let mut row = vec![diagonal_name(i), number::plain(density_kg_m3 * deep, 6)];
             for case in others {
                 let value = case.refined.value[i][i];
                 row.push(number::plain(density_kg_m3 * value, 6));

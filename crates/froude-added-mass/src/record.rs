@@ -2,16 +2,13 @@
 
 use std::path::Path;
 
+use froude_panel::refine::Refined;
 use froude_records::estimate::{
-    Coefficient, DataFile, Diagnostics, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed,
-    ReferencePoint, Signs, Status, TypeA,
+    Coefficient, Diagnostics, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed, ReferencePoint,
+    Signs, Status, TypeA,
 };
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
-
-use super::links::file_name;
-use super::refine::Refined;
-use crate::Error;
 
 /// Coverage factor of a numerical uncertainty: it is stated as an interval of 95 %.
 const COVERAGE: f64 = 2.0;
@@ -49,32 +46,27 @@ pub struct About {
     pub surroundings: String,
 }
 
-/// The one file that the matrices of a record come from.
-pub(super) fn mesh_file(path: &Path) -> Result<DataFile, Error> {
-    Ok(DataFile { role: Some("mesh".to_owned()), ..DataFile::of(path, &file_name(path))? })
-}
-
 /// What the signs of a matrix mean.
 pub(super) fn signs() -> Signs {
     Signs("loads of the fluid on the body are F = −A·v̇, with A the matrix and v̇ the accelerations".to_owned())
 }
 
-/// An estimate that came from it, and from what was made of it on the way.
-pub(super) fn of_the_mesh(estimate: Estimate) -> Estimate {
-    Estimate { data: vec!["d1".to_owned()], ..estimate }
-}
-
-/// The frame of a record that lies in a folder already, in words.
+/// The frame of a record, in words.
 fn place_of(file: &EstimateFile) -> Option<String> {
     file.estimates.last().map(|e| format!("{}; moments about {}", e.frame.words, e.point.words))
 }
 
-/// A sentence where a folder holds a record in another frame than a new one, which takes its place: the two look alike, and the entries of
-/// one are not those of the other. To be asked before the new one is written.
+/// The frame of the record that lies in a folder, in words; to be asked before another takes its place.
 #[must_use]
-pub fn replaces_another_frame(out: &Path, new: &EstimateFile) -> Option<String> {
-    let (before, now) = (place_of(&read_estimates(&out.join("estimate.json")).ok()?)?, place_of(new)?);
-    (before != now).then(|| {
+pub fn place_in(out: &Path) -> Option<String> {
+    place_of(&read_estimates(&out.join("estimate.json")).ok()?)
+}
+
+/// A sentence where a record in another frame has taken the place of one in a folder: the two look alike, and the entries of one are not those
+/// of the other.
+#[must_use]
+pub fn replaces_another_frame(out: &Path, before: &str, new: &EstimateFile) -> Option<String> {
+    (place_of(new)? != before).then(|| {
         format!(
             "The earlier record in {} is replaced. It had another frame: {before}. To keep both, give each its folder with --out.",
             out.display()
@@ -87,8 +79,28 @@ fn entries() -> impl Iterator<Item = (usize, usize)> + Clone {
     (0..6).flat_map(|i| (i..6).map(move |j| (i, j)))
 }
 
-fn entry_name((i, j): (usize, usize)) -> String {
+/// `A11` … `A66`.
+#[must_use]
+pub fn entry_name((i, j): (usize, usize)) -> String {
     format!("A{}{}", i + 1, j + 1)
+}
+
+/// The same of several parts, six rows and columns each: `A22_1_3`, the sway force on the first part from the sway of the third.
+#[must_use]
+pub fn entry_name_of_parts((i, j): (usize, usize)) -> String {
+    format!("{}_{}_{}", entry_name((i % 6, j % 6)), i / 6 + 1, j / 6 + 1)
+}
+
+/// An entry of the diagonal with its motion and its unit, as the head of a column: `A22 sway [kg]`.
+#[must_use]
+pub fn diagonal_head(i: usize) -> String {
+    format!("{} {} [{}]", entry_name((i, i)), MOTIONS[i], if i < 3 { "kg" } else { "kg m²" })
+}
+
+/// The same without its unit, as the name of a row: `A22 sway`.
+#[must_use]
+pub fn diagonal_name(i: usize) -> String {
+    format!("{} {}", entry_name((i, i)), MOTIONS[i])
 }
 
 /// Covariance of the entries: on its diagonal the squares of their standard uncertainties, beside it what they have in common. `None` where
@@ -161,7 +173,6 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
                 if refined.steps.len() > 1 { ", extrapolated" } else { "" }
             ),
         },
-        n_observations: refined.steps.len(),
         coefficients,
         type_a: covariance,
         diagnostics: Diagnostics {

@@ -1,23 +1,23 @@
 //! Files beside the record: the pressure on the body, and what other programs read.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use froude_hydro::similarity::GRAVITY_M_S2;
+use froude_identify::method::Export;
 use froude_panel::matrix::{AddedMass, congruent};
 use froude_panel::problem::Frame;
 use froude_records::added_mass_files::AddedMassFile;
-use froude_records::write::write_atomically;
 
-use super::body::{BodyJob, BodyOutcome, Case};
+use super::body::{BodyOutcome, Case};
 use super::frame::{Axes, Orientation};
+use super::options::Asked;
 use super::pressure::pressure;
-use crate::Error;
+use crate::error::AddedMassError;
 
-/// The pressure on the body, and the files that were asked for; their names in the folder.
-pub(super) fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let mut names = vec![PathBuf::from("pressure.vtp")];
+/// The pressure on the body, and the files that were asked for.
+pub(super) fn extras(outcome: &BodyOutcome, job: &Asked) -> Result<Vec<Export>, AddedMassError> {
     let pressure = pressure(&outcome.cases[0].refined.finest, outcome.density_kg_m3, &outcome.frame);
-    write_atomically(&folder.join(&names[0]), pressure.as_bytes())?;
+    let mut out = vec![Export { name: "pressure.vtp".to_owned(), content: pressure.into_bytes() }];
     let body =
         outcome.name.chars().map(|c| if c.is_ascii_alphanumeric() || " -.".contains(c) { c } else { '-' }).collect();
     let bodies = [body];
@@ -39,11 +39,15 @@ pub(super) fn extras(outcome: &BodyOutcome, job: &BodyJob, folder: &Path) -> Res
             zero_frequency: zero.as_deref(),
             infinite_frequency: infinite.as_deref(),
         };
-        let name = PathBuf::from(format!("added-mass.{extension}"));
-        file.write(&folder.join(&name))?;
-        names.push(name);
+        out.push(export(&file, extension)?);
     }
-    Ok(names)
+    Ok(out)
+}
+
+/// A matrix for another program.
+pub(super) fn export(file: &AddedMassFile<'_>, extension: &str) -> Result<Export, AddedMassError> {
+    let name = format!("added-mass.{extension}");
+    Ok(Export { content: file.bytes(Path::new(&name))?, name })
 }
 
 /// Whether wave programs read a format: they take z up, about the origin of the mesh.
@@ -52,13 +56,13 @@ fn is_of_waves(extension: &str) -> bool {
 }
 
 /// The frame of the files for wave programs.
-fn wave_frame(job: &BodyJob) -> Frame {
+fn wave_frame(job: &Asked) -> Frame {
     let mesh = job.orientation.unwrap_or_default();
     Frame { axes: mesh.wave_axes().vectors(mesh), ..Frame::at([0.0; 3]) }
 }
 
 /// The message about the exports of one body.
-pub(super) fn words(job: &BodyJob) -> Vec<String> {
+pub(super) fn words(job: &Asked) -> Vec<String> {
     let mut out = Vec::new();
     if job.export.iter().any(|e| is_of_waves(e)) {
         out.push(format!(
@@ -80,7 +84,7 @@ fn wave_words(mesh: Orientation) -> String {
 }
 
 /// The same of parts, each about its own point; links have no mesh of their own that could lie otherwise.
-pub(super) fn words_of_parts(job: &BodyJob, is_links: bool) -> Option<String> {
+pub(super) fn words_of_parts(job: &Asked, is_links: bool) -> Option<String> {
     job.export.iter().any(|e| is_of_waves(e)).then(|| {
         let mesh = job.orientation.unwrap_or_default();
         let z = if job.axes == mesh.wave_axes() {
@@ -95,7 +99,7 @@ pub(super) fn words_of_parts(job: &BodyJob, is_links: bool) -> Option<String> {
 }
 
 /// A matrix of parts in the axes that a format has, each part about its own point.
-pub(super) fn of_parts_for_program(matrix: &[Vec<f64>], extension: &str, job: &BodyJob) -> Vec<Vec<f64>> {
+pub(super) fn of_parts_for_program(matrix: &[Vec<f64>], extension: &str, job: &Asked) -> Vec<Vec<f64>> {
     let mesh = job.orientation.unwrap_or_default();
     if !is_of_waves(extension) || job.axes == mesh.wave_axes() {
         return matrix.to_vec();
@@ -116,26 +120,11 @@ pub(super) fn of_parts_for_program(matrix: &[Vec<f64>], extension: &str, job: &B
 
 #[cfg(test)]
 mod tests {
-    use super::super::frame::{Direction, Point};
-    use super::super::refine::Wanted;
+    use super::super::frame::Direction;
     use super::*;
 
-    fn job(axes: Axes, orientation: Option<Orientation>, export: &[&'static str]) -> BodyJob {
-        BodyJob {
-            input: PathBuf::from("pod.obj"),
-            links: None,
-            density_kg_m3: Some(1000.0),
-            axes,
-            at: Point::At([0.0; 3]),
-            unit_m: None,
-            orientation,
-            surface_m: None,
-            tank_m: None,
-            wanted: Wanted::default(),
-            export: export.to_vec(),
-            out: None,
-            date: None,
-        }
+    fn job(axes: Axes, orientation: Option<Orientation>, export: &[&'static str]) -> Asked {
+        Asked { axes, orientation, export: export.to_vec(), ..Asked::of(Path::new("pod.obj")) }
     }
 
     const EVERY_PART: &str =

@@ -11,13 +11,13 @@ use froude_mesh::plausible::too_large;
 use froude_mesh::refine::without_warp;
 use froude_mesh::vector::{norm, sub};
 use froude_mesh::{Mesh, Vec3};
+use froude_panel::family::Family;
 use froude_records::body::{Shape, read_body};
 use froude_records::finding::{Finding, Severity};
 
-use super::body::BodyJob;
-use super::family::Family;
-use super::links::{file_name, not_links};
-use crate::Error;
+use super::options::Asked;
+use super::shape::family;
+use crate::error::AddedMassError;
 
 /// A body that was read, with everything that was found.
 #[derive(Debug, Clone)]
@@ -53,7 +53,7 @@ pub fn is_body_file(path: &Path) -> bool {
 /// # Errors
 ///
 /// A file that cannot be read.
-pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>), Error> {
+pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>), AddedMassError> {
     let bytes = froude_records::read::whole(path, LARGEST_FILE, "a mesh")?;
     let file = files::read(&path.display().to_string(), &bytes)?;
     let unit_m = unit_m.unwrap_or(1.0);
@@ -62,15 +62,11 @@ pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>)
 }
 
 /// Refuses for a body file what only a mesh needs.
-pub(super) fn of_a_mesh_only(job: &BodyJob) -> Result<(), Error> {
-    let why = if job.unit_m.is_some() {
-        "--unit is for a mesh; a body file has a unit at each length"
-    } else if job.orientation.is_some() {
-        "--forward and --up are for a mesh; a body file has x forward along the body and z up"
-    } else {
-        return Ok(());
-    };
-    Err(Error::Nothing(format!("{}: {why}", job.input.display())))
+pub(super) fn of_a_mesh_only(job: &Asked) -> Result<(), AddedMassError> {
+    if job.unit_m.is_some() || job.orientation.is_some() {
+        return Err(AddedMassError::OfAMesh { path: job.input.clone(), is_unit: job.unit_m.is_some() });
+    }
+    Ok(())
 }
 
 /// Reads and checks.
@@ -78,23 +74,18 @@ pub(super) fn of_a_mesh_only(job: &BodyJob) -> Result<(), Error> {
 /// # Errors
 ///
 /// A file that cannot be read, and a mesh that potential flow cannot be computed on, with everything that is wrong with it.
-pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
+pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
     if is_body_file(&job.input) {
         of_a_mesh_only(job)?;
         let body = read_body(&job.input)?;
-        let links = match (&body.shape, job.links) {
-            (Shape::Robot { .. }, Some(links)) => links,
-            (Shape::Robot { .. }, None) => {
-                return Err(Error::Nothing(format!(
-                    "{}: a robot has links; say how many: --links 3, or --links 1..9 for a table",
-                    job.input.display()
-                )));
-            }
-            (_, Some(_)) => return Err(not_links(&job.input)),
+        let links = match (&body.shape, job.links.first()) {
+            (Shape::Robot { .. }, Some(links)) => *links,
+            (Shape::Robot { .. }, None) => return Err(AddedMassError::HowManyLinks { path: job.input.clone() }),
+            (_, Some(_)) => return Err(AddedMassError::NoLinks { path: job.input.clone() }),
             (_, None) => 0,
         };
-        let name = if job.links.is_some() { format!("{}, H{links}LT", body.name) } else { body.name };
-        let family = Family::of(&body.shape, links);
+        let name = if job.links.is_empty() { body.name } else { format!("{}, H{links}LT", body.name) };
+        let family = family(&body.shape, links);
         let notes = vec!["Meshes from the dimensions; every mesh is similar to the others.".to_owned()];
         return Ok(Loaded {
             name,
@@ -106,8 +97,8 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
             findings: Vec::new(),
         });
     }
-    if job.links.is_some() {
-        return Err(not_links(&job.input));
+    if !job.links.is_empty() {
+        return Err(AddedMassError::NoLinks { path: job.input.clone() });
     }
     let (mesh, mut notes) = read_mesh(&job.input, job.unit_m)?;
     let mut findings = Vec::new();
@@ -151,14 +142,10 @@ pub fn load(job: &BodyJob) -> Result<Loaded, Error> {
                 job.unit_m.map_or_else(String::new, |m| format!(" --unit \"{m} m\""))
             ));
         }
-        return Err(Error::Nothing(format!(
-            "{}: potential flow cannot be computed on this mesh:\n{}",
-            job.input.display(),
-            wrong.join("\n")
-        )));
+        return Err(AddedMassError::Unfit { path: job.input.clone(), troubles: wrong });
     }
     if let Some(doubt) = too_large(&mesh).filter(|_| job.unit_m.is_none()) {
-        return Err(Error::Nothing(format!("{}: {doubt}", job.input.display())));
+        return Err(AddedMassError::TooLarge { path: job.input.clone(), doubt });
     }
     findings.extend(thin_panels(&mesh));
     let flat = without_warp(&mesh, WARP);
@@ -196,6 +183,10 @@ fn thin_panels(mesh: &Mesh) -> Option<Finding> {
         extent_m / 30.0
     );
     Some(Finding::new(Severity::Note, "thin-panels", message))
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |n| n.to_string_lossy().into_owned())
 }
 
 /// Faults of a mesh that are reported one by one.

@@ -2,33 +2,38 @@
 //!
 //! | module | what |
 //! | --- | --- |
-//! | [`family`] | similar meshes of a body, each finer than the one before |
-//! | [`refine`] | finer and finer until the tolerance is met, with the cost stated beforehand |
-//! | [`links`] | the robot with 1 to k links: the table, its least squares |
+//! | [`source`] | the method: a mesh of a campaign, its estimates, page and exports |
+//! | [`options`] | what is asked for, as flags or keys of a campaign say it |
+//! | [`load`], [`shape`] | a body file or a mesh, read and checked; the meshes of a shape |
 //! | [`body`] | one body or mesh: what is computed, in which frame |
-//! | [`load`] | a body file or a mesh, read and checked |
-//! | [`frame`] | axes and point of the result, and how a mesh lies |
+//! | [`links`] | the robot with 1 to k links: the table, its least squares |
 //! | [`several`] | links of a chain, parts of a mesh: six rows and columns each |
+//! | [`frame`] | axes and point of the result, and how a mesh lies |
 //! | [`spectral`] | bodies of revolution to eight digits and more |
 //! | [`limits`] | unbounded water, rigid lid, φ = 0: side by side, and which holds when |
 //! | [`repair`] | a corrected mesh, as a new file |
 //! | [`record`] | a matrix as an estimate |
-//! | [`page`] | the report |
+//! | [`page`] | what the report and the terminal say |
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod body;
 mod cross_checks;
+mod error;
 mod exports;
 mod facets;
-pub mod family;
 pub mod frame;
 pub mod limits;
 pub mod links;
 pub mod load;
+pub mod options;
 pub mod page;
 mod pressure;
 pub mod record;
-pub mod refine;
 pub mod repair;
 pub mod several;
+pub mod shape;
+pub mod source;
 pub mod spectral;
 mod surroundings;
+
+pub use error::AddedMassError;

@@ -4,9 +4,9 @@ use froude_mesh::Mesh;
 use froude_mesh::files::vtk::vtp;
 use froude_panel::mirror::{Kind, Mirror, signs};
 use froude_panel::problem::Frame;
+use froude_panel::refine::Finest;
 
 use super::record::MOTIONS;
-use super::refine::Finest;
 
 /// Pressure over unit acceleration on the whole body, −ρ φ, for each motion in the frame asked for; the points are those of the mesh.
 pub(super) fn pressure(finest: &Finest, density_kg_m3: f64, frame: &Frame) -> String {

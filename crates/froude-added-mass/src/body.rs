@@ -1,59 +1,29 @@
 //! One body or mesh: what is computed of it, in which frame, and what results.
 
-use std::path::{Path, PathBuf};
-
+use froude_identify::method::Export;
 use froude_mesh::measure::Measure;
 use froude_mesh::{Mesh, Vec3};
+use froude_panel::family::Family;
 use froude_panel::problem::Frame;
-use froude_records::estimate::{EstimateFile, keyed};
+use froude_panel::refine::{Forecast, Refined, Wanted, plan, refine};
+use froude_records::estimate::Estimate;
+use froude_records::finding::Finding;
 use froude_records::number;
 use froude_records::page::TextTable;
 
 use super::cross_checks;
 use super::exports::{self, extras};
 use super::facets::geometry;
-use super::family::Family;
 use super::frame::{Axes, Orientation, Point, inertia_m5, sentence};
 use super::limits;
-use super::links::{default_out, no_density, not_within};
+use super::links::not_within;
 use super::load::{Loaded, load};
-use super::page;
-use super::record::{About, estimate, mesh_file, of_the_mesh, replaces_another_frame};
-use super::refine::{Forecast, Refined, Wanted, plan, refine};
+use super::options::Asked;
+use super::record::{About, estimate};
+use super::source::Water;
 use super::spectral;
 use super::surroundings::surroundings;
-use crate::Error;
-
-/// What to compute.
-#[derive(Debug, Clone)]
-pub struct BodyJob {
-    /// A body file (.toml) or a mesh.
-    pub input: PathBuf,
-    /// Links of a robot.
-    pub links: Option<usize>,
-    /// Density instead of the file's, kg/m³.
-    pub density_kg_m3: Option<f64>,
-    /// Axes of the result.
-    pub axes: Axes,
-    /// Where moments are taken about.
-    pub at: Point,
-    /// Metres for a unit of the mesh; `None` where it is not stated.
-    pub unit_m: Option<f64>,
-    /// How the mesh lies; `None` where nobody said: x forward, z up.
-    pub orientation: Option<Orientation>,
-    /// Height of the water's surface over the origin of the mesh, m; `None`: deeply submerged.
-    pub surface_m: Option<f64>,
-    /// Length, breadth and depth of water of a tank with the origin in the middle of its plan, m.
-    pub tank_m: Option<[f64; 3]>,
-    /// Tolerance and limits.
-    pub wanted: Wanted,
-    /// Files to write beside the record: `1`, `nc`, `csv`.
-    pub export: Vec<&'static str>,
-    /// Folder of the results; beside the input, unless stated.
-    pub out: Option<PathBuf>,
-    /// Date for the report.
-    pub date: Option<String>,
-}
+use crate::error::AddedMassError;
 
 /// A matrix in one surrounding.
 #[derive(Debug, Clone)]
@@ -87,16 +57,12 @@ pub struct BodyOutcome {
     pub notes: Vec<String>,
     /// Cross-checks and hydrostatics.
     pub tables: Vec<TextTable>,
-    /// The record.
-    pub file: EstimateFile,
-    /// Where it lies.
-    pub estimate: PathBuf,
-    /// Where the page lies.
-    pub page: PathBuf,
-    /// The pressure on the body, and exports.
-    pub others: Vec<PathBuf>,
-    /// The message about a record in another frame that this one has replaced.
-    pub replaced: Option<String>,
+    /// Doubts.
+    pub findings: Vec<Finding>,
+    /// A record a matrix.
+    pub estimates: Vec<Estimate>,
+    /// The pressure on the body, and what was asked for beside the record.
+    pub exports: Vec<Export>,
 }
 
 /// What each mesh would take, with nothing computed.
@@ -104,7 +70,7 @@ pub struct BodyOutcome {
 /// # Errors
 ///
 /// As [`body`].
-pub fn forecasts(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Error> {
+pub fn forecasts(job: &Asked) -> Result<(Loaded, Vec<(usize, Forecast)>), AddedMassError> {
     let loaded = load(job)?;
     let mut around = surroundings(job, &loaded.family.member(0)?.mesh.mesh)?;
     // The last takes most: it has mirrors, or the walls of a tank.
@@ -116,26 +82,28 @@ pub fn forecasts(job: &BodyJob) -> Result<(Loaded, Vec<(usize, Forecast)>), Erro
     Ok((loaded, steps))
 }
 
-/// Computes, and writes `estimate.json`, `report.html`, `pressure.vtp` and what else is asked for.
+/// Computes; `progress` gets every step, the estimates are called after `source`, or after the body where that is empty.
 ///
 /// # Errors
 ///
-/// See [`Error`].
-pub fn body(job: &BodyJob, progress: &dyn Fn(&str)) -> Result<BodyOutcome, Error> {
+/// See [`AddedMassError`].
+pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -> Result<BodyOutcome, AddedMassError> {
     let loaded = load(job)?;
-    let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
-    crate::results::can_be_written(&out)?;
+    let density_kg_m3 = water.density_kg_m3(job, loaded.density_kg_m3)?;
     let coarse = loaded.family.member(0)?.mesh.mesh;
     let measure = Measure::of(&coarse);
     let mesh = job.orientation.unwrap_or_default();
-    let origin_m = match job.at {
+    let at = job.at.unwrap_or(Point::At([0.0; 3]));
+    let origin_m = match at {
         Point::At(at) => at,
         Point::Buoyancy => measure.centroid_m,
-        Point::Gravity => loaded.centre_of_gravity_m.ok_or_else(|| no_gravity(&job.input, loaded.shape.is_some()))?,
+        Point::Gravity => loaded.centre_of_gravity_m.ok_or_else(|| AddedMassError::NoGravity {
+            path: job.input.clone(),
+            is_body_file: loaded.shape.is_some(),
+        })?,
     };
     let frame = Frame { origin_m, axes: job.axes.vectors(mesh) };
-    let (axes, point) = (axes_words(job, mesh, &loaded), job.at.words(origin_m, job.axes));
+    let (axes, point) = (axes_words(job, mesh, &loaded), at.words(origin_m, job.axes));
     let mut findings = loaded.findings.clone();
     let mut cases = Vec::new();
     for s in surroundings(job, &coarse)? {
@@ -169,9 +137,9 @@ pub fn body(job: &BodyJob, progress: &dyn Fn(&str)) -> Result<BodyOutcome, Error
     if let (Some(tank), Some(surface_m)) = (job.tank_m, job.surface_m) {
         findings.push(limits::clearance(&coarse, tank, surface_m));
     }
+    let source = if source.is_empty() { &loaded.name } else { source };
     let estimates = cases.iter().map(|case| {
-        let source =
-            if cases.len() == 1 { loaded.name.clone() } else { format!("{}, {}", loaded.name, case.surroundings) };
+        let source = if cases.len() == 1 { source.to_owned() } else { format!("{source}, {}", case.surroundings) };
         let about = About {
             source,
             density_kg_m3,
@@ -182,12 +150,7 @@ pub fn body(job: &BodyJob, progress: &dyn Fn(&str)) -> Result<BodyOutcome, Error
         };
         estimate(&case.refined, &about)
     });
-    let file = EstimateFile {
-        data: keyed(vec![mesh_file(&job.input)?]),
-        versions: crate::results::versions(),
-        findings,
-        ..EstimateFile::of(estimates.map(of_the_mesh).collect())
-    };
+    let estimates = estimates.collect();
     let depth_m = job.surface_m.map(|surface_m| surface_m - mesh.up().coordinate(measure.centroid_m));
     notes.extend(limits::words(depth_m, job.tank_m));
     notes.extend(exports::words(job));
@@ -201,44 +164,20 @@ pub fn body(job: &BodyJob, progress: &dyn Fn(&str)) -> Result<BodyOutcome, Error
         cases,
         notes,
         tables,
-        replaced: replaces_another_frame(&out, &file),
-        file,
-        estimate: PathBuf::new(),
-        page: PathBuf::new(),
-        others: Vec::new(),
+        findings,
+        estimates,
+        exports: Vec::new(),
     };
-    let html = page::body(&outcome, job.date.clone()).html()?;
-    let also = |folder: &Path| extras(&outcome, job, folder);
-    let written = crate::results::write_also(&out, &outcome.file, &[], &[], &html, &also)?;
-    outcome.estimate = written.estimate;
-    outcome.page = written.report;
-    outcome.others = written.others;
+    outcome.exports = extras(&outcome, job)?;
     Ok(outcome)
 }
 
 /// Axes in words: of a body file they are known, of a mesh they were said.
-fn axes_words(job: &BodyJob, mesh: Orientation, loaded: &Loaded) -> String {
+fn axes_words(job: &Asked, mesh: Orientation, loaded: &Loaded) -> String {
     match (&loaded.shape, job.axes) {
         (None, _) | (_, Axes::Mesh) => job.axes.words(mesh),
         (Some(_), axes) => axes.own_words().to_owned(),
     }
-}
-
-/// Why nothing can be said about the centre of gravity.
-fn no_gravity(input: &Path, is_body_file: bool) -> Error {
-    let point = "\"0 mm, 0 mm, -12 mm\"";
-    Error::Nothing(if is_body_file {
-        format!(
-            "{}: --at cg: no centre of gravity is known; write centre_of_gravity = [\"0 mm\", \"0 mm\", \"-12 mm\"] in [body], or the point: \
-             --at {point}",
-            input.display()
-        )
-    } else {
-        format!(
-            "{}: --at cg: a mesh says nothing of masses; write the point in the axes of the mesh: --at {point}",
-            input.display()
-        )
-    })
 }
 
 fn extent_along(mesh: &Mesh, axis: usize) -> f64 {

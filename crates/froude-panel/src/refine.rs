@@ -3,16 +3,112 @@
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
-use froude_panel::matrix::AddedMass;
-use froude_panel::mirror::{Mirror, positive_part};
-use froude_panel::problem::{Frame, Problem, Report, Solution};
-use froude_panel::study::{SLOW, Size, study};
-use froude_panel::tank::{Surface, Tank};
-use froude_panel::{fast, is_plain, solve};
-use froude_records::number;
+use froude_mesh::sections::SectionError;
 
-use super::family::{Family, Member};
-use crate::Error;
+use crate::chain::ChainError;
+use crate::convergence::Converged;
+use crate::family::{Family, Member};
+use crate::matrix::AddedMass;
+use crate::mirror::{Across, Mirror, positive_part};
+use crate::problem::{Frame, Problem, Report, Solution};
+use crate::study::{SLOW, Size, study};
+use crate::tank::{Surface, Tank, TankError};
+use crate::{fast, is_plain, solve};
+
+/// Why there is no matrix at all.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RefineError {
+    /// The dimensions give no body.
+    #[error(transparent)]
+    Sections(#[from] SectionError),
+    /// The chain cannot be bent so.
+    #[error(transparent)]
+    Chain(#[from] ChainError),
+    /// Panels lie across a mirror plane.
+    #[error(transparent)]
+    Across(#[from] Across),
+    /// The body does not fit into the tank.
+    #[error(transparent)]
+    Tank(#[from] TankError),
+    /// The coarsest mesh has more panels than are allowed.
+    #[error(
+        "the coarsest mesh has {coarsest} panels, and {most} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
+         three meshes, or {coarsest} for a value without"
+    )]
+    TooFine {
+        /// Its panels.
+        coarsest: usize,
+        /// Those of the third.
+        third: usize,
+        /// How many are allowed.
+        most: usize,
+    },
+    /// Not even the coarsest mesh fits into the memory.
+    #[error(transparent)]
+    Memory(NoMemory),
+    /// The equations were not solved.
+    #[error(
+        "the equations of {panels} panels were not solved: after {iterations} iterations the residual is {residual:.1e} of the right-hand side; \
+         panels that nearly touch others make them nearly singular; give such places finer panels, or a gap of a panel's size"
+    )]
+    Unsolved {
+        /// Panels.
+        panels: usize,
+        /// Iterations.
+        iterations: usize,
+        /// Norm of what is left over that of the right-hand side.
+        residual: f64,
+    },
+    /// A family without a member.
+    #[error("the body has no mesh")]
+    NoMesh,
+}
+
+/// A mesh that does not fit into the memory.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error(
+    "{panels} panels would take {} of memory and {} may be used; some {fits} panels would fit",
+    size_text(*.needed_bytes), size_text(*.free_bytes)
+)]
+pub struct NoMemory {
+    /// Its panels.
+    pub panels: usize,
+    /// What it would take.
+    pub needed_bytes: f64,
+    /// What may be used.
+    pub free_bytes: f64,
+    /// Panels that would fit.
+    pub fits: usize,
+}
+
+/// Bytes as a person says them.
+fn size_text(bytes: f64) -> String {
+    let (size, unit) = [(1e9, "GB"), (1e6, "MB")].into_iter().find(|(size, _)| bytes >= *size).unwrap_or((1e3, "kB"));
+    let number = bytes / size;
+    let digits = usize::from(number < 9.95);
+    format!("{number:.digits$} {unit}")
+}
+
+/// Why the refinement ended above the tolerance.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Stop {
+    /// The next mesh has more panels than are allowed.
+    #[error("the next mesh has {panels} panels, and {most} are allowed (--most-panels)")]
+    Panels {
+        /// Its panels.
+        panels: usize,
+        /// How many are allowed.
+        most: usize,
+    },
+    /// The next mesh does not fit into the memory.
+    #[error(transparent)]
+    Memory(NoMemory),
+    /// It was the finest that is made.
+    #[error("no finer mesh is made")]
+    Finest,
+}
 
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,7 +198,7 @@ pub struct Refined {
     /// Whether it is within the tolerance.
     pub is_within: bool,
     /// Why it is not, where it is not.
-    pub stopped: Option<String>,
+    pub stopped: Option<Stop>,
     /// The finest mesh that was solved on.
     pub finest: Finest,
 }
@@ -140,8 +236,10 @@ struct Entry {
 
 /// Least uncertainty at edges that are not resolved, as part of what extrapolation subtracts: an order of 0.8 leaves three times that.
 const AT_EDGES: f64 = 3.0;
+/// Meshes that an uncertainty to be trusted asks for.
+const ENOUGH: usize = 3;
 /// Residual above which a solution is none.
-pub(super) const LOOSE: f64 = 1e-6;
+const LOOSE: f64 = 1e-6;
 /// Time of a near pair and of a pair of boxes over a whole solution, one thread, s: as measured on a processor with AVX-512.
 const NEAR_S: f64 = 25e-9;
 const FAR_S: f64 = 40e-6;
@@ -179,7 +277,8 @@ pub fn free_memory_bytes() -> Option<f64> {
 }
 
 /// Memory that may be used now, bytes.
-pub(super) fn memory_bytes(wanted: &Wanted) -> f64 {
+#[must_use]
+pub fn memory_bytes(wanted: &Wanted) -> f64 {
     wanted.memory_bytes.or_else(|| Some(MEMORY_PART * free_memory_bytes()?)).unwrap_or(f64::INFINITY)
 }
 
@@ -187,7 +286,7 @@ pub(super) fn memory_bytes(wanted: &Wanted) -> f64 {
 const WALL_CELL: f64 = 0.25;
 
 /// The problem of a mesh about the origin of its frame, and what is solved of the mesh: its part on the positive side of its own planes.
-fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, Problem), Error> {
+fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, Problem), RefineError> {
     let mesh = &member.mesh;
     let frame = [Frame::at([0.0; 3])];
     let whole = |mirrors: &[Mirror]| Problem::of_parts(&mesh.mesh, &vec![0; mesh.mesh.panels.len()], &frame, mirrors);
@@ -208,47 +307,50 @@ fn problem(family: &Family, member: &Member, wanted: &Wanted) -> Result<(Mesh, P
     Ok((mesh.mesh.clone(), whole(&wanted.mirrors)))
 }
 
-/// Refines until the tolerance is met, or panels, memory or members end; `progress` hears of every step before it starts.
-///
-/// # Errors
-///
-/// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
-/// panels than are allowed.
-pub fn refine(family: &Family, wanted: &Wanted, progress: &dyn Fn(&str)) -> Result<Refined, Error> {
-    let length_m = extent(&family.member(0)?.mesh.mesh);
-    let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
-    let is_foreign = matches!(family, Family::Mesh(_));
-    let mut steps: Vec<Step> = Vec::new();
-    let mut finest = None;
-    let mut stopped = None;
-    for number in 0..family.members() {
-        let panels = family.panels(number)?;
+/// Several parts on one mesh after the other, each finer than the one before.
+pub trait Levels {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// Panels of one, without making it.
+    ///
+    /// # Errors
+    ///
+    /// Dimensions that give no body.
+    fn panels(&self, number: usize) -> Result<usize, RefineError>;
+
+    /// One of them, and the size of its cells over those of the coarsest.
+    ///
+    /// # Errors
+    ///
+    /// Dimensions that give no body; a body that does not fit into its tank.
+    fn problem(&self, number: usize) -> Result<(f64, Problem), RefineError>;
+}
+
+/// Solves one level after the other until `is_enough` of what was solved, or panels, memory or levels end; why it ended before.
+fn climb<L>(
+    levels: usize,
+    panels_of: &dyn Fn(usize) -> Result<usize, RefineError>,
+    level: &dyn Fn(usize) -> Result<(L, Problem), RefineError>,
+    wanted: &Wanted,
+    progress: &dyn Fn(&str),
+    mut is_enough: impl FnMut(usize, L, Problem, Solution) -> bool,
+) -> Result<Option<Stop>, RefineError> {
+    for number in 0..levels {
+        let panels = panels_of(number)?;
         if panels > wanted.most_panels {
-            if steps.is_empty() {
-                return Err(too_fine(family, wanted)?);
+            if number == 0 {
+                return Err(too_fine(panels, panels_of(ENOUGH - 1)?, wanted));
             }
-            stopped = Some(format!(
-                "the next mesh has {panels} panels, and {} are allowed (--most-panels)",
-                wanted.most_panels
-            ));
-            break;
+            return Ok(Some(Stop::Panels { panels, most: wanted.most_panels }));
         }
-        let member = family.member(number)?;
-        let (solved, problem) = problem(family, &member, wanted)?;
+        let (level, problem) = level(number)?;
         let forecast = forecast(&problem);
         let free = memory_bytes(wanted);
         if forecast.memory_bytes > free {
             let fits = (panels as f64 * free / forecast.memory_bytes) as usize;
-            let why = format!(
-                "{panels} panels would take {} GB of memory and {} GB may be used; some {fits} panels would fit",
-                number::plain(forecast.memory_bytes / 1e9, 2),
-                number::plain(free / 1e9, 2)
-            );
-            if steps.is_empty() {
-                return Err(Error::Nothing(why));
-            }
-            stopped = Some(why);
-            break;
+            let why = NoMemory { panels, needed_bytes: forecast.memory_bytes, free_bytes: free, fits };
+            return if number == 0 { Err(RefineError::Memory(why)) } else { Ok(Some(Stop::Memory(why))) };
         }
         progress(&format!(
             "{panels} panels, {} unknowns: some {} and {:.0} MB",
@@ -258,33 +360,55 @@ pub fn refine(family: &Family, wanted: &Wanted, progress: &dyn Fn(&str)) -> Resu
         ));
         let solution = solve(&problem);
         if solution.report.residual > LOOSE {
-            return Err(Error::Nothing(format!(
-                "the equations of {panels} panels were not solved: after {} iterations the residual is {:.1e} of the right-hand side; panels that \
-                 nearly touch others make them nearly singular; give such places finer panels, or a gap of a panel's size",
-                solution.report.iterations, solution.report.residual
-            )));
+            let Report { iterations, residual, .. } = solution.report;
+            return Err(RefineError::Unsolved { panels, iterations, residual });
         }
-        steps.push(Step {
-            panels: member.mesh.mesh.panels.len(),
-            unknowns: problem.facets.len(),
-            size: member.size,
-            iterations: solution.report.iterations,
-            added_mass: solution.added_mass(0).seen_from(&wanted.frame),
-            measure: Measure::of(&member.mesh.mesh),
-        });
-        finest = Some(Finest { mesh: solved, mirrors: problem.mirrors, solution });
-        if steps.len() >= 3 && worst(&entries(&steps, length_m, is_foreign), least_m5) <= wanted.tolerance {
-            break;
+        if is_enough(panels, level, problem, solution) {
+            return Ok(None);
         }
     }
+    Ok(None)
+}
+
+/// Refines until the tolerance is met, or panels, memory or members end; `progress` hears of every step before it starts.
+///
+/// # Errors
+///
+/// Dimensions that give no body; a mesh that does not fit into the memory even as it is, with the number of panels that would; one of more
+/// panels than are allowed.
+pub fn refine(family: &Family, wanted: &Wanted, progress: &dyn Fn(&str)) -> Result<Refined, RefineError> {
+    let length_m = extent(&family.member(0)?.mesh.mesh);
+    let least_m5 = 0.25 * length_m * length_m * Measure::of(&family.member(0)?.mesh.mesh).volume_m3;
+    let is_foreign = matches!(family, Family::Mesh(_));
+    let mut steps: Vec<Step> = Vec::new();
+    let mut finest = None;
+    let level = |number: usize| {
+        let member = family.member(number)?;
+        let (mesh, problem) = problem(family, &member, wanted)?;
+        Ok(((member, mesh), problem))
+    };
+    let panels_of = |number: usize| Ok(family.panels(number)?);
+    let mut stopped =
+        climb(family.members(), &panels_of, &level, wanted, progress, |_, (member, mesh), solved, solution| {
+            steps.push(Step {
+                panels: member.mesh.mesh.panels.len(),
+                unknowns: solved.facets.len(),
+                size: member.size,
+                iterations: solution.report.iterations,
+                added_mass: solution.added_mass(0).seen_from(&wanted.frame),
+                measure: Measure::of(&member.mesh.mesh),
+            });
+            finest = Some(Finest { mesh, mirrors: solved.mirrors, solution });
+            steps.len() >= ENOUGH && worst(&entries(&steps, length_m, is_foreign), least_m5) <= wanted.tolerance
+        })?;
     let Some(finest) = finest else {
-        return Err(Error::Nothing("the body has no mesh".to_owned()));
+        return Err(RefineError::NoMesh);
     };
     let entries = entries(&steps, length_m, is_foreign);
     let worst = worst(&entries, least_m5);
     let is_within = worst <= wanted.tolerance;
     if !is_within && stopped.is_none() {
-        stopped = Some("no finer mesh is made".to_owned());
+        stopped = Some(Stop::Finest);
     }
     let shared = if steps.len() > 1 { vec![entries.map(|row| row.map(|e| e.shared))] } else { Vec::new() };
     Ok(Refined {
@@ -301,13 +425,92 @@ pub fn refine(family: &Family, wanted: &Wanted, progress: &dyn Fn(&str)) -> Resu
     })
 }
 
-fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
-    let (coarsest, third) = (family.panels(0)?, family.panels(2)?);
-    Ok(Error::Nothing(format!(
-        "the coarsest mesh has {coarsest} panels, and {} are allowed; write --most-panels {third}, because the numerical uncertainty needs \
-         three meshes, or {coarsest} for a value without",
-        wanted.most_panels
-    )))
+/// The matrix of several parts with its numerical uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RefinedParts {
+    /// Entries over ρ, extrapolated where the meshes allow, six rows and columns a part: m³, m⁴, m⁵.
+    pub value: Vec<Vec<f64>>,
+    /// Their numerical uncertainty, as an expanded one; infinite where there is one mesh only.
+    pub uncertainty: Vec<Vec<f64>>,
+    /// Panels of the meshes, from the coarsest on.
+    pub panels: Vec<usize>,
+    /// Largest uncertainty of an entry over √(A_ii A_jj), as the tolerance counts it.
+    pub worst: f64,
+    /// Why it is not within the tolerance, where it is not.
+    pub stopped: Option<Stop>,
+    /// The solution on the finest mesh.
+    pub finest: Solution,
+}
+
+/// Refines several parts as [`refine`] does one body; `size` is that of one part.
+///
+/// # Errors
+///
+/// As [`refine`].
+pub fn refine_parts(
+    levels: &dyn Levels,
+    size: Size,
+    wanted: &Wanted,
+    progress: &dyn Fn(&str),
+) -> Result<RefinedParts, RefineError> {
+    let (mut sizes, mut panels, mut solutions) = (Vec::new(), Vec::new(), Vec::new());
+    let (panels_of, level) = (|number: usize| levels.panels(number), |number: usize| levels.problem(number));
+    let mut stopped = climb(levels.count(), &panels_of, &level, wanted, progress, |of_body, cells, _, solution| {
+        sizes.push(cells);
+        panels.push(of_body);
+        solutions.push(solution);
+        solutions.len() >= ENOUGH && worst_of_parts(&parts_of(&sizes, &solutions, size), size) <= wanted.tolerance
+    })?;
+    let Some(finest) = solutions.last().cloned() else {
+        return Err(RefineError::NoMesh);
+    };
+    let entries = parts_of(&sizes, &solutions, size);
+    let worst = worst_of_parts(&entries, size);
+    let is_within = worst <= wanted.tolerance;
+    if !is_within && stopped.is_none() {
+        stopped = Some(Stop::Finest);
+    }
+    let of = |k: usize| entries.iter().map(|row| row.iter().map(|e| e[k]).collect()).collect();
+    Ok(RefinedParts {
+        value: of(0),
+        uncertainty: of(1),
+        panels,
+        worst,
+        stopped: stopped.filter(|_| !is_within),
+        finest,
+    })
+}
+
+/// Values and uncertainties of the entries of parts; of one mesh no uncertainty.
+fn parts_of(sizes: &[f64], solutions: &[Solution], size: Size) -> Vec<Vec<[f64; 2]>> {
+    match solutions {
+        [] => Vec::new(),
+        [only] => only.matrix.iter().map(|row| row.iter().map(|a| [*a, f64::INFINITY]).collect()).collect(),
+        _ => {
+            let entries = study(sizes, solutions, size).entries;
+            let of = |c: &Converged| [c.extrapolated.value, c.extrapolated.uncertainty];
+            entries.iter().map(|row| row.iter().map(of).collect()).collect()
+        }
+    }
+}
+
+/// As for one body: a roll that hardly resists counts as a part of what turning a part of this size takes.
+fn worst_of_parts(entries: &[Vec<[f64; 2]>], size: Size) -> f64 {
+    let half = 0.5 * size.length_m;
+    let least = |i: usize| size.volume_m3 * if i % 6 < 3 { 1.0 } else { half * half };
+    let own = |i: usize| entries[i][i][0].abs().max(ZERO * least(i));
+    let mut out = 0.0_f64;
+    for (i, row) in entries.iter().enumerate() {
+        for (j, [_, uncertainty]) in row.iter().enumerate() {
+            let part = uncertainty / (own(i) * own(j)).sqrt();
+            out = if part.is_nan() { f64::INFINITY } else { out.max(part) };
+        }
+    }
+    out
+}
+
+const fn too_fine(coarsest: usize, third: usize, wanted: &Wanted) -> RefineError {
+    RefineError::TooFine { coarsest, third, most: wanted.most_panels }
 }
 
 /// What each mesh would take, up to the panels allowed: panels of the body, and the forecast.
@@ -315,13 +518,13 @@ fn too_fine(family: &Family, wanted: &Wanted) -> Result<Error, Error> {
 /// # Errors
 ///
 /// Dimensions that give no body, and a mesh of more panels than are allowed.
-pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, Error> {
+pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, RefineError> {
     let mut out = Vec::new();
     for number in 0..family.members() {
         let panels = family.panels(number)?;
         if panels > wanted.most_panels {
             if out.is_empty() {
-                return Err(too_fine(family, wanted)?);
+                return Err(too_fine(panels, family.panels(ENOUGH - 1)?, wanted));
             }
             break;
         }
@@ -365,7 +568,7 @@ fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
 }
 
 /// Part of what turning takes, the largest of a body or ρV(L/2)², that a rotation is judged as at least: the roll of a slender body.
-pub(super) const ZERO: f64 = 1e-2;
+const ZERO: f64 = 1e-2;
 
 /// Largest uncertainty of an entry over √(A_ii A_jj); `least_m5` is what turning a body of this size may take.
 fn worst(entries: &[[Entry; 6]; 6], least_m5: f64) -> f64 {

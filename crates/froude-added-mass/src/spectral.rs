@@ -2,11 +2,11 @@
 
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
+use froude_panel::refine::Refined;
 use froude_panel::revolution::{Revolution, Stretch, rounded_cylinder, solve as modes, spheroid};
 use froude_records::body::Shape;
 
-use super::record::MOTIONS;
-use super::refine::Refined;
+use super::record::entry_name;
 
 /// A matrix over ρ about the middle of the body, and the uncertainty of its entries as part of √(A_ii A_jj).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,6 +105,7 @@ pub fn replace(refined: &mut Refined, spectral: &Spectral, frame: &Frame) -> Str
     format!(
         "A body of revolution: the values are those of azimuthal modes on its meridian, the meshes a check: in {} they differ by {:.2} of their own \
          uncertainty.",
-        MOTIONS[furthest.1], furthest.0
+        entry_name((furthest.1, furthest.1)),
+        furthest.0
     )
 }

@@ -11,7 +11,7 @@ use froude_mesh::repair::repaired;
 use froude_records::write::Prepared;
 
 use super::load::{is_body_file, read_mesh};
-use crate::Error;
+use crate::error::AddedMassError;
 
 /// What was done.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -34,25 +34,24 @@ const WELD: f64 = 1e-6;
 /// # Errors
 ///
 /// A mesh that cannot be read, a target of another format or one that is there already, a disk that is full.
-pub fn repair(input: &Path, unit_m: Option<f64>, weld_m: Option<f64>, target: &Path) -> Result<Repaired, Error> {
+pub fn repair(
+    input: &Path,
+    unit_m: Option<f64>,
+    weld_m: Option<f64>,
+    target: &Path,
+) -> Result<Repaired, AddedMassError> {
     let extension = target.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
     if !matches!(extension.as_str(), "obj" | "stl") {
-        return Err(Error::Nothing(format!("{}: a repaired mesh is written as .obj or .stl", target.display())));
+        return Err(AddedMassError::RepairFormat { path: target.to_owned() });
     }
     if is_body_file(input) {
-        return Err(Error::Nothing(format!("{}: --repair is for a mesh; a body file has none", input.display())));
+        return Err(AddedMassError::RepairBody { path: input.to_owned() });
     }
     if input == target || (target.exists() && input.canonicalize().ok() == target.canonicalize().ok()) {
-        return Err(Error::Nothing(format!(
-            "{}: name another file than the input; it stays as it is",
-            target.display()
-        )));
+        return Err(AddedMassError::RepairInput { path: target.to_owned() });
     }
     if target.symlink_metadata().is_ok() {
-        return Err(Error::Nothing(format!(
-            "{} exists, and a repair writes over nothing; name another file, or delete that one",
-            target.display()
-        )));
+        return Err(AddedMassError::RepairExists { path: target.to_owned() });
     }
     let (mesh, notes) = read_mesh(input, unit_m)?;
     let (mesh, repairs) = repaired(&mesh, weld_m.unwrap_or_else(|| WELD * extent(&mesh)));

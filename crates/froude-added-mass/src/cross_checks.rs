@@ -6,11 +6,12 @@ use froude_hydro::tabulated::circular_cylinder_added_mass_m3;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::Frame;
+use froude_panel::refine::Refined;
 use froude_records::body::Shape;
 use froude_records::number;
 use froude_records::page::TextTable;
 
-use super::refine::Refined;
+use super::record::diagonal_head;
 
 /// An ellipsoid in the body's box whose volume differs by more than this part is no yardstick.
 const LIKE: f64 = 0.3;
@@ -57,9 +58,12 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
     {
         rows.push(line("circular cylinder (DNV-RP-C205)", [None, Some(across), Some(across), None, None, None]));
     }
-    let head = ["", "A11 [kg]", "A22 [kg]", "A33 [kg]", "A44 [kg m²]", "A55 [kg m²]", "A66 [kg m²]"];
     let caption = "Cross-checks in unbounded water. A body that is not the one named may differ by as much as it looks different.";
-    TextTable { caption: caption.to_owned(), head: head.map(str::to_owned).to_vec(), rows }
+    TextTable {
+        caption: caption.to_owned(),
+        head: std::iter::once(String::new()).chain((0..6).map(diagonal_head)).collect(),
+        rows,
+    }
 }
 
 fn bounds(mesh: &Mesh) -> (Vec3, Vec3) {

@@ -3,41 +3,37 @@
 //! The matrix has six rows and columns a part, in the part's own axes about its own point: force and moment on one part from the motion of
 //! another.
 
-use std::path::{Path, PathBuf};
-
 use froude_hydro::similarity::GRAVITY_M_S2;
+use froude_identify::method::Export;
 use froude_mesh::Mesh;
 use froude_mesh::measure::Measure;
 use froude_mesh::parts::parts;
 use froude_mesh::refine::subdivided;
+use froude_mesh::robot::ModularRobot;
 use froude_mesh::sections::Resolution;
 use froude_mesh::vector::{norm, sub};
-use froude_panel::chain::{Chain, DiagonalForm, diagonal_form, whole};
-use froude_panel::convergence::Converged;
+use froude_panel::chain::{Chain, ChainError, DiagonalForm, diagonal_form, whole};
+use froude_panel::family::Family;
 use froude_panel::matrix::AddedMass;
 use froude_panel::problem::{Frame, Problem, Solution};
-use froude_panel::solve;
-use froude_panel::study::{Size, study};
+use froude_panel::refine::{Levels, RefineError, RefinedParts, Stop, refine_parts};
+use froude_panel::study::Size;
 use froude_records::added_mass_files::AddedMassFile;
 use froude_records::body::{Shape, read_body};
-use froude_records::estimate::{
-    Coefficient, Estimate, EstimateFile, Interval, Law, Measured, MethodUsed, ReferencePoint, Status, keyed,
-};
+use froude_records::estimate::{Coefficient, Estimate, Interval, Law, Measured, MethodUsed, ReferencePoint, Status};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
-use froude_records::page::{DocumentSection, TextTable};
-use froude_report::document::Document;
+use froude_records::page::TextTable;
 use indexmap::IndexMap;
 
-use super::body::BodyJob;
-use super::exports::{of_parts_for_program, words_of_parts};
-use super::family::{Family, robot};
+use super::exports::{export, of_parts_for_program, words_of_parts};
 use super::frame::{Axes, sentence};
-use super::links::{default_out, no_density};
 use super::load::{is_body_file, load, of_a_mesh_only};
-use super::record::{MOTIONS, mesh_file, of_the_mesh, replaces_another_frame, signs, unit};
-use super::refine::{LOOSE, ZERO};
-use crate::Error;
+use super::options::Asked;
+use super::record::{MOTIONS, diagonal_head, entry_name_of_parts, signs, unit};
+use super::shape::robot;
+use super::source::Water;
+use crate::error::AddedMassError;
 
 /// What moves apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,94 +66,41 @@ pub struct SeveralOutcome {
     pub tables: Vec<TextTable>,
     /// Sentences.
     pub notes: Vec<String>,
+    /// Doubts.
+    pub findings: Vec<Finding>,
     /// The record.
-    pub file: EstimateFile,
-    /// Where it lies.
-    pub estimate: PathBuf,
-    /// Where the page lies.
-    pub page: PathBuf,
-    /// The matrix as a table, and exports.
-    pub others: Vec<PathBuf>,
-    /// The message about a record in another frame that this one has replaced.
-    pub replaced: Option<String>,
+    pub estimate: Estimate,
+    /// The matrix as a table, and what was asked for beside it.
+    pub exports: Vec<Export>,
 }
 
-/// Multiples of the coarsest cells: three similar meshes.
-const LEVELS: [usize; 3] = [3, 4, 6];
-/// Subdivisions of a mesh from elsewhere.
-const SUBDIVISIONS: usize = 3;
+/// Multiples of the coarsest cells of a chain, one after the other.
+const MULTIPLES: [usize; 9] = [3, 4, 6, 8, 12, 16, 24, 32, 48];
+/// Meshes from elsewhere: as given, and subdivided.
+const MESHES: usize = 9;
 
-/// One mesh of the family: its cells' size, its equations, panels of the whole.
-struct Level {
-    size: f64,
-    solution: Solution,
-}
-
-/// Computes, and writes `estimate.json`, `report.html`, `added-mass.csv` and what else is asked for.
+/// Computes; the estimate is called after `source`, or after the body where that is empty.
 ///
 /// # Errors
 ///
-/// See [`Error`].
-pub fn several(job: &BodyJob, apart: Apart, progress: &dyn Fn(&str)) -> Result<SeveralOutcome, Error> {
-    let out = job.out.clone().unwrap_or_else(|| default_out(&job.input));
-    crate::results::can_be_written(&out)?;
+/// See [`AddedMassError`].
+pub fn several(
+    job: &Asked,
+    apart: Apart,
+    water: &Water,
+    source: &str,
+    progress: &dyn Fn(&str),
+) -> Result<SeveralOutcome, AddedMassError> {
     let loaded = match apart {
         Apart::Links { joint_angle_rad } => links_of(job, joint_angle_rad)?,
         Apart::Parts => parts_of(job)?,
     };
-    let density_kg_m3 = job.density_kg_m3.or(loaded.density_kg_m3).ok_or_else(|| no_density(&job.input))?;
-    let mut levels = Vec::new();
-    for (size, problem) in loaded.problems {
-        progress(&format!("{} panels, {} parts", problem.facets.len(), problem.frames.len()));
-        let solution = solve(&problem);
-        if solution.report.residual > LOOSE {
-            return Err(Error::Nothing(format!(
-                "{}: the equations were not solved: after {} iterations the residual is {:.1e} of the right-hand side; parts that nearly touch \
-                 make them nearly singular; give a gap of a panel's size",
-                job.input.display(),
-                solution.report.iterations,
-                solution.report.residual
-            )));
-        }
-        levels.push(Level { size, solution });
-    }
-    let Some(finest) = levels.last().map(|l| l.solution.clone()) else {
-        return Err(Error::Nothing(format!(
-            "{}: no mesh of it fits --most-panels {}",
-            job.input.display(),
-            job.wanted.most_panels
-        )));
-    };
-    let n = finest.matrix.len();
-    let sizes: Vec<f64> = levels.iter().map(|l| l.size).collect();
-    let solutions: Vec<Solution> = levels.into_iter().map(|l| l.solution).collect();
-    let (value, uncertainty) = if solutions.len() > 1 {
-        let entries = study(&sizes, &solutions, loaded.size).entries;
-        let of = |f: fn(&Converged) -> f64| entries.iter().map(|row| row.iter().map(f).collect()).collect();
-        (of(|c| c.extrapolated.value), of(|c| c.extrapolated.uncertainty))
-    } else {
-        (finest.matrix.clone(), vec![vec![f64::INFINITY; n]; n])
-    };
-    let meshes = solutions.len();
+    let density_kg_m3 = water.density_kg_m3(job, loaded.density_kg_m3)?;
+    let wanted = &job.wanted;
+    let refined = refine_parts(loaded.levels.as_ref(), loaded.size, wanted, progress)?;
+    let RefinedParts { value, uncertainty, panels, worst, stopped, finest } = refined;
     let mut findings = loaded.findings;
-    // As for one body: a roll that hardly resists counts as a part of what turning a body of this size takes.
-    let half = 0.5 * loaded.size.length_m;
-    let least = |i: usize| loaded.size.volume_m3 * if i % 6 < 3 { 1.0 } else { half * half };
-    let size = |i: usize| value[i][i].abs().max(ZERO * least(i));
-    let worst = (0..n * n).map(|k| uncertainty[k / n][k % n] / (size(k / n) * size(k % n)).sqrt()).fold(0.0, f64::max);
-    if worst.is_nan() || worst > job.wanted.tolerance {
-        let known = if worst.is_finite() {
-            format!("is {:.1} %", 100.0 * worst)
-        } else {
-            "cannot be estimated from one mesh".to_owned()
-        };
-        let message = format!(
-            "the largest numerical uncertainty of an entry, as part of the diagonal, {known} where {:.1} % was asked for: no finer mesh is made \
-             part by part",
-            100.0 * job.wanted.tolerance
-        );
-        findings.push(Finding::new(Severity::Warning, "not-converged", message));
-    }
+    findings.extend(stopped.map(|why| not_within(worst, wanted.tolerance, &why)));
     let mut tables = vec![diagonal_table(&loaded.parts, &value, &uncertainty, density_kg_m3)];
     let mut notes = loaded.notes;
     notes.extend(words_of_parts(job, matches!(apart, Apart::Links { .. })));
@@ -186,55 +129,22 @@ pub fn several(job: &BodyJob, apart: Apart, progress: &dyn Fn(&str)) -> Result<S
         Apart::Links { .. } => format!("each part's own axes: {}", own_axes(job.axes)),
         Apart::Parts => job.axes.words(job.orientation.unwrap_or_default()),
     };
-    let file = EstimateFile {
-        data: keyed(vec![mesh_file(&job.input)?]),
-        versions: crate::results::versions(),
-        findings,
-        ..EstimateFile::of(vec![of_the_mesh(record(
-            &name,
-            &loaded.parts,
-            &value,
-            &uncertainty,
-            density_kg_m3,
-            meshes,
-            &frame,
-            &notes,
-        ))])
-    };
-    let place = sentence(&frame, "each part's own point");
-    let page = Document {
-        sort: "Added mass · potential flow".to_owned(),
-        title: name.clone(),
-        subtitle: "part by part".to_owned(),
-        date: job.date.clone(),
-        sections: vec![DocumentSection {
-            title: "Matrix".to_owned(),
-            paragraphs: std::iter::once(place.clone()).chain(notes.iter().cloned()).collect(),
-            tables: tables.clone(),
-            ..DocumentSection::default()
-        }],
-        findings: file.findings.clone(),
-    };
+    let source = if source.is_empty() { &name } else { source };
+    let estimate = record(source, &loaded.parts, &value, &uncertainty, density_kg_m3, &panels, &frame, &notes);
     let mut outcome = SeveralOutcome {
-        name,
         density_kg_m3,
-        place,
+        place: sentence(&frame, "each part's own point"),
         parts: loaded.parts,
         value,
         uncertainty,
         tables,
         notes,
-        replaced: replaces_another_frame(&out, &file),
-        file,
-        estimate: PathBuf::new(),
-        page: PathBuf::new(),
-        others: Vec::new(),
+        findings,
+        estimate,
+        exports: Vec::new(),
+        name,
     };
-    let also = |folder: &Path| exports(&outcome, job, folder);
-    let written = crate::results::write_also(&out, &outcome.file, &[], &[], &page.html()?, &also)?;
-    outcome.estimate = written.estimate;
-    outcome.page = written.report;
-    outcome.others = written.others;
+    outcome.exports = exports(&outcome, job)?;
     Ok(outcome)
 }
 
@@ -243,15 +153,100 @@ struct Several {
     name: String,
     density_kg_m3: Option<f64>,
     parts: Vec<String>,
-    problems: Vec<(f64, Problem)>,
+    levels: Box<dyn Levels>,
     /// Of one part.
     size: Size,
     notes: Vec<String>,
     findings: Vec<Finding>,
 }
 
+/// A finding where the tolerance was not reached.
+fn not_within(worst: f64, tolerance: f64, why: &Stop) -> Finding {
+    let known = if worst.is_finite() {
+        format!("is {:.1} %", 100.0 * worst)
+    } else {
+        "cannot be estimated from one mesh".to_owned()
+    };
+    let message = format!(
+        "the largest numerical uncertainty of an entry, as part of the diagonal, {known} where {:.1} % was asked for: {why}",
+        100.0 * tolerance
+    );
+    Finding::new(Severity::Warning, "not-converged", message)
+}
+
+/// A chain, meshed as finely as one likes.
+struct Bent {
+    robot: ModularRobot,
+    links: usize,
+    angle_rad: f64,
+    /// Axes of the result in those of a link.
+    axes: [[f64; 3]; 3],
+}
+
+impl Bent {
+    fn chain(&self, number: usize) -> Result<Chain, ChainError> {
+        let along = MULTIPLES[number];
+        let resolution = Resolution { along, around: 8 * along };
+        let angles = vec![self.angle_rad; self.links + 1];
+        let mut chain = Chain::new(&self.robot, self.links, &angles, self.robot.pitch_m / 4.0, resolution)?;
+        for frame in &mut chain.frames {
+            let own = frame.axes;
+            frame.axes = self.axes.map(|a| core::array::from_fn(|k| (0..3).map(|m| a[m] * own[m][k]).sum()));
+        }
+        Ok(chain)
+    }
+}
+
+impl Levels for Bent {
+    fn count(&self) -> usize {
+        MULTIPLES.len()
+    }
+
+    fn panels(&self, number: usize) -> Result<usize, RefineError> {
+        let coarsest = self.chain(0)?.surface.mesh.panels.len();
+        Ok(coarsest * MULTIPLES[number].pow(2) / MULTIPLES[0].pow(2))
+    }
+
+    fn problem(&self, number: usize) -> Result<(f64, Problem), RefineError> {
+        let chain = self.chain(number)?;
+        let problem = chain.problem(true).or_else(|_| chain.problem(false))?;
+        Ok((MULTIPLES[0] as f64 / MULTIPLES[number] as f64, problem))
+    }
+}
+
+/// The parts of a mesh, each panel divided into four as often as one likes.
+struct Subdivided {
+    mesh: Mesh,
+    frames: Vec<Frame>,
+}
+
+impl Levels for Subdivided {
+    fn count(&self) -> usize {
+        MESHES
+    }
+
+    fn panels(&self, number: usize) -> Result<usize, RefineError> {
+        Ok(self.mesh.panels.len() << (2 * number))
+    }
+
+    fn problem(&self, number: usize) -> Result<(f64, Problem), RefineError> {
+        let finer = (0..number).fold(self.mesh.clone(), |mesh, _| subdivided(&mesh));
+        let problem = Problem::of_parts(&finer, &tags(&finer), &self.frames, &[]);
+        Ok((0.5_f64.powi(number as i32), problem))
+    }
+}
+
+/// The part that each panel belongs to.
+fn tags(mesh: &Mesh) -> Vec<usize> {
+    let mut out = vec![0; mesh.panels.len()];
+    for (part, found) in parts(mesh).iter().enumerate() {
+        found.panels.iter().for_each(|panel| out[*panel] = part);
+    }
+    out
+}
+
 /// Axes of the result in those of the mesh, or of a link.
-fn axes_of(job: &BodyJob) -> [[f64; 3]; 3] {
+fn axes_of(job: &Asked) -> [[f64; 3]; 3] {
     job.axes.vectors(job.orientation.unwrap_or_default())
 }
 
@@ -263,34 +258,22 @@ const fn own_axes(axes: Axes) -> &'static str {
     }
 }
 
-fn links_of(job: &BodyJob, angle_rad: f64) -> Result<Several, Error> {
-    let why =
-        || Error::Nothing(format!("{}: a chain is a body file of shape \"robot\" with --links", job.input.display()));
+fn links_of(job: &Asked, angle_rad: f64) -> Result<Several, AddedMassError> {
+    let why = || AddedMassError::NoChain { path: job.input.clone() };
     if !is_body_file(&job.input) {
         return Err(why());
     }
     of_a_mesh_only(job)?;
     let body = read_body(&job.input)?;
-    let (Shape::Robot { .. }, Some(links)) = (body.shape, job.links) else { return Err(why()) };
+    let (Shape::Robot { .. }, Some(&links)) = (body.shape, job.links.first()) else { return Err(why()) };
     Ok(Several { density_kg_m3: body.density_kg_m3, ..chain(&body.name, &body.shape, links, angle_rad, job)? })
 }
 
-fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> Result<Several, Error> {
+fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &Asked) -> Result<Several, AddedMassError> {
     let robot = robot(shape);
-    let mut problems = Vec::new();
-    for along in LEVELS {
-        let resolution = Resolution { along, around: 8 * along };
-        let mut chain = Chain::new(&robot, links, &vec![angle; links + 1], robot.pitch_m / 4.0, resolution)?;
-        for frame in &mut chain.frames {
-            let own = frame.axes;
-            frame.axes = axes_of(job).map(|a| core::array::from_fn(|k| (0..3).map(|m| a[m] * own[m][k]).sum()));
-        }
-        if chain.surface.mesh.panels.len() > job.wanted.most_panels {
-            break;
-        }
-        let problem = chain.problem(true).or_else(|_| chain.problem(false));
-        problems.push((LEVELS[0] as f64 / along as f64, problem.map_err(|e| Error::Nothing(e.to_string()))?));
-    }
+    let bent = Bent { robot, links, angle_rad: angle, axes: axes_of(job) };
+    // What cannot be bent so is reported before anything is computed.
+    bent.chain(0)?;
     let mut parts = vec!["tail".to_owned()];
     parts.extend((1..=links).map(|k| format!("link {k}")));
     parts.push("head".to_owned());
@@ -302,42 +285,21 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &BodyJob) -> 
     let name = format!("{name}, H{links}LT, link by link");
     let volume_m3 = core::f64::consts::PI * robot.half_height_m * robot.half_width_m * robot.pitch_m;
     let size = Size { volume_m3, length_m: robot.pitch_m };
-    Ok(Several { size, name, density_kg_m3: None, parts, problems, notes, findings: Vec::new() })
+    Ok(Several { size, name, density_kg_m3: None, parts, levels: Box::new(bent), notes, findings: Vec::new() })
 }
 
-fn parts_of(job: &BodyJob) -> Result<Several, Error> {
+fn parts_of(job: &Asked) -> Result<Several, AddedMassError> {
     let loaded = load(job)?;
     let Family::Mesh(mesh) = loaded.family else {
-        return Err(Error::Nothing(format!("{}: --apart is for a mesh of several closed parts", job.input.display())));
+        return Err(AddedMassError::NoParts { path: job.input.clone() });
     };
     let found = parts(&mesh);
     if found.len() < 2 {
-        return Err(Error::Nothing(format!(
-            "{}: the mesh is connected and has one part; leave --apart out",
-            job.input.display()
-        )));
+        return Err(AddedMassError::OnePart { path: job.input.clone() });
     }
-    let mut problems = Vec::new();
-    let mut frames: Vec<Frame> = Vec::new();
-    let mut finer = mesh.clone();
-    for number in 0..SUBDIVISIONS {
-        if number > 0 {
-            finer = subdivided(&finer);
-        }
-        if finer.panels.len() > job.wanted.most_panels {
-            break;
-        }
-        let mut tags = vec![0; finer.panels.len()];
-        for (part, p) in parts(&finer).iter().enumerate() {
-            p.panels.iter().for_each(|panel| tags[*panel] = part);
-        }
-        if frames.is_empty() {
-            frames = (0..found.len())
-                .map(|part| Frame { origin_m: centroid(&finer, &tags, part), axes: axes_of(job) })
-                .collect();
-        }
-        problems.push((0.5_f64.powi(number as i32), Problem::of_parts(&finer, &tags, &frames, &[])));
-    }
+    let tags = tags(&mesh);
+    let frames: Vec<Frame> =
+        (0..found.len()).map(|part| Frame { origin_m: centroid(&mesh, &tags, part), axes: axes_of(job) }).collect();
     let names = (1..=found.len()).map(|k| format!("part {k}")).collect();
     let mut notes = loaded.notes;
     for (k, frame) in frames.iter().enumerate() {
@@ -345,10 +307,18 @@ fn parts_of(job: &BodyJob) -> Result<Several, Error> {
         notes.push(format!("Part {}: about its centre of buoyancy, ({x}, {y}, {z}) m in the axes of the mesh.", k + 1));
     }
     let mut findings = loaded.findings;
-    findings.extend(problems.first().and_then(|(_, p)| too_close(p)));
+    findings.extend(too_close(&Problem::of_parts(&mesh, &tags, &frames, &[])));
     let largest = found.iter().map(|p| p.volume_m3.abs()).fold(0.0, f64::max);
     let size = Size { volume_m3: largest, length_m: largest.cbrt() };
-    Ok(Several { size, name: loaded.name, density_kg_m3: None, parts: names, problems, notes, findings })
+    Ok(Several {
+        size,
+        name: loaded.name,
+        density_kg_m3: None,
+        parts: names,
+        levels: Box::new(Subdivided { mesh, frames }),
+        notes,
+        findings,
+    })
 }
 
 fn centroid(mesh: &Mesh, tags: &[usize], part: usize) -> [f64; 3] {
@@ -396,9 +366,7 @@ fn diagonal_table(parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>]
         caption:
             "Each part moving alone, the others held: added mass in its own motions. ± is the numerical uncertainty."
                 .to_owned(),
-        head: ["", "surge [kg]", "sway [kg]", "heave [kg]", "roll [kg m²]", "pitch [kg m²]", "yaw [kg m²]"]
-            .map(str::to_owned)
-            .to_vec(),
+        head: std::iter::once(String::new()).chain((0..6).map(diagonal_head)).collect(),
         rows,
     }
 }
@@ -408,7 +376,7 @@ const MOST_PARTS: usize = 12;
 
 fn coupling_table(parts: &[String], value: &[Vec<f64>], density_kg_m3: f64) -> Option<TextTable> {
     (parts.len() <= MOST_PARTS).then(|| TextTable {
-        caption: "Sway of each part (column) felt by each part in sway (row), kg.".to_owned(),
+        caption: "A22 of each pair: the force across a part (row) from the sway of a part (column), kg.".to_owned(),
         head: std::iter::once(String::new()).chain(parts.iter().cloned()).collect(),
         rows: parts
             .iter()
@@ -454,7 +422,7 @@ fn record(
     value: &[Vec<f64>],
     uncertainty: &[Vec<f64>],
     density_kg_m3: f64,
-    meshes: usize,
+    panels: &[usize],
     frame: &str,
     notes: &[String],
 ) -> Estimate {
@@ -464,7 +432,7 @@ fn record(
             let (a, u) = (density_kg_m3 * value[i][j], density_kg_m3 * uncertainty[i][j]);
             let known = u.is_finite();
             coefficients.insert(
-                format!("A{}_{}", i + 1, j + 1),
+                entry_name_of_parts((i, j)),
                 Coefficient {
                     label: None,
                     nuisance: false,
@@ -484,7 +452,7 @@ fn record(
         id: format!("{name}/added_mass_parts"),
         source: name.to_owned(),
         kind: "potential".to_owned(),
-        law: Law { name: "added_mass_parts".to_owned(), version: 1, ..Law::default() },
+        law: Law { name: "added_mass_parts".to_owned(), version: 2, ..Law::default() },
         refers_to: IndexMap::from([(
             "density".to_owned(),
             Measured { value: density_kg_m3, unit: "kg/m^3".to_owned() },
@@ -500,12 +468,12 @@ fn record(
             name: "panels".to_owned(),
             version: 1,
             words: format!(
-                "potential flow, constant panels, direct formulation, unbounded water; {meshes} similar meshes{}; numerical uncertainty of \
-                 each entry alone, 95 %",
-                if meshes > 1 { ", extrapolated" } else { "" }
+                "potential flow, constant panels, direct formulation, unbounded water; meshes of {} panels{}; numerical uncertainty of each \
+                 entry alone, 95 %",
+                panels.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
+                if panels.len() > 1 { ", extrapolated" } else { "" }
             ),
         },
-        n_observations: meshes,
         coefficients,
         diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },
         recommended: true,
@@ -514,15 +482,14 @@ fn record(
     }
 }
 
-/// Writes the matrix for other programs; the names of the files.
-fn exports(outcome: &SeveralOutcome, job: &BodyJob, folder: &Path) -> Result<Vec<PathBuf>, Error> {
+/// The matrix for other programs.
+fn exports(outcome: &SeveralOutcome, job: &Asked) -> Result<Vec<Export>, AddedMassError> {
     // Zeros without a sign.
     let rows: Vec<Vec<f64>> =
         outcome.value.iter().map(|row| row.iter().map(|a| outcome.density_kg_m3 * a + 0.0).collect()).collect();
     let mut formats = vec!["csv"];
     formats.extend(job.export.iter().filter(|e| **e != "csv"));
-    let mut names = Vec::new();
-    for extension in formats {
+    let of = |extension: &'static str| {
         let turned = of_parts_for_program(&rows, extension, job);
         let file = AddedMassFile {
             density_kg_m3: outcome.density_kg_m3,
@@ -532,9 +499,7 @@ fn exports(outcome: &SeveralOutcome, job: &BodyJob, folder: &Path) -> Result<Vec
             zero_frequency: Some(&turned),
             infinite_frequency: Some(&turned),
         };
-        let name = PathBuf::from(format!("added-mass.{extension}"));
-        file.write(&folder.join(&name))?;
-        names.push(name);
-    }
-    Ok(names)
+        export(&file, extension)
+    };
+    formats.into_iter().map(of).collect()
 }

@@ -1,0 +1,126 @@
+//! A body or a mesh as a source of a campaign.
+
+use froude_hydro::fluid::Water as AtRest;
+use froude_identify::answer::{Answer, Made};
+use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_identify::source::{ReadFile, SourceResult};
+use froude_records::campaign::{Campaign, Fluid, Input, Source, SourceKind};
+use froude_records::estimate::Estimate;
+
+use super::body::body;
+use super::links::links;
+use super::options::Asked;
+use super::page;
+use super::several::several;
+use crate::error::AddedMassError;
+
+/// Role of a body file or a mesh.
+const MESH: &str = "mesh";
+
+/// Added mass from potential flow.
+pub struct AddedMass;
+
+impl Method for AddedMass {
+    fn names(&self) -> &'static [&'static str] {
+        &["panels"]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "added mass from potential flow"
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const { &[Need::of(&[MESH], &[])] }
+    }
+
+    fn runs(&self) -> &'static str {
+        ""
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let Input::Mesh(path) = &source.input else { return Ok(Found::default()) };
+        let asked = Asked::read(path, &source.added_mass)?;
+        Ok(found(&asked, &Water::of(campaign), source, progress)?)
+    }
+}
+
+/// The water that a campaign states.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Water {
+    fluid: Fluid,
+    /// Whether a file states it.
+    is_campaign: bool,
+}
+
+impl Water {
+    /// That of a campaign.
+    #[must_use]
+    pub fn of(campaign: &Campaign) -> Self {
+        Self { fluid: campaign.fluid.clone(), is_campaign: !campaign.key.is_empty() }
+    }
+
+    /// The density that is asked for, else the campaign's, else that of the body file, kg/m³.
+    pub(super) fn density_kg_m3(&self, asked: &Asked, of_file: Option<f64>) -> Result<f64, AddedMassError> {
+        let stated = match (self.fluid.density_kg_m3, self.fluid.temperature_degc) {
+            (None, Some(t)) => Some(AtRest::at(t, self.fluid.salinity_g_kg.unwrap_or(0.0))?.density_kg_m3),
+            (stated, _) => stated,
+        };
+        let none = || AddedMassError::NoDensity { path: asked.input.clone(), is_campaign: self.is_campaign };
+        asked.density_kg_m3.or(stated).or(of_file).ok_or_else(none)
+    }
+}
+
+/// What is asked for, computed.
+fn found(asked: &Asked, water: &Water, source: &Source, progress: &dyn Fn(&str)) -> Result<Found, AddedMassError> {
+    let files = [ReadFile::new(asked.input.clone(), MESH)];
+    let computed = |estimate: Estimate| {
+        let estimate = Estimate { kind: source.kind.name().to_owned(), ..estimate };
+        Answer::from(Made { name: estimate.source.clone(), estimate, files: files.to_vec() })
+    };
+    if asked.links.len() > 1 {
+        let mut done = links(asked, water, &source.name, progress)?;
+        let (summary, blocks) = page::links(&done);
+        let fits = done
+            .fits
+            .take()
+            .map(|fits| Answer::from(SourceResult { files: files.to_vec(), ..of_kind(fits, source.kind) }));
+        return Ok(Found {
+            results: fits.into_iter().chain(done.estimates.into_iter().map(computed)).collect(),
+            summary: Some(summary),
+            blocks,
+            exports: done.exports,
+            findings: done.findings,
+            ..Found::default()
+        });
+    }
+    if let Some(apart) = asked.apart {
+        let done = several(asked, apart, water, &source.name, progress)?;
+        return Ok(Found {
+            summary: Some(page::several(&done)),
+            results: vec![computed(done.estimate)],
+            exports: done.exports,
+            findings: done.findings,
+            ..Found::default()
+        });
+    }
+    let done = body(asked, water, &source.name, progress)?;
+    Ok(Found {
+        summary: Some(page::body(&done)),
+        results: done.estimates.into_iter().map(computed).collect(),
+        exports: done.exports,
+        findings: done.findings,
+        ..Found::default()
+    })
+}
+
+/// Fits as those of a source of another kind.
+fn of_kind(fits: SourceResult, kind: SourceKind) -> SourceResult {
+    let of = |estimate: Estimate| Estimate { kind: kind.name().to_owned(), ..estimate };
+    SourceResult { kind, estimates: fits.estimates.into_iter().map(of).collect(), ..fits }
+}
