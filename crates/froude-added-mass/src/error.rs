@@ -62,7 +62,7 @@ pub enum AddedMassError {
         option: String,
     },
     /// Forward and up along one axis.
-    #[error("--forward {forward} and --up {up} lie along one axis of the mesh: say both, two different ones")]
+    #[error("--forward {forward} and --up {up} lie along one axis of the mesh: give both, two different ones")]
     OneAxis {
         /// Forward.
         forward: Direction,

@@ -104,7 +104,7 @@ fn preflight(prepared: &Prepared) {
             "kind",
             "speed [m/s]",
             "direction",
-            "duration [s]",
+            "time [s]",
             "steady [s]",
             "command [V]",
             "rms current [A]",

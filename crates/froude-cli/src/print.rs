@@ -92,10 +92,6 @@ pub fn written(Written { estimate, report, exports, .. }: &Written) {
 /// What a method states about all its results: its tables, then its sentences.
 fn summary(section: &DocumentSection) {
     for table in &section.tables {
-        // One table says by its columns what it is, several do not.
-        if section.tables.len() > 1 {
-            say!("\n{}", table.caption);
-        }
         if !table.caption.is_empty() {
             say!("\n{}", wrapped(&table.caption));
         }
@@ -108,7 +104,10 @@ fn summary(section: &DocumentSection) {
 }
 
 fn source(answer: &Answer) {
-    say!("\n{} ({})", answer.name(), observations(answer.observations()));
+    match answer.observations() {
+        0 => say!("\n{}", answer.name()),
+        n => say!("\n{} ({})", answer.name(), observations(n)),
+    }
     if let Some(source) = answer.fitted() {
         choice(source);
     }
@@ -455,7 +454,7 @@ mod tests {
             "kind",
             "speed [m/s]",
             "direction",
-            "duration [s]",
+            "time [s]",
             "steady [s]",
             "command [V]",
             "rms current [A]",

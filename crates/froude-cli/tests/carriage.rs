@@ -447,7 +447,7 @@ fn a_sidecar_tells_a_servo_log_from_a_table() {
     let sidecar = std::fs::read_to_string(&toml).unwrap();
     std::fs::write(&toml, sidecar.replace("drive_gain", "gain")).unwrap();
     let told = format!(
-        "froude: {}: the sidecar must say what force a volt of the command is: [constants] drive_gain = \"35.15 N/V\"\n",
+        "froude: {}: the sidecar must state the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"\n",
         text(&csv)
     );
     assert_eq!(refusal(&["identify", text(&csv)]), told);

@@ -200,7 +200,7 @@ fn a_finding_of_grade_error_does_not_change_the_exit_code() {
     }
     assert!(folder.path().join("tank-results/estimate.json").exists());
     let readme = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../README.md")).unwrap();
-    assert!(readme.contains("A finding does not change it, not even one of grade *error*"));
+    assert!(readme.contains("A finding does not change the exit code, not even one of grade\n*error*"));
 }
 
 /// What a terminal shows of a drive on the twin, whose questions are answered with `y`.
@@ -284,7 +284,7 @@ fn one_is_said_as_one() {
     let out = bench.run();
     assert_eq!(out.0, 15);
     let said = printed(&["run", text(&bench.campaign), "--yes"]);
-    assert!(said.contains("0 runs driven, 17 were there already, 0 left out."), "{said}");
+    assert!(said.contains("0 runs driven, 17 were already there, 0 left out."), "{said}");
 
     let table = bench.folder.path().join("t.csv");
     std::fs::write(&table, "speed [m/s],f_x [N]\n0.1\n").unwrap();

@@ -264,12 +264,13 @@ fn without_memory_the_program_ends_with_a_sentence() {
     };
     let enough = 4 << 20;
     assert_eq!(limited(enough, "identify t.csv --models quadratic").status.code(), Some(0));
-    let (mut failed, mut done) = (0, 0);
+    let (mut failed, mut done, mut is_loaded) = (0, 0, false);
     let mut kib = 30_000;
     while kib < 400_000 {
         let ended = limited(kib, "identify t.csv --models quadratic");
         let told = String::from_utf8_lossy(&ended.stderr).into_owned();
         // Below some tens of megabytes the system cannot even load the program: then it is the system that says so.
+        is_loaded |= ended.status.code().is_some();
         match ended.status.code() {
             Some(0) => done += 1,
             Some(1) => {
@@ -277,6 +278,8 @@ fn without_memory_the_program_ends_with_a_sentence() {
                 failed += 1;
             }
             Some(126 | 127) => {}
+            // Where not even its image fits, the system ends it without a word.
+            None if !is_loaded && told.is_empty() => {}
             other => panic!("{kib} KiB: ends with {other:?}: {told:?}"),
         }
         kib += kib / 6;

@@ -33,7 +33,7 @@ pub enum RefineError {
     Tank(#[from] TankError),
     /// The coarsest mesh has more panels than are allowed.
     #[error(
-        "the coarsest mesh has {coarsest} panels, and {most} are allowed; write --most-panels {third}, for the numerical uncertainty asks for \
+        "the coarsest mesh has {coarsest} panels, and {most} are allowed; write --most-panels {third}, because the numerical uncertainty needs \
          three meshes, or {coarsest} for a value without"
     )]
     TooFine {
