@@ -1,0 +1,174 @@
+//! Forecast of an excitation: pulses, relay, sweep, jog, and what a hung weight does.
+
+use froude_control::coast::Coast;
+use froude_control::config::{AxisConfig, Config};
+use froude_control::request::Excitation;
+use froude_control::travel::{Rigid, foresee_excitation, preflight_excitation};
+use froude_records::carriage::plan::{Drive, JOG_S, PlannedRun};
+
+use super::tow::{Load, at_most, beyond_the_drive};
+use super::{Expected, Forecast, Objection};
+
+/// Pulses, relay, sweep and jog. The controller holds them inside the soft limits by ending them: what would be ended is refused here.
+pub(super) fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forecast, Vec<Objection>) {
+    let axis = &control.axes[run.axis as usize];
+    let (drive, limits) = (&axis.drive, &axis.limits);
+    let n_m_v = drive.torque_constant_n_m_a * drive.amplifier_a_v;
+    // Largest command, its root mean square, what the controller is asked, from where, and what to do about too much.
+    let (command_v, rms_v, duration_s, asked, from_m, advice) = match run.drive {
+        Drive::Profile { .. } => unreachable!("a tow is not an excitation"),
+        Drive::Pulses { from_m, volts, period_s, duty, duration_s } => (
+            volts.abs(),
+            volts.abs() * duty.sqrt(),
+            duration_s,
+            Excitation::Pulses { volts, period_s, duty, duration_s },
+            from_m,
+            "lower the amplitude of [carriage.excitation]",
+        ),
+        Drive::Relay { from_m, volts, hysteresis_m, duration_s } => (
+            volts.abs(),
+            volts.abs(),
+            duration_s,
+            Excitation::Relay { volts, hysteresis_m, duration_s },
+            from_m,
+            "the relay's height is fixed, this drive is too weak for it",
+        ),
+        Drive::Sweep { from_m, speed_m_s, volts, from_hz, to_hz, duration_s } => {
+            // The sine comes on top of what the tow below it takes.
+            let steady_v = Load::of(run, speed_m_s, axis, expected).steady_n_m / n_m_v;
+            (
+                steady_v + volts.abs(),
+                steady_v.hypot(volts / std::f64::consts::SQRT_2),
+                duration_s,
+                Excitation::Sweep { volts, from_hz, to_hz, duration_s, speed_m_s },
+                from_m,
+                "the sweep's amplitude is fixed, this drive is too weak for it",
+            )
+        }
+        Drive::Jog { from_m, volts, distance_m } => (
+            volts.abs(),
+            volts.abs(),
+            JOG_S,
+            Excitation::Jog { volts, distance_m, duration_s: JOG_S },
+            from_m,
+            "the jog's command is fixed, this drive is too weak for it",
+        ),
+    };
+    let (current_a, rms_current_a) = (command_v * drive.amplifier_a_v, rms_v * drive.amplifier_a_v);
+    let mut out = beyond_the_drive("it", advice, [command_v, current_a, rms_current_a], axis);
+    if out.is_empty()
+        && let Some(refusal) = preflight_excitation(control, axis, from_m, &asked)
+    {
+        let text = match refusal {
+            froude_control::status::Refusal::BeyondTravel => format!(
+                "it starts at {from_m:.3} m and its travel does not fit between the end switches at {:.3} and {:.3} m: start elsewhere",
+                limits.low_switch_m, limits.high_switch_m
+            ),
+            _ => format!("the controller would refuse it: {asked:?} has a number out of its range"),
+        };
+        out.push(("controller", text));
+    }
+    if out.is_empty()
+        && let Some(text) = excursion(run, &asked, from_m, duration_s, control, expected)
+    {
+        out.push(("travel", text));
+    }
+    let forecast = Forecast {
+        id: run.id.clone(),
+        duration_s,
+        steady_s: 0.0,
+        command_v,
+        current_a,
+        rms_current_a,
+        coast_m: 0.0,
+        margin_m: f64::INFINITY,
+        drag_n: None,
+    };
+    (forecast, out.into_iter().map(|(kind, text)| Objection { id: run.id.clone(), kind, text }).collect())
+}
+
+/// Where the controller would end an excitation before its time, with the declared friction or with its lower end.
+fn excursion(
+    run: &PlannedRun,
+    asked: &Excitation,
+    from_m: f64,
+    duration_s: f64,
+    control: &Config,
+    expected: &Expected,
+) -> Option<String> {
+    let (what, are, advice) = match asked {
+        Excitation::Pulses { .. } => {
+            ("pulses", "are", "Write a lower amplitude or a shorter period in [carriage.excitation], or move the start")
+        }
+        Excitation::Relay { .. } => ("relay", "is", "Start further from the ends"),
+        Excitation::Jog { .. } => ("jog", "is", "Start further from the ends"),
+        Excitation::Sweep { .. } => return None,
+    };
+    let axis = &control.axes[run.axis as usize];
+    let drive = &axis.drive;
+    let inertia_kg_m2 = Load::of(run, 0.0, axis, expected).inertia_kg_m2;
+    let frictions =
+        [[drive.viscous_n_m_s_rad, drive.coulomb_n_m], [drive.viscous_lower_n_m_s_rad, drive.coulomb_lower_n_m]];
+    let cuts = frictions.map(|[viscous_n_m_s_rad, coulomb_n_m]| {
+        let on = Rigid { inertia_kg_m2, viscous_n_m_s_rad, coulomb_n_m };
+        let excursion = foresee_excitation(control, axis, from_m, asked, on);
+        excursion.cut_s.map(|cut_s| (cut_s, excursion.end_m))
+    });
+    let (cut_s, end_m) = cuts.into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(format!(
+        "its {what} {are} predicted to reach {end_m:.3} m after {cut_s:.1} s of {duration_s} s, where the controller ends what could not be \
+         stopped inside the soft limits any more. {advice}"
+    ))
+}
+
+/// What a hung weight does when the torque fails, where that does not end inside the travel.
+///
+/// It is held for sure by F = η C n/R (all friction behind the gear, its lower bound). A heavier weight W pulls the carriage from the
+/// highest place of the run to where the weight rests on its floor, h below, and friction stops it from there: whatever the mass,
+/// F s = (W − F) h, and the coast from the run's own speed comes on top.
+pub(super) fn fall(
+    run: &PlannedRun,
+    [bottom_m, top_m]: [f64; 2],
+    speed_m_s: f64,
+    axis: &AxisConfig,
+    expected: &Expected,
+) -> Option<String> {
+    let (drive, limits) = (&axis.drive, &axis.limits);
+    let weight_n = run.hung_weight_n;
+    let held_n = expected.efficiency * drive.coulomb_lower_n_m * drive.gear_ratio / drive.sprocket_radius_m;
+    // A floor outside the travel is reported once, of the campaign.
+    if run.floor_m.is_some_and(|floor_m| !(limits.hard_low_m..=limits.hard_high_m).contains(&floor_m)) {
+        return None;
+    }
+    if let Some(floor_m) = run.floor_m.filter(|&floor_m| weight_n != 0.0 && floor_m > bottom_m) {
+        return Some(format!(
+            "its weight rests on the floor while the carriage is below {floor_m:.3} m, and the run begins or ends at {bottom_m:.3} m: it would \
+             not hang all the way. The floor of [carriage.calibration] is a coordinate of the carriage, just below its start"
+        ));
+    }
+    if weight_n <= held_n {
+        return None;
+    }
+    let Some(floor_m) = run.floor_m else {
+        return Some(format!(
+            "friction reliably holds {:.2} N of its {weight_n:.2} N: if the torque fails the weight pulls the carriage into the stop \
+             at {:.3} m. Give it a floor to rest on, floor = \"{:.2} m\" in [carriage.calibration], or hang less",
+            at_most(held_n),
+            limits.hard_low_m,
+            bottom_m - 0.05
+        ));
+    };
+    let fall_m = (top_m - floor_m).max(0.0);
+    let own_m = Coast::of(drive).distance_m(speed_m_s);
+    let coast_m = (weight_n / held_n - 1.0) * fall_m + own_m;
+    let room_m = floor_m - limits.hard_low_m;
+    let most_n = held_n * (1.0 + (room_m - own_m).max(0.0) / fall_m.max(1e-3));
+    (coast_m > room_m).then(|| {
+        format!(
+            "if the torque fails its {weight_n:.2} N pull the carriage from {top_m:.3} m to {floor_m:.3} m, where they rest on the floor; \
+             it then coasts {coast_m:.3} m and {room_m:.3} m are free. Lift less high, further from the stop, or hang at most {:.2} N{}",
+            at_most(most_n),
+            expected.guess()
+        )
+    })
+}
