@@ -127,7 +127,11 @@ fn without_calibration_eq_8_is_a_quarter_too_high_and_says_why() {
 fn dry_runs_without_ballast_look_like_less_drag_and_are_found_out() {
     let scenario = Scenario { buoyancy_friction_n: 0.62, pairs: 5, ..scenario() };
     let quiet = report(&scenario, &setup(&scenario), |_| true).unwrap();
-    assert!(message(&quiet, "constant-beside-drag").starts_with("mcd: a constant force of -0.6"), "{:?}", quiet.findings);
+    assert!(
+        message(&quiet, "constant-beside-drag").starts_with("mcd: a constant force of -0.6"),
+        "{:?}",
+        quiet.findings
+    );
     assert!(message(&quiet, "ballast-contradicts").contains("not ballasted"));
     let ballast = Ballast::Unballasted { unloaded_n: 62.0, rolling: None };
     let told = report(&scenario, &DragSetup { ballast, ..setup(&scenario) }, |_| true).unwrap();

@@ -1,6 +1,8 @@
 //! The drag of six campaigns on the twin, as the program gave it before all methods went one way.
 //!
-//! Whatever is rebuilt between a run and its record, these numbers stay: values within 1e-12, ends of intervals within 1e-9, both relative.
+//! Whatever is rebuilt between a run and its record, these numbers stay: values within 1e-12, ends of intervals within 1e-9, both relative. Those of
+//! the flexible axis stay within a thousand times that, 1e-7 of their standard uncertainty: its two masses are fitted by iteration, and the one matrix
+//! exponential that took the place of two differs from the one that they stepped with by rounding.
 //! `FROUDE_WRITE_FIXTURES=1` writes them anew.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -65,6 +67,7 @@ fn compare(place: &str, before: &Value, now: &Value) {
         (Value::Number(a), Value::Number(b)) => {
             let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
             let part = if place.ends_with("/value") { 1e-12 } else { 1e-9 };
+            let part = if place.contains("/drag_mbdp_flexible/") { 1e3 * part } else { part };
             assert!((a - b).abs() <= part * a.abs(), "{place}: {a} is {b}");
         }
         _ => assert_eq!(before, now, "{place}"),

@@ -167,7 +167,8 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         return Err(Error::Nothing(format!("{path}: the campaign has no [[source]]{instead}")));
     }
     // Matrices of one body, or of one and more links, are no sources to be held against each other.
-    let is_one = published.is_empty() && matches!(&campaign.sources[..], [one] if matches!(one.input, campaign::Input::Mesh(_)));
+    let is_one =
+        published.is_empty() && matches!(&campaign.sources[..], [one] if matches!(one.input, campaign::Input::Mesh(_)));
     progress("comparing the sources");
     let estimates: Vec<Estimate> = sources.iter().flat_map(|s| s.estimates().iter().cloned()).collect();
     let fitted = EstimateFile { data: files.into_map(), ..EstimateFile::of(estimates) };

@@ -414,7 +414,10 @@ fn every_misuse_is_an_error_that_says_what_to_do() {
         "residuals of run 0: 2 entries where 1 are needed"
     );
     let narrow = given(1, |_, b: &[f64]| (b[0] == 0.0).then(|| vec![1.0]));
-    assert!(try_with(&narrow, &one).starts_with("the derivative of run 0 by \"a\" does not exist at the start"));
+    assert!(
+        try_with(&narrow, &one)
+            .starts_with("the derivative of run 0 with respect to \"a\" does not exist at the start")
+    );
     let settings = Settings { difference: f64::NAN, ..Settings::default() };
     assert!(minimise(&good, &one, &settings).unwrap_err().to_string().starts_with("difference is NaN"));
 

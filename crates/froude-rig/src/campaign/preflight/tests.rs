@@ -99,7 +99,7 @@ fn pulses_that_a_soft_limit_would_end_are_refused_with_where_and_when() {
     assert_eq!(kinds(&found, "pulses"), ["travel"]);
     // From 2.45 m at up to 0.6 m/s; without torque the axis with the heaviest body goes on for 1.5 m, to the soft limit at 4.89 m.
     let text = &found[0].text;
-    let (end_m, cut_s) = (between(text, "come to ", " m after"), between(text, " m after ", " s of"));
+    let (end_m, cut_s) = (between(text, "predicted to reach ", " m after"), between(text, " m after ", " s of"));
     assert!((3.2..3.4).contains(&end_m) && (1.4..1.8).contains(&cut_s), "{text}");
     assert!(text.contains("of 20 s, where the controller ends") && text.contains("[carriage.excitation]"), "{text}");
     // Near an end they are cut sooner.
