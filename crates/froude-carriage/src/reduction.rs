@@ -245,6 +245,7 @@ pub fn known_of_calibration(campaign: Option<&Campaign>, rig: Option<&str>) -> K
     Known {
         weight_relative: declared_weight_relative(campaign),
         weights: weights_key(campaign),
+        pulley_standard: loss.standard,
         pulley: rig.map(|rig| format!("{rig}/pulley {:e} {:e}", loss.value, loss.standard)),
     }
 }

@@ -28,7 +28,7 @@
 //! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
 //!
-//! All of it runs on one thread except [`stream::reduce_columns`], whose result does not
+//! All of it runs on one thread except [`wild`] and [`stream::reduce_columns`], whose results do not
 //! depend on how many there are.
 //!
 //! Not here: correlated noise other than by cluster (and, for one long run, by

@@ -207,7 +207,10 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
     let type_a = (of_fit * of_fit - from_pulley * from_pulley).max(0.0).sqrt();
     let from_weight = k * setup.weight_relative;
     let known = |standard: f64| (standard * standard, f64::INFINITY);
-    let entries = [(type_a * type_a, inverse.dof), known(from_pulley), known(from_weight)];
+    // The prior takes none of the rows: what is left of the scatter has the residuals' degrees of freedom, n − tr H.
+    let of_residuals = fitted.components.first().map_or(inverse.dof, |component| component.dof);
+    let type_a_dof = if is_pulley_measured { inverse.dof } else { of_residuals };
+    let entries = [(type_a * type_a, type_a_dof), known(from_pulley), known(from_weight)];
     let combined = froude_fit::propagate::expanded(&entries, 0.95);
     let slope = take(&fitted, 2)?;
     let pulley_loss = Uncertain { value: slope.value * k, standard: slope.standard * k, dof: slope.dof };
@@ -222,7 +225,7 @@ fn calibrated(readings: &[Reading], setup: &CalibrationSetup) -> Result<Calibrat
         efficiency: Uncertain { value: k / ideal, standard: of_efficiency.standard / ideal, dof: of_efficiency.dof },
         type_a,
         from_pulley,
-        type_a_dof: inverse.dof,
+        type_a_dof,
         pulley_loss,
         is_pulley_measured,
         friction_n: friction_v * k,
@@ -376,6 +379,7 @@ pub fn jog(position_m: &[f64], command_v: &[f64]) -> Jog {
 mod tests {
     use super::*;
     use crate::drag::simulate::{Logged, Scenario};
+    use froude_records::estimate::EstimateFile;
 
     fn quiet() -> Scenario {
         let mut s = Scenario::pinned(20.0);
@@ -414,6 +418,27 @@ mod tests {
         assert!((of_constants - 0.02).abs() < 1e-12, "{of_constants}");
         let both = calibrated(&quiet(), &[0.0, 1.5, 20.0], |_| true).unwrap();
         assert!(both.is_pulley_measured && both.from_pulley == 0.0, "{both:?}");
+    }
+
+    /// One set of weights over one pulley on two days, the second with another gear: their common errors are common, whatever the force per volt.
+    #[test]
+    fn two_calibrations_have_weights_and_pulley_in_common() {
+        let of = |efficiency: f64| {
+            let known = record::Known {
+                weight_relative: 0.001,
+                weights: Some("weights/a".to_owned()),
+                pulley_standard: PULLEY_LOSS.standard,
+                pulley: Some("rig/a/pulley".to_owned()),
+            };
+            let day = calibrated(&Scenario { efficiency, ..quiet() }, &[0.0, 20.0], |_| true).unwrap();
+            EstimateFile::of(vec![record::calibrated(&format!("day {efficiency}"), &day, &known)])
+        };
+        let days = [("a.json".to_owned(), of(0.8)), ("b.json".to_owned(), of(0.82))];
+        let compared = froude_identify::compare::compare(&froude_identify::compare::named(&days));
+        let codes: Vec<&str> = compared.findings.iter().map(|finding| finding.code.as_str()).collect();
+        assert!(codes.contains(&"errors-in-common") && !codes.contains(&"errors-contradict"), "{codes:?}");
+        // What is common is taken out: k differs by 2.5 %, and the scatter is far below the pulley's 0.58 %.
+        assert!(compared.coefficients[0].e_n.unwrap().abs() > 5.0, "{:?}", compared.coefficients);
     }
 
     /// Without noise to speak of, only the pulley's declared loss (0.3 % of the weight) is left, and light weights lowered

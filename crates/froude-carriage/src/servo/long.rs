@@ -47,7 +47,7 @@ pub struct LongReport {
     pub hac: Vec<f64>,
     /// Their covariance.
     pub covariance: Mat<f64>,
-    /// Degrees of freedom of that: Bartlett's window leaves 1.5 rows for each of its lag and one.
+    /// Degrees of freedom of that, 1.5 n/(lag + 1): Bartlett's window at frequency zero (Priestley 1981, 6.2).
     pub dof: f64,
     /// Lag of HAC, s.
     pub hac_lag_s: f64,

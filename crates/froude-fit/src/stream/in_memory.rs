@@ -38,7 +38,7 @@ pub enum Method {
 ///
 /// `regressors` and `responses` are columns of equal length. The result does not
 /// depend on the number of threads; with [`Method::Reflections`] it is that of
-/// [`Accumulator`], bit for bit.
+/// [`Accumulator`](super::Accumulator), bit for bit.
 ///
 /// # Errors
 ///

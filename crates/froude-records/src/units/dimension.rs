@@ -150,7 +150,7 @@ impl Dimension {
 }
 
 impl fmt::Display for Dimension {
-    /// The SI unit as text that [`parse_unit`] reads back: `kg/m^3`, `N m`, `1`.
+    /// The SI unit as text that [`parse_unit`](super::parse_unit) reads back: `kg/m^3`, `N m`, `1`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let named = match *self {
             Self::ONE => "1",

@@ -23,7 +23,9 @@ pub struct Known {
     pub weight_relative: f64,
     /// Key of that error, where a campaign declares the weights.
     pub weights: Option<String>,
-    /// Key of the error of the pulley's loss, where the rig is known.
+    /// Standard uncertainty of the pulley's loss as declared, as a part of the weight.
+    pub pulley_standard: f64,
+    /// Key of that error, where the rig is known.
     pub pulley: Option<String>,
 }
 
@@ -32,20 +34,22 @@ pub struct Known {
 pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
     let k = c.force_per_volt.force_per_volt_n;
     let from_weights = k.value * known.weight_relative;
-    let error = |name: &str, quantity: &str, standard: f64| SharedError {
+    // The covariance is that of what errs, alike in every calibration that has it; the slope is this calibration's (GUM F.1.2).
+    let error = |name: &str, quantity: &str, standard: f64, slope: f64| SharedError {
         name: name.to_owned(),
         quantity: quantity.to_owned(),
         kind: ErrorKind::B,
         covariance: vec![vec![standard * standard]],
         dof: None,
         limits: None,
-        sensitivity: vec![vec![1.0]],
+        sensitivity: vec![vec![slope]],
     };
     let own = |key: &Option<String>, name: &str| key.clone().unwrap_or_else(|| format!("{OWN}{name}"));
-    let mut errors =
-        IndexMap::from([(own(&known.weights, "weights"), error("known weights", "hung_weight", from_weights))]);
-    if c.from_pulley > 0.0 {
-        let loss = error("declared loss of the pulley", "pulley_loss", c.from_pulley);
+    let weights = error("known weights", "hung_weight", known.weight_relative, k.value);
+    let mut errors = IndexMap::from([(own(&known.weights, "weights"), weights)]);
+    if c.from_pulley > 0.0 && known.pulley_standard > 0.0 {
+        let slope = c.from_pulley / known.pulley_standard;
+        let loss = error("declared loss of the pulley", "pulley_loss", known.pulley_standard, slope);
         errors.insert(own(&known.pulley, "pulley"), loss);
     }
     let coefficient = Coefficient {
