@@ -6,6 +6,7 @@
 //! A jerk bound lengthens each ramp, a shaper the whole move; both shorten the part at constant speed.
 
 mod excitation;
+mod fall;
 #[cfg(test)]
 mod tests;
 mod tow;
@@ -111,6 +112,11 @@ pub fn check_campaign(asked: &CarriagePlan, rig: &RigSpec, control: &Config) -> 
         object("[carriage.calibration]", "weight", text);
     }
     out
+}
+
+/// Two decimals of a number that advice may quote as the most: never rounded up.
+fn at_most(value: f64) -> f64 {
+    (1e2 * value * (1.0 - 1e-9)).floor() / 1e2
 }
 
 /// Forecast of one run, and everything that speaks against it.

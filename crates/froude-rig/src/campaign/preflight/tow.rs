@@ -10,7 +10,7 @@ use froude_records::carriage::CarriagePlan;
 use froude_records::carriage::plan::PlannedRun;
 use froude_records::run::{BodyState, Role};
 
-use super::excitation::fall;
+use super::fall::fall;
 use super::{Expected, Forecast, Objection, SHORTEST_STEADY_S};
 
 #[derive(Debug, Clone, Copy)]
@@ -244,9 +244,4 @@ pub(super) fn beyond_the_drive(
         out.push(("heating", text));
     }
     out
-}
-
-/// Two decimals of a number that advice may quote as the most: never rounded up.
-pub(super) fn at_most(value: f64) -> f64 {
-    (1e2 * value * (1.0 - 1e-9)).floor() / 1e2
 }
