@@ -292,7 +292,7 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
     };
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain_n_v, Some(&drive)), files(&slow));
     let excited: Vec<&RunLog> = pulses(&runs.logs).into_iter().collect();
-    let two_mass = |report: &FlexibleReport| (record::two_mass(name, report), files(&excited));
+    let two_mass = |report: &FlexibleReport| (record::two_mass(name, report, &drive), files(&excited));
     let estimates = models.iter().map(rigid).chain(flexible.as_ref().map(two_mass)).collect();
     Ok(AxisModels {
         estimates,

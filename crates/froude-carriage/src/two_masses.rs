@@ -81,5 +81,6 @@ fn flexible_options(motor: MotorSide, constants: &AxisConstants) -> FlexibleOpti
     };
     let part = |d: &Declared| d.standard_uncertainty / d.value;
     let force_relative = part(&constants.torque_constant_n_m_a).hypot(part(&constants.amplifier_a_v));
-    FlexibleOptions { gear, delay_s: DELAY_S, force_relative, ..FlexibleOptions::new(motor) }
+    let radius_relative = part(&constants.sprocket_radius_m);
+    FlexibleOptions { gear, delay_s: DELAY_S, force_relative, radius_relative, ..FlexibleOptions::new(motor) }
 }

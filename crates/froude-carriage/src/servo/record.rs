@@ -9,7 +9,7 @@
 //! | `servo_over_position` | `F_c` a line between knots over the travel: no formula                         |
 //! | `servo_two_mass`      | motor and load with a chain between them (MCD eq. 2 and 3): no formula          |
 //!
-//! An error of the force per volt scales all coefficients of a rigid model alike, one of the sprocket's radius those of speed and acceleration
+//! An error of the force per volt scales all coefficients of the chain alike, one of the sprocket's radius those of speed, acceleration and stretch
 //! twice: they are type B, by the key of the rig, so that two records of one rig have them in common. Of a log without a rig nothing is
 //! known of them, and the force per volt is taken as exact.
 
@@ -24,7 +24,7 @@ use indexmap::IndexMap;
 use crate::servo::long::LongReport;
 use crate::servo::motor::Drive;
 use crate::servo::report::{ServoCoefficient, ServoReport};
-use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport};
+use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport, radius_power};
 
 /// Name of the law of two masses.
 pub const TWO_MASS: &str = "servo_two_mass";
@@ -118,7 +118,7 @@ fn recorded(
     let formula = formula(&names);
     let constants = IndexMap::from([("force_per_volt".to_owned(), measured(force_per_volt_n_v, "N/V"))]);
     let fewest = fit.dof.iter().copied().reduce(f64::min).and_then(finite);
-    let errors = drive.map_or_else(IndexMap::new, |drive| errors_of(drive, fit.coefficients));
+    let errors = drive.map_or_else(IndexMap::new, |drive| errors_of(drive, fit.coefficients, radii));
     let exact = errors
         .is_empty()
         .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike".to_owned());
@@ -146,13 +146,19 @@ fn recorded(
     }
 }
 
-/// How often the sprocket's radius goes into a coefficient: once into the force, and once more into a speed or an acceleration.
+/// The power with which the sprocket's radius goes into a coefficient of a rigid model: once into the force, and once more into a speed or an
+/// acceleration.
 fn radii(name: &str) -> f64 {
     if name == "M" || name.starts_with("F_v") { -2.0 } else { -1.0 }
 }
 
-/// Errors of the declared drive: K_T and amplifier, and the radius that makes counts into metres and torques into forces.
-fn errors_of(drive: &Drive, coefficients: &[ServoCoefficient]) -> IndexMap<String, SharedError> {
+/// Errors of the declared drive: K_T and amplifier, and the radius that makes counts into metres and torques into forces and goes into a
+/// coefficient by the power `radii`.
+fn errors_of(
+    drive: &Drive,
+    coefficients: &[ServoCoefficient],
+    radii: impl Fn(&str) -> f64,
+) -> IndexMap<String, SharedError> {
     let error = |name: &str, quantity: &str, relative: f64, times: &dyn Fn(&str) -> f64| {
         let sensitivity = coefficients.iter().map(|c| vec![times(&c.name) * c.value]).collect();
         let error = SharedError {
@@ -189,30 +195,26 @@ fn with_drive(c: &ServoCoefficient, dof: f64, drive: Option<&Drive>) -> Coeffici
     }
 }
 
-/// Two masses with a chain between them as an estimate of `source`.
+/// Two masses with a chain between them as an estimate of `source`; `drive` has the uncertainties that the report was made with.
 #[must_use]
-pub fn two_mass(source: &str, report: &FlexibleReport) -> Estimate {
+pub fn two_mass(source: &str, report: &FlexibleReport, drive: &Drive) -> Estimate {
     let method = TWO_MASS;
     let (own, made) = report.coefficients.split_at(CHAIN_PARAMETERS);
     let names: Vec<String> = own.iter().map(|c| c.name.clone()).collect();
     // The declared inputs are known, not estimated.
-    let dof = |j: usize| {
-        let parts = [(report.scatter[(j, j)], report.dof[j]), (report.declared[(j, j)], f64::INFINITY)];
-        finite(effective_dof(&parts))
+    let known = |j: usize, c: &ServoCoefficient| {
+        let of_the_rig = c.value * drive.torque_relative.hypot(radius_power(&c.name) * drive.radius_relative);
+        report.declared[(j, j)].max(0.0) + of_the_rig * of_the_rig
     };
     let coefficients = own.iter().enumerate().map(|(j, c)| {
-        let root = |m: &Mat<f64>| m[(j, j)].max(0.0).sqrt();
-        let parts = Coefficient {
-            type_a: Some(root(&report.scatter)),
-            type_b: Some(root(&report.declared)),
-            ..coefficient(c, dof(j))
-        };
+        let (scatter, known) = (report.scatter[(j, j)].max(0.0), known(j, c));
+        let dof = finite(effective_dof(&[(scatter, report.dof[j]), (known, f64::INFINITY)]));
+        let parts = Coefficient { type_a: Some(scatter.sqrt()), type_b: Some(known.sqrt()), ..coefficient(c, dof) };
         (c.name.clone(), parts)
     });
     let identity = (0..CHAIN_PARAMETERS).map(|i| (0..CHAIN_PARAMETERS).map(|j| f64::from(u8::from(i == j))).collect());
     let declared = SharedError {
-        name: "declared inputs of the drive (efficiency, drag, delay, force per volt) and the prior of the splits"
-            .to_owned(),
+        name: "declared efficiency, drag and delay, and the prior of the splits".to_owned(),
         quantity: "drive".to_owned(),
         kind: ErrorKind::B,
         covariance: rows_of(&report.declared),
@@ -232,7 +234,7 @@ pub fn two_mass(source: &str, report: &FlexibleReport) -> Estimate {
         law: law(method, None, IndexMap::new()),
         coefficients: coefficients.collect(),
         type_a: type_a(names, &report.scatter, &report.dof, "CR2 over stretches of the record".to_owned()),
-        errors: IndexMap::from([(format!("{OWN}drive"), declared)]),
+        errors: [(format!("{OWN}drive"), declared)].into_iter().chain(errors_of(drive, own, radius_power)).collect(),
         n_observations: report.n_rows,
         derived: derived.collect(),
         diagnostics: Diagnostics { notes: report.findings.clone(), ..Diagnostics::default() },

@@ -13,7 +13,7 @@
 //!
 //! **Intervals** are those of stretches of a second as clusters (CR2, Student's t with the degrees of freedom of each coefficient), so that
 //! correlation which the observer leaves is in them. Declared inputs (η, η_b, D, delay, force per volt) move
-//! the estimate by one linearised step; their standard uncertainties are added.
+//! the estimate by one linearised step, and the sprocket's radius scales it; their standard uncertainties are added.
 //!
 //! **What the motor cannot tell.** How viscous and Coulomb friction are split between motor and load shows only in the vibration
 //! and in the moments of sticking. The sums are coefficients; the splits are fractions in 0…1 with a prior that knows
@@ -95,6 +95,8 @@ pub struct FlexibleOptions {
     pub delay_s: Uncertain,
     /// Standard uncertainty of force per volt, as a part.
     pub force_relative: f64,
+    /// That of the sprocket's radius, which makes torques into forces and counts into metres.
+    pub radius_relative: f64,
     /// Longest step of the simulation, s.
     pub step_s: f64,
     /// Antiresonances tried as a start, Hz.
@@ -113,6 +115,7 @@ impl FlexibleOptions {
             load_drag_n_s2_m2: Uncertain::new(0.0, 0.0),
             delay_s: Uncertain::new(0.0, 0.0),
             force_relative: 0.0,
+            radius_relative: 0.0,
             step_s: 2e-4,
             start_hz: vec![2.5, 3.2, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 22.0, 30.0],
             intervals: IntervalOptions::default(),
@@ -148,13 +151,15 @@ pub struct Split {
 pub struct FlexibleReport {
     /// At the chain: `m`, `M`, `K_e`, `B_e`, `B_sum`, `C_sum`; at the motor: `J_m`, `J_eff`, `B_eff`, `C_eff`; `f_antiresonance`, `f_resonance`.
     ///
-    /// `block_std` and the interval include the declared inputs' uncertainties, the other two only scatter.
+    /// `block_std` and the interval include the uncertainties of the declared inputs, of the force per volt and of the radius, the other two
+    /// only scatter.
     pub coefficients: Vec<ServoCoefficient>,
     /// Covariance of the first [`CHAIN_PARAMETERS`] of them, at the chain, from scatter.
     pub scatter: Mat<f64>,
     /// Degrees of freedom of each of these.
     pub dof: Vec<f64>,
-    /// What the declared inputs and the prior of the splits add to it.
+    /// What the declared gear, drag and delay and the prior of the splits add to it; the force per volt and the radius are apart, since other
+    /// records of the rig share them.
     pub declared: Mat<f64>,
     /// Splits of friction between motor and load.
     pub splits: Vec<Split>,
@@ -400,13 +405,13 @@ impl<'a> Record<'a> {
         let innovations = &fitted.residuals[..n];
         let speed = self.speed(&self.log.position_m)?;
         let splits = [(6, "B_m/B"), (7, "C_m/C")].map(|(j, name)| {
-            let half = covariance.half_width(&unit_vector(j, 1.0));
+            let half = covariance.half_width(&unit_vector(j, 1.0), 0.0);
             let interval = [theta[j] - half, theta[j] + half];
             Split { name, share_of_motor: theta[j], interval, is_identified: is_told(interval) }
         });
         Ok(FlexibleReport {
             scatter: at_the_chain(&covariance.clustered.covariance, theta),
-            declared: at_the_chain(&covariance.known, theta),
+            declared: at_the_chain(&covariance.declared, theta),
             dof: (0..CHAIN_PARAMETERS).map(|j| covariance.clustered.dof(&unit_vector(j, 1.0))).collect(),
             coefficients: self.coefficients(theta, &covariance),
             axis: self.axis(theta),
@@ -455,11 +460,18 @@ impl<'a> Record<'a> {
         let clustered =
             Clustered::new(&data, innovations, &stretches(n, length), Some(&information), Enlarged::Average)?;
         let prior = Self::of_prior(fitted, n, &gram);
+        let declared = &prior + &self.of_declared(fitted, &gram)?;
+        let mut known = declared.clone();
+        // The force per volt scales masses, stiffness and friction alike.
+        let theta = &fitted.parameters;
+        add_outer(&mut known, &[1.0, 1.0, 1.0, 1.0, theta[4], theta[5], 0.0, 0.0], self.options.force_relative);
         let scatter = norm(innovations) / ((n - PARAMETERS) as f64).sqrt();
         Ok(Covariance {
             classical: Mat::from_fn(PARAMETERS, PARAMETERS, |i, j| scatter * scatter * gram[(i, j)]),
             hac: &hac + &prior,
-            known: &prior + &self.of_declared(fitted, &gram)?,
+            declared,
+            known,
+            radius_relative: self.options.radius_relative,
             clustered,
             confidence: options.confidence,
         })
@@ -498,9 +510,6 @@ impl<'a> Record<'a> {
                 .collect();
             add_outer(&mut out, &times(gram, &score), 1.0);
         }
-        // The force per volt scales masses, stiffness and friction alike.
-        let scaled = [1.0, 1.0, 1.0, 1.0, theta[4], theta[5], 0.0, 0.0];
-        add_outer(&mut out, &scaled, self.options.force_relative);
         Ok(out)
     }
 
@@ -535,7 +544,8 @@ impl<'a> Record<'a> {
         ]
         .into_iter()
         .map(|(name, unit, value, (is_log, gradient))| {
-            let half = covariance.half_width(&gradient);
+            let radius = radius_power(name) * if is_log { 1.0 } else { value };
+            let half = covariance.half_width(&gradient, radius);
             let scale = if is_log { value } else { 1.0 };
             let interval =
                 if is_log { [value * (-half).exp(), value * half.exp()] } else { [value - half, value + half] };
@@ -545,7 +555,7 @@ impl<'a> Record<'a> {
                 value,
                 classical_std: scale * quadratic(&gradient, &covariance.classical).sqrt(),
                 hac_std: scale * quadratic(&gradient, &covariance.hac).sqrt(),
-                block_std: scale * covariance.variance(&gradient).sqrt(),
+                block_std: scale * covariance.variance(&gradient, radius).sqrt(),
                 interval,
             }
         })
@@ -568,22 +578,41 @@ struct Covariance {
     classical: Mat<f64>,
     hac: Mat<f64>,
     clustered: Clustered,
-    /// Of the prior and the declared inputs: known, not estimated.
+    /// Of the prior and of declared gear, drag and delay.
+    declared: Mat<f64>,
+    /// With the force per volt: known, not estimated.
     known: Mat<f64>,
+    radius_relative: f64,
     confidence: f64,
 }
 
 impl Covariance {
-    fn variance(&self, gradient: &[f64; PARAMETERS]) -> f64 {
-        quadratic(gradient, &self.clustered.covariance) + quadratic(gradient, &self.known)
+    /// Of what goes along `gradient` with the parameters and by `radius` with the sprocket's relative radius.
+    fn variance(&self, gradient: &[f64; PARAMETERS], radius: f64) -> f64 {
+        quadratic(gradient, &self.clustered.covariance) + self.known(gradient, radius)
+    }
+
+    fn known(&self, gradient: &[f64; PARAMETERS], radius: f64) -> f64 {
+        quadratic(gradient, &self.known) + (radius * self.radius_relative).powi(2)
     }
 
     /// Of the interval, with the degrees of freedom by Welch and Satterthwaite.
-    fn half_width(&self, gradient: &[f64; PARAMETERS]) -> f64 {
+    fn half_width(&self, gradient: &[f64; PARAMETERS], radius: f64) -> f64 {
         let scatter = quadratic(gradient, &self.clustered.covariance);
-        let known = quadratic(gradient, &self.known);
+        let known = self.known(gradient, radius);
         let dof = effective_dof(&[(scatter, self.clustered.dof(gradient)), (known, f64::INFINITY)]);
         coverage_factor(self.confidence, dof) * (scatter + known).sqrt()
+    }
+}
+
+/// The power with which the sprocket's radius goes into a coefficient of the chain: it makes forces of torques, and motions of counts. What
+/// is brought to the motor's shaft leaves it again, and frequencies do not have it.
+#[must_use]
+pub fn radius_power(name: &str) -> f64 {
+    match name {
+        "m" | "M" | "K_e" | "B_e" | "B_sum" => -2.0,
+        "C_sum" => -1.0,
+        _ => 0.0,
     }
 }
 
@@ -644,6 +673,32 @@ mod tests {
                     c.block_std
                 );
             }
+        }
+    }
+
+    /// A sprocket that is 1 % larger than declared: positions are 1 % larger and forces 1 % smaller than recorded. Each coefficient follows the
+    /// power that its uncertainty of the radius has.
+    #[test]
+    fn coefficients_follow_the_radius_by_their_power() {
+        let noise = Noise { force_std_n: 0.05, ..Noise::encoder_only() };
+        let log = record(&carriage(), 1000.0, 10.0, &noise, 4).unwrap();
+        let larger = 1.01;
+        let scaled = ServoLog { position_m: log.position_m.iter().map(|y| larger * y).collect(), ..log.clone() };
+        let motor = MotorSide::MCD;
+        let of = |log: &ServoLog, motor| identify_flexible(log, &FlexibleOptions::new(motor)).unwrap();
+        let declared = of(&log, motor);
+        let true_one = of(&scaled, MotorSide { sprocket_radius_m: larger * motor.sprocket_radius_m, ..motor });
+        for (c, other) in declared.coefficients.iter().zip(&true_one.coefficients) {
+            let expected = larger.powf(radius_power(&c.name));
+            // The searches end within a thousandth of a standard deviation.
+            let step = 0.02 * c.block_std / c.value.abs();
+            assert!(
+                (other.value / c.value / expected - 1.0).abs() < step,
+                "{}: {} of {}",
+                c.name,
+                other.value,
+                c.value
+            );
         }
     }
 

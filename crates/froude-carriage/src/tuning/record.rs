@@ -7,25 +7,35 @@ use indexmap::IndexMap;
 /// A number read off a response: name, unit, value where there is one.
 pub(super) type Reading = (&'static str, &'static str, Option<f64>);
 
-/// An estimate of `source` with these readings and their covariance, `None` where nothing is known of it; `law` and `output` say of what response,
+/// What is known of the readings' errors.
+pub(super) struct Spread {
+    /// Covariance of all of them.
+    pub(super) covariance: Vec<Vec<f64>>,
+    /// Degrees of freedom of each.
+    pub(super) dof: Vec<f64>,
+}
+
+/// An estimate of `source` with these readings and their spread, `None` where nothing is known of it; `law` and `output` say of what response,
 /// `band_hz` where it was measured.
 pub(super) fn of_response(
     source: &str,
     (law, output): (&str, (&str, &str)),
     readings: &[Reading],
-    covariance: Option<&[Vec<f64>]>,
+    spread: Option<&Spread>,
     band_hz: [f64; 2],
 ) -> Estimate {
     let known: Vec<usize> = (0..readings.len()).filter(|&j| readings[j].2.is_some()).collect();
-    let type_a = covariance.map(|c| TypeA {
+    let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+    let type_a = spread.map(|s| TypeA {
         names: known.iter().map(|&j| readings[j].0.to_owned()).collect(),
-        matrix: known.iter().map(|&a| known.iter().map(|&b| c[a][b]).collect()).collect(),
-        dof: vec![None; known.len()],
-        kind: "points of the measured response, each by its coherence".to_owned(),
+        matrix: known.iter().map(|&a| known.iter().map(|&b| s.covariance[a][b]).collect()).collect(),
+        dof: known.iter().map(|&j| finite(s.dof[j])).collect(),
+        kind: "points of the measured response, each by what its neighbours leave".to_owned(),
     });
     let coefficients = readings.iter().enumerate().map(|(j, &(name, unit, value))| {
-        let standard = value.and(covariance).map(|c| c[j][j].max(0.0).sqrt());
-        let half = standard.map(|u| coverage_factor(0.95, f64::INFINITY) * u);
+        let own = value.and(spread).map(|s| (s.covariance[j][j].max(0.0).sqrt(), s.dof[j]));
+        let standard = own.map(|(u, _)| u);
+        let half = own.map(|(u, dof)| coverage_factor(0.95, dof) * u);
         let coefficient = Coefficient {
             label: None,
             value,
@@ -36,7 +46,7 @@ pub(super) fn of_response(
             type_a: standard,
             type_b: None,
             interval_95: value.zip(half).map(|(x, half)| [x - half, x + half]),
-            effective_dof: None,
+            effective_dof: own.and_then(|(_, dof)| finite(dof)),
         };
         (name.to_owned(), coefficient)
     });

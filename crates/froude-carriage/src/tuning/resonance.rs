@@ -32,6 +32,8 @@ pub struct TwoMassModes {
     pub free: Mode,
     /// Correlation of the load's frequency and damping, and the free ones.
     pub correlation: [[f64; 4]; 4],
+    /// Degrees of freedom of their standard uncertainties.
+    pub dof: f64,
     /// M (R/n)²/J_m = (ω_p/ω_a)² − 1.
     pub inertia_ratio: f64,
     /// Acceleration of the motor alone per volt, rad/(s² V).
@@ -126,6 +128,7 @@ pub fn two_mass_modes(plant: &[ResponsePoint]) -> Result<TwoMassModes, TuningErr
         load: mode(2, 3),
         free: mode(4, 5),
         correlation,
+        dof: covariance.dof,
         inertia_ratio: (free_hz / load_hz).powi(2) - 1.0,
         gain_rad_s2_v: p[0].exp(),
         viscous_1_s: p[1].exp(),
@@ -201,7 +204,7 @@ impl TwoMassModes {
     /// Free mode without the gear's loss, Hz, and its standard uncertainty: f_l √(1 + ηR_a), R_a = (f_a/f_l)² − 1.
     ///
     /// A motor that drives feels the chain's force over the gear's efficiency η, so that its response has its peak at
-    /// f_a = f_l √(1 + R/η), R = M(R/n)²/J_m; the dip at f_l is the load's alone and does not move. Both frequencies count as independent.
+    /// f_a = f_l √(1 + R/η), R = M(R/n)²/J_m; the dip at f_l is the load's alone and does not move.
     #[must_use]
     pub fn free_through_gear(&self, efficiency: f64, efficiency_std: f64) -> (f64, f64) {
         let (load, apparent) = (self.load, self.free);
@@ -210,7 +213,8 @@ impl TwoMassModes {
         let by_load = (1.0 - efficiency) * load.frequency_hz / free_hz * load.frequency_std_hz;
         let by_free = efficiency * apparent.frequency_hz / free_hz * apparent.frequency_std_hz;
         let by_gear = 0.5 * (apparent.frequency_hz.powi(2) - load.frequency_hz.powi(2)) / free_hz * efficiency_std;
-        (free_hz, by_load.hypot(by_free).hypot(by_gear))
+        let both = 2.0 * self.correlation[0][2] * by_load * by_free;
+        (free_hz, (by_load * by_load + by_free * by_free + both + by_gear * by_gear).max(0.0).sqrt())
     }
 }
 

@@ -8,6 +8,10 @@
 //! No window tapers the record: the sweep itself begins and ends at rest, and a window would cut a lightly damped mode's
 //! ringing off its excitation (windows about the moment of passing moved a mode of 3 % damping by 4 % of its frequency).
 //!
+//! The standard uncertainty of a point is that of an instrumental variable (Söderström & Stoica 1983, *Instrumental Variable Methods for System
+//! Identification*): σ_N² Σ|D|²/|Σ U D*|², σ_N² from the residuals Y − P̂ U of the neighbours, with twice their number less two degrees of
+//! freedom.
+//!
 //! **Range.** Frequencies at least ten resolutions (1/T) above zero and below a quarter of the sampling rate.
 
 use std::f64::consts::TAU;
@@ -38,6 +42,9 @@ pub struct Sweep<'a> {
 
 /// Neighbouring frequencies that are averaged, one resolution apart.
 const NEIGHBOURS: usize = 7;
+
+/// Degrees of freedom of the standard uncertainty of a point: real and imaginary parts of the neighbours, less those of the estimate.
+pub const POINT_DOF: f64 = 2.0 * (NEIGHBOURS - 1) as f64;
 
 impl Sweep<'_> {
     /// The injected sine at `t_s` after the start, V (nothing after its end): phase 2π f₀ T/ln r · (rᵗ/ᵀ − 1), r = f₁/f₀ (Farina 2000).
@@ -119,23 +126,29 @@ fn at(
     resolution: f64,
 ) -> Option<ResponsePoint> {
     let (mut yd, mut ud, mut yy, mut dd) = (Complex64::ZERO, Complex64::ZERO, 0.0, 0.0);
-    for k in 0..NEIGHBOURS {
+    let mut lines = [(Complex64::ZERO, Complex64::ZERO); NEIGHBOURS];
+    for (k, kept) in lines.iter_mut().enumerate() {
         let turns = frequency_hz / rate_hz + (k as f64 - (NEIGHBOURS / 2) as f64) * resolution;
         let d = line(injected, turns);
         // The sum of increments is the angle: Y = V/(1 − e^(−iωT)).
         let y = line(speed, turns) / (1.0 - Complex64::cis(-TAU * turns));
+        let u = line(command, turns);
+        *kept = (y, u);
         yd += y * d.conj();
-        ud += line(command, turns) * d.conj();
+        ud += u * d.conj();
         yy += y.norm_sqr();
         dd += d.norm_sqr();
     }
-    if ud == Complex64::ZERO || yy == 0.0 {
+    if ud == Complex64::ZERO || yd == Complex64::ZERO || yy == 0.0 {
         return None;
     }
     let coherence = (yd.norm_sqr() / (yy * dd)).min(1.0);
-    // Bendat & Piersol 2010, table 9.6.
-    let relative_std = ((1.0 - coherence).max(1e-9) / (2.0 * NEIGHBOURS as f64 * coherence.max(1e-9))).sqrt();
-    Some(ResponsePoint { frequency_hz, plant_rad_v: yd / ud, coherence, relative_std })
+    let plant = yd / ud;
+    // The estimate is one by an instrument, d: of the plant's own noise N = Y − P U its error is Σ N D*/Σ U D*, half of whose power each is
+    // in the modulus and in the phase. The coherence of d and y would not do: in a closed loop Y holds N/(1 + L), not N.
+    let noise: f64 = lines.iter().map(|(y, u)| (y - plant * u).norm_sqr()).sum::<f64>() / (NEIGHBOURS - 1) as f64;
+    let relative_std = (0.5 * noise * dd).sqrt() / yd.norm();
+    Some(ResponsePoint { frequency_hz, plant_rad_v: plant, coherence, relative_std })
 }
 
 /// One spectral line; `turns` is the frequency in cycles per sample.

@@ -1,12 +1,14 @@
 //! A loop as an estimate: its margins with what the measured response leaves uncertain of them, and its gains.
 
+use froude_fit::propagate::effective_dof;
 use froude_records::estimate::{Derived, Diagnostics, Estimate, Law, Measured, MethodUsed};
 use num_complex::Complex64;
 
 use super::{BY_CYCLE, CONFIGURED, Tuned};
 use crate::tuning::candidate::Candidate;
 use crate::tuning::margins::{bandwidth_hz, margins};
-use crate::tuning::record::{Reading, of_response};
+use crate::tuning::record::{Reading, Spread, of_response};
+use crate::tuning::response::POINT_DOF;
 use crate::tuning::{LoopGains, ResponsePoint};
 
 /// What is read off the open loop.
@@ -26,7 +28,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
         _ => "loop_shaped",
     };
     // Beyond the measured band the margins are a model's, whose errors the points do not tell.
-    let covariance = (!c.is_extended).then(|| covariance(&tuned.plant, &c.gains));
+    let spread = (!c.is_extended).then(|| spread(&tuned.plant, &c.gains));
     let mut readings = readings(&tuned.plant, &c.gains);
     if c.is_extended {
         // What the model extended is what the candidate was judged by; its bandwidth was not measured.
@@ -35,7 +37,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
             [m.crossover_hz, None, m.phase_rad, m.gain, m.gain_reduction, m.delay_s, Some(m.largest_sensitivity)];
         readings.iter_mut().zip(judged).for_each(|(reading, value)| reading.2 = value);
     }
-    let of_response = of_response(source, (law, ("open_loop", "1")), &readings, covariance.as_deref(), tuned.band_hz);
+    let of_response = of_response(source, (law, ("open_loop", "1")), &readings, spread.as_ref(), tuned.band_hz);
     let measured = |name: &str, value: f64, unit: &str| (name.to_owned(), Measured { value, unit: unit.to_owned() });
     let g = &c.gains;
     let constants = [
@@ -87,27 +89,32 @@ fn readings(plant: &[ResponsePoint], gains: &LoopGains) -> [Reading; READINGS] {
     ]
 }
 
-/// Covariance of the margins: each point of the response moved by its standard uncertainty, in modulus and in phase.
-fn covariance(plant: &[ResponsePoint], gains: &LoopGains) -> Vec<Vec<f64>> {
+/// Covariance of the margins: each point of the response moved by its standard uncertainty, in modulus and in phase, with the degrees of
+/// freedom of each by Welch and Satterthwaite.
+fn spread(plant: &[ResponsePoint], gains: &LoopGains) -> Spread {
     let base = readings(plant, gains);
-    let mut out = vec![vec![0.0; READINGS]; READINGS];
+    let mut covariance = vec![vec![0.0; READINGS]; READINGS];
+    let mut parts = vec![Vec::new(); READINGS];
     let mut moved = plant.to_vec();
     for i in 0..plant.len() {
         let u = plant[i].relative_std;
         if u.is_nan() || u <= 0.0 {
             continue;
         }
+        let mut of_point = [0.0; READINGS];
         for factor in [Complex64::new(1.0 + u, 0.0), Complex64::from_polar(1.0, u)] {
             moved[i].plant_rad_v = plant[i].plant_rad_v * factor;
             let found = readings(&moved, gains);
             // A margin that is lost or found by the step has no slope.
             let step: [f64; READINGS] =
                 std::array::from_fn(|j| found[j].2.zip(base[j].2).map_or(0.0, |(moved, base)| moved - base));
-            for (row, a) in out.iter_mut().zip(step) {
+            for (row, a) in covariance.iter_mut().zip(step) {
                 row.iter_mut().zip(step).for_each(|(entry, b)| *entry += a * b);
             }
+            of_point.iter_mut().zip(step).for_each(|(variance, a)| *variance += a * a);
         }
         moved[i] = plant[i];
+        parts.iter_mut().zip(of_point).for_each(|(parts, variance)| parts.push((variance, POINT_DOF)));
     }
-    out
+    Spread { covariance, dof: parts.iter().map(|parts| effective_dof(parts)).collect() }
 }

@@ -6,7 +6,7 @@ use indexmap::IndexMap;
 
 use super::page::free_without_loss;
 use super::{CarriageModes, StateModes};
-use crate::tuning::record::of_response;
+use crate::tuning::record::{Spread, of_response};
 use crate::tuning::resonance::TwoMassModes;
 
 /// Estimates of the states whose response shows two modes, with which state each is of.
@@ -36,8 +36,8 @@ fn estimate(source: &str, state: &StateModes, m: &TwoMassModes, efficiency: Opti
         .map(|a| (0..readings.len()).map(|b| m.correlation[a][b] * standards[a] * standards[b]).collect())
         .collect();
     let band_hz = [state.plant.first(), state.plant.last()].map(|p| p.map_or(0.0, |p| p.frequency_hz));
-    let covariance = is_known.then_some(covariance.as_slice());
-    let of_response = of_response(source, (&law, ("response", "rad/V")), &readings, covariance, band_hz);
+    let spread = is_known.then(|| Spread { covariance, dof: vec![m.dof; readings.len()] });
+    let of_response = of_response(source, (&law, ("response", "rad/V")), &readings, spread.as_ref(), band_hz);
     let mut derived = IndexMap::from([(
         "inertia_ratio".to_owned(),
         Derived {
