@@ -53,6 +53,16 @@ struct Named {
 }
 
 impl Runs {
+    /// What these runs are called where no source names them: as their own campaign calls them, else as the results `what` are.
+    #[must_use]
+    pub fn own_name(&self, what: &str) -> String {
+        let of_folder = || {
+            let beside = self.results(what);
+            beside.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+        };
+        self.campaign.as_ref().map_or_else(of_folder, |campaign| campaign.name.clone())
+    }
+
     /// Where results go that nobody named a folder for: beside what was read, and called after it, so that the results of a part never
     /// take the place of the whole campaign's.
     #[must_use]

@@ -11,6 +11,7 @@
 //! | [`experiment`] | what a relay and a sweep logged                                  |                               |
 //! | [`candidate`], [`choice`] | gains held against response and ramps; which to use     |                               |
 //! | [`modes`]    | modes bare, dry and wet                                            |                               |
+//! | [`source`]   | both as methods of a source                                        |                               |
 //!
 //! **Frame.** Drive command v_c \[V\] to motor angle θ \[rad\], as MCD eq. 6 has them.
 //! **Units.** SI; frequencies at the faces in Hz.
@@ -28,6 +29,7 @@ mod record;
 pub mod relay;
 pub mod resonance;
 pub mod response;
+pub mod source;
 pub mod tracking;
 
 use num_complex::Complex64;

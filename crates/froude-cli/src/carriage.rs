@@ -4,12 +4,10 @@ use std::path::PathBuf;
 
 use froude::Error;
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
-use froude::carriage::tune::{Experimented, find_resonance, tune};
+use froude::carriage::tune::{find_resonance, tune};
 use froude::fit::budget::Uncertain;
 use froude::methods::carriage::drag::calibration::encoder_scale;
 use froude::methods::carriage::runs;
-use froude::methods::carriage::tuning::choice::page as gains;
-use froude::methods::carriage::tuning::modes::page as mode_page;
 use froude::pipeline::{Input, Job, Purpose};
 use froude::records::carriage::plan::{PlannedRun, Step};
 use froude::records::page::TextTable;
@@ -260,8 +258,18 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
             let job = Job { out, purpose: Some(Purpose::Calibration), ..Job::of(input) };
             crate::identify(job, is_json, false).map_err(explain)
         }
-        CarriageJob::Tune(e) => tuning(e, is_json),
-        CarriageJob::Resonance(e) => modes(e, is_json),
+        CarriageJob::Tune(e) => {
+            let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::TUNE)?;
+            let outcome = tune(&job, &switch, &mut person, &mut bar);
+            bar.end();
+            crate::print_found(&outcome?, is_json, false)
+        }
+        CarriageJob::Resonance(e) => {
+            let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::RESONANCE)?;
+            let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
+            bar.end();
+            crate::print_found(&outcome?, is_json, false)
+        }
     }
 }
 
@@ -309,72 +317,4 @@ fn experiment(e: &Experiment, takes: &Takes) -> Result<(DriveJob, Stage), Error>
     let runs = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
     let stage = Stage::set(&prepared, e.yes, runs.min(3))?;
     Ok((job, stage))
-}
-
-fn tuning(e: Experiment, is_json: bool) -> Result<(), Error> {
-    let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::TUNE)?;
-    let outcome = tune(&job, &switch, &mut person, &mut bar);
-    bar.end();
-    let Experimented { found: outcome, written, .. } = outcome?;
-    if is_json {
-        let rows: Vec<_> = outcome
-            .candidates
-            .iter()
-            .map(|c| {
-                json!({"name": c.name, "proportional_v_rad": c.gains.proportional_v_rad,
-                       "derivative_v_s_rad": c.gains.derivative_v_s_rad, "integral_v_rad_s": c.gains.integral_v_rad_s,
-                       "derivative_filter_hz": c.gains.derivative_filter_hz, "crossover_hz": c.margins.crossover_hz,
-                       "phase_margin_rad": c.margins.phase_rad, "gain_margin": c.margins.gain,
-                       "largest_sensitivity": c.margins.largest_sensitivity, "is_extended_by_model": c.is_extended,
-                       "following_error_m": c.following_error_m, "homing_speed_m_s": c.homing_m_s, "objections": c.objections})
-            })
-            .collect();
-        return print::json(&json!({"gains": rows, "recommended": outcome.recommended,
-                                   "estimate": written.estimate, "report": written.report}));
-    }
-    match &outcome.cycle {
-        Ok(c) => say!(
-            "relay: period {:.4} s, amplitude {:.3} rad, K_u = {:.3} V/rad",
-            c.period_s,
-            c.amplitude_rad,
-            c.ultimate_gain_v_rad
-        ),
-        Err(error) => say!("relay: {error}"),
-    }
-    print::text_table(&gains::candidates_table(&outcome));
-    say!("");
-    for sentence in gains::sentences(&outcome) {
-        say!("{sentence}");
-    }
-    print::written(&written);
-    Ok(())
-}
-
-fn modes(e: Experiment, is_json: bool) -> Result<(), Error> {
-    let (job, Stage { switch, mut person, mut bar }) = experiment(&e, &mistaken::RESONANCE)?;
-    let outcome = find_resonance(&job, &switch, &mut person, &mut bar);
-    bar.end();
-    let Experimented { found: outcome, written, .. } = outcome?;
-    if is_json {
-        let rows: Vec<_> = outcome
-            .states
-            .iter()
-            .map(|s| {
-                let modes = s.modes.as_ref().ok();
-                json!({"body": s.body, "load_hz": modes.map(|m| m.load.frequency_hz), "load_damping": modes.map(|m| m.load.damping),
-                       "free_seen_hz": modes.map(|m| m.free.frequency_hz),
-                       "free_hz": modes.and_then(|m| mode_page::free_without_loss(m, outcome.efficiency)).map(|f| f.0)})
-            })
-            .collect();
-        return print::json(&json!({"states": rows, "shaped_mode_hz": outcome.proposed.map(|p| p.0),
-                                   "shaped_damping": outcome.proposed.map(|p| p.1),
-                                   "estimate": written.estimate, "report": written.report}));
-    }
-    print::text_table(&mode_page::modes_table(&outcome));
-    say!("");
-    for sentence in mode_page::sentences(&outcome) {
-        say!("{sentence}");
-    }
-    print::written(&written);
-    Ok(())
 }

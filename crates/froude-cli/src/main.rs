@@ -96,11 +96,15 @@ fn run(cli: Cli) -> Result<(), Error> {
 
 /// `identify`, `compare` and `carriage drag`: one job, one way through it, one outcome, printed or as its record.
 fn identify(job: Job, is_json: bool, all: bool) -> Result<(), Error> {
-    let outcome = identified(job)?;
+    print_found(&identified(job)?, is_json, all)
+}
+
+/// What a job found: the record for another program, or all of it for a person.
+fn print_found(outcome: &pipeline::Outcome, is_json: bool, all: bool) -> Result<(), Error> {
     if is_json {
         return print::json(&outcome.file);
     }
-    print::outcome(&outcome, all);
+    print::outcome(outcome, all);
     Ok(())
 }
 

@@ -328,46 +328,55 @@ fn with_gains(folder: &Path, values: [String; 4]) -> PathBuf {
 fn the_gains_that_tuning_recommends_drive_the_campaign() {
     let folder = tempfile::tempdir().unwrap();
     let found = json(&["carriage", "tune", text(&campaign(folder.path(), &[])), "--yes", "--json"]);
-    let gains = found["gains"].as_array().unwrap();
-    assert_eq!(found["recommended"], 1, "{found}");
     // The record has the margins of each, with what the measured response leaves uncertain of them, and is compared like any other.
-    let record = found["estimate"].as_str().unwrap();
+    let loops: Vec<&Value> = found["estimates"].as_array().unwrap().iter().collect();
+    let laws: Vec<&Value> = loops.iter().map(|e| &e["law"]["name"]).collect();
+    assert_eq!(laws, ["loop_as_configured", "loop_shaped", "loop_ziegler_nichols"]);
+    let record = folder.path().join("campaign-tune/report/estimate.json");
+    let record = text(&record);
     let written: Value = serde_json::from_str(&std::fs::read_to_string(record).unwrap()).unwrap();
-    let loops: Vec<&Value> = written["estimates"].as_array().unwrap().iter().map(|e| &e["law"]["name"]).collect();
-    assert_eq!(loops, ["loop_as_configured", "loop_shaped", "loop_ziegler_nichols"]);
-    let shaped = &written["estimates"][1];
+    assert_eq!(written["estimates"], found["estimates"]);
+    let (configured, shaped) = (loops[0], loops[1]);
+    let number = |of: &Value, name: &str| of["coefficients"][name]["value"].as_f64().unwrap();
     let margin = &shaped["coefficients"]["phase_margin"];
     assert!(shaped["recommended"] == true && margin["unit"] == "rad", "{shaped}");
-    assert_eq!(margin["value"], gains[1]["phase_margin_rad"]);
-    let (u, bandwidth) = (&margin["standard_uncertainty"], &shaped["coefficients"]["bandwidth"]["value"]);
+    let u = &margin["standard_uncertainty"];
     assert!(u.as_f64().is_some_and(|u| u > 0.0 && u < 0.2), "{margin}");
-    assert!(bandwidth.as_f64().unwrap() > gains[1]["crossover_hz"].as_f64().unwrap(), "{shaped}");
+    assert!(number(shaped, "bandwidth") > number(shaped, "crossover"), "{shaped}");
     let compared = json(&["compare", record, record, "--json"]);
     let rows = compared["comparison"]["coefficients"].as_array().unwrap();
     assert!(rows.iter().any(|row| row["coefficient"] == "phase_margin"), "{compared}");
     // Its runs are all that it planned, and none of `froude run`'s.
     let runs = json(&["inspect", text(&folder.path().join("campaign-tune")), "--json"]);
     assert_eq!(findings_of(&runs, "campaign-unfinished"), []);
-    let (configured, shaped) = (&gains[0], &gains[1]);
-    let number = |row: &Value, key: &str| row[key].as_f64().unwrap();
-    for row in [configured, shaped] {
-        // The usual demand: 45°, sensitivity 2; the measured band holds both crossovers.
-        assert!(number(row, "phase_margin_rad") >= 0.785 && number(row, "largest_sensitivity") <= 2.0, "{row}");
-        assert_eq!(row["is_extended_by_model"], false, "{row}");
-        assert_eq!(row["objections"].as_array().unwrap().len(), 0, "{row}");
+    // The runs are a source like any other, with the same numbers.
+    let out = folder.path().join("again");
+    let source = "schema = 1\nname = \"again\"\n\n[[source]]\nname = \"loop\"\nkind = \"tank\"\nruns = \"campaign-tune\"\n\
+                  method = \"tuning\"\n";
+    let again = folder.path().join("again.toml");
+    std::fs::write(&again, source).unwrap();
+    let again = json(&["identify", text(&again), "--out", text(&out), "--json"]);
+    assert_eq!(again["estimates"][1]["coefficients"], shaped["coefficients"]);
+    let foreseen = |of: &Value, name: &str| of["derived"][name]["value"].as_f64().unwrap();
+    for of in [configured, shaped] {
+        // The usual demand: 45°, sensitivity 2; the measured band holds both crossovers, and nothing is objected.
+        assert!(number(of, "phase_margin") >= 0.785 && number(of, "largest_sensitivity") <= 2.0, "{of}");
+        assert_eq!(of["diagnostics"]["notes"].as_array().map_or(0, Vec::len), 0, "{of}");
         // The controller's limits: following error 10 mm, over-speed in homing 1.5 · 18 + 5 mm/s.
-        assert!(number(row, "following_error_m") < 0.007 && number(row, "homing_speed_m_s") < 0.032, "{row}");
+        assert!(foreseen(of, "following_error") < 0.007 && foreseen(of, "homing_speed") < 0.032, "{of}");
     }
-    assert!(!gains[2]["objections"].as_array().unwrap().is_empty(), "Ziegler–Nichols: {}", gains[2]);
+    assert!(!loops[2]["diagnostics"]["notes"].as_array().unwrap().is_empty(), "Ziegler–Nichols: {}", loops[2]);
     let driven = tempfile::tempdir().unwrap();
-    let value = |key: &str, unit: &str| format!("\"{:.4} {unit}\"", number(shaped, key));
+    let value = |name: &str, unit: &str| {
+        format!("\"{:.4} {unit}\"", shaped["law"]["constants"][name]["value"].as_f64().unwrap())
+    };
     let tuned = with_gains(
         driven.path(),
         [
-            value("proportional_v_rad", "V/rad"),
-            value("derivative_v_s_rad", "V s/rad"),
-            value("integral_v_rad_s", "V/(rad s)"),
-            value("derivative_filter_hz", "Hz"),
+            value("proportional", "V/rad"),
+            value("derivative", "V s/rad"),
+            value("integral", "V/(rad s)"),
+            value("derivative_filter", "Hz"),
         ],
     );
     // Homing, jogs, warm-up, pulses, friction, weights, tows dry and wet: every one without a fault.
@@ -396,19 +405,25 @@ fn the_free_mode_is_reported_as_seen_and_without_the_gears_loss() {
     let folder = tempfile::tempdir().unwrap();
     let campaign = campaign(folder.path(), &[]);
     let found = json(&["carriage", "resonance", text(&campaign), "--yes", "--json"]);
-    let written: Value =
-        serde_json::from_str(&std::fs::read_to_string(found["estimate"].as_str().unwrap()).unwrap()).unwrap();
-    for (estimate, state) in written["estimates"].as_array().unwrap().iter().zip(found["states"].as_array().unwrap()) {
-        let load = &estimate["coefficients"]["load_frequency"];
-        assert_eq!((&load["value"], &load["unit"]), (&state["load_hz"], &"Hz".into()));
-        assert!(load["standard_uncertainty"].as_f64().unwrap() > 0.0, "{load}");
-        assert_eq!(estimate["data"].as_array().unwrap().len(), 1, "each is of its own sweep");
+    let states = found["estimates"].as_array().unwrap();
+    let laws: Vec<&Value> = states.iter().map(|e| &e["law"]["name"]).collect();
+    assert_eq!(laws, ["modes_bare", "modes_dry", "modes_wet"]);
+    for state in states {
+        let load = &state["coefficients"]["load_frequency"];
+        assert!(load["unit"] == "Hz" && load["standard_uncertainty"].as_f64().unwrap() > 0.0, "{load}");
+        assert_eq!(state["data"].as_array().unwrap().len(), 1, "each is of its own sweep");
     }
-    let bare = &found["states"][0];
+    // What is proposed stands between the loads with the body, dry and wet.
+    let load_hz = |i: usize| states[i]["coefficients"]["load_frequency"]["value"].as_f64().unwrap();
+    let proposed = states[1]["derived"]["shaped_mode"]["value"].as_f64().unwrap();
+    assert!((proposed / (load_hz(1) * load_hz(2)).sqrt() - 1.0).abs() < 1e-12, "{proposed}");
+    let bare = &states[0];
     // Seen at 6.71 √(1 + 2.75/0.8) = 14.1 Hz; 2 % for friction in the dip and beside the peak.
-    assert!((bare["free_seen_hz"].as_f64().unwrap() / 14.1 - 1.0).abs() < 0.02, "{bare}");
-    assert!((bare["free_hz"].as_f64().unwrap() / 13.0 - 1.0).abs() < 0.02, "{bare}");
-    assert!((bare["load_hz"].as_f64().unwrap() / 6.71 - 1.0).abs() < 0.02, "{bare}");
+    let seen_hz = bare["coefficients"]["free_frequency"]["value"].as_f64().unwrap();
+    let free_hz = bare["derived"]["free_frequency_without_loss"]["value"].as_f64().unwrap();
+    assert!((seen_hz / 14.1 - 1.0).abs() < 0.02, "{bare}");
+    assert!((free_hz / 13.0 - 1.0).abs() < 0.02, "{bare}");
+    assert!((load_hz(0) / 6.71 - 1.0).abs() < 0.02, "{bare}");
     let page = std::fs::read_to_string(folder.path().join("campaign-resonance/report/report.html")).unwrap();
     assert!(page.contains("seen through a gear that drives") && page.contains("0.800(40)"));
 }

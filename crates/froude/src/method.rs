@@ -4,6 +4,7 @@ use froude_added_mass::source::AddedMass;
 use froude_carriage::axis::source::{Servo, is_servo_log};
 use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
+use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::identify_source;
 use froude_records::campaign::{Campaign, Input, Source};
@@ -19,7 +20,7 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-const METHODS: [&dyn Method; 4] = [&Carriage, &Servo, &KnownWeights, &FreeDecay];
+const METHODS: [&dyn Method; 6] = [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay];
 
 /// A method with the names that it is asked for.
 pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);
@@ -69,6 +70,8 @@ pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>
             let method: &dyn Method = match purpose {
                 Some(Purpose::Servo) => &Servo,
                 Some(Purpose::Calibration) => &KnownWeights,
+                Some(Purpose::Tuning) => &Tuning,
+                Some(Purpose::Resonance) => &Resonance,
                 None => &Carriage,
             };
             Ok(vec![(method, method.names().to_vec())])

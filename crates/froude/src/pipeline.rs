@@ -53,6 +53,10 @@ pub enum Purpose {
     Servo,
     /// Force per volt of the drive, and polarity.
     Calibration,
+    /// Gains of the position loop.
+    Tuning,
+    /// Modes of the carriage.
+    Resonance,
 }
 
 /// What to identify and where the results go.

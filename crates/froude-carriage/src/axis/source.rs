@@ -12,7 +12,7 @@ use froude_records::table::sidecar_of;
 
 use super::page::sections;
 use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
-use crate::runs::{Runs, read};
+use crate::runs::read;
 use crate::source::lacking_in;
 
 /// The models of an axis.
@@ -77,7 +77,7 @@ impl Method for Servo {
                 progress("reading the runs");
                 let runs = read(paths, &KINDS, campaign.as_deref())?;
                 progress("identifying the axis");
-                let name = if source.name.is_empty() { own_name(&runs) } else { source.name.clone() };
+                let name = if source.name.is_empty() { runs.own_name("servo") } else { source.name.clone() };
                 let axis = of_runs(&runs, &asked, &name)?;
                 let mut found = found(axis, source, &asked, |model| lacking_in(needs(model), &runs))?;
                 found.beside = Some(runs.results("servo"));
@@ -97,15 +97,6 @@ impl Method for Servo {
             }
         }
     }
-}
-
-/// Runs that no campaign names are called as their own campaign calls them, else after their folder.
-fn own_name(runs: &Runs) -> String {
-    let of_folder = || {
-        let beside = runs.results("servo");
-        beside.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
-    };
-    runs.campaign.as_ref().map_or_else(of_folder, |campaign| campaign.name.clone())
 }
 
 /// An answer for each model, in the order asked for; `lacking` says what the runs do not have for one that somebody named.

@@ -1,7 +1,6 @@
 //! Gains from experiments on the loop: as configured, as shaped on the measured response, and Ziegler–Nichols' for comparison.
 
 use froude_identify::method::MethodError;
-use froude_records::carriage::plan::Experiments;
 use froude_records::run::{Role, RunLog};
 
 use super::candidate::{Bench, Candidate, ConfiguredLoop};
@@ -39,14 +38,14 @@ pub(super) const BY_CYCLE: &str = "Ziegler–Nichols (1942)";
 ///
 /// # Errors
 ///
-/// No sweep, or one that gives no response.
-pub fn tuned(logs: &[RunLog], of: ConfiguredLoop<'_>, experiments: &Experiments) -> Result<Tuned, MethodError> {
+/// No sweep, or one that gives no response; a log without a channel or a constant that it needs.
+pub fn tuned(logs: &[RunLog], of: ConfiguredLoop<'_>) -> Result<Tuned, MethodError> {
     let rad_m = of.axis.drive.gear_ratio / of.axis.drive.sprocket_radius_m;
     let log = |role: Role| logs.iter().find(|log| log.meta.role == role);
     let too_few = |what| TuningError::TooFew { what, found: 0, least: 1, advice: "drive one" };
     let sweep = log(Role::Sweep).ok_or_else(|| MethodError::refused(too_few("sweeps")))?;
-    let plant = response_of(sweep, rad_m, experiments)?;
-    let cycle = log(Role::Relay).map_or(Err(too_few("relay runs")), |log| cycle_of(log, rad_m, experiments));
+    let plant = response_of(sweep, rad_m)?;
+    let cycle = log(Role::Relay).map_or(Ok(Err(too_few("relay runs"))), |log| cycle_of(log, rad_m))?;
     let bench = Bench::new(of, &plant);
     let load_hz = bench.heaviest().map_or(f64::INFINITY, |m| m.load.frequency_hz);
     let configured = of.axis.gains;

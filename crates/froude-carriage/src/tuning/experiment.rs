@@ -1,7 +1,9 @@
 //! What an experiment on the loop logged: the response of the drive from a sweep, the limit cycle of a relay.
 
 use froude_identify::method::MethodError;
-use froude_records::carriage::plan::Experiments;
+use froude_records::carriage::plan::{
+    RELAY_HEIGHT, RELAY_HYSTERESIS, SWEEP_AMPLITUDE, SWEEP_DURATION, SWEEP_FROM, SWEEP_SPEED, SWEEP_TO,
+};
 use froude_records::run::RunLog;
 use froude_records::units::Dimension;
 
@@ -39,35 +41,46 @@ fn excited(log: &RunLog, rad_m: f64, speed_m_s: Option<f64>) -> Result<Excited, 
     })
 }
 
+/// A constant that the log must state.
+fn constant(log: &RunLog, name: &str) -> Result<f64, MethodError> {
+    let what = || {
+        format!(
+            "the run does not state `{name}`, and without it the experiment cannot be read; Froude records it where it drives the experiment, \
+             of another program's log it belongs into [constants] of the sidecar"
+        )
+    };
+    log.meta.constants.get(name).map(|c| c.value).ok_or_else(|| MethodError::input(&log.path, what()))
+}
+
 /// Response of the drive from the log of a sweep; `rad_m` is the turn of the motor for a metre of the chain.
 ///
 /// # Errors
 ///
-/// A channel that is missing, or a sweep that gives no response.
-pub fn response_of(log: &RunLog, rad_m: f64, e: &Experiments) -> Result<Vec<ResponsePoint>, MethodError> {
-    let columns = excited(log, rad_m, Some(e.sweep_m_s))?;
+/// A channel or a constant that is missing, or a sweep that gives no response.
+pub fn response_of(log: &RunLog, rad_m: f64) -> Result<Vec<ResponsePoint>, MethodError> {
+    let columns = excited(log, rad_m, Some(constant(log, SWEEP_SPEED)?))?;
     let rows = columns.rows.clone();
     let sweep = Sweep {
         rate_hz: columns.rate_hz,
-        from_hz: e.sweep_hz[0],
-        to_hz: e.sweep_hz[1],
-        duration_s: e.sweep_s,
-        volts: e.sweep_v,
+        from_hz: constant(log, SWEEP_FROM)?,
+        to_hz: constant(log, SWEEP_TO)?,
+        duration_s: constant(log, SWEEP_DURATION)?,
+        volts: constant(log, SWEEP_AMPLITUDE)?,
         command_v: &columns.command_v[rows.clone()],
         angle_rad: &columns.angle_rad[rows],
     };
     plant_response(&sweep, POINTS).map_err(MethodError::refused)
 }
 
-/// The limit cycle in the log of a relay.
+/// The limit cycle in the log of a relay; of a motion that is none, why it is not.
 ///
 /// # Errors
 ///
-/// A channel that is missing, or a motion that is no limit cycle.
-pub fn cycle_of(log: &RunLog, rad_m: f64, e: &Experiments) -> Result<LimitCycle, TuningError> {
-    let failed = |_| TuningError::TooFew { what: "relay columns", found: 0, least: 1, advice: "drive the relay again" };
-    let columns = excited(log, rad_m, None).map_err(failed)?;
-    let hysteresis_rad = e.hysteresis_m * rad_m;
+/// A channel or a constant that is missing.
+pub fn cycle_of(log: &RunLog, rad_m: f64) -> Result<Result<LimitCycle, TuningError>, MethodError> {
+    let columns = excited(log, rad_m, None)?;
+    let (height_v, hysteresis_m) = (constant(log, RELAY_HEIGHT)?, constant(log, RELAY_HYSTERESIS)?);
     let rows = columns.rows.clone();
-    limit_cycle(columns.rate_hz, e.relay_v, hysteresis_rad, &columns.command_v[rows.clone()], &columns.angle_rad[rows])
+    let (command_v, angle_rad) = (&columns.command_v[rows.clone()], &columns.angle_rad[rows]);
+    Ok(limit_cycle(columns.rate_hz, height_v, hysteresis_m * rad_m, command_v, angle_rad))
 }

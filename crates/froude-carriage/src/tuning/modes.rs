@@ -1,7 +1,6 @@
 //! Modes of the carriage from sweeps bare, dry and wet, and the shaper that they ask for.
 
 use froude_identify::method::MethodError;
-use froude_records::carriage::plan::Experiments;
 use froude_records::run::{Declared, RunLog};
 
 use super::experiment::response_of;
@@ -35,19 +34,23 @@ pub struct CarriageModes {
     pub shaper: Option<Shaper>,
 }
 
-/// Modes from the logs of sweeps; `rad_m` is the turn of the motor for a metre of the chain, `efficiency` that of the gear when the motor drives.
+/// Modes from the logs of sweeps; the rig that they state has the turn of the motor for a metre of the chain, and the gear's efficiency.
 ///
 /// # Errors
 ///
-/// A sweep that gives no response.
-pub fn modes_of(
-    logs: &[RunLog],
-    rad_m: f64,
-    efficiency: Option<Declared>,
-    experiments: &Experiments,
-) -> Result<CarriageModes, MethodError> {
+/// A log that states no rig; a sweep that gives no response.
+pub fn modes_of(logs: &[RunLog]) -> Result<CarriageModes, MethodError> {
+    let axis = |log: &RunLog| {
+        let what = "the run does not state the rig that it was driven on: its gear and its sprocket are needed";
+        log.meta.moving_axis().copied().ok_or_else(|| MethodError::input(&log.path, what))
+    };
+    let efficiency = match logs.first() {
+        Some(first) => axis(first)?.efficiency_forward,
+        None => None,
+    };
     let of_state = |log: &RunLog| {
-        let plant = response_of(log, rad_m, experiments)?;
+        let constants = axis(log)?;
+        let plant = response_of(log, constants.gear_ratio.value / constants.sprocket_radius_m.value)?;
         let modes = two_mass_modes(&plant);
         Ok(StateModes { body: log.meta.mounted.body.name().to_owned(), plant, modes })
     };

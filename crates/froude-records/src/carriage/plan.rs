@@ -1,5 +1,8 @@
 //! From what is asked for to runs in order.
 
+use indexmap::IndexMap;
+
+use crate::estimate::Measured;
 use crate::run::{Axis, BodyState, Direction, Role};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -79,6 +82,46 @@ pub enum Drive {
         distance_m: f64,
     },
 }
+
+impl Drive {
+    /// What a relay or a sweep is driven with, as constants of its run: whoever reads the log needs them, and they are in no channel.
+    #[must_use]
+    pub fn constants(&self) -> IndexMap<String, Measured> {
+        let named = |constants: &[(&str, f64, &str)]| {
+            let measured =
+                |&(name, value, unit): &(&str, f64, &str)| (name.to_owned(), Measured { value, unit: unit.to_owned() });
+            constants.iter().map(measured).collect()
+        };
+        match *self {
+            Self::Relay { volts, hysteresis_m, .. } => {
+                named(&[(RELAY_HEIGHT, volts, "V"), (RELAY_HYSTERESIS, hysteresis_m, "m")])
+            }
+            Self::Sweep { speed_m_s, volts, from_hz, to_hz, duration_s, .. } => named(&[
+                (SWEEP_SPEED, speed_m_s, "m/s"),
+                (SWEEP_AMPLITUDE, volts, "V"),
+                (SWEEP_FROM, from_hz, "Hz"),
+                (SWEEP_TO, to_hz, "Hz"),
+                (SWEEP_DURATION, duration_s, "s"),
+            ]),
+            Self::Profile { .. } | Self::Pulses { .. } | Self::Jog { .. } => IndexMap::new(),
+        }
+    }
+}
+
+/// Constant of a run: height of its relay, V.
+pub const RELAY_HEIGHT: &str = "relay_height";
+/// Half width of the relay's hysteresis, m.
+pub const RELAY_HYSTERESIS: &str = "relay_hysteresis";
+/// Speed below a sweep, m/s.
+pub const SWEEP_SPEED: &str = "sweep_speed";
+/// Amplitude of a sweep, V.
+pub const SWEEP_AMPLITUDE: &str = "sweep_amplitude";
+/// Its first frequency, Hz.
+pub const SWEEP_FROM: &str = "sweep_from";
+/// Its last, Hz.
+pub const SWEEP_TO: &str = "sweep_to";
+/// Its length, s.
+pub const SWEEP_DURATION: &str = "sweep_duration";
 
 /// One run.
 #[derive(Debug, Clone, PartialEq)]

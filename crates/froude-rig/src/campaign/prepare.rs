@@ -7,7 +7,6 @@ use froude_hydro::fluid::density_kg_m3;
 use froude_records::campaign::{Campaign, read_campaign};
 use froude_records::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
-use froude_records::run::Declared;
 
 use super::error::CampaignError;
 use super::preflight::{Expected, Forecast, Objection, check, check_campaign};
@@ -82,40 +81,11 @@ impl Prepared {
         &self.campaign.name
     }
 
-    /// Configuration of the axis that tows.
-    #[must_use]
-    pub fn axis(&self) -> &AxisConfig {
-        &self.control.axes[self.asked.axis as usize]
-    }
-
-    /// The same, recorded at every tick of the controller whatever the campaign's log rate: frequencies near the loop's own count.
+    /// The same campaign, recorded at every tick of the controller whatever the campaign's log rate: frequencies near the loop's own count.
     #[must_use]
     pub fn logging_every_tick(mut self) -> Self {
         self.carriage.rig.log_rate_hz = f64::INFINITY;
         self
-    }
-
-    /// Fastest steady speed that the campaign asks for, m/s, and its acceleration, m/s².
-    #[must_use]
-    pub fn hardest_ramp(&self) -> (f64, f64) {
-        let fastest = |speeds: &[f64]| speeds.iter().copied().fold(0.0, f64::max);
-        let friction = self.asked.friction.as_ref().map_or(0.0, |f| fastest(&f.speed_m_s));
-        let warm_up = self.asked.warm_up.map_or(0.0, |w| w.speed_m_s);
-        (fastest(&self.asked.speed_m_s).max(friction).max(warm_up), self.asked.acceleration_m_s2)
-    }
-
-    /// Declared efficiency of the gear when the motor drives.
-    #[must_use]
-    pub fn efficiency(&self) -> Option<Declared> {
-        let spec =
-            if self.asked.axis as usize == 0 { Some(&self.carriage.rig.y) } else { self.carriage.rig.x.as_ref() };
-        spec.and_then(|s| s.constants.efficiency_forward)
-    }
-
-    /// The controller's tick, µs.
-    #[must_use]
-    pub fn tick_us(&self) -> u32 {
-        self.control.tick_us
     }
 
     /// Runs of the plan.
@@ -143,6 +113,64 @@ impl Prepared {
     }
 }
 
+/// The rig of a campaign, what is asked of it, and the controller that they configure.
+#[derive(Debug, Clone)]
+pub struct Configured {
+    carriage: CarriageCampaign,
+    asked: CarriagePlan,
+    control: Config,
+    /// What the body displaces, m³; that of the twin's cylinder where no volume is declared.
+    displaced_m3: f64,
+    density_kg_m3: f64,
+    /// The body with its water, added mass and ballast, kg, at most.
+    towed_kg: f64,
+}
+
+impl Configured {
+    /// Configuration of the axis that tows.
+    #[must_use]
+    pub fn axis(&self) -> &AxisConfig {
+        &self.control.axes[self.asked.axis as usize]
+    }
+
+    /// Fastest steady speed that the campaign asks for, m/s, and its acceleration, m/s².
+    #[must_use]
+    pub fn hardest_ramp(&self) -> (f64, f64) {
+        let fastest = |speeds: &[f64]| speeds.iter().copied().fold(0.0, f64::max);
+        let friction = self.asked.friction.as_ref().map_or(0.0, |f| fastest(&f.speed_m_s));
+        let warm_up = self.asked.warm_up.map_or(0.0, |w| w.speed_m_s);
+        (fastest(&self.asked.speed_m_s).max(friction).max(warm_up), self.asked.acceleration_m_s2)
+    }
+
+    /// The controller's tick, µs.
+    #[must_use]
+    pub fn tick_us(&self) -> u32 {
+        self.control.tick_us
+    }
+}
+
+/// The controller as a campaign configures it.
+///
+/// # Errors
+///
+/// See [`CampaignError`]: a campaign without `[rig]` or `[carriage]`, a missing constant.
+pub fn configured(campaign: &Campaign) -> Result<Configured, CampaignError> {
+    let path = || campaign.path.clone();
+    let carriage = campaign.carriage.clone().ok_or_else(|| CampaignError::NoRig { path: path() })?;
+    let asked = carriage.plan.clone().ok_or_else(|| CampaignError::NoPlan { path: path() })?;
+    if asked.axis as usize == 1 && carriage.rig.x.is_none() {
+        return Err(CampaignError::NoAxis { place: asked.place.to_string() });
+    }
+    let fluid = &campaign.fluid;
+    let density_kg_m3 = density_kg_m3(fluid.density_kg_m3, fluid.temperature_degc, fluid.salinity_g_kg);
+    // The body with its water and added mass: twice what it displaces, where nothing else is known; and the ballast, once that.
+    let volume_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3);
+    let displaced_m3 = volume_m3.unwrap_or(TowedBody::CYLINDER.displaced_m3);
+    let towed_kg = if asked.is_ballasted { 3.0 } else { 2.0 } * density_kg_m3 * displaced_m3;
+    let control = setup::control(&carriage, towed_kg)?;
+    Ok(Configured { carriage, asked, control, displaced_m3, density_kg_m3, towed_kg })
+}
+
 /// Reads a campaign and checks every run of it. Nothing moves, nothing is written.
 ///
 /// # Errors
@@ -162,20 +190,11 @@ pub fn prepare_with(
     plan: &dyn Fn(&CarriagePlan, f64, u64) -> Vec<Step>,
 ) -> Result<Prepared, CampaignError> {
     let campaign = read_campaign(&job.campaign)?;
-    let carriage = campaign.carriage.clone().ok_or_else(|| CampaignError::NoRig { path: job.campaign.clone() })?;
-    let asked = carriage.plan.clone().ok_or_else(|| CampaignError::NoPlan { path: job.campaign.clone() })?;
-    if asked.axis as usize == 1 && carriage.rig.x.is_none() {
-        return Err(CampaignError::NoAxis { place: asked.place.to_string() });
-    }
+    let configured = configured(&campaign)?;
+    let Configured { carriage, asked, control, displaced_m3, density_kg_m3, .. } = configured;
+    let (displaced_kg, towed_kg) = (density_kg_m3 * displaced_m3, configured.towed_kg);
     let drag_n_s2_m2 = asked.expected_drag_n_s2_m2.unwrap_or(0.0);
-    let fluid = &campaign.fluid;
-    let density_kg_m3 = density_kg_m3(fluid.density_kg_m3, fluid.temperature_degc, fluid.salinity_g_kg);
-    // The body with its water and added mass: twice what it displaces, where nothing else is known; and the ballast, once that.
     let volume_m3 = campaign.body.as_ref().and_then(|b| b.volume_m3);
-    let displaced_m3 = volume_m3.unwrap_or(TowedBody::CYLINDER.displaced_m3);
-    let displaced_kg = density_kg_m3 * displaced_m3;
-    let towed_kg = if asked.is_ballasted { 3.0 } else { 2.0 } * displaced_kg;
-    let control = setup::control(&carriage, towed_kg)?;
     let axis = control.axes[asked.axis as usize];
     let start_m = asked.start_m.unwrap_or(0.5 * (axis.limits.hard_low_m + axis.limits.hard_high_m - asked.distance_m));
     let steps = plan(&asked, start_m, order_seed(&carriage.rig.kind));

@@ -65,7 +65,7 @@ impl<'a> Recording<'a> {
                 rig: setting.constants.clone(),
                 twin_seed: setting.twin_seed,
             },
-            constants: IndexMap::new(),
+            constants: run.drive.constants(),
             status: RunStatus::Running,
             note: String::new(),
             versions: IndexMap::from([

@@ -52,6 +52,13 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
         let number = Derived { formula, value, unit: unit.to_owned(), standard_uncertainty: None, interval_95: None };
         (name.to_owned(), number)
     };
+    let with_heaviest = {
+        let formula = "phase margin with the heaviest body, on the two masses that the response shows".to_owned();
+        let value = c.heaviest.and_then(|margins| margins.phase_rad);
+        let unit = "rad".to_owned();
+        let number = Derived { formula, value, unit, standard_uncertainty: None, interval_95: None };
+        ("phase_margin_heaviest".to_owned(), number)
+    };
     let extended = c.is_extended.then(|| {
         "the loop is not whole within the measured band: its margins beyond are the fitted two-mass model's".to_owned()
     });
@@ -63,8 +70,12 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
         },
         law: Law { constants: constants.into(), ..of_response.law },
         n_observations: tuned.plant.len(),
-        derived: [foreseen("following_error", c.following_error_m, "m"), foreseen("homing_speed", c.homing_m_s, "m/s")]
-            .into(),
+        derived: [
+            foreseen("following_error", c.following_error_m, "m"),
+            foreseen("homing_speed", c.homing_m_s, "m/s"),
+            with_heaviest,
+        ]
+        .into(),
         diagnostics: Diagnostics {
             notes: extended.into_iter().chain(c.objections.iter().cloned()).collect(),
             ..Diagnostics::default()

@@ -1,7 +1,6 @@
 //! Modes of a carriage as estimates, one for each state of the body.
 
 use froude_records::estimate::{Derived, Diagnostics, Estimate, MethodUsed};
-use froude_records::run::Declared;
 use indexmap::IndexMap;
 
 use super::page::free_without_loss;
@@ -14,12 +13,13 @@ use crate::tuning::resonance::TwoMassModes;
 pub fn estimates(source: &str, modes: &CarriageModes) -> Vec<(usize, Estimate)> {
     let of = |(i, state): (usize, &StateModes)| {
         let found = state.modes.as_ref().ok()?;
-        Some((i, estimate(source, state, found, modes.efficiency)))
+        Some((i, estimate(source, state, found, modes)))
     };
     modes.states.iter().enumerate().filter_map(of).collect()
 }
 
-fn estimate(source: &str, state: &StateModes, m: &TwoMassModes, efficiency: Option<Declared>) -> Estimate {
+fn estimate(source: &str, state: &StateModes, m: &TwoMassModes, of: &CarriageModes) -> Estimate {
+    let efficiency = of.efficiency;
     let law = match state.body.as_str() {
         "none" => "modes_bare".to_owned(),
         body => format!("modes_{body}"),
@@ -57,6 +57,15 @@ fn estimate(source: &str, state: &StateModes, m: &TwoMassModes, efficiency: Opti
             interval_95: None,
         };
         derived.insert("free_frequency_without_loss".to_owned(), number);
+    }
+    if let Some((hz, damping)) = of.proposed {
+        let middle = |formula: &str, value, unit: &str| {
+            let (formula, value, unit) = (formula.to_owned(), Some(value), unit.to_owned());
+            Derived { formula, value, unit, standard_uncertainty: None, interval_95: None }
+        };
+        let frequency = middle("geometric mean of load_frequency with the body, to shape for", hz, "Hz");
+        let damping = middle("mean of load_damping with the body, to shape for", damping, "1");
+        derived.extend([("shaped_mode".to_owned(), frequency), ("shaped_damping".to_owned(), damping)]);
     }
     Estimate {
         method: MethodUsed {

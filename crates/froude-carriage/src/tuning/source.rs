@@ -1,0 +1,135 @@
+//! Experiments on the loop as sources: gains and their margins from relay and sweep, modes from sweeps bare, dry and wet.
+
+use froude_identify::answer::{Answer, Made};
+use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_identify::source::ReadFile;
+use froude_records::campaign::{Campaign, Input, Source};
+use froude_records::estimate::Estimate;
+use froude_records::page::DocumentSection;
+use froude_records::run::{CAMPAIGN_COPY, Role, TOW};
+use froude_rig::campaign::prepare::configured;
+
+use super::candidate::ConfiguredLoop;
+use super::choice::{self, tuned};
+use super::modes::{self, modes_of};
+use crate::runs::{Runs, read};
+use crate::source::files_of;
+
+/// Gains of the position loop, with the margins that they have on the measured response.
+pub struct Tuning;
+
+/// Modes of the carriage in each state of the body.
+pub struct Resonance;
+
+const DRIVEN: &[&str] = &["position", "reference_velocity", "command"];
+const SWEEP: Need = Need::of(&["sweep"], DRIVEN);
+const TUNED: [Need; 2] = [SWEEP, Need { is_optional: true, ..Need::of(&["relay"], DRIVEN) }];
+const SWEPT: [Need; 1] = [SWEEP];
+
+impl Method for Tuning {
+    fn names(&self) -> &'static [&'static str] {
+        &["tuning"]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "gains of the position loop from a relay and a sweep"
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        &TUNED
+    }
+
+    fn runs(&self) -> &'static str {
+        TOW
+    }
+
+    /// The gains as configured, and the ramps that all must follow, are those of the campaign that lies with the runs.
+    fn identify(
+        &self,
+        _: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
+        progress("reading the runs");
+        let runs = read(paths, &[Role::Relay, Role::Sweep], campaign.as_deref())?;
+        let what = || {
+            format!(
+                "no campaign lies with these runs, and gains are judged by the rig that it declares; copy it there as {CAMPAIGN_COPY}"
+            )
+        };
+        let declared = runs.campaign.as_ref().ok_or_else(|| MethodError::input(&runs.folder, what()))?;
+        let configured = configured(declared).map_err(MethodError::refused)?;
+        progress("judging gains");
+        let of = ConfiguredLoop {
+            axis: configured.axis(),
+            tick_us: configured.tick_us(),
+            hardest_ramp: configured.hardest_ramp(),
+        };
+        let tuned = tuned(&runs.logs, of)?;
+        let estimates = choice::record::estimates(&named(source, &runs, TUNING), &tuned);
+        let files = files_of(&runs);
+        let estimates = estimates.into_iter().map(|estimate| (estimate, files.clone())).collect();
+        Ok(found(runs, TUNING, estimates, choice::page::section(&tuned)))
+    }
+}
+
+impl Method for Resonance {
+    fn names(&self) -> &'static [&'static str] {
+        &["resonance"]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "modes of the carriage from sweeps"
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        &SWEPT
+    }
+
+    fn runs(&self) -> &'static str {
+        TOW
+    }
+
+    fn identify(
+        &self,
+        _: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let Input::Runs { paths, campaign } = &source.input else { return Ok(Found::default()) };
+        progress("reading the runs");
+        let runs = read(paths, &[Role::Sweep], campaign.as_deref())?;
+        progress("finding the modes");
+        let modes = modes_of(&runs.logs)?;
+        let files = files_of(&runs);
+        let estimates = modes::record::estimates(&named(source, &runs, RESONANCE), &modes);
+        // Each is of its own sweep.
+        let estimates = estimates.into_iter().map(|(i, estimate)| (estimate, vec![files[i].clone()])).collect();
+        Ok(found(runs, RESONANCE, estimates, modes::page::section(&modes)))
+    }
+}
+
+/// What results are called after.
+const TUNING: &str = "tuning";
+const RESONANCE: &str = "resonance";
+
+fn named(source: &Source, runs: &Runs, what: &str) -> String {
+    if source.name.is_empty() { runs.own_name(what) } else { source.name.clone() }
+}
+
+fn found(runs: Runs, what: &str, estimates: Vec<(Estimate, Vec<ReadFile>)>, section: DocumentSection) -> Found {
+    let answer = |(estimate, files): (Estimate, Vec<ReadFile>)| -> Answer {
+        Made { name: format!("{}, {}", estimate.source, estimate.law.name), estimate, files }.into()
+    };
+    Found {
+        results: estimates.into_iter().map(answer).collect(),
+        summary: Some(section),
+        beside: Some(runs.results(what)),
+        is_part: runs.beside > 0,
+        findings: runs.findings,
+        ..Found::default()
+    }
+}
