@@ -18,6 +18,7 @@ use froude_records::units::Dimension;
 
 use crate::drag::run as drag;
 
+pub mod inspect;
 pub mod set;
 pub mod whole;
 

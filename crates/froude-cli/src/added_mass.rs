@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use froude::Error;
 use froude::methods::added_mass::body::forecasts as forecasts_of;
 use froude::methods::added_mass::load::Loaded;
 use froude::methods::added_mass::options::{Asked, weld_m};
@@ -13,17 +12,17 @@ use froude::pipeline::{Input, Job};
 use froude::records::page::TextTable;
 
 use crate::args::AddedMassArgs;
+use crate::failure::Failure;
 use crate::out::{note, say};
 use crate::print;
 
-pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
+pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Failure> {
     renamed(&args)?;
     if let Some(target) = &args.repair {
         return put_right(&args, target, json);
     }
     if args.weld.is_some() {
-        let why = "--weld is for a repair: add --repair FILE, the mesh to be written (.obj or .stl)";
-        return Err(Error::Nothing(why.to_owned()));
+        return Err(Failure::WeldWithoutRepair);
     }
     if args.check {
         return check(&Asked::read(&args.input, &args.options.0)?, json);
@@ -46,21 +45,20 @@ pub fn added_mass(args: AddedMassArgs, json: bool) -> Result<(), Error> {
 }
 
 /// What an option was called before says what it is called now.
-fn renamed(args: &AddedMassArgs) -> Result<(), Error> {
+fn renamed(args: &AddedMassArgs) -> Result<(), Failure> {
     if let Some(z) = &args.z {
         let up = if z == "down" { "--up -z" } else { "--up z" };
-        return Err(Error::Nothing(format!(
-            "--z is now --up: write {up} for how the mesh lies, and --axes ned or enu for the axes of the result"
-        )));
+        let instead = format!("{up} for how the mesh lies, and --axes ned or enu for the axes of the result");
+        return Err(Failure::Renamed { old: "--z", new: "--up", instead });
     }
     if let Some(origin) = &args.origin {
         let at = if origin.trim() == "buoyancy" { "cb".to_owned() } else { format!("{origin:?}") };
-        return Err(Error::Nothing(format!("--origin is now --at: write --at {at}")));
+        return Err(Failure::Renamed { old: "--origin", new: "--at", instead: format!("--at {at}") });
     }
     Ok(())
 }
 
-fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Error> {
+fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Failure> {
     let unit_m = Asked::read(&args.input, &args.options.0)?.unit_m;
     let weld_m = args.weld.as_deref().map(weld_m).transpose()?;
     let done = repair(&args.input, unit_m, weld_m, target)?;
@@ -78,17 +76,14 @@ fn put_right(args: &AddedMassArgs, target: &Path, json: bool) -> Result<(), Erro
         say!("  still: {line}");
     }
     if !done.left.is_empty() {
-        return Err(Error::Nothing(format!(
-            "{}: written, but not yet fit for use; unite bodies that cross (a boolean union), and close holes, where the mesh was drawn",
-            target.display()
-        )));
+        return Err(Failure::NotYetFit { path: target.to_owned() });
     }
     say!("Next: froude added-mass {}", target.display());
     Ok(())
 }
 
 /// Each number of links, or the one body where there is none.
-fn check(asked: &Asked, json: bool) -> Result<(), Error> {
+fn check(asked: &Asked, json: bool) -> Result<(), Failure> {
     let of = |links: &usize| Asked { links: vec![*links], ..asked.clone() };
     let mut all: Vec<Asked> = asked.links.iter().map(of).collect();
     if all.is_empty() {

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use froude::Error;
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::tune::{find_resonance, tune};
 use froude::fit::budget::Uncertain;
@@ -18,15 +17,16 @@ use froude::rig::campaign::preflight::Objection;
 use serde_json::json;
 
 use crate::args::{CarriageJob, Experiment};
+use crate::failure::Failure;
 use crate::mistaken::{self, Takes};
 use crate::out::say;
 use crate::print;
 use crate::stage::Stage;
 
 /// `froude run`.
-pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_json: bool) -> Result<(), Error> {
+pub fn run(campaign: PathBuf, out: Option<PathBuf>, check: bool, yes: bool, is_json: bool) -> Result<(), Failure> {
     let job = drive_job(campaign, out);
-    let prepared = prepare(&job).map_err(|error| mistaken::RUN.explain(error.into(), &[job.campaign]))?;
+    let prepared = prepare(&job).map_err(|error| mistaken::RUN.explain(error, &[job.campaign]))?;
     let stage = if check { None } else { Some(Stage::set(&prepared, yes, prepared.steps.len())?) };
     if !is_json {
         preflight(&prepared);
@@ -170,7 +170,7 @@ fn pairs_to_see(detectable_n: f64, drag_n: f64) -> f64 {
     (detectable_n / drag_n).powi(2).ceil().max(1.0)
 }
 
-fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
+fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Failure> {
     if prepared.objections.is_empty() {
         if !is_json {
             say!("\nPre-flight passed. Nothing was moved.");
@@ -212,7 +212,7 @@ fn refused(prepared: &Prepared, is_json: bool) -> Result<(), Error> {
             counted(all, "run", "runs")
         ));
     }
-    Err(Error::Nothing(format!("the pre-flight refuses this campaign; nothing was moved:\n{}", lines.join("\n"))))
+    Err(Failure::Refused { objections: lines })
 }
 
 /// More different objections than this are reported by kind.
@@ -239,7 +239,7 @@ fn minutes(seconds: f64) -> String {
 }
 
 /// `froude carriage …`.
-pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Error> {
+pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
     match job {
         CarriageJob::Identify { input, sidecar, out } => {
             let job = Job { sidecar, purpose: Some(Purpose::Servo), ..servo(&input, out) };
@@ -287,11 +287,13 @@ fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Job {
 }
 
 /// Sprocket radius that makes the counted distances the measured one.
-fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) -> Result<(), Error> {
-    let length = |what: &str, text: &str| {
-        parse_quantity(text)
-            .and_then(|q| q.expect(Dimension::LENGTH))
-            .map_err(|e| Error::Nothing(format!("{what} {text:?}: {e}; write a length, \"2.000 m\"")))
+fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) -> Result<(), Failure> {
+    let length = |option: &'static str, text: &str| {
+        parse_quantity(text).and_then(|q| q.expect(Dimension::LENGTH)).map_err(|source| Failure::Length {
+            option,
+            text: text.to_owned(),
+            source,
+        })
     };
     let known = Uncertain::new(length("--measured", measured)?, length("--measured-standard", standard)?);
     let counted_m = counted.iter().map(|text| length("--counted", text)).collect::<Result<Vec<_>, _>>()?;
@@ -299,7 +301,7 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     let kinds = [Role::Calibration, Role::Jog];
     let read = runs::read(paths, &kinds, None)?;
     let Some(axis) = read.logs.iter().find_map(|log| log.meta.moving_axis()) else {
-        return Err(Error::Nothing("the runs do not state which rig they come from".to_owned()));
+        return Err(Failure::NoRig);
     };
     let radius_mm = 1e3 * axis.sprocket_radius_m.value;
     say!(
@@ -311,9 +313,9 @@ fn scale(paths: &[PathBuf], measured: &str, standard: &str, counted: &[String]) 
     Ok(())
 }
 
-fn experiment(e: &Experiment, takes: &Takes) -> Result<(DriveJob, Stage), Error> {
+fn experiment(e: &Experiment, takes: &Takes) -> Result<(DriveJob, Stage), Failure> {
     let job = drive_job(e.campaign.clone(), e.out.clone());
-    let prepared = prepare(&job).map_err(|error| takes.explain(error.into(), std::slice::from_ref(&e.campaign)))?;
+    let prepared = prepare(&job).map_err(|error| takes.explain(error, std::slice::from_ref(&e.campaign)))?;
     let runs = prepared.steps.iter().filter(|s| matches!(s, Step::Run(_))).count();
     let stage = Stage::set(&prepared, e.yes, runs.min(3))?;
     Ok((job, stage))

@@ -8,6 +8,7 @@
 mod added_mass;
 mod args;
 mod carriage;
+mod failure;
 mod last_word;
 mod mistaken;
 mod out;
@@ -18,11 +19,13 @@ mod stage;
 use std::process::ExitCode;
 
 use clap::Parser;
+use froude::identify::simulate::tables;
 use froude::pipeline::{self, Input, Job};
 use froude::records::text::counted;
-use froude::{Error, demo, inspect, twin};
+use froude::{demo, inspect};
 
 use args::{Cli, Verb};
+use failure::Failure;
 
 fn main() -> ExitCode {
     last_word::guarded(|| {
@@ -40,7 +43,7 @@ fn main() -> ExitCode {
     })
 }
 
-fn run(cli: Cli) -> Result<(), Error> {
+fn run(cli: Cli) -> Result<(), Failure> {
     match cli.verb {
         Verb::Demo { dir } => {
             let bar = spinner();
@@ -71,7 +74,7 @@ fn run(cli: Cli) -> Result<(), Error> {
         }
         Verb::Simulate { campaign, replace } => {
             let written =
-                twin::simulate(&campaign, replace).map_err(|error| mistaken::SIMULATE.explain(error, &[campaign]))?;
+                tables::write(&campaign, replace).map_err(|error| mistaken::SIMULATE.explain(error, &[campaign]))?;
             if cli.json {
                 let rows: Vec<_> = written
                     .iter()
@@ -95,12 +98,12 @@ fn run(cli: Cli) -> Result<(), Error> {
 }
 
 /// `identify`, `compare` and `carriage drag`: one job, one way through it, one outcome, printed or as its record.
-fn identify(job: Job, is_json: bool, all: bool) -> Result<(), Error> {
+fn identify(job: Job, is_json: bool, all: bool) -> Result<(), Failure> {
     print_found(&identified(job)?, is_json, all)
 }
 
 /// What a job found: the record for another program, or all of it for a person.
-fn print_found(outcome: &pipeline::Outcome, is_json: bool, all: bool) -> Result<(), Error> {
+fn print_found(outcome: &pipeline::Outcome, is_json: bool, all: bool) -> Result<(), Failure> {
     if is_json {
         return print::json(&outcome.file);
     }
@@ -109,7 +112,7 @@ fn print_found(outcome: &pipeline::Outcome, is_json: bool, all: bool) -> Result<
 }
 
 /// The same, not yet printed.
-fn identified(job: Job) -> Result<pipeline::Outcome, Error> {
+fn identified(job: Job) -> Result<pipeline::Outcome, Failure> {
     let bar = spinner();
     let outcome = pipeline::identify(&Job { date: Some(today()), ..job }, &|step| bar.set_message(step.to_owned()))?;
     bar.finish_and_clear();

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use froude::Error;
+use crate::failure::Failure;
 
 /// What a file or a folder is, by its name and its first words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +72,8 @@ pub const ADDED_MASS: Takes = Takes {
 
 impl Takes {
     /// The same error, or what was named instead of what the verb takes.
-    pub fn explain(&self, error: Error, paths: &[PathBuf]) -> Error {
+    pub fn explain(&self, error: impl Into<Failure>, paths: &[PathBuf]) -> Failure {
+        let error = error.into();
         if !error.is_bad_input() {
             return error;
         }
@@ -82,14 +83,13 @@ impl Takes {
         };
         let other = |path: &PathBuf| Some((path.clone(), kind_of(path).filter(|kind| !is_taken(path, *kind))?));
         match paths.iter().find_map(other) {
-            Some((path, kind)) => Error::Nothing(format!(
-                "{} is {}; froude {} takes {}. {}",
-                path.display(),
-                kind.words(),
-                self.verb,
-                self.words,
-                self.instead(kind, &path)
-            )),
+            Some((path, kind)) => Failure::Instead {
+                found: kind.words(),
+                verb: self.verb,
+                takes: self.words,
+                instead: self.instead(kind, &path),
+                path,
+            },
             None => error,
         }
     }

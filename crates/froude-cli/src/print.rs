@@ -1,7 +1,6 @@
 //! Results as a person reads them, and as JSON.
 
 use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
-use froude::Error;
 use froude::identify::answer::Answer;
 use froude::identify::source::SourceResult;
 use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
@@ -13,13 +12,13 @@ use froude::records::page::{DocumentSection, TextTable};
 use froude::records::text::{counted, visible_json};
 use froude::results::Written;
 
+use crate::failure::Failure;
 use crate::out::say;
 use crate::side_by_side::{comparison, verdicts};
 
 /// One JSON document on standard output.
-pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Error> {
-    let text = serde_json::to_string_pretty(value)
-        .map_err(|e| Error::Nothing(format!("the result cannot be written as JSON: {e}")))?;
+pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value).map_err(Failure::Json)?;
     // As JSON's own escapes: what a program reads is the same.
     say!("{}", visible_json(&text));
     Ok(())

@@ -10,7 +10,6 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use froude::Error;
 use froude::carriage::drive::Prepared;
 use froude::records::carriage::plan::PlannedRun;
 use froude::records::text::visible;
@@ -20,6 +19,8 @@ use froude::rig::drive::Sample;
 use indicatif::{ProgressBar, ProgressStyle};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
+
+use crate::failure::Failure;
 
 /// Words that may wait for a slow terminal; more are dropped.
 const WORDS: usize = 256;
@@ -45,17 +46,12 @@ impl Stage {
     /// # Errors
     ///
     /// Nobody is there to confirm, or nobody could stop it: nothing has moved then, and nothing may.
-    pub fn set(prepared: &Prepared, yes: bool, runs: usize) -> Result<Self, Error> {
+    pub fn set(prepared: &Prepared, yes: bool, runs: usize) -> Result<Self, Failure> {
         if yes && !prepared.is_twin() {
-            return Err(Error::Nothing(
-                "--yes is for the twin: at a real rig a person must be present and confirm each step".to_owned(),
-            ));
+            return Err(Failure::YesAtARig);
         }
         if !yes && !std::io::stdin().is_terminal() {
-            let instead = if prepared.is_twin() { ", or give --yes, which the twin accepts" } else { "" };
-            return Err(Error::Nothing(format!(
-                "nothing was moved: nobody can confirm, because standard input is not a terminal. Run it in a terminal{instead}"
-            )));
+            return Err(Failure::Nobody { is_twin: prepared.is_twin() });
         }
         // Nobody who stops reading ends a drive half way.
         crate::out::go_on_unread();
@@ -69,7 +65,7 @@ impl Stage {
             }
             flag::register(SIGINT, switch.press_flag())
         };
-        watch().map_err(|e| Error::Nothing(format!("Ctrl-C cannot be watched: {e}; nothing was moved")))?;
+        watch().map_err(Failure::Unwatched)?;
         let (words, heard) = sync_channel(WORDS);
         let terminal = Terminal::new(runs, switch.clone());
         let thread = std::thread::spawn(move || terminal.write(&heard));

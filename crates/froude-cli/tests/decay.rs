@@ -174,7 +174,8 @@ fn what_is_missing_is_named() {
     let said = told("\"decay_envelope\"", DECLARED);
     let instead = "3 runs there are of the method tow (role calibration, jog, wet), and runs of the method free_decay are read here: a \
                    [[source]] with method = [\"fsm\", \"mcd\", \"mbdp_constant\", \"mbdp_mapped\", \"mbdp_flexible\", \
-                   \"servo_symmetric\", \"servo_asymmetric\", \"servo_over_position\", \"servo_two_mass\", \"calibration\"] reads those; else name \
+                   \"servo_symmetric\", \"servo_asymmetric\", \"servo_over_position\", \"servo_two_mass\", \"calibration\", \"tuning\", \
+                   \"resonance\"] reads those; else name \
                    a folder with runs of free_decay";
     assert!(said.contains(&format!("{}: {instead}", runs.display())), "{said}");
     std::fs::remove_dir_all(&runs).unwrap();

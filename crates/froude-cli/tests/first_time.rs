@@ -143,7 +143,7 @@ fn a_file_of_another_kind_is_called_what_it_is_with_the_command_that_takes_it() 
     }
     let told = refusal(&["inspect", runs]);
     let gone = format!(
-        "froude: {runs} has 17 sidecars of runs and no log: copy the .mcap files back, or froude run drives them again\n"
+        "froude: {runs}: 17 sidecars of runs and no log: copy the .mcap files back, or froude run drives them again\n"
     );
     assert_eq!(told, gone);
 }

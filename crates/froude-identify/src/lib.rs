@@ -13,20 +13,24 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod answer;
+pub mod asked;
 pub mod bootstrap;
 pub mod columns;
 mod common;
 pub mod compare;
+pub mod data_files;
 pub mod dataset;
 pub mod diagnosis;
 pub mod dissipation;
 pub mod eiv;
 mod error;
 pub mod formula;
+pub mod inspect;
 pub mod large;
 pub mod law;
 pub mod lint;
 pub mod method;
+pub mod observations;
 pub mod page;
 pub mod record;
 pub mod reduce;
@@ -37,6 +41,7 @@ pub mod select;
 pub mod selection;
 pub mod simulate;
 pub mod source;
+pub mod table;
 mod tare;
 pub mod two_units;
 pub mod uncertainty;

@@ -168,6 +168,13 @@ pub enum MethodError {
         more: usize,
     },
 
+    /// A run whose log is gone, or was set aside.
+    #[error("{why}")]
+    NoLog {
+        /// Where it was, and what to do.
+        why: String,
+    },
+
     /// Runs of another method than the one that reads.
     #[error("{}: {found}, and runs of the method {wanted} are read here", .folder.display())]
     OfAnotherMethod {

@@ -5,6 +5,8 @@
 //! each setup, noise, and its resolution. Seeded: the same campaign gives the
 //! same table on any machine.
 
+pub mod tables;
+
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Source, Truth};
 use froude_records::json::read_estimates;

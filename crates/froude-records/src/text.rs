@@ -66,6 +66,18 @@ fn is_hidden(c: char) -> bool {
             | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
+/// Characters of a name in that of a file: disks take 255, and a number may follow.
+const LONGEST_NAME: usize = 100;
+
+/// A name, as far as every file system takes it.
+#[must_use]
+pub fn in_a_file_name(name: &str) -> String {
+    name.chars()
+        .take(LONGEST_NAME)
+        .map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;

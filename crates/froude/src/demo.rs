@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_identify::simulate::tables;
 use froude_records::folder::UnfinishedFolder;
 use froude_records::write::write_atomically;
 use include_dir::{Dir, include_dir};
@@ -46,7 +47,7 @@ fn build(folder: &Path, date: Option<String>, progress: &dyn Fn(&str)) -> Result
         }
     }
     progress("mamba: simulating the circulation tank");
-    crate::twin::simulate(&folder.join("mamba/campaign.toml"), true)?;
+    tables::write(&folder.join("mamba/campaign.toml"), true)?;
     CAMPAIGNS
         .iter()
         .map(|name| {

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_identify::compare::too_many;
 use froude_identify::method::MethodError;
 use froude_records::run::FREE_DECAY;
+use froude_records::text::counted;
 
 /// Why a job of the pipeline failed.
 #[derive(Debug, thiserror::Error)]
@@ -95,14 +97,9 @@ pub enum Error {
         is_bad_input: bool,
     },
 
-    /// Some of several files took their places, and the others did not.
-    #[error("{source}; written before it: {done}")]
-    HalfWay {
-        /// The files.
-        done: String,
-        /// Why the next one failed.
-        source: froude_records::RecordError,
-    },
+    /// No table of a twin was written, or not all of them.
+    #[error(transparent)]
+    Simulate(#[from] froude_identify::simulate::tables::SimulateError),
 
     /// The demo will not write over somebody's folder.
     #[error("{} exists and is not empty; name another folder: froude demo DIR", .path.display())]
@@ -111,9 +108,64 @@ pub enum Error {
         path: PathBuf,
     },
 
-    /// A verb was given nothing to work on.
-    #[error("{0}")]
-    Nothing(String),
+    /// A campaign without sources.
+    #[error(
+        "{0}: the campaign has no [[source]]{1}",
+        .path.display(),
+        if *.is_driven {
+            format!("; it drives a carriage: froude run {0}, and of its runs froude carriage drag FOLDER", .path.display())
+        } else {
+            String::new()
+        }
+    )]
+    NoSource {
+        /// The campaign.
+        path: PathBuf,
+        /// Whether it drives a carriage.
+        is_driven: bool,
+    },
+
+    /// More estimates than a comparison can show.
+    #[error("{}", too_many(*.estimates))]
+    TooMany {
+        /// How many there are.
+        estimates: usize,
+    },
+
+    /// Results would replace a record that is read.
+    #[error(
+        "{} holds {}, which is read: results there would replace it. Name another folder with --out",
+        .out.display(),
+        .record.display()
+    )]
+    ReplacesInput {
+        /// The folder of the results.
+        out: PathBuf,
+        /// The record.
+        record: PathBuf,
+    },
+
+    /// The result of a part would replace that of more runs, or of others.
+    #[error(
+        "{} holds the result of {}, of which {} not named now (the first is {first}); it is not replaced by that of {}. Name another folder \
+         with --out",
+        .out.display(),
+        counted(*.there, "run", "runs"),
+        counted(*.others, "is", "are"),
+        counted(*.named, "run", "runs")
+    )]
+    ReplacesMore {
+        /// The folder of the results.
+        out: PathBuf,
+        /// Runs of the result that lies there.
+        there: usize,
+        /// Those of them that are not read now.
+        others: usize,
+        /// The first of these.
+        first: String,
+        /// Runs that are read.
+        named: usize,
+    },
 }
 
 impl From<MethodError> for Error {
@@ -148,15 +200,19 @@ impl Error {
             Self::Identify(froude_identify::IdentifyError::Record(e)) => !e.is_output(),
             Self::Method(e) => e.is_bad_input(),
             Self::Campaign(e) => e.is_bad_input(),
+            Self::Simulate(e) => e.is_bad_input(),
             Self::Identify(_)
             | Self::NotEmpty { .. }
             | Self::NotOurs { .. }
-            | Self::Nothing(_)
+            | Self::NoSource { .. }
+            | Self::TooMany { .. }
+            | Self::ReplacesInput { .. }
+            | Self::ReplacesMore { .. }
             | Self::OfAnotherMethod { .. }
             | Self::Drag(_)
             | Self::Servo(_)
             | Self::Tuning(_) => true,
-            Self::Runner(_) | Self::Report(_) | Self::Output { .. } | Self::HalfWay { .. } => false,
+            Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
         }
     }
 

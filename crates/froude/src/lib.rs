@@ -30,15 +30,12 @@ pub mod methods {
 
 mod campaign_page;
 pub mod carriage;
-mod data_files;
 pub mod demo;
 mod error;
 pub mod inspect;
 mod method;
-mod observations;
 pub mod pipeline;
 pub mod results;
-pub mod twin;
 
 pub use error::Error;
 

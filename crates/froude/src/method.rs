@@ -5,9 +5,9 @@ use froude_carriage::axis::source::{Servo, is_servo_log};
 use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
 use froude_carriage::tuning::source::{Resonance, Tuning};
-use froude_identify::method::{Found, Method, MethodError, Need};
-use froude_identify::source::identify_source;
-use froude_records::campaign::{Campaign, Input, Source};
+use froude_identify::method::Method;
+use froude_identify::table::Table;
+use froude_records::campaign::{Input, Source};
 use froude_records::nearest::meant;
 use froude_tank::decay::source::FreeDecay;
 
@@ -24,39 +24,6 @@ const METHODS: [&dyn Method; 6] = [&Carriage, &Servo, &KnownWeights, &Tuning, &R
 
 /// A method with the names that it is asked for.
 pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);
-
-/// The rows of a table, fitted with every law that the campaign asks for.
-struct Table;
-
-impl Method for Table {
-    fn names(&self) -> &'static [&'static str] {
-        &["table"]
-    }
-
-    fn words(&self, _: &str) -> &'static str {
-        "rows of a table"
-    }
-
-    fn needs(&self, _: &str) -> &'static [Need] {
-        const { &[Need::of(&["table"], &[])] }
-    }
-
-    fn runs(&self) -> &'static str {
-        ""
-    }
-
-    fn identify(
-        &self,
-        campaign: &Campaign,
-        source: &Source,
-        _: &[&'static str],
-        progress: &dyn Fn(&str),
-    ) -> Result<Found, MethodError> {
-        let mut result = identify_source(campaign, source, &|model| progress(&format!("fitting {model}")))?;
-        let findings = std::mem::take(&mut result.findings);
-        Ok(Found { results: vec![result.into()], findings, ..Found::default() })
-    }
-}
 
 /// The methods of a source, each with the names that it is asked for; `purpose` is what is asked of a source that names none.
 ///

@@ -5,9 +5,11 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_identify::answer::Answer;
-use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared, too_many};
+use froude_identify::asked;
+use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared};
+use froude_identify::data_files::DataFiles;
 use froude_identify::method::{Export, Found, Method, observes};
-use froude_identify::source::asked_models;
+use froude_identify::observations;
 use froude_records::added_mass_options::GivenOption;
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
@@ -15,13 +17,12 @@ use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
 use froude_records::page::DocumentSection;
-use froude_records::text::counted;
+use froude_records::text::in_a_file_name;
 
 use crate::Error;
-use crate::data_files::DataFiles;
 use crate::method;
 use crate::results::Written;
-use crate::{campaign_page, observations, results};
+use crate::{campaign_page, results};
 
 /// What a job reads.
 #[derive(Debug, Clone)]
@@ -145,7 +146,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
             source.models.clear();
         }
     }
-    runs_once(&campaign)?;
+    asked::runs_once(&campaign)?;
     let is_of_runs = matches!(job.input, Input::Runs { .. });
     let named_as = |path: &Path| match path.file_name() {
         Some(name) if is_of_runs => name.to_string_lossy().into_owned(),
@@ -161,14 +162,10 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         gathered.take(source, &campaign, &mut files, job, progress)?;
     }
     let Gathered { sources, summaries, blocks, exports, published, mut findings, beside, is_part } = gathered;
-    findings.extend(laws_not_asked(&campaign));
+    findings.extend(asked::laws_not_asked(&campaign));
     // What a method says without an estimate is an answer too: jogs show the polarity.
     if sources.is_empty() && published.is_empty() && summaries.is_empty() {
-        let path = campaign.path.display();
-        let instead = campaign.carriage.as_ref().map_or_else(String::new, |_| {
-            format!("; it drives a carriage: froude run {path}, and of its runs froude carriage drag FOLDER")
-        });
-        return Err(Error::Nothing(format!("{path}: the campaign has no [[source]]{instead}")));
+        return Err(Error::NoSource { path: campaign.path, is_driven: campaign.carriage.is_some() });
     }
     // Matrices of one body, or of one and more links, are no sources to be held against each other.
     let is_one =
@@ -293,7 +290,7 @@ impl Gathered {
 impl Gathered {
     /// A name that no other export has: the source's before the file's own, and a number where two sources come to the same one.
     fn export_name(&self, source: &str, name: &str) -> String {
-        let source = observations::in_a_file_name(source);
+        let source = in_a_file_name(source);
         let names = std::iter::once(format!("{source}-{name}")).chain((2..).map(|k| format!("{source}-{k}-{name}")));
         let is_free = |name: &String| self.exports.iter().all(|other| !other.name.eq_ignore_ascii_case(name));
         names.into_iter().find(is_free).unwrap_or_default()
@@ -305,7 +302,7 @@ fn side_by_side(all: &[(String, EstimateFile)], input: &Input) -> Result<Option<
     let is_asked = matches!(input, Input::Records(_));
     let estimates: usize = all.iter().map(|(_, record)| record.estimates.len()).sum();
     if is_asked && estimates > MOST_COMPARED {
-        return Err(Error::Nothing(too_many(estimates)));
+        return Err(Error::TooMany { estimates });
     }
     let all = named(all);
     let sources: BTreeSet<_> = all.iter().map(|n| (n.file, &n.estimate.source)).collect();
@@ -330,11 +327,7 @@ fn reads_nothing_in(out: &Path, campaign: &Campaign) -> Result<(), Error> {
     let is_replaced = |path: &&Path| std::fs::canonicalize(path).is_ok_and(|path| path.starts_with(&out));
     match records.into_iter().find(is_replaced) {
         None => Ok(()),
-        Some(record) => Err(Error::Nothing(format!(
-            "{} holds {}, which is read: results there would replace it. Name another folder with --out",
-            out.display(),
-            record.display()
-        ))),
+        Some(record) => Err(Error::ReplacesInput { out, record: record.to_owned() }),
     }
 }
 
@@ -361,49 +354,12 @@ fn replaces_no_more(out: &Path, file: &EstimateFile, is_chosen: bool) -> Result<
     if is_chosen && old.data.len() <= named.len() {
         return Ok(());
     }
-    Err(Error::Nothing(format!(
-        "{} holds the result of {}, of which {} not named now (the first is {}); it is not replaced by that of {}. Name another folder \
-         with --out",
-        out.display(),
-        counted(old.data.len(), "run", "runs"),
-        counted(1 + others.count(), "is", "are"),
-        first.path,
-        counted(named.len(), "run", "runs"),
-    )))
-}
-
-/// Refuses the same runs in two sources: readings of one current would be compared as if they were independent.
-fn runs_once(campaign: &Campaign) -> Result<(), Error> {
-    let folder = |source: &Source| {
-        let path = source.input.path();
-        let is_runs = matches!(source.input, campaign::Input::Runs { .. });
-        is_runs.then(|| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()))
-    };
-    for (i, b) in campaign.sources.iter().enumerate() {
-        if let Some(a) = campaign.sources[..i].iter().find(|a| folder(a).is_some() && folder(a) == folder(b)) {
-            return Err(Error::Nothing(format!(
-                "{}: {} and {} name the same runs; name them once, with all methods in `method`",
-                b.place, a.name, b.name
-            )));
-        }
-    }
-    Ok(())
-}
-
-/// Laws of a person that no source is fitted with: a source that names its models is fitted with these alone.
-fn laws_not_asked(campaign: &Campaign) -> Option<Finding> {
-    let tables: Vec<_> = campaign.sources.iter().filter(|s| matches!(s.input, campaign::Input::Table(_))).collect();
-    let asked: Vec<String> =
-        tables.iter().flat_map(|source| asked_models(campaign, source).unwrap_or_default()).collect();
-    let own = campaign.identify.user_models.iter().map(|model| model.name.as_str());
-    let left: Vec<&str> = own.filter(|name| !asked.iter().any(|a| a == name)).collect();
-    (!left.is_empty() && !tables.is_empty()).then(|| {
-        let it = if left.len() == 1 { "it" } else { "them" };
-        let text = format!(
-            "[[identify.model]] {}: fitted to no source, since each names its models without {it}; add {it} to `models`",
-            left.join(", "),
-        );
-        Finding::new(Severity::Warning, "law-not-asked", text)
+    Err(Error::ReplacesMore {
+        out: out.to_owned(),
+        there: old.data.len(),
+        first: first.path.clone(),
+        others: 1 + others.count(),
+        named: named.len(),
     })
 }
 

@@ -4,12 +4,67 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use froude_identify::simulate;
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::table::prepare_table;
 
-use crate::Error;
+use super::{observations, table};
+use crate::error::IdentifyError;
+
+/// Why no table was written, or not all of them.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulateError {
+    /// A file could not be read or written, or says something impossible.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+
+    /// The truth of the campaign gives no observations.
+    #[error(transparent)]
+    Identify(#[from] IdentifyError),
+
+    /// Nothing is planned.
+    #[error("{}: no source has a [[source.plan]]: say which configurations, speeds and angles are run", .path.display())]
+    NoPlan {
+        /// The campaign.
+        path: PathBuf,
+    },
+
+    /// A plan without a place for its observations.
+    #[error("source {source_name:?}: a plan needs `table`, where its observations go")]
+    NoTable {
+        /// The source.
+        source_name: String,
+    },
+
+    /// A table that is not to be replaced.
+    #[error("{} exists; give --replace to write the twin's observations over it", .path.display())]
+    Exists {
+        /// The table.
+        path: PathBuf,
+    },
+
+    /// Some of several files took their places, and the others did not.
+    #[error("{source}; written before it: {done}")]
+    HalfWay {
+        /// The files.
+        done: String,
+        /// Why the next one failed.
+        source: RecordError,
+    },
+}
+
+impl SimulateError {
+    /// True where the input is at fault, false where the machine is.
+    #[must_use]
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Record(e) | Self::Identify(IdentifyError::Record(e)) => !e.is_output(),
+            Self::HalfWay { .. } => false,
+            _ => true,
+        }
+    }
+}
 
 /// A table that was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,16 +83,13 @@ pub struct Written {
 ///
 /// # Errors
 ///
-/// See [`Error`]; a campaign without plan or without `[simulate]`; a table outside of the campaign's folder, of two sources, or of no format.
-pub fn simulate(campaign: &Path, replace: bool) -> Result<Vec<Written>, Error> {
+/// See [`SimulateError`]: a campaign without plan or without `[simulate]`; a table outside of the campaign's folder, of two sources, or of no format.
+pub fn write(campaign: &Path, replace: bool) -> Result<Vec<Written>, SimulateError> {
     let campaign = read_campaign(campaign)?;
     let planned: Vec<(usize, &Source)> =
         campaign.sources.iter().enumerate().filter(|(_, source)| !source.plan.is_empty()).collect();
     if planned.is_empty() {
-        return Err(Error::Nothing(format!(
-            "{}: no source has a [[source.plan]]: say which configurations, speeds and angles are run",
-            campaign.path.display()
-        )));
+        return Err(SimulateError::NoPlan { path: campaign.path });
     }
     let mut places: Vec<(PathBuf, &Source)> = Vec::new();
     for (_, source) in &planned {
@@ -50,17 +102,14 @@ pub fn simulate(campaign: &Path, replace: bool) -> Result<Vec<Written>, Error> {
             ));
         }
         if path.exists() && !replace {
-            return Err(Error::Nothing(format!(
-                "{} exists; give --replace to write the twin's observations over it",
-                path.display()
-            )));
+            return Err(SimulateError::Exists { path: path.to_owned() });
         }
         places.push((place, source));
     }
     let mut prepared = Vec::new();
     for (stream, source) in planned {
-        let data = simulate::observations(&campaign, source, stream as u64)?;
-        let table = simulate::table(&data, source)?;
+        let data = observations(&campaign, source, stream as u64)?;
+        let table = table(&data, source)?;
         let written = Written { source: source.name.clone(), path: table.path.clone(), rows: table.n_rows };
         prepared.push((prepare_table(&table, &table.path)?, written));
     }
@@ -74,19 +123,19 @@ pub fn simulate(campaign: &Path, replace: bool) -> Result<Vec<Written>, Error> {
     Ok(written)
 }
 
-fn table_of(source: &Source) -> Result<&Path, Error> {
+fn table_of(source: &Source) -> Result<&Path, SimulateError> {
     match &source.input {
         Input::Table(path) => Ok(path),
-        _ => Err(Error::Nothing(format!("source {:?}: a plan needs `table`, where its observations go", source.name))),
+        _ => Err(SimulateError::NoTable { source_name: source.name.clone() }),
     }
 }
 
-fn refused(source: &Source, problem: String) -> Error {
+fn refused(source: &Source, problem: String) -> SimulateError {
     RecordError::Value { place: source.place.clone(), key: "table".to_owned(), problem }.into()
 }
 
 /// One name for each place below the campaign's folder, also where a disk does not tell `A.csv` from `a.csv`.
-fn place_inside(path: &Path, campaign: &Campaign, source: &Source) -> Result<PathBuf, Error> {
+fn place_inside(path: &Path, campaign: &Campaign, source: &Source) -> Result<PathBuf, SimulateError> {
     let folder = campaign.path.parent().unwrap_or(Path::new(""));
     let inside = path.strip_prefix(folder).unwrap_or(path);
     let outside = || {
@@ -124,10 +173,10 @@ fn place_inside(path: &Path, campaign: &Campaign, source: &Source) -> Result<Pat
 }
 
 /// A failure after some tables had taken their places.
-fn half_way(error: RecordError, written: &[Written]) -> Error {
+fn half_way(error: RecordError, written: &[Written]) -> SimulateError {
     if written.is_empty() {
         return error.into();
     }
     let done: Vec<String> = written.iter().map(|w| w.path.display().to_string()).collect();
-    Error::HalfWay { done: done.join(", "), source: error }
+    SimulateError::HalfWay { done: done.join(", "), source: error }
 }

@@ -5,21 +5,22 @@
 
 use std::path::Path;
 
-use froude_identify::answer::Answer;
-use froude_identify::source::SourceResult;
-use froude_identify::validity;
 use froude_records::campaign::Campaign;
 use froude_records::table::{Column, ColumnData, Table};
+use froude_records::text::in_a_file_name;
 use froude_records::units::{Dimension, Unit, parse_unit};
 
-use crate::Error;
+use crate::answer::Answer;
+use crate::error::IdentifyError;
+use crate::source::SourceResult;
+use crate::validity;
 
 /// One table per fitted source, each with a file name of its own.
 ///
 /// # Errors
 ///
 /// A channel that the model needs and the data lack: not after a fit.
-pub fn tables(sources: &[Answer], campaign: &Campaign) -> Result<Vec<Table>, Error> {
+pub fn tables(sources: &[Answer], campaign: &Campaign) -> Result<Vec<Table>, IdentifyError> {
     let mut out: Vec<Table> = Vec::new();
     for source in sources.iter().filter_map(Answer::fitted) {
         let mut table = table(source, campaign)?;
@@ -38,7 +39,7 @@ pub fn tables(sources: &[Answer], campaign: &Campaign) -> Result<Vec<Table>, Err
 }
 
 /// The table of one source.
-fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
+fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, IdentifyError> {
     let data = &source.data;
     let mut columns = vec![number("line", &data.line.iter().map(|&l| l as f64).collect::<Vec<_>>(), Unit::one())];
     for (name, texts) in [("configuration", &data.configuration), ("setup", &data.setup), ("run", &data.run)] {
@@ -96,23 +97,11 @@ fn table(source: &SourceResult, campaign: &Campaign) -> Result<Table, Error> {
     })
 }
 
-/// Characters of a source's name in that of a file: disks take 255, and a number may follow.
-const LONGEST_NAME: usize = 100;
-
 /// `observations-` and the source's name.
 fn file_name(source: &str) -> String {
     // The source of a bare table is named after its file.
     let stem = source.trim_end_matches(".csv").trim_end_matches(".parquet");
     format!("observations-{}.csv", in_a_file_name(stem))
-}
-
-/// A source's name, as far as every file system takes it.
-pub(crate) fn in_a_file_name(source: &str) -> String {
-    source
-        .chars()
-        .take(LONGEST_NAME)
-        .map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' })
-        .collect()
 }
 
 fn number(name: &str, si: &[f64], unit: Unit) -> Column {

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use froude_identify::source::ReadFile;
-use froude_records::estimate::DataFile;
+use froude_records::RecordError;
+use froude_records::estimate::{DataFile, keyed};
 use indexmap::IndexMap;
 
-use crate::Error;
+use crate::source::ReadFile;
 
 /// Files in the order of their first naming.
-pub(crate) struct DataFiles<'a> {
+pub struct DataFiles<'a> {
     /// How a path is written.
     named: &'a dyn Fn(&Path) -> String,
     files: Vec<(PathBuf, DataFile)>,
@@ -17,6 +17,7 @@ pub(crate) struct DataFiles<'a> {
 
 impl<'a> DataFiles<'a> {
     /// None yet; `named` says how a path is written in the record.
+    #[must_use]
     pub fn new(named: &'a dyn Fn(&Path) -> String) -> Self {
         Self { named, files: Vec::new() }
     }
@@ -26,7 +27,7 @@ impl<'a> DataFiles<'a> {
     /// # Errors
     ///
     /// It cannot be read.
-    pub fn key(&mut self, path: &Path, role: &str) -> Result<String, Error> {
+    pub fn key(&mut self, path: &Path, role: &str) -> Result<String, RecordError> {
         let at = match self.files.iter().position(|(known, _)| known == path) {
             Some(at) => at,
             None => {
@@ -43,7 +44,7 @@ impl<'a> DataFiles<'a> {
     /// # Errors
     ///
     /// As [`Self::key`].
-    pub fn keys_of(&mut self, files: &[ReadFile], observed: impl Fn(&str) -> bool) -> Result<Vec<String>, Error> {
+    pub fn keys_of(&mut self, files: &[ReadFile], observed: impl Fn(&str) -> bool) -> Result<Vec<String>, RecordError> {
         let mut out = Vec::new();
         for file in files {
             let key = self.key(&file.path, &file.role)?;
@@ -55,7 +56,8 @@ impl<'a> DataFiles<'a> {
     }
 
     /// All of them by key.
+    #[must_use]
     pub fn into_map(self) -> IndexMap<String, DataFile> {
-        froude_records::estimate::keyed(self.files.into_iter().map(|(_, file)| file).collect())
+        keyed(self.files.into_iter().map(|(_, file)| file).collect())
     }
 }

@@ -1,0 +1,116 @@
+//! Why the program ends without its result: what the library refused, or what cannot be done with what was typed.
+
+use std::path::PathBuf;
+
+use froude::records::units::UnitError;
+
+/// Why the program ends without its result.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// The library refused.
+    #[error(transparent)]
+    Froude(froude::Error),
+
+    /// A file was named that the verb has no use for.
+    #[error("{} is {found}; froude {verb} takes {takes}. {instead}", .path.display())]
+    Instead {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        found: &'static str,
+        /// The verb.
+        verb: &'static str,
+        /// What the verb takes.
+        takes: &'static str,
+        /// What to write instead.
+        instead: String,
+    },
+
+    /// An option that is called otherwise now.
+    #[error("{old} is now {new}: write {instead}")]
+    Renamed {
+        /// The option.
+        old: &'static str,
+        /// Its name now.
+        new: &'static str,
+        /// The option with its value.
+        instead: String,
+    },
+
+    /// An option that means nothing without another.
+    #[error("--weld is for a repair: add --repair FILE, the mesh to be written (.obj or .stl)")]
+    WeldWithoutRepair,
+
+    /// A mesh that a repair could not mend.
+    #[error(
+        "{}: written, but not yet fit for use; unite bodies that cross (a boolean union), and close holes, where the mesh was drawn",
+        .path.display()
+    )]
+    NotYetFit {
+        /// The mesh.
+        path: PathBuf,
+    },
+
+    /// An option that is no length.
+    #[error("{option} {text:?}: {source}; write a length, \"2.000 m\"")]
+    Length {
+        /// The option.
+        option: &'static str,
+        /// What was written.
+        text: String,
+        /// What is wrong with it.
+        source: UnitError,
+    },
+
+    /// Runs that state no rig.
+    #[error("the runs do not state which rig they come from")]
+    NoRig,
+
+    /// The pre-flight found objections.
+    #[error("the pre-flight refuses this campaign; nothing was moved:\n{}", .objections.join("\n"))]
+    Refused {
+        /// A line each.
+        objections: Vec<String>,
+    },
+
+    /// `--yes` at a real rig.
+    #[error("--yes is for the twin: at a real rig a person must be present and confirm each step")]
+    YesAtARig,
+
+    /// Nobody is there to confirm.
+    #[error(
+        "nothing was moved: nobody can confirm, because standard input is not a terminal. Run it in a terminal{}",
+        if *.is_twin { ", or give --yes, which the twin accepts" } else { "" }
+    )]
+    Nobody {
+        /// Whether a twin is driven.
+        is_twin: bool,
+    },
+
+    /// Nobody could stop a drive.
+    #[error("Ctrl-C cannot be watched: {0}; nothing was moved")]
+    Unwatched(std::io::Error),
+
+    /// The result is no JSON.
+    #[error("the result cannot be written as JSON: {0}")]
+    Json(serde_json::Error),
+}
+
+impl<E> From<E> for Failure
+where
+    froude::Error: From<E>,
+{
+    fn from(error: E) -> Self {
+        Self::Froude(error.into())
+    }
+}
+
+impl Failure {
+    /// True where the input is at fault (exit code 2), false where the machine is (exit code 1).
+    pub fn is_bad_input(&self) -> bool {
+        match self {
+            Self::Froude(error) => error.is_bad_input(),
+            _ => true,
+        }
+    }
+}
