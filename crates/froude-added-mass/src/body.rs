@@ -1,69 +1,24 @@
 //! One body or mesh: what is computed of it, in which frame, and what results.
 
-use froude_identify::method::Export;
 use froude_mesh::measure::Measure;
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
 use froude_panel::problem::Frame;
 use froude_panel::refine::{Forecast, Refined, Wanted, plan, refine};
-use froude_records::estimate::Estimate;
-use froude_records::finding::Finding;
 use froude_records::number;
 use froude_records::page::TextTable;
 
-use super::cross_checks;
 use super::exports::{self, extras};
 use super::facets::geometry;
 use super::frame::{Axes, Orientation, Point, inertia_m5, sentence};
-use super::limits;
-use super::links::not_within;
 use super::load::{Loaded, load};
 use super::options::Asked;
 use super::record::{About, estimate};
-use super::source::Water;
-use super::spectral;
 use super::surroundings::surroundings;
+use super::{cross_checks, limits, spectral};
 use crate::error::AddedMassError;
-
-/// A matrix in one surrounding.
-#[derive(Debug, Clone)]
-pub struct Case {
-    /// `Deeply submerged`.
-    pub title: String,
-    /// In a sentence.
-    pub surroundings: String,
-    /// Limit of frequency that it stands for: `1` in the name of a file.
-    pub is_lid: Option<bool>,
-    /// The matrix.
-    pub refined: Refined,
-}
-
-/// What came out.
-#[derive(Debug, Clone)]
-pub struct BodyOutcome {
-    /// Name.
-    pub name: String,
-    /// Density, kg/m³.
-    pub density_kg_m3: f64,
-    /// From end to end along the body, m.
-    pub length_m: f64,
-    /// Axes of the matrices and the point that they are about, as the mesh has them.
-    pub frame: Frame,
-    /// The same in words.
-    pub place: String,
-    /// Matrices.
-    pub cases: Vec<Case>,
-    /// What is known about body and mesh, a sentence each.
-    pub notes: Vec<String>,
-    /// Cross-checks and hydrostatics.
-    pub tables: Vec<TextTable>,
-    /// Doubts.
-    pub findings: Vec<Finding>,
-    /// A record a matrix.
-    pub estimates: Vec<Estimate>,
-    /// The pressure on the body, and what was asked for beside the record.
-    pub exports: Vec<Export>,
-}
+use crate::outcome::{BodyOutcome, Case, not_within};
+use crate::water::Water;
 
 /// What each mesh would take, with nothing computed.
 ///
@@ -187,7 +142,7 @@ fn extent_along(mesh: &Mesh, axis: usize) -> f64 {
 }
 
 /// Volume, centre of buoyancy, displaced mass and its inertia.
-fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64, frame: &Frame) -> TextTable {
+pub(crate) fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64, frame: &Frame) -> TextTable {
     let finest = refined.steps.last().map(|s| s.measure);
     let of = if is_mesh { "exactly that of the facets" } else { "exactly that of the dimensions" };
     let mut rows = vec![

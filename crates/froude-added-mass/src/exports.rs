@@ -8,11 +8,11 @@ use froude_panel::matrix::{AddedMass, congruent};
 use froude_panel::problem::Frame;
 use froude_records::added_mass_files::AddedMassFile;
 
-use super::body::{BodyOutcome, Case};
 use super::frame::{Axes, Orientation};
 use super::options::Asked;
 use super::pressure::pressure;
 use crate::error::AddedMassError;
+use crate::outcome::{BodyOutcome, Case};
 
 /// The pressure on the body, and the files that were asked for.
 pub(super) fn extras(outcome: &BodyOutcome, job: &Asked) -> Result<Vec<Export>, AddedMassError> {

@@ -8,9 +8,9 @@ use froude_panel::refine::{Wanted, forecast, memory_bytes};
 use froude_records::number;
 use froude_records::page::TextTable;
 
-use super::body::Case;
 use super::load::WARP;
 use super::record::diagonal_name;
+use crate::outcome::Case;
 
 /// Angle between facets from which an edge is an edge of the body, rad: seven segments to a circle still count as round.
 const CREASE_RAD: f64 = 50.0 * core::f64::consts::PI / 180.0;

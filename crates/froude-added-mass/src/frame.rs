@@ -15,7 +15,7 @@ use froude_mesh::Vec3;
 use froude_mesh::vector::{cross, dot, scale};
 use froude_panel::problem::Frame;
 
-use super::page;
+use super::place;
 
 /// A direction along an axis of the mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,7 +164,7 @@ impl Point {
     /// In words, with where it lies.
     #[must_use]
     pub fn words(self, at_m: Vec3, axes: Axes) -> String {
-        let place = page::point(at_m, "the origin of the mesh");
+        let place = place::point(at_m, "the origin of the mesh");
         let place = match (self, axes) {
             (Self::At([0.0, 0.0, 0.0]), _) | (_, Axes::Mesh) => place,
             _ => format!("{place}, in the axes of the mesh"),

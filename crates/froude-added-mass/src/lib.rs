@@ -26,7 +26,9 @@ pub mod limits;
 pub mod links;
 pub mod load;
 pub mod options;
+pub mod outcome;
 pub mod page;
+mod place;
 mod pressure;
 pub mod record;
 pub mod repair;
@@ -35,5 +37,7 @@ pub mod shape;
 pub mod source;
 pub mod spectral;
 mod surroundings;
+mod uncertain;
+pub mod water;
 
 pub use error::AddedMassError;

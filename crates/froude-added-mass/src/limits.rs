@@ -9,8 +9,8 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::TextTable;
 
-use super::body::Case;
 use super::record::diagonal_name;
+use crate::outcome::Case;
 
 /// ω²d/g below which the lid, and above which φ = 0, is a fair picture.
 const SLOW: f64 = 0.1;

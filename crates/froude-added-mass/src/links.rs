@@ -15,7 +15,7 @@ use froude_panel::refine::{Refined, Wanted, refine};
 use froude_records::body::{Shape, read_body};
 use froude_records::campaign::{Identify, SourceKind};
 use froude_records::estimate::{Estimate, Range};
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Finding;
 use froude_records::units::Dimension;
 use indexmap::IndexMap;
 
@@ -24,8 +24,9 @@ use super::load::is_body_file;
 use super::options::Asked;
 use super::record::{About, estimate};
 use super::shape::{family, robot};
-use super::source::Water;
 use crate::error::AddedMassError;
+use crate::outcome::not_within;
+use crate::water::Water;
 
 /// One configuration.
 #[derive(Debug, Clone)]
@@ -201,17 +202,6 @@ pub fn no_fits(configurations: usize) -> Option<String> {
              links.csv and campaign.toml are written all the same, and the record holds the matrices alone."
         )
     })
-}
-
-/// A finding where the tolerance was not reached.
-pub(super) fn not_within(name: &str, refined: &Refined) -> Option<Finding> {
-    let why = refined.stopped.as_ref()?;
-    let message = if refined.worst.is_finite() {
-        format!("{name}: the numerical uncertainty is {:.2} % where less was asked for: {why}", 100.0 * refined.worst)
-    } else {
-        format!("{name}: the numerical uncertainty is not known: {why}")
-    };
-    Some(Finding::new(Severity::Warning, "not-converged", message))
 }
 
 fn csv(rows: &[Row]) -> String {

@@ -9,7 +9,6 @@ use froude_records::units::{Dimension, parse_quantity, parse_unit};
 
 use crate::error::AddedMassError;
 use crate::frame::{Axes, Direction, Orientation, Point};
-use crate::several::Apart;
 
 /// Links at most: more are a slip of the keyboard.
 const MOST_LINKS: usize = 100;
@@ -273,4 +272,16 @@ fn exports(text: &str) -> Result<Vec<&'static str>, String> {
         }
     }
     Ok(out)
+}
+
+/// What moves apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Apart {
+    /// Links of a robot, its joints bent by this angle, rad.
+    Links {
+        /// About z, the same at every joint.
+        joint_angle_rad: f64,
+    },
+    /// Parts of a mesh that do not hang together.
+    Parts,
 }

@@ -1,33 +1,16 @@
 //! The report of an added mass: matrix, convergence, configurations.
 
-use froude_mesh::Vec3;
 use froude_panel::refine::Refined;
 use froude_records::estimate::Estimate;
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
 
-use super::body::BodyOutcome;
 use super::limits;
 use super::links::{Configuration, LinksOutcome, no_fits};
 use super::record::{MOTIONS, diagonal_head, diagonal_name, entry_name};
 use super::several::SeveralOutcome;
-
-/// A point in words; what is less than a nanometre is nothing.
-#[must_use]
-pub fn point(at_m: Vec3, origin: &str) -> String {
-    let [x, y, z] = at_m.map(|x| if x.abs() < 1e-9 { 0.0 } else { x });
-    if [x, y, z] == [0.0; 3] {
-        return origin.to_owned();
-    }
-    let [x, y, z] = [x, y, z].map(|x| number::plain(x, 6));
-    format!("({x}, {y}, {z}) m from {origin}")
-}
-
-/// A value with its expanded uncertainty.
-#[must_use]
-pub fn with_uncertainty(value: f64, expanded: f64) -> String {
-    if expanded.is_finite() { number::plus_minus(value, expanded) } else { number::plain(value, 6) }
-}
+use crate::outcome::BodyOutcome;
+use crate::uncertain::with_uncertainty;
 
 /// Part of the largest of its kind below which an entry is that of a symmetry, and of rounding.
 const NOTHING: f64 = 1e-6;

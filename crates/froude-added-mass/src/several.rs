@@ -32,20 +32,9 @@ use super::load::{is_body_file, load, of_a_mesh_only};
 use super::options::Asked;
 use super::record::{MOTIONS, diagonal_head, entry_name_of_parts, signs, unit};
 use super::shape::robot;
-use super::source::Water;
 use crate::error::AddedMassError;
-
-/// What moves apart.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Apart {
-    /// Links of a robot, its joints bent by this angle, rad.
-    Links {
-        /// About z, the same at every joint.
-        joint_angle_rad: f64,
-    },
-    /// Parts of a mesh that do not hang together.
-    Parts,
-}
+use crate::options::Apart;
+use crate::water::Water;
 
 /// What came out.
 #[derive(Debug, Clone)]
@@ -354,7 +343,7 @@ fn diagonal_table(parts: &[String], value: &[Vec<f64>], uncertainty: &[Vec<f64>]
         .enumerate()
         .map(|(p, name)| {
             let cell = |i: usize| {
-                super::page::with_uncertainty(
+                crate::uncertain::with_uncertainty(
                     density_kg_m3 * value[6 * p + i][6 * p + i],
                     density_kg_m3 * uncertainty[6 * p + i][6 * p + i],
                 )

@@ -1,10 +1,9 @@
 //! A body or a mesh as a source of a campaign.
 
-use froude_hydro::fluid::Water as AtRest;
 use froude_identify::answer::{Answer, Made};
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::source::{ReadFile, SourceResult};
-use froude_records::campaign::{Campaign, Fluid, Input, Source, SourceKind};
+use froude_records::campaign::{Campaign, Input, Source, SourceKind};
 use froude_records::estimate::Estimate;
 
 use super::body::body;
@@ -13,6 +12,7 @@ use super::options::Asked;
 use super::page;
 use super::several::several;
 use crate::error::AddedMassError;
+use crate::water::Water;
 
 /// Role of a body file or a mesh.
 const MESH: &str = "mesh";
@@ -47,32 +47,6 @@ impl Method for AddedMass {
         let Input::Mesh(path) = &source.input else { return Ok(Found::default()) };
         let asked = Asked::read(path, &source.added_mass)?;
         Ok(found(&asked, &Water::of(campaign), source, progress)?)
-    }
-}
-
-/// The water that a campaign states.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Water {
-    fluid: Fluid,
-    /// Whether a file states it.
-    is_campaign: bool,
-}
-
-impl Water {
-    /// That of a campaign.
-    #[must_use]
-    pub fn of(campaign: &Campaign) -> Self {
-        Self { fluid: campaign.fluid.clone(), is_campaign: !campaign.key.is_empty() }
-    }
-
-    /// The density that is asked for, else the campaign's, else that of the body file, kg/m³.
-    pub(super) fn density_kg_m3(&self, asked: &Asked, of_file: Option<f64>) -> Result<f64, AddedMassError> {
-        let stated = match (self.fluid.density_kg_m3, self.fluid.temperature_degc) {
-            (None, Some(t)) => Some(AtRest::at(t, self.fluid.salinity_g_kg.unwrap_or(0.0))?.density_kg_m3),
-            (stated, _) => stated,
-        };
-        let none = || AddedMassError::NoDensity { path: asked.input.clone(), is_campaign: self.is_campaign };
-        asked.density_kg_m3.or(stated).or(of_file).ok_or_else(none)
     }
 }
 

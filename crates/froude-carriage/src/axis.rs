@@ -17,12 +17,11 @@ use froude_records::units::Dimension;
 use crate::drag::steady::{SteadySettings, window};
 use crate::reduction::rig_key;
 use crate::runs::{Runs, column, for_drag, mounts};
-use crate::servo::chain::Rows;
 use crate::servo::motor::{Drive, MotorSide};
-use crate::servo::record;
 use crate::servo::report::{effective, of_runs as of_several};
+use crate::servo::rows::Rows;
 use crate::servo::two_mass::FlexibleReport;
-use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo};
+use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo, record};
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, servo_log, two_masses};
 

@@ -12,7 +12,7 @@ use crate::drag::calibration::Readings;
 use crate::drag::detectability::DryMean;
 use crate::drag::mcd;
 use crate::drag::online::OnLine;
-use crate::drag::run::DragSetup;
+use crate::drag::setup::DragSetup;
 use crate::reduction::{calibration_from, setup_of};
 use crate::runs::for_drag;
 

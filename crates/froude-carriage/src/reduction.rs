@@ -3,11 +3,6 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use crate::drag::calibration::record::Known;
-use crate::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
-use crate::drag::coefficient::Method;
-use crate::drag::report::{DragReport, drag_by};
-use crate::drag::run::{self as drag_run, Ballast, DragRun, DragSetup, Efficiency, ErrorKeys, SensorBudget};
 use froude_fit::budget::Uncertain;
 use froude_hydro::similarity::GRAVITY_M_S2;
 use froude_identify::method::MethodError;
@@ -18,6 +13,12 @@ use froude_records::number;
 use froude_records::run::{AxisConstants, Role, RunLog, STOPPED_EARLY};
 use froude_records::text::counted;
 
+use crate::drag::calibration::record::Known;
+use crate::drag::calibration::{Calibration, CalibrationSetup, PULLEY_LOSS, Readings};
+use crate::drag::point::Method;
+use crate::drag::report::{DragReport, drag_by};
+use crate::drag::run::{self as drag_run, DragRun};
+use crate::drag::setup::{Ballast, DragSetup, Efficiency, ErrorKeys, SensorBudget};
 use crate::runs::{Runs, density_kg_m3, for_drag};
 use crate::two_masses::two_masses;
 

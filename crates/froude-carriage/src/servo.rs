@@ -37,6 +37,7 @@ pub mod printed;
 pub mod record;
 mod regression;
 pub mod report;
+pub(crate) mod rows;
 pub mod simulate;
 pub mod synthetic;
 pub mod two_mass;

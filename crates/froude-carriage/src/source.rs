@@ -1,6 +1,5 @@
 //! Runs as a source of a campaign: each method that reduces them gives its observations, its fit and its estimate.
 
-use crate::drag::coefficient::{Coefficient, Method as CarriageMethod};
 use froude_identify::method::{Found, Method, MethodError, Need, lacking};
 use froude_identify::source::{ReadFile, SourceResult};
 use froude_records::campaign::{Campaign, Fluid, Identify, Input, Source};
@@ -8,6 +7,8 @@ use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{Role, RunLog, TOW};
 
+use crate::drag::coefficient::Coefficient;
+use crate::drag::point::Method as CarriageMethod;
 use crate::reduction::page::sections;
 use crate::reduction::{Reduction, reduce};
 use crate::runs::{Runs, read};

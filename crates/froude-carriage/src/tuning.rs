@@ -18,6 +18,7 @@
 //!
 //! Not here: driving the rig (`froude-rig`).
 
+mod bench;
 pub mod candidate;
 pub mod choice;
 pub mod experiment;

@@ -2,9 +2,10 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use froude_carriage::drag::calibration::ForcePerVolt;
-use froude_carriage::drag::coefficient::{Coefficient, Method};
+use froude_carriage::drag::coefficient::Coefficient;
 use froude_carriage::drag::mbdp::Flexible;
-use froude_carriage::drag::run::{Ballast, Efficiency};
+use froude_carriage::drag::point::Method;
+use froude_carriage::drag::setup::{Ballast, Efficiency};
 use froude_carriage::drag::simulate::{Logged, Scenario};
 use froude_carriage::drag::{BodyState, DragError, DragReport, DragRun, DragSetup, drag_report};
 use froude_fit::budget::Uncertain;

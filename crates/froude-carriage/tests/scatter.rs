@@ -3,8 +3,9 @@
 
 use froude_carriage::drag::DragSetup;
 use froude_carriage::drag::calibration::ForcePerVolt;
-use froude_carriage::drag::coefficient::{Point, of_differences};
 use froude_carriage::drag::detectability::{DryMean, predict};
+use froude_carriage::drag::differences::of_differences;
+use froude_carriage::drag::point::Point;
 use froude_fit::budget::Uncertain;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

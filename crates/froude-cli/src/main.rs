@@ -8,6 +8,7 @@
 mod added_mass;
 mod args;
 mod carriage;
+mod cells;
 mod failure;
 mod last_word;
 mod mistaken;
@@ -18,14 +19,13 @@ mod stage;
 
 use std::process::ExitCode;
 
+use args::{Cli, Verb};
 use clap::Parser;
+use failure::Failure;
 use froude::identify::simulate::tables;
 use froude::pipeline::{self, Input, Job};
 use froude::records::text::counted;
 use froude::{demo, inspect};
-
-use args::{Cli, Verb};
-use failure::Failure;
 
 fn main() -> ExitCode {
     last_word::guarded(|| {

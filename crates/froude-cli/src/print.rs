@@ -1,6 +1,6 @@
 //! Results as a person reads them, and as JSON.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, LineStyle, Table};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::identify::answer::Answer;
 use froude::identify::source::SourceResult;
 use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
@@ -12,6 +12,7 @@ use froude::records::page::{DocumentSection, TextTable};
 use froude::records::text::{counted, visible_json};
 use froude::results::Written;
 
+use crate::cells::{WIDEST, cell, right, sentence, table};
 use crate::failure::Failure;
 use crate::out::say;
 use crate::side_by_side::{comparison, verdicts};
@@ -22,35 +23,6 @@ pub fn json<T: serde::Serialize>(value: &T) -> Result<(), Failure> {
     // As JSON's own escapes: what a program reads is the same.
     say!("{}", visible_json(&text));
     Ok(())
-}
-
-/// Widest line of a table: what a printed page and most terminals hold.
-const WIDEST: u16 = 120;
-
-pub fn table(header: &[&str]) -> Table {
-    let mut table = Table::new();
-    table
-        .load_style(comfy_table::presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(WIDEST)
-        .set_header(header.iter().map(cell));
-    table
-}
-
-/// Longest text of a cell, in characters: the table is laid out letter by letter.
-const LONGEST_CELL: usize = 1000;
-
-/// A cell; of a text that no table can show, its beginning.
-pub fn cell(text: impl ToString) -> Cell {
-    let text = text.to_string();
-    match text.char_indices().nth(LONGEST_CELL) {
-        Some((end, _)) => Cell::new(format!("{}…", &text[..end])),
-        None => Cell::new(text),
-    }
-}
-
-pub fn right(text: String) -> Cell {
-    cell(text).set_alignment(CellAlignment::Right)
 }
 
 /// The coefficient tables or the summaries, records side by side, the findings, and where the report lies.
@@ -192,20 +164,6 @@ pub fn findings(findings: &[Finding]) {
 /// A text in lines of at most [`WIDEST`] characters.
 pub fn wrapped(text: &str) -> String {
     wrap(text, usize::from(WIDEST))
-}
-
-/// Prints a sentence in lines of at most [`WIDEST`] characters, two spaces in.
-pub fn sentence(text: &str) {
-    let mut line = " ".to_owned();
-    for word in text.split_whitespace() {
-        if line.chars().count() + 1 + word.chars().count() > usize::from(WIDEST) && !line.trim().is_empty() {
-            say!("{line}");
-            line.clear();
-            line.push_str("   ");
-        }
-        line = line + " " + word;
-    }
-    say!("{line}");
 }
 
 /// What is in a file.

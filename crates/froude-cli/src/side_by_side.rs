@@ -8,8 +8,8 @@ use froude::records::number;
 use froude::records::text::counted;
 use froude::report::verdict::verdict_words;
 
+use crate::cells::{cell, right, sentence, table};
 use crate::out::say;
-use crate::print::{cell, right, sentence, table};
 
 /// Widest table; a wider one is wrapped or printed in blocks.
 const MOST_CHARACTERS: u16 = 118;

@@ -8,6 +8,7 @@
 //! ```
 
 use crate::config::AxisConfig;
+use crate::config::{SPEED_NOISE_M_S, over_speed_m_s};
 use crate::encoder::Unwrap;
 use crate::excite::{Asked, Exciter};
 use crate::fault::{Fault, StopCategory};
@@ -46,22 +47,6 @@ impl Plan {
             Self::Move(profile) => profile.duration_s(),
             Self::Ramp(ramp) => ramp.duration_s(),
         }
-    }
-}
-
-/// Over-speed is called at this factor of the speed limit plus what quantisation may add.
-const OVER_SPEED_FACTOR: f64 = 1.1;
-/// Before homing the cap is low and friction may let go suddenly.
-const UNHOMED_OVER_SPEED_FACTOR: f64 = 1.5;
-/// Four counts of the speed estimate at 4 kHz, m/s.
-pub(crate) const SPEED_NOISE_M_S: f64 = 5e-3;
-
-/// Speed at which the over-speed fault comes, m/s.
-pub(crate) fn over_speed_m_s(limits: &crate::config::Limits, is_homed: bool) -> f64 {
-    if is_homed {
-        OVER_SPEED_FACTOR * limits.speed_m_s + SPEED_NOISE_M_S
-    } else {
-        UNHOMED_OVER_SPEED_FACTOR * limits.unhomed_speed_m_s + SPEED_NOISE_M_S
     }
 }
 

@@ -4,7 +4,7 @@
 //! ahead by the allowed following error and 10 mm/s faster than asked; its target keeps the following error's distance from the end
 //! switches too. While it moves, a quarter of the following error is kept free.
 
-use crate::axis::SPEED_NOISE_M_S;
+use crate::config::SPEED_NOISE_M_S;
 use crate::config::{AxisConfig, Config};
 use crate::excite::{Asked, Exciter};
 use crate::law::Law;

@@ -32,10 +32,11 @@ mod model;
 mod second_order;
 mod solve;
 mod variance;
-
-pub use model::{InputModel, OdrProblem, Sigma};
+mod whitened;
 
 use faer::Mat;
+use solve::State;
+use variance::Variance;
 
 use crate::dense::mul;
 use crate::determined::Indeterminacy;
@@ -43,8 +44,8 @@ use crate::distribution::coverage_factor;
 use crate::error::FitError;
 use crate::outcome::{FitCoefficient, Status};
 use crate::report::{End, Report};
-use solve::State;
-use variance::Variance;
+
+pub use model::{InputModel, OdrProblem, Sigma};
 
 /// σ has converged when it changes by less than this part.
 const SIGMA_TOLERANCE: f64 = 1e-9;
@@ -142,7 +143,7 @@ fn finish<M: InputModel>(
 ) -> OdrFit {
     let p = model.n_coefficients();
     let linear = solve::linearise(model, problem, state);
-    let rows = solve::whiten(problem, &linear, &variance.sigma);
+    let rows = whitened::whiten(problem, &linear, &variance.sigma);
     let factored = rows.factor();
     let null = Indeterminacy::new(factored.qr.null_space().as_ref());
     let mut lift = factored.qr.lift();

@@ -2,7 +2,7 @@
 
 use froude_records::estimate::Estimate;
 
-use crate::source::{ReadFile, SourceResult};
+use crate::result::{ReadFile, SourceResult};
 
 /// One answer of a method.
 #[derive(Debug, Clone)]

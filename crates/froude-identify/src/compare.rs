@@ -19,48 +19,30 @@ mod coefficients;
 mod contradiction;
 mod independence;
 mod joint;
+mod named;
 mod prediction;
+mod stated;
 #[cfg(test)]
 mod tests;
 mod unmatched;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use froude_records::comparison::Comparison;
-use froude_records::estimate::{Estimate, EstimateFile};
-use froude_records::finding::{Finding, Severity};
-
-use crate::common::{self, Common};
-use crate::verdict::verdicts;
 use coefficients::coefficient_rows;
 use contradiction::{axes_not_tied, contradiction, differing_constants};
+use froude_records::comparison::Comparison;
+use froude_records::finding::{Finding, Severity};
 use independence::{has_likes, have_other_tables, is_one_source, origins, same_data, same_data_finding};
 use joint::joint;
 use prediction::predict_forces;
 
+use crate::common::{self, Common};
+use crate::verdict::verdicts;
+
+pub use crate::compare::named::{Named, named};
+pub(crate) use crate::compare::stated::Stated;
 pub use coefficients::SAME_DATA;
-pub(crate) use coefficients::Stated;
 pub use unmatched::{left_out, nothing_compared, too_many};
-
-/// An estimate with the record that it comes from.
-#[derive(Debug, Clone, Copy)]
-pub struct Named<'a> {
-    /// The file, as the user named it.
-    pub file: &'a str,
-    /// The record in it, with the fingerprints of its data.
-    pub record: &'a EstimateFile,
-    /// The estimate.
-    pub estimate: &'a Estimate,
-}
-
-/// All estimates of some files.
-#[must_use]
-pub fn named<'a>(files: &'a [(String, EstimateFile)]) -> Vec<Named<'a>> {
-    files
-        .iter()
-        .flat_map(|(file, record)| record.estimates.iter().map(move |estimate| Named { file, record, estimate }))
-        .collect()
-}
 
 /// Most estimates that are set side by side: 44,850 pairs, more than anybody reads.
 pub const MOST_COMPARED: usize = 300;

@@ -6,7 +6,7 @@ use froude_records::RecordError;
 use froude_records::estimate::{DataFile, keyed};
 use indexmap::IndexMap;
 
-use crate::source::ReadFile;
+use crate::result::ReadFile;
 
 /// Files in the order of their first naming.
 pub struct DataFiles<'a> {

@@ -19,29 +19,22 @@
 mod affine;
 mod error;
 mod grammar;
+mod limits;
 mod names;
 mod part;
 mod program;
 #[cfg(test)]
 mod tests;
 mod token;
-mod unit;
+pub(crate) mod unit;
 
 use program::{Op, run};
 use unit::Unit;
 
+pub use crate::formula::limits::{COEFFICIENT_LIMIT, DEPTH_LIMIT, LENGTH_LIMIT};
+pub use crate::formula::unit::Dim;
 pub use error::FormulaError;
 pub use names::{channel_of_alias, load_column};
-
-/// Exponents of m, kg, s, K and A.
-pub type Dim = [i8; 5];
-
-/// Most characters of a formula.
-pub const LENGTH_LIMIT: usize = 4096;
-/// Most parentheses open at once.
-pub const DEPTH_LIMIT: usize = 24;
-/// Most coefficients of a formula.
-pub const COEFFICIENT_LIMIT: usize = 64;
 
 /// A law for one load, linear in its coefficients.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,53 +15,37 @@
 
 mod facts;
 mod fold;
+mod limits;
 mod rows;
 #[cfg(test)]
 mod tests;
 
 use std::path::Path;
 
+use facts::{Chunk, Facts, Seconds};
+use fold::{Fold, Residuals, numbered};
 use froude_records::campaign::{AngleOffset, Campaign, Source};
 use froude_records::chunks::{for_each_chunk, has_more_rows};
 use froude_records::finding::{Finding, Severity};
 use froude_records::table::Table;
+use rows::table_of;
 
 use crate::dataset::{Dataset, Drawn};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::reduce::{fitted_loads, kept_rows, left_out, observed, one_unit, zero_drift};
 use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
+use crate::result::{ReadFile, SourceResult};
 use crate::seam::{Reduced, conclude};
-use crate::source::{ReadFile, SourceResult, check_budget, laws, no_budget, of_table, scatter};
+use crate::source::handed::{no_budget, of_table, scatter};
+use crate::source::{check_budget, laws};
 use crate::{columns, diagnosis, dissipation, lint, validity};
-use facts::{Chunk, Facts, Seconds};
-use fold::{Fold, Residuals, numbered};
-use rows::table_of;
 
-/// Most rows that are kept in memory: with all laws and figures a row takes 1.8 kB and 0.1 ms.
-pub const MOST_KEPT: usize = 200_000;
+pub use crate::large::limits::MOST_KEPT;
+pub(crate) use crate::large::limits::{Limits, refused_above};
+
 /// Most rows that are kept all the same where something is asked for that needs all of them at once: some 4 GB and minutes.
 const MOST_AT_ONCE: usize = 2_000_000;
-/// Rows of the sample: enough for every figure, and a rank correlation of 0.02 is two standard errors.
-const SAMPLE: usize = 10_000;
-/// Most clusters: each keeps a triangle for every law and load.
-pub(crate) const MOST_CLUSTERS: usize = 10_000;
-/// Most configurations of a body in one table.
-pub(crate) const MOST_CONFIGURATIONS: usize = 10_000;
-
-/// Sizes of what is kept.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
-    /// Rows of the sample.
-    pub sample: usize,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self { sample: SAMPLE }
-    }
-}
-
 /// Identifies one source whose table is read in chunks; `None` where its rows turn out to be needed at once, and are few enough for that.
 ///
 /// # Errors
@@ -140,21 +124,6 @@ fn each(
 pub(crate) fn is_long(campaign: &Campaign, source: &Source, path: &Path) -> bool {
     let most = if at_once(campaign, source).is_some() { MOST_AT_ONCE } else { MOST_KEPT };
     has_more_rows(path, most)
-}
-
-/// What a table that is read in chunks cannot be asked for, with the way out.
-pub(crate) fn refusal(source: &Source, what: &str) -> IdentifyError {
-    refused_above(MOST_KEPT, source, what)
-}
-
-fn refused_above(most: usize, source: &Source, what: &str) -> IdentifyError {
-    IdentifyError::Campaign {
-        place: source.input.path().display().to_string(),
-        what: format!(
-            "the table has more than {most} rows and is read in chunks, which does not go with {what}; do without, or give fewer rows: \
-             means over steady stretches, or every tenth row"
-        ),
-    }
 }
 
 /// What a campaign asks for that needs all rows at once, and why.

@@ -13,7 +13,8 @@ use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
-use crate::formula::{Dim, Formula, channel_of_alias, load_column};
+use crate::formula::unit::Dim;
+use crate::formula::{Formula, channel_of_alias, load_column};
 
 /// Reference speed of the linear coefficients of f1 and of the power law, m/s.
 pub const REFERENCE_SPEED_M_S: f64 = 1.0;

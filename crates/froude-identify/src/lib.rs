@@ -35,6 +35,7 @@ pub mod page;
 pub mod record;
 pub mod reduce;
 pub mod regression;
+mod result;
 pub mod runs;
 pub mod seam;
 pub mod select;

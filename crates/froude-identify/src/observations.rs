@@ -12,7 +12,7 @@ use froude_records::units::{Dimension, Unit, parse_unit};
 
 use crate::answer::Answer;
 use crate::error::IdentifyError;
-use crate::source::SourceResult;
+use crate::result::SourceResult;
 use crate::validity;
 
 /// One table per fitted source, each with a file name of its own.

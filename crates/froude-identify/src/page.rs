@@ -27,7 +27,7 @@ use froude_records::page::SourceSection;
 
 use crate::IdentifyError;
 use crate::answer::{Answer, Made};
-use crate::source::SourceResult;
+use crate::result::SourceResult;
 
 /// Everything that a page says about one source.
 ///

@@ -12,7 +12,7 @@ use indexmap::IndexMap;
 use crate::dataset::{Dataset, unit_text};
 use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
 use crate::regression::{ModelFit, Scatter};
-use crate::seam::{self, Choice, Reduced};
+use crate::seam::reduced::{self, Choice, Reduced};
 use crate::selection::Recommendation;
 
 /// The record of one fitted model; `chosen` says why the data recommend it, where they do.
@@ -97,7 +97,7 @@ fn scatter_by_load(
 }
 
 /// A coefficient times an exact factor.
-fn derived(d: &seam::Derived, coefficients: &IndexMap<String, Coefficient>) -> Option<(String, Derived)> {
+fn derived(d: &reduced::Derived, coefficients: &IndexMap<String, Coefficient>) -> Option<(String, Derived)> {
     let c = coefficients.get(&d.of)?;
     let number = Derived {
         formula: d.formula.clone(),

@@ -2,11 +2,6 @@
 //!
 //! Every step that changes a number or drops a row is reported as a finding.
 
-use crate::dataset::{Channel, Dataset, LOADS};
-use crate::error::IdentifyError;
-use crate::source::ReadFile;
-use crate::uncertainty::SharedError;
-use crate::{columns, source, tare, two_units};
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
@@ -14,6 +9,13 @@ use froude_records::plausible;
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration, read_table};
 use froude_records::text::counted;
 use froude_records::units::Dimension;
+
+use crate::dataset::{Channel, Dataset, LOADS};
+use crate::error::IdentifyError;
+use crate::result::ReadFile;
+use crate::source::models;
+use crate::uncertainty::SharedError;
+use crate::{columns, tare, two_units};
 
 /// The observations of a table.
 #[derive(Debug, Clone)]
@@ -103,7 +105,7 @@ pub(crate) fn left_out(kept: usize, n_read: usize) -> Option<Finding> {
 /// The loads that a law of the source gives or has; all of them where its laws cannot be made.
 pub(crate) fn fitted_loads(campaign: &Campaign, source: &Source, data: &Dataset) -> Vec<&'static str> {
     let mut loads = data.loads();
-    if let Ok(laws) = source::laws(campaign, source, data) {
+    if let Ok(laws) = models::laws(campaign, source, data) {
         loads.retain(|load| columns::is_in(load, &laws));
     }
     loads

@@ -111,7 +111,7 @@ pub fn truth(campaign: &Campaign, data: &Dataset) -> Result<(ForceLaw, Vec<f64>)
             })?;
             source.models = vec![model.clone()];
             source.model_places.clear();
-            let law = crate::source::laws(&alone, &source, data)?.remove(0);
+            let law = crate::source::models::laws(&alone, &source, data)?.remove(0);
             let chosen = law
                 .coefficients
                 .iter()

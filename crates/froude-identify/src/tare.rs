@@ -5,23 +5,21 @@
 
 mod angles;
 mod setting;
+mod size;
 
+use angles::beyond_its_angles;
 use froude_fit::faer::Mat;
 use froude_records::campaign::Tare;
 use froude_records::estimate::{Estimate, EstimateFile, OWN};
 use froude_records::finding::{Finding, Severity};
 use froude_records::hash::short_key;
 use froude_records::json::read_estimates;
+use setting::{Use, own_errors};
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::uncertainty::SharedError;
-use angles::beyond_its_angles;
-use setting::{Use, own_errors};
-
-/// A part of the load that is worth a warning.
-const MATTERS_ABOVE: f64 = 0.005;
 
 /// Subtracts the tare's predicted loads from `data`.
 ///
@@ -147,17 +145,4 @@ fn origin(file: &EstimateFile, estimate: &Estimate) -> String {
     of.push(estimate.id.clone());
     of.extend(estimate.coefficients.values().map(|c| format!("{:?}", c.value)));
     short_key(of.join(" ").as_bytes())
-}
-
-/// Largest force that stays in a measured load, N, and its share of the load over all rows, Σ|f stays|/Σf², %: by no more than that a
-/// coefficient of that load is off. `None` where it does not matter.
-fn size(rows: &[usize], stays_n: &dyn Fn(usize) -> f64, load_n: &[f64]) -> Option<(f64, f64)> {
-    let all: f64 = load_n.iter().map(|f| f * f).sum();
-    let (mut along, mut most_n) = (0.0, 0.0_f64);
-    for &i in rows {
-        along += (stays_n(i) * load_n[i]).abs();
-        most_n = most_n.max(stays_n(i).abs());
-    }
-    let share = if all > 0.0 { along / all } else { 0.0 };
-    (share > MATTERS_ABOVE).then_some((most_n, 100.0 * share))
 }

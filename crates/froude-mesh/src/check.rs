@@ -5,7 +5,7 @@
 
 use indexmap::IndexMap;
 
-use crate::files::counted;
+use crate::files::soup::counted;
 use crate::measure::Measure;
 use crate::mesh::{Mesh, Panel};
 use crate::panel::Facet;

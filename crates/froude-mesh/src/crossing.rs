@@ -16,7 +16,7 @@ use indexmap::IndexMap;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 
 use crate::check::{Trouble, is_readable};
-use crate::files::bits;
+use crate::files::soup::bits;
 use crate::mesh::Mesh;
 use crate::panel::halves;
 use crate::vector::{Vec3, add, cross, dot, norm, scale, sub};

@@ -1,7 +1,7 @@
 //! Doubts about a mesh that is sound: a body drawn in millimetres, a body through the water's surface.
 
 use crate::check::extent;
-use crate::files::counted;
+use crate::files::soup::counted;
 use crate::measure::Measure;
 use crate::mesh::Mesh;
 use crate::vector::Vec3;

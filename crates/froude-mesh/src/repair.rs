@@ -8,7 +8,7 @@
 use indexmap::{IndexMap, IndexSet};
 
 use crate::check::{Trouble, extent, first_unreadable, has_no_area};
-use crate::files::counted;
+use crate::files::soup::counted;
 use crate::mesh::{Mesh, Panel};
 use crate::parts::{holders, volume};
 use crate::topology::{by_edge, sides};

@@ -13,9 +13,10 @@ use froude_mesh::robot::ModularRobot;
 use froude_mesh::sections::{PartMesh, Resolution, SectionError};
 use froude_mesh::vector::{Vec3, add, scale, sub};
 
+use crate::frame::Frame;
 use crate::matrix::AddedMass;
 use crate::mirror::{Across, Mirror, positive_part};
-use crate::problem::{Frame, Problem, Solution};
+use crate::problem::{Problem, Solution};
 
 /// A chain, bent.
 #[derive(Debug, Clone, PartialEq)]

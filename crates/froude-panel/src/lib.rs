@@ -37,6 +37,7 @@ pub mod elliptic;
 mod expansion;
 pub mod family;
 pub mod fast;
+mod frame;
 mod gmres;
 pub mod influence;
 pub mod matrix;

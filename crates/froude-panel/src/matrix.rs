@@ -2,7 +2,7 @@
 
 use froude_mesh::vector::Vec3;
 
-use crate::problem::Frame;
+use crate::frame::Frame;
 
 /// Added mass over ρ in a frame: surge, sway, heave, roll, pitch, yaw. m³, m⁴, m⁵.
 #[derive(Debug, Clone, Copy, PartialEq)]

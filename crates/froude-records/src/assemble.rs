@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use crate::error::{Place, RecordError};
-use crate::header;
-use crate::memory;
 use crate::nearest::suggestion;
+use crate::raw_column::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
 use crate::sidecar::{Mapping, Sidecar};
-use crate::table::{Column, ColumnData, Table, expected, is_text_column, known_dimension, usual_unit};
-use crate::units::{Unit, UnitError, is_plausible, parse_unit};
+use crate::table::{Column, ColumnData, Table, is_text_column, known_dimension, usual_unit};
+use crate::units::{Unit, is_plausible, parse_unit};
+use crate::{header, memory};
 
 /// What a column of a file becomes, decided by its header alone.
 pub(crate) enum Want<'s> {
@@ -40,12 +40,6 @@ impl Want<'_> {
             Self::Text { .. } | Self::LeftOut => false,
         }
     }
-}
-
-/// The cells of one column as the format gives them.
-pub(crate) enum Raw {
-    Numbers(Vec<f64>),
-    Texts(Vec<String>),
 }
 
 /// Longest header and longest cell of text, in bytes: both are printed in tables and sentences, and none is near it.
@@ -243,19 +237,6 @@ fn sidecar_name(path: &Path) -> String {
     sidecar.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
 }
 
-/// What is wrong with the unit of a column, with suggestions of the kind that a known name has.
-pub(crate) fn in_light_of(name: &str, text: &str, error: UnitError) -> UnitError {
-    match (known_dimension(name), usual_unit(name)) {
-        (Some(dimension), Some(usual)) => error.expecting(text, dimension, &usual),
-        _ => error,
-    }
-}
-
-/// A standard uncertainty in `degC` is one in K: differences have no offset.
-pub(crate) fn unit_of_column(name: &str, unit: Unit) -> Unit {
-    if name.starts_with("std_") { Unit { offset: 0.0, ..unit } } else { unit }
-}
-
 /// `name [unit]` as name and unit.
 pub(crate) fn split_header(header: &str) -> Result<(&str, Option<&str>), &'static str> {
     let header = header.trim();
@@ -275,24 +256,6 @@ pub(crate) fn split_header(header: &str) -> Result<(&str, Option<&str>), &'stati
         return Err("the name is empty; write `name [unit]`");
     }
     Ok((name, Some(unit)))
-}
-
-/// A known name with another dimension is an error.
-pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Unit) -> Result<(), RecordError> {
-    match expected(name) {
-        Some((dimension, words)) if dimension != unit.dimension => Err(RecordError::WrongDimension {
-            place: place.clone(),
-            column: header.to_owned(),
-            expected: words,
-            found: unit.dimension.describe(),
-        }),
-        _ => Ok(()),
-    }
-}
-
-/// What to do about an empty cell of a column that is needed.
-pub(crate) fn fill_or_delete() -> String {
-    "fill it in or delete the row".to_owned()
 }
 
 impl Want<'_> {
@@ -381,7 +344,7 @@ pub(crate) fn assemble(
     Ok(table)
 }
 
-fn column(
+pub(crate) fn column(
     table: &Table,
     headers: &[String],
     want: &Want<'_>,
@@ -435,3 +398,6 @@ fn column(
         (Want::Mapped(_) | Want::LeftOut, _) => return Ok(None),
     }))
 }
+
+/// Rows of a chunk of Parquet.
+pub(crate) const CHUNK_ROWS: usize = 1 << 14;

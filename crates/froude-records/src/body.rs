@@ -20,10 +20,10 @@
 
 use std::path::Path;
 
-use crate::campaign_toml::one_of;
 use crate::error::{RecordError, read_bytes, utf8};
 use crate::plausible;
 use crate::section::{Section, Source, found, parse};
+use crate::section_values::one_of;
 use crate::units::Dimension;
 
 /// Largest body file.

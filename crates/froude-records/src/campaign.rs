@@ -6,17 +6,19 @@
 //!
 //! Quantities are SI here; paths are joined to the campaign's folder.
 
-use crate::run::Declared;
 use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
 use crate::added_mass_options::GivenOption;
-use crate::campaign_toml;
 use crate::carriage::CarriageCampaign;
-use crate::error::{Place, RecordError, read_bytes, utf8};
-pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
+use crate::error::{Place, RecordError};
+use crate::run::Declared;
 use crate::units::Dimension;
+
+pub use crate::body_axis::BodyAxis;
+pub use crate::campaign_file::{parse_campaign, read_campaign};
+pub use crate::keep::{Comparison, Keep, KeepClause, KeepValue};
 
 /// A whole campaign.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,32 +45,6 @@ pub struct Campaign {
     pub simulate: Option<Simulate>,
     /// What is driven, and what it is to do.
     pub carriage: Option<CarriageCampaign>,
-}
-
-/// An axis of the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum BodyAxis {
-    /// Forward.
-    X,
-    /// To starboard.
-    Y,
-    /// Down.
-    Z,
-}
-
-impl BodyAxis {
-    /// Each of them.
-    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
-
-    /// Its letter.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Z => "z",
-        }
-    }
 }
 
 /// The water: density, or temperature and salinity.
@@ -516,30 +492,6 @@ pub struct SensorSpec {
     pub bias: Option<f64>,
 }
 
-/// The largest campaign that is read.
-const LARGEST_BYTES: u64 = 4 << 20;
-
-/// Reads a campaign; the files that it names must exist, except a table that a plan will make.
-///
-/// # Errors
-///
-/// See [`RecordError`].
-pub fn read_campaign(path: &Path) -> Result<Campaign, RecordError> {
-    let bytes = read_bytes(path, LARGEST_BYTES, "a campaign")?;
-    let campaign = campaign_toml::parse(path, utf8(path, &bytes)?)?;
-    campaign.check_files()?;
-    Ok(campaign)
-}
-
-/// The same from text, without looking at the files that it names.
-///
-/// # Errors
-///
-/// See [`RecordError`].
-pub fn parse_campaign(path: &Path, text: &str) -> Result<Campaign, RecordError> {
-    campaign_toml::parse(path, text)
-}
-
 impl Campaign {
     /// The campaign that a bare table stands for: one source, no body, no water.
     #[must_use]
@@ -589,7 +541,7 @@ impl Campaign {
     }
 
     /// A table with a plan may still have to be simulated or run; everything else must be there.
-    fn check_files(&self) -> Result<(), RecordError> {
+    pub(crate) fn check_files(&self) -> Result<(), RecordError> {
         for source in &self.sources {
             let key = match source.input {
                 Input::Table(_) if !source.plan.is_empty() => continue,

@@ -3,7 +3,6 @@
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::campaign_toml::{at_most, count, one_of, series};
 use crate::carriage::{
     AxisSpec, Calibration, CarriageCampaign, CarriagePlan, Directions, ForceSensorSpec, FrictionSweep, GainsSpec,
     LimitsSpec, Order, PulseTrain, RigKind, RigSpec, TwinTruth, WarmUp,
@@ -12,6 +11,7 @@ use crate::error::RecordError;
 use crate::run::sidecar::{AMPLIFIER, TORQUE_CONSTANT, declared};
 use crate::run::{Axis, AxisConstants, Declared};
 use crate::section::{Section, found};
+use crate::section_values::{at_most, count, one_of, series};
 use crate::units::Dimension;
 
 /// V s, of the derivative gain: radians are pure numbers.

@@ -1,6 +1,6 @@
 //! Tables of more rows than one wants to keep: the same table, some rows at a time.
 //!
-//! Every chunk is a [`Table`] with the columns, units, checks and messages of [`read_table`](crate::table::read_table); memory is a chunk's,
+//! Every chunk is a [`Table`] with the columns, units, checks and messages of [`read_table`](crate::table_file::read_table); memory is a chunk's,
 //! whatever the file's length. A CSV of numbers alone is read eight digits at a time; a chunk with text, quotes or an error is read cell by
 //! cell, which says what is wrong. A Parquet file is unpacked a row group at a time.
 //!
@@ -10,19 +10,18 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::Path;
 
-use crate::assemble::{Raw, Want};
+use crate::assemble::Want;
 use crate::csv_table::{Head, Records};
 use crate::error::{Place, RecordError, utf8};
 use crate::fast_csv::{FastCsvError, Layout, Lines, Memory, Reader};
 use crate::parquet_table;
+use crate::raw_column::Raw;
 use crate::sidecar::Sidecar;
-use crate::table::{Format, Table, sidecar_of};
+use crate::table::Table;
+use crate::table_file::{Format, sidecar_of};
 
 /// Bytes of CSV read at a time: some 10,000 rows, whose columns stay in the caches.
 const CHUNK_BYTES: usize = 1 << 20;
-/// Rows of a chunk of Parquet.
-pub(crate) const CHUNK_ROWS: usize = 1 << 14;
-
 /// Reads a table, `.csv` or `.parquet`, a chunk of rows at a time, through `sidecar` or the `.toml` of the same name beside it.
 ///
 /// # Errors
@@ -100,7 +99,7 @@ fn csv<E: From<RecordError>>(
 }
 
 /// A chunk of lines as a table.
-fn chunk(
+pub(crate) fn chunk(
     path: &Path,
     head: &Head<'_, '_>,
     layout: Option<&Layout>,
@@ -149,7 +148,8 @@ fn reported(path: &Path, error: FastCsvError) -> RecordError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{ColumnData, read_table};
+    use crate::table::ColumnData;
+    use crate::table_file::read_table;
 
     /// All chunks of a table put together.
     fn together(path: &Path) -> Result<(Table, usize), RecordError> {

@@ -18,9 +18,10 @@ use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::Path;
 
-use crate::assemble::{Raw, Room, Want, assemble, number, plan};
+use crate::assemble::{Room, Want, assemble, number, plan};
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::memory;
+use crate::raw_column::Raw;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::units::Unit;

@@ -421,7 +421,7 @@ pub enum RecordError {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        reason: crate::added_mass_files::AddedMassError,
+        reason: crate::added_mass_error::AddedMassError,
     },
     /// Two estimates of one id.
     #[error("{place}: the id `{id}` appears twice; every estimate needs its own")]

@@ -16,11 +16,14 @@
 //! | added mass (WAMIT `.1`, NetCDF, CSV) | [`added_mass_files`] |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+mod added_mass_error;
 pub mod added_mass_files;
 pub mod added_mass_options;
 mod assemble;
 pub mod body;
+mod body_axis;
 pub mod campaign;
+mod campaign_file;
 mod campaign_toml;
 pub mod carriage;
 mod carriage_toml;
@@ -45,13 +48,16 @@ pub mod page;
 mod parquet_sums;
 pub mod parquet_table;
 pub mod plausible;
+mod raw_column;
 pub mod read;
 pub mod run;
 pub mod scale;
 pub mod schema;
 mod section;
+mod section_values;
 pub mod sidecar;
 pub mod table;
+mod table_file;
 pub mod text;
 mod unfinished;
 pub mod units;

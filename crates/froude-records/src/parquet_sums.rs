@@ -6,8 +6,8 @@
 
 use sha2::{Digest as _, Sha256};
 
-use crate::assemble::Raw;
 use crate::hash::hexadecimal;
+use crate::raw_column::Raw;
 
 /// Key in the footer's metadata: the sums of all columns, in their order, with spaces between.
 pub(crate) const KEY: &str = "froude.sha256";

@@ -23,10 +23,10 @@ use parquet::file::reader::{ChunkReader, FileReader as _, Length as _, Serialize
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
-use crate::assemble::{Raw, Room, Want, assemble, plan};
-use crate::chunks::CHUNK_ROWS;
+use crate::assemble::{CHUNK_ROWS, Room, Want, assemble, plan};
 use crate::error::{Place, RecordError, reason};
 use crate::parquet_sums::{self, Sum};
+use crate::raw_column::Raw;
 use crate::sidecar::Sidecar;
 use crate::table::{ColumnData, Table};
 use crate::write::Prepared;

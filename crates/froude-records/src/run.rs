@@ -38,17 +38,21 @@ pub const LAST_RUN: &str = "last run: ";
 
 mod allowance;
 pub(crate) mod channel;
+mod doubt;
 mod file;
 mod import;
 mod layout;
 mod log;
 mod meta;
+mod pair;
 mod reader;
 mod recorder;
 mod seal;
 pub(crate) mod sidecar;
 mod sync;
 
+pub use crate::run::doubt::{Doubt, DoubtKind};
+pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
@@ -59,5 +63,5 @@ pub use meta::{
 };
 pub use reader::{Block, RunReader, read_run};
 pub use recorder::{Packing, Recorder};
-pub use seal::{CampaignMark, Doubt, DoubtKind, Pair, check_names, check_pair};
+pub use seal::CampaignMark;
 pub use sidecar::{parse_run_meta, read_run_meta, run_meta_text, write_run_meta};

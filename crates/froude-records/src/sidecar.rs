@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use indexmap::IndexMap;
 
-use crate::assemble::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
 use crate::error::{Place, RecordError, read_bytes, utf8};
+use crate::raw_column::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
 use crate::run::channel::Words;
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};

@@ -1,13 +1,13 @@
 //! Observation tables: one row per observation, every number with its unit.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
-use crate::sidecar::Sidecar;
+use crate::plausible;
 use crate::units::{Dimension, Unit};
-use crate::write::Prepared;
-use crate::{csv_table, parquet_table, plausible, sidecar};
+
+pub use crate::table_file::{prepare_table, read_table, sidecar_of};
 
 /// A table in memory.
 #[derive(Debug, Clone, PartialEq)]
@@ -158,65 +158,6 @@ impl Table {
 
     fn kind(&self, name: &str, found: &'static str, expected: &'static str) -> RecordError {
         RecordError::ColumnKind { place: Place::whole(&self.path), column: name.to_owned(), found, expected }
-    }
-}
-
-/// Reads a table, `.csv` or `.parquet`, through `sidecar` or the `.toml` of the same name beside it.
-///
-/// # Errors
-///
-/// See [`RecordError`]: every message names file, line and column.
-pub fn read_table(path: &Path, sidecar: Option<&Path>) -> Result<Table, RecordError> {
-    let mapping = sidecar_of(path, sidecar)?;
-    match Format::of(path)? {
-        Format::Csv => csv_table::read_csv(path, mapping.as_ref()),
-        Format::Parquet => parquet_table::read_parquet(path, mapping.as_ref()),
-    }
-}
-
-/// The sidecar of a table: the one given, or the `.toml` of the same name beside it.
-///
-/// # Errors
-///
-/// A sidecar that cannot be read.
-pub fn sidecar_of(path: &Path, sidecar: Option<&Path>) -> Result<Option<Sidecar>, RecordError> {
-    let beside = path.with_extension("toml");
-    match sidecar {
-        Some(given) => sidecar::read_sidecar(given).map(Some),
-        None if beside.is_file() && sidecar::is_sidecar(&beside) => sidecar::read_sidecar(&beside).map(Some),
-        None => Ok(None),
-    }
-}
-
-/// How a table is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Format {
-    Csv,
-    Parquet,
-}
-
-impl Format {
-    /// By the ending of its name.
-    pub(crate) fn of(path: &Path) -> Result<Self, RecordError> {
-        match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
-            Some("csv") => Ok(Self::Csv),
-            Some("parquet") => Ok(Self::Parquet),
-            _ => Err(RecordError::Extension { path: path.to_owned() }),
-        }
-    }
-}
-
-/// Writes a table in the format that its name ends in, `.csv` or `.parquet`, up to taking its place.
-///
-/// # Errors
-///
-/// Another ending, a number that is not finite, or a file that cannot be written.
-pub fn prepare_table(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
-    let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
-    match ending.as_deref() {
-        Some("csv") => csv_table::prepare_csv(table, path),
-        Some("parquet") => parquet_table::prepare_parquet(table, path),
-        _ => Err(RecordError::Extension { path: path.to_owned() }),
     }
 }
 

@@ -25,7 +25,7 @@ const GAP: f64 = 26.0;
 /// [`ReportError::Figure`] when the drawing library refuses it.
 pub fn svg(chart: &Chart) -> Result<String, ReportError> {
     canvas(chart)
-        .svg(&crate::figures::slug(&chart.name), &chart.title, &chart.caption)
+        .svg(&crate::figures::drawing::slug(&chart.name), &chart.title, &chart.caption)
         .map_err(|reason| ReportError::Figure { figure: chart.title.clone(), reason })
 }
 

@@ -9,8 +9,9 @@ use froude_records::text::visible;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart;
+use crate::findings::findings_by_severity;
 use crate::input::ReportError;
-use crate::page::{POLICY, STYLE, findings_by_severity};
+use crate::style::{POLICY, STYLE};
 use crate::tables::Tables;
 
 /// A page.

@@ -5,31 +5,21 @@
 //! nobody can open; a caption says when points were left out.
 
 mod budget;
+pub(crate) mod drawing;
 mod forest;
 mod loads;
 mod residuals;
 
-use froude_records::estimate::Estimate;
-
-use crate::canvas::Canvas;
-use crate::input::{Report, ReportError};
-use froude_records::page::Chart;
-use froude_records::page::SourceSection;
-
 use budget::budget_drawing;
-pub(crate) use budget::{budget_rows, ranked_inputs, share};
 use forest::forest_drawings;
+use froude_records::page::Chart;
 use loads::load_drawings;
 use residuals::residual_drawings;
 
-/// Most points drawn in one panel.
-const MOST_POINTS: usize = 1500;
+use crate::figures::drawing::{Drawing, slug};
+use crate::input::{Report, ReportError};
 
-/// Most lines named in a legend.
-const MOST_NAMED: usize = 8;
-
-/// Most rows in a forest plot or a bar chart.
-const MOST_ROWS: usize = 24;
+pub(crate) use budget::{budget_rows, ranked_inputs, share};
 
 /// A figure of the report.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -52,14 +42,6 @@ pub(crate) enum Place {
     Residuals(usize),
     Budget(usize),
     Forest,
-}
-
-/// A figure before it has its number.
-struct Drawing {
-    slug: String,
-    title: String,
-    caption: String,
-    canvas: Canvas,
 }
 
 /// The figures of a report, each as an SVG document of its own.
@@ -104,55 +86,10 @@ pub(crate) fn placed_figures(report: &Report) -> Result<Vec<(Place, Figure)>, Re
         .collect()
 }
 
-/// A name made safe for files and anchors.
-pub(crate) fn slug(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        if out.len() >= 48 {
-            break;
-        }
-        if c.is_ascii_alphanumeric() || c == '_' {
-            out.push(c.to_ascii_lowercase());
-        } else if !out.ends_with('-') && !out.is_empty() {
-            out.push('-');
-        }
-    }
-    out.trim_matches('-').to_owned()
-}
-
-/// The estimate that the summary shows: the recommended one, else none.
-pub(crate) fn recommended(section: &SourceSection) -> Option<&Estimate> {
-    section.estimates.iter().find(|e| e.recommended)
-}
-
-/// Distinct texts in the order of their appearance.
-fn distinct<'a>(texts: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut seen = std::collections::BTreeSet::new();
-    texts.into_iter().filter(|t| seen.insert(*t)).collect()
-}
-
-/// What a caption states about points that are a sample.
-fn drawn_by_chance(section: &SourceSection) -> String {
-    section.sample_of.map_or_else(String::new, |n| format!(" The points are a random sample of {n} observations."))
-}
-
-/// Every `n`th of many, so that at most `limit` stay.
-fn thinned<T: Copy>(all: &[T], limit: usize) -> Vec<T> {
-    let step = all.len().div_ceil(limit.max(1)).max(1);
-    all.iter().copied().step_by(step).collect()
-}
-
-/// At most `limit` of a list, first and last among them.
-fn evenly<T: Copy>(all: &[T], limit: usize) -> Vec<T> {
-    if all.len() <= limit || limit < 2 {
-        return all.iter().copied().take(limit.max(1)).collect();
-    }
-    (0..limit).map(|i| all[i * (all.len() - 1) / (limit - 1)]).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figures::drawing::evenly;
 
     #[test]
     fn slugs_are_safe_and_short() {

@@ -6,23 +6,19 @@
 use std::collections::BTreeSet;
 
 use froude_records::estimate::{Estimate, Measured};
-use froude_records::finding::{Finding, Severity};
+use froude_records::finding::Severity;
+use froude_records::number;
+use froude_records::page::SourceSection;
 use maud::{Markup, PreEscaped, html};
 
 use crate::document::{section_text, sheet};
-use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs, recommended, slug};
+use crate::figures::drawing::{recommended, slug};
+use crate::figures::{Figure, Place, budget_rows, placed_figures, ranked_inputs};
+use crate::findings::findings_by_severity;
 use crate::input::{InputFile, Report, ReportError};
 use crate::symbol::unit_text;
 use crate::tables::{self, Tables, counted, html_symbol};
 use crate::verdict::verdict_words;
-use froude_records::number;
-use froude_records::page::SourceSection;
-
-pub(crate) const STYLE: &str = include_str!("report.css");
-
-/// What a browser may do with a page: use the styles that stand in it. It loads nothing, runs nothing, sends nothing, whatever a name or a
-/// cell of somebody's file holds.
-pub(crate) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; base-uri 'none'; form-action 'none'";
 
 /// What a reader of two sources needs to know first.
 const SIDE_BY_SIDE: &str = "Coefficients of the same model are set side by side; their normalised difference Eₙ is stated only where both sides state an \
@@ -450,61 +446,6 @@ fn summary_of(i: usize, source: &SourceSection) -> Markup {
                 ul class="keys" {
                     @for (name, c) in &best.coefficients {
                         li { (tables::named(name, c)) span { (tables::expanded(c, best)) } }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// A table of findings for each severity, the gravest first.
-pub(crate) fn findings_by_severity(findings: &[Finding], tables: &mut Tables) -> Markup {
-    let groups = [
-        (
-            Severity::Error,
-            "Errors",
-            "error",
-            "contradict physics or the file itself: do not use the numbers as they are.",
-        ),
-        (Severity::Warning, "Warnings", "warning", "doubtful: look before trusting the numbers."),
-        (Severity::Note, "Notes", "note", "worth knowing; nothing was changed because of them."),
-    ];
-    let mut parts = Vec::new();
-    for (severity, word, class, meaning) in groups {
-        let group: Vec<&Finding> = findings.iter().filter(|f| f.severity == severity).collect();
-        if !group.is_empty() {
-            let caption = tables.caption(&format!("{word}: {meaning}"));
-            parts.push(findings_table(&group, class, &caption));
-        }
-    }
-    html! { @for part in &parts { (part) } }
-}
-
-fn findings_table(group: &[&Finding], class: &str, caption: &Markup) -> Markup {
-    let has_source = group.iter().any(|f| f.source.is_some());
-    let has_place = group.iter().any(|f| f.place.is_some());
-    html! {
-        div class="table wide" {
-            table {
-                (caption)
-                thead {
-                    tr {
-                        th scope="col" { "Check" }
-                        @if has_source { th scope="col" { "Source" } }
-                        th scope="col" { "Finding" }
-                        @if has_place { th scope="col" { "Place" } }
-                    }
-                }
-                tbody {
-                    @for finding in group {
-                        tr {
-                            th scope="row" { span class={ "tag " (class) } { (finding.code) } }
-                            @if has_source { td { (finding.source.as_deref().unwrap_or("")) } }
-                            td class="message" { (finding.message) }
-                            @if has_place {
-                                td class="place" { @if let Some(place) = &finding.place { code { (place) } } }
-                            }
-                        }
                     }
                 }
             }

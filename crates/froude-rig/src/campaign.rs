@@ -21,6 +21,7 @@ pub mod drive;
 pub mod error;
 mod hand_over;
 pub mod lock;
+mod order;
 pub mod preflight;
 pub mod prepare;
 mod recording;

@@ -29,12 +29,14 @@ pub mod motion;
 mod output_error;
 mod pool;
 pub mod record;
+mod reduced;
 pub mod run;
 pub mod simulate;
 pub mod source;
 mod swings;
 
-pub use envelope::{FEWEST_RUNS, envelope};
+pub use crate::decay::reduced::FEWEST_RUNS;
+pub use envelope::envelope;
 pub use error::DecayError;
 pub use fit::{DecayFit, HalfCycle, Method, Range, RunSummary, Scatter};
 pub use output_error::output_error;

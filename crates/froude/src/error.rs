@@ -174,7 +174,7 @@ impl From<MethodError> for Error {
         let MethodError::OfAnotherMethod { folder, found, method, is_imported, wanted } = error else {
             return Self::Method(error);
         };
-        let readers = crate::method::readers(if is_imported { FREE_DECAY } else { &method });
+        let readers = crate::registry::readers(if is_imported { FREE_DECAY } else { &method });
         let instead = match readers.as_slice() {
             [] => "no method of this version reads those".to_owned(),
             _ if is_imported => format!("a [[source]] with method = {readers:?} reads releases"),

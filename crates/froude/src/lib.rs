@@ -11,6 +11,7 @@
 //! ```
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub use error::Error;
 pub use froude_control as control;
 pub use froude_fit as fit;
 pub use froude_hydro as hydro;
@@ -35,13 +36,13 @@ mod error;
 pub mod inspect;
 mod method;
 pub mod pipeline;
+mod registry;
 pub mod results;
-
-pub use error::Error;
 
 /// What most programs need.
 pub mod prelude {
-    pub use crate::pipeline::{Input, Job, Outcome, identify};
+    pub use crate::pipeline::identify;
+    pub use crate::pipeline::{Input, Job, Outcome};
     pub use crate::records::estimate::{Coefficient, Estimate, EstimateFile, Status};
     pub use crate::records::finding::{Finding, Severity};
 }

@@ -9,18 +9,10 @@ use froude_identify::method::Method;
 use froude_identify::table::Table;
 use froude_records::campaign::{Input, Source};
 use froude_records::nearest::meant;
-use froude_tank::decay::source::FreeDecay;
 
 use crate::Error;
 use crate::pipeline::Purpose;
-
-/// Names of the methods that read runs of a method.
-pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
-    METHODS.iter().filter(|method| method.runs() == runs).flat_map(|method| method.names()).copied().collect()
-}
-
-/// All methods that read runs.
-const METHODS: [&dyn Method; 6] = [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay];
+use crate::registry::METHODS;
 
 /// A method with the names that it is asked for.
 pub(crate) type Asked = (&'static dyn Method, Vec<&'static str>);

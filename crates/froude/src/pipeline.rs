@@ -1,16 +1,15 @@
 //! From a campaign, a bare table, runs or records to estimates side by side and a report.
 
+mod job;
+
 use std::collections::BTreeSet;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use froude_identify::answer::Answer;
-use froude_identify::asked;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared};
 use froude_identify::data_files::DataFiles;
 use froude_identify::method::{Export, Found, Method, observes};
-use froude_identify::observations;
-use froude_records::added_mass_options::GivenOption;
+use froude_identify::{asked, observations};
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
@@ -19,110 +18,9 @@ use froude_records::json::read_estimates;
 use froude_records::page::DocumentSection;
 use froude_records::text::in_a_file_name;
 
-use crate::Error;
-use crate::method;
-use crate::results::Written;
-use crate::{campaign_page, results};
+use crate::{Error, campaign_page, method, results};
 
-/// What a job reads.
-#[derive(Debug, Clone)]
-pub enum Input {
-    /// A campaign (`.toml`) or a bare table (`.csv`, `.parquet`).
-    File(PathBuf),
-    /// Runs of a carriage, by all methods of the job's purpose that they allow.
-    Runs {
-        /// Folders of runs, or runs.
-        paths: Vec<PathBuf>,
-        /// A campaign other than the copy that lies with them.
-        campaign: Option<PathBuf>,
-    },
-    /// A body file or a mesh, of which added mass is computed.
-    Mesh {
-        /// The file.
-        path: PathBuf,
-        /// What is asked of it.
-        options: Vec<GivenOption>,
-    },
-    /// Records, which are set side by side; nothing is fitted.
-    Records(Vec<PathBuf>),
-}
-
-/// What is asked of runs, or of a log, where no campaign names methods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Purpose {
-    /// Inertia, friction and flexibility of the axis.
-    Servo,
-    /// Force per volt of the drive, and polarity.
-    Calibration,
-    /// Gains of the position loop.
-    Tuning,
-    /// Modes of the carriage.
-    Resonance,
-}
-
-/// What to identify and where the results go.
-#[derive(Debug, Clone)]
-pub struct Job {
-    /// What is read.
-    pub input: Input,
-    /// Folder of the results. Unless said, beside the input and named after it; for records then nothing is written.
-    pub out: Option<PathBuf>,
-    /// A sidecar for a bare table that is not beside it.
-    pub sidecar: Option<PathBuf>,
-    /// Models for a bare table, or instead of the campaign's.
-    pub models: Vec<String>,
-    /// What is asked of runs or of a log that no campaign names methods for: unless said, their drag of runs, and of a log what its sidecar makes
-    /// of it.
-    pub purpose: Option<Purpose>,
-    /// Date for the report's title page, as text; the pipeline reads no clock.
-    pub date: Option<String>,
-}
-
-impl Job {
-    /// A job on a campaign or a bare table, with nothing but its input.
-    #[must_use]
-    pub fn new(file: impl Into<PathBuf>) -> Self {
-        Self::of(Input::File(file.into()))
-    }
-
-    /// A job with nothing but its input.
-    #[must_use]
-    pub fn of(input: Input) -> Self {
-        Self { input, out: None, sidecar: None, models: Vec::new(), purpose: None, date: None }
-    }
-
-    /// Where the results will lie, as far as that is known before the input is read.
-    #[must_use]
-    pub fn folder(&self) -> Option<PathBuf> {
-        match (&self.out, &self.input) {
-            (None, Input::File(path)) => Some(default_out(path, "results")),
-            (None, Input::Mesh { path, .. }) => Some(default_out(path, "added-mass")),
-            (out, _) => out.clone(),
-        }
-    }
-}
-
-/// What came out.
-#[derive(Debug, Clone)]
-pub struct Outcome {
-    /// The record, as it stands in `estimate.json`; sources side by side are in it.
-    pub file: EstimateFile,
-    /// Where it lies, with report, figures and observations; `None` where nobody asked for files.
-    pub written: Option<Written>,
-    /// Every answer that was found, with everything that is known about its fit.
-    pub sources: Vec<Answer>,
-    /// What methods state about several of them together.
-    pub summaries: Vec<Summary>,
-}
-
-/// What a method states about all results that it has from one source.
-#[derive(Debug, Clone)]
-pub struct Summary {
-    /// Which of [`Outcome::sources`].
-    pub sources: Range<usize>,
-    /// The section of the page.
-    pub section: DocumentSection,
-}
+pub use crate::pipeline::job::{Input, Job, Outcome, Purpose, Summary};
 
 /// Reads, fits, chooses, compares, reports; `progress` receives each step.
 ///
@@ -380,11 +278,6 @@ pub fn campaign_of(job: &Job) -> Result<Campaign, Error> {
 
 fn is_campaign(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
-}
-
-fn default_out(input: &Path, what: &str) -> PathBuf {
-    let stem = input.file_stem().map_or_else(|| "froude".to_owned(), |s| s.to_string_lossy().into_owned());
-    input.with_file_name(format!("{stem}-{what}"))
 }
 
 /// A path as seen from the campaign's folder, where it lies below it.

@@ -193,8 +193,8 @@ fn force_chart(model: &Model) -> Chart {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::servo::chain::Rows;
     use crate::servo::report::of_runs as of_several;
+    use crate::servo::rows::Rows;
     use crate::servo::{Chain, Friction};
 
     /// Six runs, each in its own time from zero: a line that went through all would run back five times.

@@ -18,10 +18,12 @@
 //!
 //! Valid from rest; flow history (start-up of the wake) is in the result.
 
-use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
-use super::steady::{SteadySettings, driving_part, window};
 use froude_fit::budget::{Uncertain, jackknife_of_one};
 use froude_fit::series::tapered;
+
+use super::run::{BodyState, DragRun, RunKind};
+use super::steady::{SteadySettings, driving_part, window};
+use crate::drag::setup::{Ballast, DragSetup, Efficiency};
 
 /// Added mass plus entrained water of the body.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,9 +15,10 @@ use froude_fit::propagate::effective_dof;
 use froude_fit::series::mean;
 use froude_records::text::counted;
 
-use super::coefficient::Point;
-use super::run::{BodyState, DragRun, DragSetup, RunKind};
+use super::run::{BodyState, DragRun, RunKind};
 use super::steady::{still_windows, window};
+use crate::drag::point::Point;
+use crate::drag::setup::DragSetup;
 
 /// More repeats than this are no advice.
 const MOST_REPEATS: usize = 1000;

@@ -1,8 +1,9 @@
 //! Errors of the forces that a carriage measures, as the budget needs them.
 
-use super::coefficient::{Method, Point};
-use super::run::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLARED_ROLLING};
 use froude_identify::uncertainty::SharedError;
+
+use crate::drag::point::{Method, Point};
+use crate::drag::setup::{Ballast, DragSetup, Efficiency, UNDECLARED_EFFICIENCY, UNDECLARED_ROLLING};
 
 /// Errors that all pairs share, and those that the scatter already shows.
 pub(super) fn shared(method: Method, points: &[Point], measured: f64, setup: &DragSetup) -> Vec<SharedError> {

@@ -4,10 +4,11 @@
 //! need not be straight: any curve that does not turn back lies between the two zeros, so that the line may be wrong by up
 //! to half their difference, taken as rectangular. Without one of them the declared drift stands in for that difference.
 
-use super::coefficient::Point;
+use froude_fit::series::mean;
+
 use super::run::DragRun;
 use super::steady::{Rejected, SteadySettings, Window, settled_window, still_windows};
-use froude_fit::series::mean;
+use crate::drag::point::Point;
 
 /// The steady point of a run with a force column.
 ///

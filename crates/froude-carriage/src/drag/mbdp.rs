@@ -7,12 +7,13 @@
 //! - **flexible**: eq. 2. The motor side gives the chain's force, the chain's law gives how far the load lags behind, and
 //!   the load's own acceleration is subtracted. At constant speed it is the mapped model; it differs on the ramps.
 
-use super::coefficient::Point;
+use froude_fit::series::mean;
+
 use super::friction::Friction;
 use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
 use super::steady::{Rejected, SteadySettings, Window, driving_part, window};
-use froude_fit::series::mean;
+use crate::drag::point::Point;
 
 /// A map may be used this far beyond its ends, m.
 const BEYOND_M: f64 = 0.1;

@@ -4,11 +4,12 @@
 //! the pairs. The difference is taken where both runs are steady, and from where it has settled: the wake of a body that starts
 //! needs several of its lengths, as for the force sensor; and only where the motor drives the gear all the time.
 
-use super::coefficient::Point;
+use froude_fit::series::mean;
+
 use super::fsm::{mean_speed, reach};
 use super::run::DragRun;
 use super::steady::{Rejected, SteadySettings, Window, driving_part, settled_part, window};
-use froude_fit::series::mean;
+use crate::drag::point::Point;
 
 /// Shortest stretch of positions in common, as part of the wet window.
 const SHARED: f64 = 0.5;

@@ -4,17 +4,18 @@
 //! not believed below what is known to differ between any two runs: noise and zeros of the sensor, or what the dry repeats show.
 
 use froude_fit::replicates::{Floor, Replicates, together};
+use froude_identify::regression::Scatter;
+use froude_identify::uncertainty::SharedError;
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
-use super::coefficient::{Method, Point, pairs, slope};
 use super::detectability::{Detectability, DryMean, predict};
 use super::friction::{Cell, Friction, KNOT_SPACING_M, cells};
-use super::run::{Ballast, BodyState, DragRun, DragSetup, RunKind};
+use super::run::{BodyState, DragRun, RunKind};
 use super::steady::{Rejected, still_windows};
 use super::{fsm, mbdp, mcd};
-use froude_identify::regression::Scatter;
-use froude_identify::uncertainty::SharedError;
+use crate::drag::point::{Method, Point, pairs, slope};
+use crate::drag::setup::{Ballast, DragSetup};
 
 /// The points of one method, in newtons.
 #[derive(Debug, Clone)]

@@ -9,9 +9,11 @@
 
 use froude_fit::propagate::expanded;
 
-use super::coefficient::{Coefficient, Point, of_differences, pairs};
+use super::coefficient::Coefficient;
 use super::detectability::{DryMean, predict};
-use super::run::DragSetup;
+use crate::drag::differences::of_differences;
+use crate::drag::point::{Point, pairs};
+use crate::drag::setup::DragSetup;
 
 /// Fewest whole pairs to look at: two have one degree of freedom, and an interval of chance.
 pub const FEWEST_PAIRS: usize = 3;
@@ -94,8 +96,8 @@ fn pairs_needed(c: &Coefficient, n: usize, target: f64, setup: &DragSetup) -> Op
 mod tests {
     use super::*;
     use crate::drag::calibration::ForcePerVolt;
-    use crate::drag::coefficient::slope;
-    use crate::drag::run::Efficiency;
+    use crate::drag::point::slope;
+    use crate::drag::setup::Efficiency;
     use froude_fit::budget::Uncertain;
 
     fn point(pair: u32, v: f64, force_n: f64) -> Point {

@@ -2,23 +2,25 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use froude_records::campaign::{BodyAxis, SourceKind};
-use froude_records::estimate::{Attitude, Frame, Measured, Range};
-use froude_records::text::counted;
-use froude_records::units::Dimension;
-use indexmap::IndexMap;
-
-use super::coefficient::{Coefficient, Method, Point, slope};
-use super::errors;
-use super::fsm::reach;
-use super::observed::Observed;
-use super::run::{DragRun, DragSetup, Efficiency};
 use froude_identify::IdentifyError;
 use froude_identify::dataset::Dataset;
 use froude_identify::law::ForceLaw;
 use froude_identify::regression::Weight;
 use froude_identify::seam::{Choice, Derived, Reduced, Stated};
 use froude_identify::validity::{ALONG, OFF_AXIS};
+use froude_records::campaign::{BodyAxis, SourceKind};
+use froude_records::estimate::{Attitude, Frame, Measured, Range};
+use froude_records::text::counted;
+use froude_records::units::Dimension;
+use indexmap::IndexMap;
+
+use super::coefficient::Coefficient;
+use super::errors;
+use super::fsm::reach;
+use super::observed::Observed;
+use super::run::DragRun;
+use crate::drag::point::{Method, Point, slope};
+use crate::drag::setup::{DragSetup, Efficiency};
 
 fn frame(setup: &DragSetup) -> Frame {
     match setup.travel {

@@ -1,19 +1,22 @@
 //! All methods side by side over one campaign: the paper's Table IV with what it lacked.
 
 use froude_fit::budget::Kind;
+use froude_identify::IdentifyError;
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
 use super::added_mass::{AddedMass, added_mass};
-use super::coefficient::{Coefficient, Method, Point, coefficient};
+use super::coefficient::Coefficient;
 use super::detectability::{Agreement, Detectability, agreement, zero_change};
 use super::error::DragError;
 use super::observed::{Reported, Tows};
 use super::record;
-use super::run::{Ballast, BodyState, DragRun, DragSetup, Efficiency, RunKind};
+use super::run::{BodyState, DragRun, RunKind};
 use super::steady::Rejected;
-use froude_identify::IdentifyError;
+use crate::drag::differences::coefficient;
+use crate::drag::point::{Method, Point};
+use crate::drag::setup::{Ballast, DragSetup, Efficiency};
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
 const FEW_PAIRS: usize = 4;

@@ -5,9 +5,9 @@ use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, Tex
 use froude_records::text::counted;
 
 use super::Reduction;
-use crate::drag::coefficient::Method;
+use crate::drag::point::Method;
 use crate::drag::report::DragReport;
-use crate::drag::run::DragSetup;
+use crate::drag::setup::DragSetup;
 
 /// What belongs to all methods on the page: the paper's Table IV with its figure, which is the summary; calibration and runs.
 pub fn sections(reduction: &Reduction) -> (DocumentSection, Vec<DocumentSection>) {

@@ -1,8 +1,8 @@
 //! Prediction of what was not fitted: the check that no in-sample figure replaces.
 
-use crate::servo::chain::{Rows, norm};
 use crate::servo::error::ServoError;
 use crate::servo::regression::least_squares;
+use crate::servo::rows::{Rows, norm};
 
 /// One choice of periods.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,12 +13,13 @@
 use froude_fit::distribution::coverage_factor;
 use froude_fit::stream::{Method, Solution, reduce_columns};
 
-use crate::servo::chain::{Chain, Rows};
+use crate::servo::chain::Chain;
 use crate::servo::error::ServoError;
 use crate::servo::interval::{diagonal_roots, hac, over_blocks};
 use crate::servo::log::ServoLog;
 use crate::servo::regression::{inverse_gram, least_squares, solve};
 use crate::servo::report::ServoCoefficient;
+use crate::servo::rows::Rows;
 use crate::servo::simulate::{Loop, Rigid, closed_loop};
 
 /// Parameters no longer change when every one moves by less than this part.

@@ -24,10 +24,10 @@ use froude_fit::stream::Solution;
 use froude_signal::blocks::MovingBlocks;
 use rayon::prelude::*;
 
-use crate::servo::chain::Rows;
 use crate::servo::cluster::{Clustered, Enlarged};
 use crate::servo::error::ServoError;
 use crate::servo::regression::{inverse_gram, solve};
+use crate::servo::rows::Rows;
 
 /// Lags of the whiteness test.
 const LAGS: usize = 25;

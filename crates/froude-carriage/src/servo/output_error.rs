@@ -12,10 +12,11 @@
 use froude_fit::Report;
 use froude_fit::nonlinear::{NonlinearError, Parameter, Settings, minimise};
 
-use crate::servo::chain::{Chain, Rows, norm};
+use crate::servo::chain::Chain;
 use crate::servo::error::ServoError;
 use crate::servo::log::ServoLog;
 use crate::servo::report::{ServoReport, identify_servo, of_rows};
+use crate::servo::rows::{Rows, norm};
 use crate::servo::simulate::{Loop, Rigid, closed_loop};
 
 /// The search: differences wide against the kinks of reversals; the end within a thousandth of a standard deviation.

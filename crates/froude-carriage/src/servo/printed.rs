@@ -11,12 +11,13 @@
 
 use froude_signal::{differences, gaussian};
 
-use crate::servo::chain::{Chain, Motion, Rows};
+use crate::servo::chain::{Chain, Motion};
 use crate::servo::error::ServoError;
 use crate::servo::friction::Friction;
 use crate::servo::interval::IntervalOptions;
 use crate::servo::log::ServoLog;
 use crate::servo::report::{ServoReport, of_rows};
+use crate::servo::rows::Rows;
 
 /// Equation 5, forces at the chain: `M`, `F_v`, `F_c`. `smoothing_s` is the standard deviation of the Gaussian, s.
 ///

@@ -3,8 +3,8 @@
 use froude_fit::faer::Mat;
 use froude_fit::stream::{Method, Solution, reduce_columns};
 
-use crate::servo::chain::Rows;
 use crate::servo::error::ServoError;
+use crate::servo::rows::Rows;
 
 /// Least squares of the force on the columns.
 pub(crate) fn least_squares(rows: &Rows) -> Result<Solution, ServoError> {

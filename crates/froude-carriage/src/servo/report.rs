@@ -7,12 +7,13 @@ use froude_fit::faer::Mat;
 use froude_fit::stream::Solution;
 use froude_records::text::counted;
 
-use crate::servo::chain::{Chain, Rows};
+use crate::servo::chain::Chain;
 use crate::servo::error::ServoError;
 use crate::servo::interval::{Spread, Whiteness, over_runs, spread, whiteness};
 use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::least_squares;
+use crate::servo::rows::Rows;
 
 /// Fewest runs whose scatter is stated.
 const FEWEST_RUNS: usize = 5;

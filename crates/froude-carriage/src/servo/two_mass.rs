@@ -33,7 +33,7 @@ use froude_fit::{End, Report};
 use froude_signal::{decimate, differences};
 
 use crate::drag::mbdp;
-use crate::servo::chain::{Chain, norm};
+use crate::servo::chain::Chain;
 use crate::servo::cluster::{Clustered, Enlarged, stretches};
 use crate::servo::error::ServoError;
 use crate::servo::flexible::{Stepper, TwoMass};
@@ -44,6 +44,7 @@ use crate::servo::log::ServoLog;
 use crate::servo::motor::MotorSide;
 use crate::servo::regression::{inverse_gram, least_squares, solve};
 use crate::servo::report::ServoCoefficient;
+use crate::servo::rows::norm;
 
 /// Mean and standard deviation of a fraction of which nothing is known.
 const KNOWS_NOTHING: [f64; 2] = [0.5, 0.288_675_134_594_812_9];

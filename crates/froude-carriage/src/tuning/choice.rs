@@ -3,11 +3,12 @@
 use froude_identify::method::MethodError;
 use froude_records::run::{Role, RunLog};
 
-use super::candidate::{Bench, Candidate, ConfiguredLoop};
+use super::candidate::Candidate;
 use super::experiment::{cycle_of, response_of};
 use super::gains::{Demand, shaped_on_response, ziegler_nichols};
 use super::relay::LimitCycle;
 use super::{LoopGains, ResponsePoint, TuningError};
+use crate::tuning::bench::{Bench, ConfiguredLoop};
 
 pub mod page;
 pub mod record;

@@ -9,11 +9,11 @@ use froude_records::page::DocumentSection;
 use froude_records::run::{CAMPAIGN_COPY, Role, TOW};
 use froude_rig::campaign::prepare::configured;
 
-use super::candidate::ConfiguredLoop;
 use super::choice::{self, tuned};
 use super::modes::{self, modes_of};
 use crate::runs::{Runs, read};
 use crate::source::files_of;
+use crate::tuning::bench::ConfiguredLoop;
 
 /// Gains of the position loop, with the margins that they have on the measured response.
 pub struct Tuning;

@@ -5,14 +5,15 @@
 
 use faer::Mat;
 
+use super::Solution;
 use super::border::{Eliminated, eliminate};
 use super::error::NonlinearError;
-use super::{Parameter, Solution};
 use crate::budget::jackknife;
 use crate::covariance::FEWEST_CLUSTERS;
 use crate::dense::{Cholesky, dot, mul, row};
 use crate::determined::Indeterminacy;
 use crate::distribution::coverage_factor;
+use crate::nonlinear::model::Parameter;
 
 /// A run decides something alone when a pivot without it falls below this.
 const ALONE: f64 = 1e-10;

@@ -1,8 +1,8 @@
 //! A model at one set of parameters: residuals, and their derivatives.
 
 use super::error::NonlinearError;
-use super::{Model, Parameter, Settings};
 use crate::dense::dot;
+use crate::nonlinear::model::{Model, Parameter, Settings};
 
 /// A difference step is never below this part of the parameter, where rounding would eat it.
 const SMALLEST_STEP: f64 = 1e-11;

@@ -2,8 +2,9 @@
 
 use super::covariance::check_confidence;
 use super::error::NonlinearError;
-use super::{Model, Parameter, Scatter, Solution, minimise};
+use super::{Scatter, Solution, minimise};
 use crate::distribution::coverage_factor;
+use crate::nonlinear::model::{Model, Parameter};
 
 /// An end is found when the profile is within this part of its threshold: the interval is then off by about this part of its half-width.
 const END_TOLERANCE: f64 = 1e-5;

@@ -21,8 +21,9 @@
 use faer::Mat;
 
 use super::model::{InputModel, OdrProblem};
-use super::solve::{Linear, State, Whitened, backward, forward};
+use super::solve::State;
 use crate::dense::{dot, mul_vec, row, tr_mul_vec};
+use crate::odr::whitened::{Linear, Whitened, backward, forward};
 
 /// Step of the second derivatives, as part of the input or its scale.
 const STEP: f64 = 3e-4;

@@ -7,8 +7,8 @@
 use faer::Mat;
 
 use super::model::{OdrProblem, Sigma};
-use super::solve::{Linear, backward, cholesky, effective_variance, forward, whiten};
 use crate::dense::{Cholesky, dot, mul, mul_vec};
+use crate::odr::whitened::{Linear, backward, cholesky, effective_variance, forward, whiten};
 
 /// σ below this part of its start is explained by the input errors alone.
 const FLOOR: f64 = 1e-4;

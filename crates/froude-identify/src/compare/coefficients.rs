@@ -1,44 +1,16 @@
 //! Coefficients that two estimates share, and E_n of two numbers.
 
-use froude_records::comparison::{CoefficientComparison, Side};
+use froude_records::comparison::CoefficientComparison;
 use froude_records::estimate::{Coefficient, Status};
 
-use super::Named;
 use crate::common::{Common, Number};
-use crate::uncertainty::coverage_factor;
-
-/// Coverage factor where no degrees of freedom are stated: two-sided 95 % of the normal distribution.
-pub(super) const NORMAL_COVERAGE: f64 = 1.959_963_984_540_054;
+use crate::compare::named::Named;
+use crate::compare::stated::stated;
 
 /// The text in place of E_n where two estimates come from the same observations.
 pub const SAME_DATA: &str = "same data: not independent, E_n not meaningful";
 /// The text in place of χ² there.
 pub(super) const SAME_DATA_JOINTLY: &str = "same data: not independent, χ² not meaningful";
-
-/// A number as one estimate states it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Stated {
-    pub value: Option<f64>,
-    /// Standard uncertainty, in the unit of the value; `None` where none is stated.
-    pub standard: Option<f64>,
-    /// Effective degrees of freedom of it; `None` where the record states no finite ones.
-    pub dof: Option<f64>,
-}
-
-impl Stated {
-    /// As a side of a comparison: with the coverage factor k of the 95 % uncertainty U = k·u.
-    pub(super) fn of(self, source: &str) -> Side {
-        let coverage_factor = self.standard.map(|_| self.dof.map_or(NORMAL_COVERAGE, coverage_factor));
-        Side {
-            source: source.to_owned(),
-            value: self.value,
-            standard_uncertainty: self.standard,
-            effective_dof: self.dof,
-            coverage_factor,
-            expanded_uncertainty: coverage_factor.zip(self.standard).map(|(k, u)| k * u),
-        }
-    }
-}
 
 /// E_n and an empty note, or none and why.
 pub(super) fn noted(e_n: Result<f64, String>) -> (Option<f64>, String) {
@@ -89,10 +61,6 @@ pub(super) fn not_free(c: &Coefficient, id: &str) -> Option<String> {
         Status::Prior => Some(format!("rests on a published value in {id}")),
         _ => None,
     }
-}
-
-pub(super) fn stated(c: &Coefficient) -> Stated {
-    Stated { value: c.value, standard: c.standard_uncertainty, dof: c.effective_dof }
 }
 
 /// E_n of two numbers, or why there is none.

@@ -3,8 +3,8 @@
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 
-use super::Named;
 use super::independence::is_one_source;
+use crate::compare::named::Named;
 
 /// Two records of the same source and model that say different things, with what looks like a slip.
 pub(super) fn contradiction(a: &Named<'_>, b: &Named<'_>) -> Option<Finding> {

@@ -6,7 +6,7 @@ use std::path::Path;
 use froude_records::estimate::{DataFile, Estimate};
 use froude_records::finding::{Finding, Severity};
 
-use super::Named;
+use crate::compare::named::Named;
 
 /// What is read as something else than observations: it is the same error under its own key, or no error at all.
 const NOT_OBSERVED: [&str; 4] = ["campaign", "sidecar", "record", "calibration"];

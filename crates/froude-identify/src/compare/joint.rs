@@ -6,9 +6,9 @@ use froude_fit::distribution::f_upper;
 use froude_records::comparison::JointComparison;
 use froude_records::estimate::Estimate;
 
-use super::Named;
 use super::coefficients::{SAME_DATA_JOINTLY, not_free};
 use crate::common::Common;
+use crate::compare::named::Named;
 
 /// χ² = dᵀC⁻¹d over the coefficients that both estimate, C = C_a + C_b less what common errors make of the covariance between them.
 pub(super) fn joint(

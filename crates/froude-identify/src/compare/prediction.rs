@@ -5,11 +5,12 @@ use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::{Finding, Severity};
 use froude_records::units::Dimension;
 
-use super::Named;
-use super::coefficients::{Stated, e_n, noted};
+use super::coefficients::{e_n, noted};
 use super::contradiction::{axes_not_tied, density_differs};
 use super::independence::{origins, same_data};
 use crate::common::{self, Common, Number};
+use crate::compare::named::Named;
+use crate::compare::stated::Stated;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 

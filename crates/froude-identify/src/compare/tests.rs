@@ -1,9 +1,9 @@
-use super::coefficients::{NORMAL_COVERAGE, SAME_DATA};
-use super::*;
 use froude_records::comparison::Comparison;
-use froude_records::estimate::EstimateFile;
-use froude_records::estimate::Range;
-use froude_records::estimate::{DataFile, ErrorKind, SharedError, keyed};
+use froude_records::estimate::{DataFile, ErrorKind, EstimateFile, Range, SharedError, keyed};
+
+use super::coefficients::SAME_DATA;
+use super::*;
+use crate::compare::stated::NORMAL_COVERAGE;
 
 fn file(path: &str, sha256: &str) -> DataFile {
     DataFile { path: path.to_owned(), sha256: sha256.to_owned(), role: None }

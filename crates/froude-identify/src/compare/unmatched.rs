@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use froude_records::comparison::Comparison;
 use froude_records::finding::{Finding, Severity};
 
+use super::MOST_COMPARED;
 use super::independence::{has_likes, is_one_source};
 use super::prediction::gives_forces;
-use super::{MOST_COMPARED, Named};
+use crate::compare::named::Named;
 
 /// Estimates named where nothing could be compared.
 const MOST_NAMED: usize = 6;

@@ -1,6 +1,6 @@
 //! What can be wrong with a formula, stated with the place or the part.
 
-use super::{COEFFICIENT_LIMIT, DEPTH_LIMIT, LENGTH_LIMIT};
+use crate::formula::limits::{COEFFICIENT_LIMIT, DEPTH_LIMIT, LENGTH_LIMIT};
 
 /// Why a formula cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

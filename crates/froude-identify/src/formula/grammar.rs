@@ -12,10 +12,10 @@
 //! Only parentheses nest, and at most [`DEPTH_LIMIT`] of them; operators of one rank are a list.
 //! So neither reading nor computing an expression goes deep, however long the text is.
 
-use super::DEPTH_LIMIT;
 use super::error::FormulaError;
 use super::program::{Binary, Function};
 use super::token::{Kind, Token};
+use crate::formula::limits::DEPTH_LIMIT;
 
 const OPERAND: &str = "a name, a number or \"(\"";
 const OPERATOR: &str = "an operator or the end";

@@ -4,7 +4,8 @@ use super::affine::Affine;
 use super::error::FormulaError;
 use super::program::Op;
 use super::unit::Unit;
-use super::{COEFFICIENT_LIMIT, Dim};
+use crate::formula::limits::COEFFICIENT_LIMIT;
+use crate::formula::unit::Dim;
 
 /// Column name of a motion alias: `u v w p q r`.
 #[must_use]

@@ -2,8 +2,8 @@
 
 use std::str::FromStr;
 
-use super::LENGTH_LIMIT;
 use super::error::FormulaError;
+use crate::formula::limits::LENGTH_LIMIT;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {

@@ -1,7 +1,5 @@
 //! Units of parts of a formula, whose powers may be fractions on the way.
 
-use super::Dim;
-
 /// Exponents in twelfths, so that halves, thirds and quarters are exact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Unit([i32; 5]);
@@ -89,3 +87,6 @@ impl std::fmt::Display for Unit {
         }
     }
 }
+
+/// Exponents of m, kg, s, K and A.
+pub type Dim = [i8; 5];

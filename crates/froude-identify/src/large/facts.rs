@@ -12,12 +12,12 @@ use froude_records::units::Dimension;
 use indexmap::{IndexMap, IndexSet};
 
 use super::rows::{End, Ends, Row, Sample, without_rows};
-use super::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
 use crate::dataset::{Dataset, LOADS};
 use crate::error::IdentifyError;
+use crate::large::limits::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
 use crate::lint::{self, Pushed};
 use crate::reduce::{kept_rows, observed, zeros_of};
-use crate::source::MOMENTS;
+use crate::source::models::MOMENTS;
 use crate::validity::{self, AT_REST, off_axis, per_observation};
 
 /// A chunk of a table: its rows, and the observations that are kept of them.

@@ -5,9 +5,9 @@ use froude_fit::faer::{Col, Mat};
 use froude_fit::stream::{Accumulator, ClusterAccumulator, Factor, Shape, StreamError};
 use indexmap::IndexSet;
 
-use super::MOST_CLUSTERS;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
+use crate::large::limits::MOST_CLUSTERS;
 use crate::law::{ForceLaw, Kind};
 use crate::regression::{Condensed, ModelFit};
 

@@ -10,9 +10,11 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use serde_json::Value;
 
-use super::{Limits, identify_source};
+use super::identify_source;
 use crate::error::IdentifyError;
-use crate::source::{SourceResult, identify_source as in_memory};
+use crate::large::limits::Limits;
+use crate::result::SourceResult;
+use crate::source::identify_source as in_memory;
 
 /// Two ways of adding the same rows up, at condition numbers below 100.
 const AGREE: f64 = 1e-10;

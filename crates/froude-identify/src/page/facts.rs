@@ -1,6 +1,6 @@
 //! The head of a section: observations, configurations, covariance, range blocks.
 
-use crate::source::SourceResult;
+use crate::result::SourceResult;
 
 /// Facts as `(name, value)`, as they shall be read.
 pub(super) fn of(source: &SourceResult) -> Vec<(String, String)> {

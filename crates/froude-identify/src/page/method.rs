@@ -5,7 +5,7 @@ use indexmap::IndexSet;
 
 use super::error_models::error_models;
 use crate::answer::Answer;
-use crate::source::SourceResult;
+use crate::result::SourceResult;
 
 /// The sentences on frame, fit, uncertainty, selection and error models that hold for these sources.
 #[must_use]

@@ -4,8 +4,8 @@ use froude_records::page::SelectionRow;
 
 use crate::dataset::unit_text;
 use crate::regression::ModelFit;
+use crate::result::SourceResult;
 use crate::selection::aicc_of;
-use crate::source::SourceResult;
 
 /// A row for each law and load; none where one fit has nothing to be chosen from.
 pub(super) fn rows(source: &SourceResult) -> Vec<SelectionRow> {

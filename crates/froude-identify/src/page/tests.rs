@@ -1,9 +1,11 @@
-use super::error_models::error_models;
-use super::selection::rows;
-use crate::source::{SourceResult, identify_source};
 use froude_records::campaign::Campaign;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
+
+use super::error_models::error_models;
+use super::selection::rows;
+use crate::result::SourceResult;
+use crate::source::identify_source;
 
 /// Every model of a bare table.
 fn identified(name: &str, table: &str, models: &[&str]) -> SourceResult {

@@ -8,11 +8,11 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 
-use super::size;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::lint::moving;
+use crate::tare::size::size;
 use crate::validity::{AT_REST, OFF_AXIS, off_axis};
 
 /// Angles this far beyond those of the tare runs are still theirs, 1°: at it a round strut's side force is 2 % of its drag.

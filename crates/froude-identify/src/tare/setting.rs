@@ -5,10 +5,10 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
 use super::angles::SAME_ANGLE_RAD;
-use super::size;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
 use crate::lint::moving;
+use crate::tare::size::size;
 use crate::validity::{ALONG, AT_REST, OFF_AXIS, off_axis};
 
 /// Speeds this far beyond those of the tare runs are still theirs.

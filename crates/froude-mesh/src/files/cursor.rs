@@ -1,6 +1,6 @@
 //! Bytes of a file with a place in them, as text or as binary numbers.
 
-use super::{Place, ReadError};
+use crate::files::soup::{Place, ReadError};
 
 /// What to do about a line that is wrong.
 pub(super) const CORRECT: &str = "correct the line, or export the file again";

@@ -4,7 +4,7 @@
 //! about x = 0 (ISX = 1) or y = 0 (ISY = 1) is given by a half or a quarter.
 
 use super::cursor::Cursor;
-use super::{Read, ReadError, Soup, mirrored_whole};
+use crate::files::soup::{Read, ReadError, Soup, mirrored_whole};
 use crate::mesh::Panel;
 use crate::vector::Vec3;
 

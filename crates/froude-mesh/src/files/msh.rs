@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use indexmap::IndexMap;
 
 use super::cursor::Cursor;
-use super::{Place, Read, ReadError, counted};
+use crate::files::soup::{Place, Read, ReadError, counted};
 use crate::mesh::{Mesh, Panel};
 use crate::vector::Vec3;
 

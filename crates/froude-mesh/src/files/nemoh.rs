@@ -3,7 +3,7 @@
 //! Symmetry 1 means that the file has the half on one side of the plane y = 0. A panel with a number twice is a triangle.
 
 use super::cursor::Cursor;
-use super::{Read, ReadError, mirrored_whole};
+use crate::files::soup::{Read, ReadError, mirrored_whole};
 use crate::mesh::{Mesh, Panel};
 
 pub(super) fn looks_like(bytes: &[u8]) -> bool {

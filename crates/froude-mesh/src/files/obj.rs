@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::cursor::{Cursor, Word};
-use super::{Polygons, Read, ReadError};
+use crate::files::soup::{Polygons, Read, ReadError};
 use crate::mesh::Mesh;
 
 /// Statements that have nothing to do with panels; they are counted and left out.

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::cursor::Cursor;
-use super::{Polygons, Read, ReadError, counted};
+use crate::files::soup::{Polygons, Read, ReadError, counted};
 use crate::mesh::Mesh;
 
 /// Type of a value.

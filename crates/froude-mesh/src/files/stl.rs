@@ -3,7 +3,7 @@
 //! A file whose length is that of its count of triangles is binary, whatever its header begins with: some programs write `solid` there.
 
 use super::cursor::Cursor;
-use super::{Read, ReadError, Soup, counted};
+use crate::files::soup::{Read, ReadError, Soup, counted};
 use crate::mesh::{Mesh, Panel};
 use crate::vector::{Vec3, cross, dot, sub};
 

@@ -9,7 +9,9 @@ use proptest::prelude::*;
 use super::*;
 use crate::check::check;
 use crate::measure::Measure;
+use crate::mesh::Panel;
 use crate::sections::{Resolution, SectionBody};
+use crate::vector::Vec3;
 
 fn good(name: &str, bytes: impl AsRef<[u8]>) -> MeshFile {
     read(name, bytes.as_ref()).unwrap_or_else(|error| panic!("{error}"))

@@ -3,7 +3,7 @@
 //! Source: NetCDF Classic Format Specification (Unidata, NetCDF User's Guide, appendix B), `CDF-1`. Everything is big-endian
 //! and padded to 4 bytes; the header is followed by the variables in their order.
 
-use super::AddedMassError;
+use crate::added_mass_error::AddedMassError;
 
 const DIMENSIONS: u32 = 0x0a;
 const VARIABLES: u32 = 0x0b;

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use super::{AddedMassError, AddedMassFile};
+use super::AddedMassFile;
+use crate::added_mass_error::AddedMassError;
 use crate::csv_table::guarded;
 
 impl AddedMassFile<'_> {

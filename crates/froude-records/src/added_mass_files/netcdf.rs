@@ -6,7 +6,8 @@
 //! `body_name` is what older readers look for.
 
 use super::classic::{Classic, Values, Variable};
-use super::{AddedMassError, AddedMassFile, DEGREES_OF_FREEDOM};
+use super::{AddedMassFile, DEGREES_OF_FREEDOM};
+use crate::added_mass_error::AddedMassError;
 
 /// Dimensions by their number.
 const OMEGA: u32 = 0;

@@ -7,7 +7,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::{AddedMassError, AddedMassFile, MOST_BODIES};
+use super::AddedMassFile;
+use crate::added_mass_error::{AddedMassError, MOST_BODIES};
 use crate::error::{Place, RecordError, read_bytes, utf8};
 
 /// The largest file that is read: a few hundred bodies.

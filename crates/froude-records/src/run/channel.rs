@@ -14,13 +14,13 @@
 //! The same for `x`. A field of an axis without its axis (`position` of an imported log) is the quantity and has no frame; of any
 //! other name the unit tells the quantity.
 
+use toml::Spanned;
+use toml::de::DeValue;
+
 use crate::error::RecordError;
 use crate::nearest::meant;
 use crate::section::Section;
 use crate::units::{Dimension, parse_unit};
-
-use toml::Spanned;
-use toml::de::DeValue;
 
 /// The clock of the board that recorded.
 pub const BOARD: &str = "board";
@@ -214,7 +214,7 @@ impl Words {
                 return Err(wrong(s, "quantity", problem));
             }
         }
-        let frame = crate::campaign_toml::one_of(s, "frame", &Frame::NAMES, &Frame::ALL)?;
+        let frame = crate::section_values::one_of(s, "frame", &Frame::NAMES, &Frame::ALL)?;
         Ok(Self { quantity: quantity.map(str::to_owned), frame, clock: s.text("clock")?.map(str::to_owned) })
     }
 

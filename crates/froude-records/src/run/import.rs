@@ -26,7 +26,8 @@ use crate::run::channel::{LOG, Meaning};
 use crate::run::log::{Channel, Gap, GapCause, RunLog};
 use crate::run::meta::{Role, RunMeta, RunStatus};
 use crate::sidecar::{Sidecar, read_sidecar};
-use crate::table::{Column, ColumnData, Table, read_table};
+use crate::table::{Column, ColumnData, Table};
+use crate::table_file::read_table;
 use crate::text::counted;
 use crate::units::{Dimension, Unit};
 

@@ -8,8 +8,8 @@ use indexmap::IndexMap;
 use crate::error::{Place, RecordError};
 use crate::nearest::suggestion;
 use crate::run::channel::Meaning;
+use crate::run::doubt::Doubt;
 use crate::run::meta::RunMeta;
-use crate::run::seal::Doubt;
 use crate::units::{Dimension, parse_unit};
 
 /// A whole run.

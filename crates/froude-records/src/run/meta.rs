@@ -2,7 +2,7 @@
 
 use indexmap::IndexMap;
 
-use crate::campaign::BodyAxis;
+use crate::body_axis::BodyAxis;
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
 use crate::run::channel::Meaning;

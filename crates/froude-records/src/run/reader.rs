@@ -19,11 +19,12 @@ use crate::error::{Place, RecordError, reason};
 use crate::hash::Fingerprint;
 use crate::run::allowance::{Allowance, holds};
 use crate::run::channel::{BOARD, LOG, Meaning};
+use crate::run::doubt::{Doubt, DoubtKind};
 use crate::run::file::{End, FileChannel, Message, Step, Summary, Walk, metadata, records, schema, unpack};
 use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
 use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 use crate::run::meta::{RunMeta, RunStatus};
-use crate::run::seal::{Doubt, DoubtKind, contradiction, difference};
+use crate::run::seal::{contradiction, difference};
 use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, differing, of_record, read_run_meta};
 use crate::text::counted;
 

@@ -9,8 +9,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use crate::campaign::BodyAxis;
-use crate::campaign_toml::{count, one_of};
+use toml::de::DeTable;
+
+use crate::body_axis::BodyAxis;
 use crate::checksum;
 use crate::error::{RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
@@ -21,10 +22,9 @@ use crate::run::meta::{
     RunStatus, TOW,
 };
 use crate::section::{Section, Source, parse};
+use crate::section_values::{count, one_of};
 use crate::units::Dimension;
 use crate::write::write_atomically;
-
-use toml::de::DeTable;
 
 /// The largest sidecar that is read.
 pub(crate) const LARGEST_BYTES: u64 = 1 << 20;

@@ -6,9 +6,10 @@
 use std::fmt::Write as _;
 
 use froude_records::estimate::{Coefficient, Estimate, Status};
+use froude_records::number;
 
-use super::{Drawing, MOST_ROWS, distinct};
 use crate::canvas::{Align, Canvas, Ink, shortened, text_width};
+use crate::figures::drawing::{Drawing, MOST_ROWS, distinct};
 use crate::input::Report;
 use crate::plot::{
     ACCENT, ALERT, AXIS, Entry, LABEL_SIZE, MUTED, Panel, RULE, Span, Swatch, TEXT, TICK_SIZE, Ticks, WIDTH,
@@ -16,7 +17,6 @@ use crate::plot::{
 };
 use crate::symbol::{Rich, Style, symbol_and_unit};
 use crate::tables::counted;
-use froude_records::number;
 
 /// Every estimate with the label of its source, fitted ones first.
 fn all_estimates(report: &Report) -> Vec<(String, bool, &Estimate)> {

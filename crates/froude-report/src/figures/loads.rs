@@ -6,16 +6,19 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::{Drawing, MOST_NAMED, MOST_POINTS, distinct, drawn_by_chance, evenly, recommended, thinned};
+use froude_records::number;
+use froude_records::page::{Against, Curve, Point, SourceSection};
+
 use crate::canvas::{Align, Canvas, Ink, shortened};
+use crate::figures::drawing::{
+    Drawing, MOST_NAMED, MOST_POINTS, distinct, drawn_by_chance, evenly, recommended, thinned,
+};
 use crate::plot::{
     ACCENT, Entry, LABEL_SIZE, MUTED, Panel, Span, Swatch, TEXT, Ticks, WIDTH, chunk_size, degree_ticks, draw_legend,
     drawable, grid_shape, legend_height, level_ink,
 };
 use crate::symbol::{Rich, Style, symbol_and_unit};
 use crate::tables::counted;
-use froude_records::number;
-use froude_records::page::{Against, Curve, Point, SourceSection};
 
 /// From this many points on a panel shows them as a cloud behind the line, without bars.
 const CLOUD: usize = 120;

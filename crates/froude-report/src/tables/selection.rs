@@ -1,11 +1,11 @@
 //! The contest of the models.
 
+use froude_records::number::{self, MISSING};
+use froude_records::page::{SelectionRow, SourceSection};
 use maud::{Markup, html};
 
 use super::{Tables, html_symbol, union};
 use crate::symbol::unit_text;
-use froude_records::number::{self, MISSING};
-use froude_records::page::{SelectionRow, SourceSection};
 
 impl Tables {
     /// The contest of the models.
@@ -14,7 +14,7 @@ impl Tables {
         let blocks = union(rows.iter().flat_map(|r| r.range_blocks.iter().map(|(name, _)| name)));
         let has_lack = rows.iter().any(|r| r.lack_of_fit_p.is_some());
         let components = union(rows.iter().map(|r| &r.component));
-        let best = crate::figures::recommended(source).map(|e| e.law.name.as_str());
+        let best = crate::figures::drawing::recommended(source).map(|e| e.law.name.as_str());
         let has_scores = rows.iter().any(|r| r.cross_validation.is_ok());
         let scored = |r: &'a SelectionRow| r.cross_validation.as_ref().err().filter(|_| has_scores);
         let reasons = union(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));

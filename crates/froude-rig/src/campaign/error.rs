@@ -6,9 +6,9 @@ use froude_records::RecordError;
 use froude_records::run::CAMPAIGN_COPY;
 
 use super::lock::LockError;
-use super::preflight::Objection;
 use super::runner::RunnerError;
 use super::setup::SetupError;
+use crate::campaign::preflight::Objection;
 
 /// Why a campaign cannot be driven, or was not driven to its end.
 #[derive(Debug, thiserror::Error)]

@@ -9,8 +9,9 @@ use froude_records::carriage::plan::{PlannedRun, Step, order_seed, plan};
 use froude_records::carriage::{CarriageCampaign, CarriagePlan, RigKind};
 
 use super::error::CampaignError;
-use super::preflight::{Expected, Forecast, Objection, check, check_campaign};
+use super::preflight::{check, check_campaign};
 use super::setup;
+use crate::campaign::preflight::{Expected, Forecast, Objection};
 use crate::load::{Load, TowedBody};
 
 /// What to drive and where the runs go.

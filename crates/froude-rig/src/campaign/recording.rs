@@ -3,15 +3,15 @@
 use std::path::PathBuf;
 
 use froude_records::RecordError;
+use froude_records::carriage::plan::PlannedRun;
 use froude_records::run::{
     AxisSample, BodyState, CarriageFacts, CarriageSample, ClockAlignment, EventKind, Layout, Mounted, Packing,
     Recorder, Role, RunMeta, RunStatus, TOW,
 };
 use indexmap::IndexMap;
 
-use super::runner::Setting;
+use crate::campaign::runner::Setting;
 use crate::drive::{HostClock, Rig, Sample};
-use froude_records::carriage::plan::PlannedRun;
 
 /// What a rig is, for the record.
 pub(super) struct RigFacts {

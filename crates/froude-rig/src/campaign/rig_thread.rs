@@ -11,50 +11,13 @@ use froude_control::request::Request;
 use froude_records::run::EventKind;
 
 use super::hand_over::{Engine, Next, Pace};
-use super::runner::{RunnerError, Session, Setting, said_of};
+use super::runner::{RunnerError, Session};
 use super::stop::{Asked, StopSwitch};
-use crate::drive::{HostClock, Rig, Sample, Stranger};
-use froude_records::carriage::plan::PlannedRun;
+use crate::campaign::order::{Ended, Entry, Order};
+use crate::campaign::runner::error::PATIENCE_S;
+use crate::campaign::runner::setting::{Setting, said_of};
+use crate::drive::{Rig, Sample, Stranger};
 
-/// What the campaign orders.
-pub(super) enum Order<'a> {
-    /// Go to where a run begins: home both axes first, where they are not, and wait for the water.
-    Begin {
-        /// The run.
-        run: &'a PlannedRun,
-        /// Its number in the plan, from 1.
-        number: u64,
-        /// Home both axes first.
-        is_first: bool,
-    },
-    /// Still, motion, still; recorded.
-    Drive(&'a PlannedRun),
-    /// Nothing: say what the trouble is.
-    Report,
-}
-
-/// What comes back.
-pub(super) enum Entry {
-    /// A sample that is due to be recorded or shown, and its tick since the order began.
-    Sample(u64, Sample),
-    /// Something for the record, and its tick since the order began.
-    Event(u64, EventKind, String),
-    /// The order has ended; the last entry of it.
-    Ended(Ended),
-}
-
-/// How an order ended.
-pub(super) struct Ended {
-    /// Done, with why the planned motion was not done where it was not; or what ended it.
-    pub result: Result<Option<String>, RunnerError>,
-    /// The last sample.
-    pub last: Sample,
-    /// Where the order's first tick lies on the host's clock.
-    pub clock: Option<HostClock>,
-}
-
-/// How much of a real rig's telemetry may wait for a disk before the carriage is stopped, s.
-pub(super) const PATIENCE_S: f64 = 10.0;
 /// Entries of a twin that may wait: an eighth of a second, so that it never runs far ahead of who watches.
 const TWIN_ENTRIES: usize = 512;
 

@@ -9,26 +9,25 @@
 //! Here the campaign goes on step by step, asks and records. The rig is ticked by a thread of its own, which carries out one order after the
 //! other (a `Session` each).
 
-mod error;
+pub(crate) mod error;
 mod session;
+pub(crate) mod setting;
 
 use std::path::{Path, PathBuf};
 
-use froude_control::tick::AXES;
-use froude_records::campaign::BodyAxis;
-use froude_records::carriage::CarriagePlan;
 use froude_records::carriage::plan::{OperatorStep, PlannedRun, Step};
-use froude_records::run::{AxisConstants, BodyState, CampaignMark, EventKind, RunStatus};
-use indexmap::IndexMap;
+use froude_records::run::{EventKind, RunStatus};
 
 use super::hand_over::{Helm, hand_over};
 use super::recording::{Recording, RigFacts};
 use super::resume::{Found, look};
-use super::rig_thread::{self, Ended, Entry, Order};
+use super::rig_thread;
 use super::stop::StopSwitch;
-use crate::drive::{Rig, Sample, Stranger};
-use crate::load::Load;
+use crate::campaign::order::{Ended, Entry, Order};
+use crate::campaign::runner::setting::SHOWN_EVERY;
+use crate::drive::{Rig, Sample};
 
+pub use crate::campaign::runner::setting::Setting;
 pub use error::RunnerError;
 pub(super) use session::Session;
 
@@ -58,50 +57,6 @@ pub trait Progress {
 
 /// After a run, driven now or there already: whether its campaign knows enough. The text says why.
 pub type Enough<'a> = dyn FnMut(&Path, &PlannedRun) -> Option<String> + 'a;
-
-/// An approach that coasts too far even at this speed is none, m/s.
-const SLOWEST_APPROACH_M_S: f64 = 0.02;
-
-/// What is the same for all runs.
-#[derive(Debug, Clone)]
-pub struct Setting {
-    /// Campaign's name.
-    pub campaign: String,
-    /// SHA-256 of the campaign's file, hexadecimal; empty where there is none.
-    pub campaign_sha256: String,
-    /// Folder of the runs; it exists.
-    pub folder: PathBuf,
-    /// What is asked for.
-    pub asked: CarriagePlan,
-    /// Speed of the ways between runs, m/s.
-    pub return_speed_m_s: f64,
-    /// Longest that homing may take, s, by axis.
-    pub homing_s: [f64; AXES],
-    /// Shape the reference for the load's mode.
-    pub is_shaped: bool,
-    /// The axis of the body that lies along the travel; `None` where nobody declared it.
-    pub travel: Option<BodyAxis>,
-    /// Declared constants by axis.
-    pub constants: IndexMap<String, AxisConstants>,
-    /// What rides on the carriage apart from where it is mounted: only a twin needs it.
-    pub load: Load,
-    /// Seed, for the record; `None` on a real rig.
-    pub twin_seed: Option<u64>,
-    /// Every how many ticks one is recorded.
-    pub decimation: u64,
-    /// Start of the campaign on the host's clock, ns since 1970; 0 where runs shall be bit-equal.
-    pub start_unix_ns: u64,
-    /// Date in words.
-    pub date: String,
-}
-
-impl Setting {
-    /// The campaign, as its runs name it.
-    #[must_use]
-    pub fn mark(&self) -> CampaignMark<'_> {
-        CampaignMark { name: &self.campaign, sha256: &self.campaign_sha256 }
-    }
-}
 
 /// How a campaign ended.
 #[derive(Debug, Clone, PartialEq)]
@@ -312,41 +267,5 @@ impl<'a> Campaign<'a, '_> {
             }
         }
         Err(RunnerError::Thread { reason: "it has ended by itself".to_owned() })
-    }
-}
-
-/// The load of a run: a ballasted wet run carries the wheel load that buoyancy removes.
-fn load_of(run: &PlannedRun, base: &Load) -> Load {
-    use crate::load::{HungWeight, Mounting};
-    let mounting = match run.body {
-        BodyState::None => Mounting::None,
-        BodyState::Dry => Mounting::Dry,
-        BodyState::Wet => Mounting::Wet,
-    };
-    let ballast_kg = if run.is_ballasted && mounting == Mounting::Wet { base.balancing_ballast_kg() } else { 0.0 };
-    Load {
-        mounting,
-        ballast_kg,
-        hung: HungWeight {
-            weight_n: run.hung_weight_n,
-            floor_m: run.floor_m.unwrap_or(f64::NEG_INFINITY),
-            ..base.hung
-        },
-        ..*base
-    }
-}
-
-/// Whoever watches is shown the samples whose tick is a multiple of this: thirty a second, fewer from a board that sends fewer.
-const SHOWN_EVERY: u64 = 133;
-
-/// The message about another program on the line.
-pub(super) fn said_of(stranger: Stranger) -> String {
-    match stranger {
-        Stranger::TurnedAway(session) => {
-            format!("another program (session {session:08x}) asked for the board and was turned away")
-        }
-        Stranger::Stopped(session) => {
-            format!("another program (session {session:08x}) asked for a stop, which was obeyed")
-        }
     }
 }

@@ -8,11 +8,11 @@ use froude_fit::distribution::coverage_factor;
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
-use super::envelope::{FEWEST_RUNS, Reduced, all_but};
 use super::fit::{DecayFit, HalfCycle};
 use super::pool::{EIGHT_OVER_3_PI, inverse_2};
 use super::run::DecaySetup;
 use super::swings::Swings;
+use crate::decay::reduced::{FEWEST_RUNS, Reduced, all_but};
 
 /// Below this ratio of largest to smallest speed, u and u² are correlated by 0.986 and more.
 const APART: f64 = 2.0;

@@ -15,7 +15,6 @@ use froude_fit::faer::Mat;
 use froude_fit::nonlinear::{Model, Parameter, Scatter as Noise, Settings, Solution, minimise};
 use froude_records::text::counted;
 
-use super::envelope::{FEWEST_RUNS, Reduced};
 use super::error::DecayError;
 use super::findings;
 use super::fit::{DecayFit, Method, RunSummary, Scatter};
@@ -24,6 +23,7 @@ use super::motion::Motion;
 use super::pool::EIGHT_OVER_3_PI;
 use super::run::{DecayRun, DecaySetup};
 use super::swings::Swings;
+use crate::decay::reduced::{FEWEST_RUNS, Reduced};
 
 /// A, D_I, D_II.
 const SOUGHT: usize = 3;

@@ -10,7 +10,8 @@ use froude::control::config::Config;
 use froude::control::request::{Move, Request};
 use froude::fit::budget::Uncertain;
 use froude::methods::carriage::drag::calibration::ForcePerVolt;
-use froude::methods::carriage::drag::coefficient::{Coefficient, Method};
+use froude::methods::carriage::drag::coefficient::Coefficient;
+use froude::methods::carriage::drag::point::Method;
 use froude::methods::carriage::drag::run::RunKind;
 use froude::methods::carriage::drag::simulate::Logged;
 use froude::methods::carriage::drag::{BodyState, DragReport, DragRun, DragSetup, drag_report};
@@ -135,7 +136,7 @@ fn campaign(twin: &TwinConfig, mut load: Load, control: &Config, d: f64, seed: u
     declared.reference_area_m2 = Some(0.04);
     declared.speed_scale_relative = 0.0;
     declared.calibration = Some(ForcePerVolt { force_per_volt_n: Uncertain::new(k, CALIBRATED_TO * k) });
-    declared.ballast = froude::methods::carriage::drag::run::Ballast::Matched {
+    declared.ballast = froude::methods::carriage::drag::setup::Ballast::Matched {
         carried_kg: Some(Uncertain::new(load.balancing_ballast_kg(), 0.0)),
     };
     let views: Vec<DragRun<'_>> = runs.iter().map(Logged::view).collect();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use froude::methods::added_mass::links::{Configuration, LinksOutcome, links};
 use froude::methods::added_mass::options::Asked;
-use froude::methods::added_mass::source::Water;
+use froude::methods::added_mass::water::Water;
 use froude::panel::refine::Wanted;
 use froude::records::csv_table::read_csv;
 use froude::records::units::Dimension;

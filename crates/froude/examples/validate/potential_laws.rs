@@ -8,7 +8,7 @@ use froude::mesh::robot::ModularRobot;
 use froude::mesh::sections::{Resolution, SectionBody};
 use froude::methods::added_mass::body::body;
 use froude::methods::added_mass::options::Asked;
-use froude::methods::added_mass::source::Water;
+use froude::methods::added_mass::water::Water;
 use froude::panel::chain::{Chain, diagonal_form};
 use froude::panel::convergence::converged;
 use froude::panel::mirror::{Kind, Mirror, positive_part};

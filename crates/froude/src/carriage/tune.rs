@@ -7,9 +7,8 @@ use froude_rig::campaign::runner::{Operator, Progress};
 use froude_rig::campaign::stop::StopSwitch;
 
 use super::drive::{DriveJob, Prepared, drive, prepare_with};
-use crate::Error;
 use crate::pipeline::{Input, Job, Outcome, Purpose, identify};
-use crate::results;
+use crate::{Error, results};
 
 /// The sweep below the margins, Hz: from well below the chain to well above the crossover of a loop that is stiff against it.
 const TUNING_HZ: [f64; 2] = [2.0, 150.0];

@@ -11,7 +11,7 @@ use froude_records::estimate::{
 use indexmap::IndexMap;
 
 use super::Calibration;
-use crate::drag::run::{DragSetup, Efficiency, UNDECLARED_EFFICIENCY};
+use crate::drag::setup::{DragSetup, Efficiency, UNDECLARED_EFFICIENCY};
 
 /// Name of the coefficient and of its law: `drive_force = force_per_volt · command`.
 pub(super) const FORCE_PER_VOLT: &str = "force_per_volt";

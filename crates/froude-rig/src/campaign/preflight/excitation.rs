@@ -6,7 +6,7 @@ use froude_control::travel::{Rigid, foresee_excitation, preflight_excitation};
 use froude_records::carriage::plan::{Drive, JOG_S, PlannedRun};
 
 use super::tow::{Load, beyond_the_drive};
-use super::{Expected, Forecast, Objection};
+use crate::campaign::preflight::forecast::{Expected, Forecast, Objection};
 
 /// Pulses, relay, sweep and jog. The controller holds them inside the soft limits by ending them: what would be ended is refused here.
 pub(super) fn excitation(run: &PlannedRun, control: &Config, expected: &Expected) -> (Forecast, Vec<Objection>) {

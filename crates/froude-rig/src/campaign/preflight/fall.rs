@@ -4,7 +4,7 @@ use froude_control::coast::Coast;
 use froude_control::config::AxisConfig;
 use froude_records::carriage::plan::PlannedRun;
 
-use super::{Expected, at_most};
+use crate::campaign::preflight::forecast::{Expected, at_most};
 
 /// What a hung weight does when the torque fails, where that does not end inside the travel.
 ///

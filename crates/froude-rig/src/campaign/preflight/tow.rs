@@ -11,7 +11,7 @@ use froude_records::carriage::plan::PlannedRun;
 use froude_records::run::{BodyState, Role};
 
 use super::fall::fall;
-use super::{Expected, Forecast, Objection, SHORTEST_STEADY_S};
+use crate::campaign::preflight::forecast::{Expected, Forecast, Objection, SHORTEST_STEADY_S};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {

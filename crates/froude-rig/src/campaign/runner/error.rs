@@ -7,7 +7,6 @@ use froude_control::status::Refusal;
 use froude_records::RecordError;
 use froude_records::run::RunStatus;
 
-use super::super::rig_thread;
 use crate::drive::RigError;
 
 /// Why a campaign stopped before its end.
@@ -158,7 +157,7 @@ pub enum RunnerError {
     #[error(
         "the carriage was stopped in {run} because the disk is {} s behind it; free the disk of other work, or record to another \
          one (--out)",
-        rig_thread::PATIENCE_S
+        PATIENCE_S
     )]
     Behind {
         /// The run.
@@ -194,3 +193,6 @@ impl RunnerError {
         }
     }
 }
+
+/// How much of a real rig's telemetry may wait for a disk before the carriage is stopped, s.
+pub(crate) const PATIENCE_S: f64 = 10.0;

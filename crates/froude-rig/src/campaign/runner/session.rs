@@ -7,10 +7,10 @@ use froude_records::carriage::plan::{Drive, JOG_S, PlannedRun};
 use froude_records::run::EventKind;
 
 use super::super::hand_over::Engine;
-use super::super::rig_thread::{Ended, Entry, Order};
 use super::super::stop::{Asked, StopSwitch};
 use super::error::RunnerError;
-use super::{SHOWN_EVERY, SLOWEST_APPROACH_M_S, Setting, load_of, said_of};
+use crate::campaign::order::{Ended, Entry, Order};
+use crate::campaign::runner::setting::{SHOWN_EVERY, SLOWEST_APPROACH_M_S, Setting, load_of, said_of};
 use crate::drive::{Rig, Sample, Stranger};
 
 /// Longest that a stop may take, s.

@@ -1,0 +1,38 @@
+//! A coefficient as its record states it.
+
+use froude_records::comparison::Side;
+use froude_records::estimate::Coefficient;
+
+use crate::uncertainty::coverage_factor;
+
+/// A number as one estimate states it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Stated {
+    pub value: Option<f64>,
+    /// Standard uncertainty, in the unit of the value; `None` where none is stated.
+    pub standard: Option<f64>,
+    /// Effective degrees of freedom of it; `None` where the record states no finite ones.
+    pub dof: Option<f64>,
+}
+
+impl Stated {
+    /// As a side of a comparison: with the coverage factor k of the 95 % uncertainty U = k·u.
+    pub(super) fn of(self, source: &str) -> Side {
+        let coverage_factor = self.standard.map(|_| self.dof.map_or(NORMAL_COVERAGE, coverage_factor));
+        Side {
+            source: source.to_owned(),
+            value: self.value,
+            standard_uncertainty: self.standard,
+            effective_dof: self.dof,
+            coverage_factor,
+            expanded_uncertainty: coverage_factor.zip(self.standard).map(|(k, u)| k * u),
+        }
+    }
+}
+
+/// Coverage factor where no degrees of freedom are stated: two-sided 95 % of the normal distribution.
+pub(super) const NORMAL_COVERAGE: f64 = 1.959_963_984_540_054;
+
+pub(super) fn stated(c: &Coefficient) -> Stated {
+    Stated { value: c.value, standard: c.standard_uncertainty, dof: c.effective_dof }
+}

@@ -1,0 +1,65 @@
+//! What the rows of a table hand over the seam.
+
+use froude_fit::FEWEST_CLUSTERS;
+use froude_records::campaign::{Campaign, Source, SourceKind};
+use froude_records::estimate::ReferencePoint;
+use froude_records::finding::{Finding, Severity};
+
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+use crate::regression::Scatter;
+use crate::seam::Reduced;
+
+/// Observations of a table, with what the campaign states of them.
+pub(crate) fn of_table(campaign: &Campaign, source: &Source, data: Dataset, laws: Vec<ForceLaw>) -> Reduced {
+    let mut out = Reduced::new(&source.name, source.kind, "table", data, laws);
+    // Nobody but the campaign knows the point that moments are about.
+    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
+    out.stated.point = ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() };
+    Reduced { budget: source.uncertainty.clone(), campaign: campaign.key.clone(), ..out }
+}
+
+/// That no error of an instrument is declared, where none is.
+pub(crate) fn no_budget(source: &Source, has_tare: bool) -> Option<Finding> {
+    source.uncertainty.is_empty().then(|| {
+        let tare = if has_tare { ", that of the tare" } else { "" };
+        let text = format!(
+            "no uncertainty of an instrument is declared: the intervals include the scatter of the observations{tare} and nothing else \
+             (a calibration error does not appear in the scatter)"
+        );
+        Finding::new(Severity::Note, "no-budget", text)
+    })
+}
+
+/// The scatter that the campaign asks for, else what suits the source: residuals of a computation are model error, alike within a configuration.
+pub(crate) fn scatter(
+    campaign: &Campaign,
+    source: &Source,
+    data: &Dataset,
+    findings: &mut Vec<Finding>,
+) -> Result<Scatter, IdentifyError> {
+    match campaign.identify.covariance.as_deref() {
+        Some("classical") => return Ok(Scatter::Classical),
+        Some("HC3" | "hc3") => return Ok(Scatter::Hc3),
+        Some("cluster" | "CR3" | "cr3") => return Ok(Scatter::Cluster),
+        Some(other) => {
+            return Err(IdentifyError::Campaign {
+                place: "[identify]".to_owned(),
+                what: format!("covariance = {other:?} is not known; use classical, HC3 or cluster"),
+            });
+        }
+        None if source.kind != SourceKind::Cfd => return Ok(Scatter::Classical),
+        None => {}
+    }
+    let clusters = data.clusters();
+    if clusters >= FEWEST_CLUSTERS {
+        return Ok(Scatter::Cluster);
+    }
+    let text = format!(
+        "residuals of CFD are model error, not noise; cluster-robust intervals need five configurations and a `group`, there are \
+         {clusters}: HC3 is used"
+    );
+    findings.push(Finding::new(Severity::Warning, "cfd-few-clusters", text));
+    Ok(Scatter::Hc3)
+}

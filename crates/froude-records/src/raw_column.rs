@@ -1,0 +1,42 @@
+//! A column as it is read, before its unit is known.
+
+use crate::error::{Place, RecordError};
+use crate::table::{expected, known_dimension, usual_unit};
+use crate::units::{Unit, UnitError};
+
+/// The cells of one column as the format gives them.
+pub(crate) enum Raw {
+    Numbers(Vec<f64>),
+    Texts(Vec<String>),
+}
+
+/// What is wrong with the unit of a column, with suggestions of the kind that a known name has.
+pub(crate) fn in_light_of(name: &str, text: &str, error: UnitError) -> UnitError {
+    match (known_dimension(name), usual_unit(name)) {
+        (Some(dimension), Some(usual)) => error.expecting(text, dimension, &usual),
+        _ => error,
+    }
+}
+
+/// A standard uncertainty in `degC` is one in K: differences have no offset.
+pub(crate) fn unit_of_column(name: &str, unit: Unit) -> Unit {
+    if name.starts_with("std_") { Unit { offset: 0.0, ..unit } } else { unit }
+}
+
+/// A known name with another dimension is an error.
+pub(crate) fn check_dimension(place: &Place, header: &str, name: &str, unit: &Unit) -> Result<(), RecordError> {
+    match expected(name) {
+        Some((dimension, words)) if dimension != unit.dimension => Err(RecordError::WrongDimension {
+            place: place.clone(),
+            column: header.to_owned(),
+            expected: words,
+            found: unit.dimension.describe(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// What to do about an empty cell of a column that is needed.
+pub(crate) fn fill_or_delete() -> String {
+    "fill it in or delete the row".to_owned()
+}

@@ -1,0 +1,130 @@
+//! Values of a section: counts, words of a list, series.
+
+use toml::Spanned;
+use toml::de::DeValue;
+
+use crate::error::RecordError;
+use crate::nearest::suggestion;
+use crate::section::Section;
+use crate::units::Dimension;
+
+/// Most values of one range of a plan: a million runs is a slip of the step.
+pub(crate) const MOST_STEPS: f64 = 100_000.0;
+
+/// A stop this part of a step beyond the last one is on it: the rounding of a step with a few digits.
+pub(crate) const ON_A_STEP: f64 = 1e-6;
+
+/// One of a few words, with the nearest known one in the message.
+pub(crate) fn one_of<T: Copy>(
+    s: &Section<'_>,
+    key: &'static str,
+    names: &[&'static str],
+    values: &[T],
+) -> Result<Option<T>, RecordError> {
+    let Some(value) = s.get(key) else { return Ok(None) };
+    let text = s.as_text(key, value)?;
+    names
+        .iter()
+        .zip(values)
+        .find(|(name, _)| **name == text)
+        .map(|(_, v)| Some(*v))
+        .ok_or_else(|| s.wrong(key, value, format!("is {text:?}; {}", suggestion(text, names.iter().copied()))))
+}
+
+/// A whole number from 1 to `most`.
+pub(crate) fn count(s: &Section<'_>, key: &'static str, most: u64) -> Result<Option<usize>, RecordError> {
+    match (s.integer(key)?, s.get(key)) {
+        (Some(n), Some(value)) if n == 0 || n > most => {
+            Err(s.wrong(key, value, format!("is {n}; it must lie between 1 and {most}")))
+        }
+        (n, _) => Ok(n.map(|n| n as usize)),
+    }
+}
+
+/// What a section multiplies out to is checked against a limit: each of its numbers may be small, and their product not.
+pub(crate) fn at_most(s: &Section<'_>, numbers: &[usize], most: usize) -> Result<(), RecordError> {
+    let product = numbers.iter().fold(1_usize, |product, n| product.saturating_mul(*n));
+    if product <= most {
+        return Ok(());
+    }
+    Err(RecordError::Value {
+        place: s.place(),
+        key: "repeats".to_owned(),
+        problem: format!("and the lists beside it multiply to {product}; at most {most} are made"),
+    })
+}
+
+/// One value, a list, or start, stop and step.
+pub(crate) fn series<'a>(
+    s: &Section<'a>,
+    key: &'static str,
+    value: &'a Spanned<DeValue<'a>>,
+    dimension: Dimension,
+) -> Result<Vec<f64>, RecordError> {
+    if let Some(list) = value.get_ref().as_array() {
+        if list.is_empty() {
+            return Err(s.wrong(key, value, "is an empty list; write at least one quantity"));
+        }
+        return list.iter().map(|v| s.as_quantity_of(key, v, dimension)).collect();
+    }
+    if value.get_ref().as_table().is_none() {
+        return Ok(vec![s.as_quantity_of(key, value, dimension)?]);
+    }
+    let range = s.as_section(key, value)?;
+    range.only(&["start", "stop", "step"])?;
+    let need = |end: &'static str| {
+        let value = range.get(end).ok_or_else(|| range.missing(end, "a range needs start, stop and step"))?;
+        range.as_written(end, value, key, dimension)
+    };
+    let (start, stop, step) = (need("start")?, need("stop")?, need("step")?);
+    let count = (stop.value_si - start.value_si) / step.value_si;
+    if !(count.is_finite() && (0.0..=MOST_STEPS).contains(&count)) {
+        return Err(s.wrong(
+            key,
+            value,
+            "must go from start to stop in at most 100000 steps of the step's sign".to_owned(),
+        ));
+    }
+    let steps = (count + ON_A_STEP).floor();
+    if count - steps > ON_A_STEP {
+        // A stop that is not reached is a value that somebody asked for and would not get.
+        let last = short(start.unit.from_si(start.value_si + steps * step.value_si));
+        let [one, other] = steps_that_fit((stop.value_si - start.value_si) / step.unit.factor, count);
+        let (first, unit) = (&start.unit, &step.unit);
+        return Err(s.wrong(
+            key,
+            value,
+            format!(
+                "goes from {start} in steps of {step} to {last} {first} and does not reach {stop}; write step = \"{one} {unit}\" or \
+                 \"{other} {unit}\", or another stop"
+            ),
+        ));
+    }
+    let steps = steps as usize;
+    // In the written unit 0.02 + 49·0.02 is exactly what a person means; converted once.
+    Ok((0..=steps)
+        .map(|k| {
+            let value = start.unit.from_si(start.value_si) + k as f64 * start.unit.from_si(step.value_si);
+            start.unit.to_si((value * 1e12).round() / 1e12)
+        })
+        .collect())
+}
+
+/// Two steps that divide `way` (of either sign), next to where `count` of them would: short numbers, where there are any.
+pub(crate) fn steps_that_fit(way: f64, count: f64) -> [f64; 2] {
+    let near = |a: &f64, b: &f64| (a - count).abs().total_cmp(&(b - count).abs());
+    let is_short = |n: &f64| {
+        let step = way / n;
+        format!("{step:.2e}").parse::<f64>().is_ok_and(|s| (s - step).abs() <= 1e-9 * step.abs())
+    };
+    let mut numbers: Vec<f64> = (1..=(4.0 * count + 4.0) as u32).map(f64::from).filter(is_short).collect();
+    numbers.sort_by(near);
+    numbers.extend([count.floor().max(1.0), count.floor().max(1.0) + 1.0]);
+    numbers.dedup();
+    [0, 1].map(|i| short(way / numbers[i]))
+}
+
+/// Ten digits: hides the rounding of a unit's factor.
+pub(crate) fn short(x: f64) -> f64 {
+    format!("{x:.9e}").parse().unwrap_or(x)
+}
