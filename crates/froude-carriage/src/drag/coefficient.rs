@@ -26,7 +26,7 @@ pub struct Coefficient {
     pub dof: f64,
     /// 95 % interval, over all looks.
     pub interval_95: Option<[f64; 2]>,
-    /// Looks that the interval pays for ([`DragSetup::looks`]).
+    /// Looks that the interval pays for ([`looks`](crate::drag::DragSetup::looks)).
     pub looks: usize,
     /// The budget, scatter first.
     pub budget: Vec<Part>,
