@@ -201,6 +201,10 @@ impl Levels for Bent {
         let problem = chain.problem(true).or_else(|_| chain.problem(false))?;
         Ok((MULTIPLES[0] as f64 / MULTIPLES[number] as f64, problem))
     }
+
+    fn is_foreign(&self) -> bool {
+        false
+    }
 }
 
 /// The parts of a mesh, each panel divided into four as often as one likes.
@@ -222,6 +226,10 @@ impl Levels for Subdivided {
         let finer = (0..number).fold(self.mesh.clone(), |mesh, _| subdivided(&mesh));
         let problem = Problem::of_parts(&finer, &tags(&finer), &self.frames, &[]);
         Ok((0.5_f64.powi(number as i32), problem))
+    }
+
+    fn is_foreign(&self) -> bool {
+        true
     }
 }
 

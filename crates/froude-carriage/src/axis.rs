@@ -134,7 +134,8 @@ pub fn of_table(path: &Path, sidecar: Option<&Path>, name: &str) -> Result<AxisM
     let log = &imported.log;
     let gain_n_v = force_per_volt_n_v(path, sidecar)?;
     let servo = servo_log(log)?;
-    let rate_hz = log.sample_rate_hz().unwrap_or(0.0);
+    // The mean step, as the chunks of a long log have it.
+    let rate_hz = servo.rate_hz().map_err(MethodError::refused)?;
     let asked = [AxisModel::Symmetric, AxisModel::Asymmetric].map(|model| (model, friction_of(model)));
     let fit = |friction| identify_servo(&servo, &log_chain(gain_n_v, rate_hz, friction)).map_err(MethodError::refused);
     let rigid = asked.into_iter().filter_map(|(model, friction)| Some((model.friction()?, fit(friction))));

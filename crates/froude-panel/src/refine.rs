@@ -12,7 +12,7 @@ use crate::frame::Frame;
 use crate::matrix::AddedMass;
 use crate::mirror::{Across, Mirror, positive_part};
 use crate::problem::{Problem, Report, Solution};
-use crate::study::{SLOW, Size, study};
+use crate::study::{SLOW, Size, Study, study};
 use crate::tank::{Surface, Tank, TankError};
 use crate::{fast, is_plain, solve};
 
@@ -326,6 +326,9 @@ pub trait Levels {
     ///
     /// Dimensions that give no body; a body that does not fit into its tank.
     fn problem(&self, number: usize) -> Result<(f64, Problem), RefineError>;
+
+    /// Whether the meshes are subdivisions of one from elsewhere, as those of [`Family::Mesh`] are.
+    fn is_foreign(&self) -> bool;
 }
 
 /// Solves one level after the other until `is_enough` of what was solved, or panels, memory or levels end; why it ended before.
@@ -455,17 +458,19 @@ pub fn refine_parts(
     progress: &dyn Fn(&str),
 ) -> Result<RefinedParts, RefineError> {
     let (mut sizes, mut panels, mut solutions) = (Vec::new(), Vec::new(), Vec::new());
+    let is_foreign = levels.is_foreign();
     let (panels_of, level) = (|number: usize| levels.panels(number), |number: usize| levels.problem(number));
     let mut stopped = climb(levels.count(), &panels_of, &level, wanted, progress, |of_body, cells, _, solution| {
         sizes.push(cells);
         panels.push(of_body);
         solutions.push(solution);
-        solutions.len() >= ENOUGH && worst_of_parts(&parts_of(&sizes, &solutions, size), size) <= wanted.tolerance
+        solutions.len() >= ENOUGH
+            && worst_of_parts(&parts_of(&sizes, &solutions, size, is_foreign), size) <= wanted.tolerance
     })?;
     let Some(finest) = solutions.last().cloned() else {
         return Err(RefineError::NoMesh);
     };
-    let entries = parts_of(&sizes, &solutions, size);
+    let entries = parts_of(&sizes, &solutions, size, is_foreign);
     let worst = worst_of_parts(&entries, size);
     let is_within = worst <= wanted.tolerance;
     if !is_within && stopped.is_none() {
@@ -483,14 +488,20 @@ pub fn refine_parts(
 }
 
 /// Values and uncertainties of the entries of parts; of one mesh no uncertainty.
-fn parts_of(sizes: &[f64], solutions: &[Solution], size: Size) -> Vec<Vec<[f64; 2]>> {
+fn parts_of(sizes: &[f64], solutions: &[Solution], size: Size, is_foreign: bool) -> Vec<Vec<[f64; 2]>> {
     match solutions {
         [] => Vec::new(),
         [only] => only.matrix.iter().map(|row| row.iter().map(|a| [*a, f64::INFINITY]).collect()).collect(),
-        _ => {
-            let entries = study(sizes, solutions, size).entries;
-            let of = |c: &Converged| [c.extrapolated.value, c.extrapolated.uncertainty];
-            entries.iter().map(|row| row.iter().map(of).collect()).collect()
+        [.., finest] => {
+            let study = study(sizes, solutions, size);
+            let foreign = is_foreign.then(|| Foreign::of(&study, study.asymmetry));
+            let of = |(i, j): (usize, usize)| {
+                let c = &study.entries[i][j];
+                let root = (finest.matrix[i][i] * finest.matrix[j][j]).abs().sqrt();
+                [c.extrapolated.value, Foreign::uncertainty(foreign, c, (i == j, root))]
+            };
+            let n = study.entries.len();
+            (0..n).map(|i| (0..n).map(|j| of((i, j))).collect()).collect()
         }
     }
 }
@@ -534,6 +545,35 @@ pub fn plan(family: &Family, wanted: &Wanted) -> Result<Vec<(usize, Forecast)>, 
     Ok(out)
 }
 
+/// What a mesh from elsewhere leaves uncertain beyond extrapolation, of one body or of several parts.
+#[derive(Debug, Clone, Copy)]
+struct Foreign {
+    /// Least uncertainty as part of what extrapolation subtracts. Cells of such a mesh are not finer towards its edges: where two diagonal
+    /// entries of a part say so, every value may be further off than extrapolation goes.
+    edges: f64,
+    /// Raw asymmetry of the finest mesh. Triangles break the symmetry of a body: what a coupling owes to that does not fall in a row from mesh to
+    /// mesh.
+    asymmetry: f64,
+}
+
+impl Foreign {
+    fn of(study: &Study, asymmetry: f64) -> Self {
+        let is_slow = |i: &usize| study.entries[*i][*i].order.is_some_and(|p| SLOW.contains(&p));
+        let mut parts = (0..study.entries.len()).step_by(6);
+        let is_coarse = parts.any(|first| (first..first + 6).filter(is_slow).count() > 1);
+        Self { edges: if is_coarse { AT_EDGES } else { 0.0 }, asymmetry }
+    }
+
+    /// Of an entry, on the diagonal or not, with √(A_ii A_jj); of a mesh that was made for the body that of the extrapolation alone.
+    fn uncertainty(foreign: Option<Self>, c: &Converged, (is_diagonal, root): (bool, f64)) -> f64 {
+        let own = c.extrapolated.uncertainty;
+        let Some(foreign) = foreign else { return own };
+        let off = (c.fine.value - c.extrapolated.value).abs();
+        let broken = if is_diagonal { 0.0 } else { foreign.asymmetry * root };
+        own.max(broken).max(foreign.edges * off)
+    }
+}
+
 /// Entries of the last three meshes together, or of two; of one no uncertainty.
 fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
     let sizes: Vec<f64> = steps.iter().map(|s| s.size).collect();
@@ -547,20 +587,14 @@ fn entries(steps: &[Step], length_m: f64, is_foreign: bool) -> [[Entry; 6]; 6] {
     }
     let size = Size { volume_m3: last.measure.volume_m3, length_m };
     let study = study(&sizes, &solutions, size);
-    // Cells of a mesh from elsewhere are not finer towards its edges: where two entries say so, every value may be further off than
-    // extrapolation goes.
-    let is_slow = |i: &usize| study.entries[*i][*i].order.is_some_and(|p| SLOW.contains(&p));
-    let edges = if is_foreign && (0..6).filter(is_slow).count() > 1 { AT_EDGES } else { 0.0 };
+    let foreign = is_foreign.then(|| Foreign::of(&study, last.added_mass.asymmetry));
     core::array::from_fn(|i| {
         core::array::from_fn(|j| {
             let c = &study.entries[i][j];
-            // Triangles break the symmetry of a body: what a coupling owes to that does not fall in a row from mesh to mesh.
-            let off = (c.fine.value - c.extrapolated.value).abs();
             let root = (last.added_mass.matrix[i][i] * last.added_mass.matrix[j][j]).abs().sqrt();
-            let broken = if i == j || !is_foreign { 0.0 } else { last.added_mass.asymmetry * root };
             Entry {
                 value: c.extrapolated.value,
-                uncertainty: c.extrapolated.uncertainty.max(broken).max(edges * off),
+                uncertainty: Foreign::uncertainty(foreign, c, (i == j, root)),
                 shared: c.shared,
                 order: c.order,
             }

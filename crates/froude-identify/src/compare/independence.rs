@@ -9,20 +9,26 @@ use froude_records::finding::{Finding, Severity};
 use crate::compare::named::Named;
 
 /// What is read as something else than observations: it is the same error under its own key, or no error at all.
-const NOT_OBSERVED: [&str; 4] = ["campaign", "sidecar", "record", "calibration"];
+const NOT_OBSERVED: [&str; 3] = ["campaign", "sidecar", "record"];
 
-/// Whether a file holds observations; an old record does not say what it read a file as.
-fn is_observed(data: &DataFile) -> bool {
+/// Runs with known weights: observations of a calibration, and of nothing else.
+const CALIBRATION: &str = "calibration";
+
+/// Whether a file holds observations of an estimate; an old record does not say what it read a file as.
+fn is_observed(estimate: &Estimate, data: &DataFile) -> bool {
     let is_table = |path: &str| {
         Path::new(path).extension().is_none_or(|e| !e.eq_ignore_ascii_case("toml") && !e.eq_ignore_ascii_case("json"))
     };
     !data.sha256.is_empty()
-        && data.role.as_deref().map_or_else(|| is_table(&data.path), |role| !NOT_OBSERVED.contains(&role))
+        && data.role.as_deref().map_or_else(
+            || is_table(&data.path),
+            |role| !NOT_OBSERVED.contains(&role) && (role != CALIBRATION || estimate.method.name == CALIBRATION),
+        )
 }
 
-/// Fingerprints of the observations among files.
-fn fingerprints<'a>(files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a str> {
-    files.filter(|data| is_observed(data)).map(|data| data.sha256.as_str()).collect()
+/// Fingerprints of the observations of an estimate among files.
+fn fingerprints<'a>(estimate: &Estimate, files: impl Iterator<Item = &'a DataFile>) -> BTreeSet<&'a str> {
+    files.filter(|data| is_observed(estimate, data)).map(|data| data.sha256.as_str()).collect()
 }
 
 /// Where an estimate comes from, as far as its record shows.
@@ -38,14 +44,14 @@ pub(super) struct Origin<'a> {
 /// The origin of each estimate.
 pub(super) fn origins<'a>(all: &[Named<'a>]) -> Vec<Origin<'a>> {
     let of = |n: &Named<'a>| {
-        let own = fingerprints(n.record.data_of(n.estimate));
+        let own = fingerprints(n.estimate, n.record.data_of(n.estimate));
         let is_exact = !own.is_empty();
         let first = n.record.estimates.first().map(|e| &e.source);
         let is_alone = || n.record.estimates.iter().all(|e| Some(&e.source) == first);
         if is_exact {
             Origin { tables: own, is_exact, is_alone: true }
         } else {
-            Origin { tables: fingerprints(n.record.data.values()), is_exact, is_alone: is_alone() }
+            Origin { tables: fingerprints(n.estimate, n.record.data.values()), is_exact, is_alone: is_alone() }
         }
     };
     all.iter().map(of).collect()

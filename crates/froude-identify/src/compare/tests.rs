@@ -238,3 +238,21 @@ fn a_body_without_links_has_none() {
     let c = compared(record("a", "t1", 10.0, 1.0, None), record("b", "t2", 13.0, 1.0, None));
     assert!(c.loads.iter().all(|f| f.n_links.is_none()));
 }
+
+/// Weights are observations of a calibration. To a drag that its force per volt scales they are none: there they are an error under its own key.
+#[test]
+fn two_reductions_of_one_calibration_are_not_independent() {
+    let of = |source: &str, method: &str, tow: &str, value: f64| {
+        let mut out = record(source, tow, value, 0.4, Some(9.0));
+        out.estimates[0].method.name = method.to_owned();
+        out.data
+            .insert("d3".to_owned(), DataFile { role: Some("calibration".to_owned()), ..file("weight.mcap", "w1") });
+        out.estimates[0].data =
+            if method == "calibration" { vec!["d3".to_owned()] } else { vec!["d2".to_owned(), "d3".to_owned()] };
+        out
+    };
+    let c = compared(of("one", "calibration", "t1", 47.8), of("two", "calibration", "t2", 46.9));
+    assert_eq!(c.coefficients[0].note, SAME_DATA);
+    let c = compared(of("one", "mcd", "t1", 47.8), of("two", "mcd", "t2", 46.9));
+    assert_ne!(c.coefficients[0].note, SAME_DATA);
+}
