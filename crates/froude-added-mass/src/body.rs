@@ -144,7 +144,7 @@ fn extent_along(mesh: &Mesh, axis: usize) -> f64 {
 /// Volume, centre of buoyancy, displaced mass and its inertia.
 pub(crate) fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64, frame: &Frame) -> TextTable {
     let finest = refined.steps.last().map(|s| s.measure);
-    let of = if is_mesh { "exactly that of the facets" } else { "exactly that of the dimensions" };
+    let of = if is_mesh { "exactly that of the facets" } else { "exact for the given dimensions" };
     let mut rows = vec![
         vec!["volume".to_owned(), format!("{} m³, {of}", number::plain(refined.volume_m3, 6))],
         vec!["displaced mass".to_owned(), format!("{} kg", number::plain(density_kg_m3 * refined.volume_m3, 6))],
@@ -158,7 +158,7 @@ pub(crate) fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64,
         ]);
         let inertia = inertia_m5(m.inertia_m5(), m.volume_m3, m.centroid_m, frame).map(|j| density_kg_m3 * j);
         rows.push(vec![
-            "inertia of the displaced water about the point stated, xx, yy, zz".to_owned(),
+            "inertia of the displaced water about the stated point, xx, yy, zz".to_owned(),
             format!("({}) kg m²", list(inertia, 5)),
         ]);
     }

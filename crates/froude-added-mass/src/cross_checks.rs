@@ -58,7 +58,7 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
     {
         rows.push(line("circular cylinder (DNV-RP-C205)", [None, Some(across), Some(across), None, None, None]));
     }
-    let caption = "Cross-checks in unbounded water. A body that is not the one named may differ by as much as it looks different.";
+    let caption = "Cross-checks in unbounded water. These are other bodies: the more the shape differs, the more the result may differ.";
     TextTable {
         caption: caption.to_owned(),
         head: std::iter::once(String::new()).chain((0..6).map(diagonal_head)).collect(),

@@ -190,7 +190,7 @@ pub fn links_table(configurations: &[Configuration], density_kg_m3: f64) -> Text
         })
         .collect();
     TextTable {
-        caption: "Added mass of the configurations, deeply submerged; C_A = μ/(ρV) (USR eq. 22), and the sway mass over ρL³ as WAMIT prints \
+        caption: "Added mass of the configurations (HnLT: head, n links, tail), deeply submerged; C_A = μ/(ρV) (USR eq. 22), and the sway mass over ρL³ as WAMIT prints \
                   it. ± is the numerical uncertainty, 95 %."
             .to_owned(),
         head: ["", "V [10⁻³ m³]", "μ_x [kg]", "μ_y [kg]", "μ_z [kg]", "C_Ax [1]", "C_Ay [1]", "C_Az [1]", "μ_y/(ρL³) [1]"]

@@ -24,6 +24,7 @@ use froude_records::estimate::{Coefficient, Estimate, Interval, Law, Measured, M
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::TextTable;
+use froude_records::text::counted;
 use indexmap::IndexMap;
 
 use super::exports::{export, of_parts_for_program, words_of_parts};
@@ -275,8 +276,9 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &Asked) -> Re
     parts.extend((1..=links).map(|k| format!("link {k}")));
     parts.push("head".to_owned());
     let notes = vec![format!(
-        "Joints bent by {} each about z, the tail's end lies as in the straight robot; every link has its point half-way between its joints, an \
+        "H{links}LT: head, {}, tail. Joints bent by {} each about z, the tail end stays where it is in the straight robot; every link has its point half-way between its joints, an \
          end half-way between joint and tip. Links count from the tail.",
+        counted(links, "link", "links"),
         number::degrees(angle)
     )];
     let name = format!("{name}, H{links}LT, link by link");

@@ -132,10 +132,10 @@ pub enum CarriageJob {
         /// Folders of runs, or runs (.mcap).
         #[arg(required = true)]
         runs: Vec<PathBuf>,
-        /// A campaign other than the copy that lies with the runs.
+        /// Campaign to use instead of the copy stored with the runs.
         #[arg(long)]
         campaign: Option<PathBuf>,
-        /// Folder of the results [default: beside what is named, and called after it: RUNS-drag, ID-drag].
+        /// Folder of the results [default: RUNS-drag or ID-drag beside the input].
         #[arg(long)]
         out: Option<PathBuf>,
     },
@@ -145,10 +145,10 @@ pub enum CarriageJob {
         /// Folders of runs, or runs (.mcap).
         #[arg(required = true)]
         runs: Vec<PathBuf>,
-        /// A campaign other than the copy that lies with the runs.
+        /// Campaign to use instead of the copy stored with the runs.
         #[arg(long)]
         campaign: Option<PathBuf>,
-        /// Folder of the results [default: beside what is named, and called after it: RUNS-calibration].
+        /// Folder of the results [default: RUNS-calibration beside the input].
         #[arg(long)]
         out: Option<PathBuf>,
         /// A distance that was measured on the carriage; needs --counted.
@@ -161,7 +161,7 @@ pub enum CarriageJob {
         #[arg(long, requires = "measured", value_name = "QUANTITY", value_delimiter = ',')]
         counted: Vec<String>,
     },
-    /// Run relay and sweep on the loop: margins on the measured response, proposed gains.
+    /// Run a relay test and a sweep on the position loop: margins on the measured response, proposed gains.
     #[command(after_help = "Example: froude carriage tune campaign.toml")]
     Tune(Experiment),
     /// Sweep the carriage bare, dry and wet: find the load's mode, and propose an input shaper.

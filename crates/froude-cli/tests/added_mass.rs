@@ -645,7 +645,7 @@ fn the_volume_is_exact_and_says_of_what() {
     std::fs::write(at.join("body.toml"), body_file(EGG)).unwrap();
     let row = |text: &str| text.lines().find(|l| l.trim_start().starts_with("volume")).unwrap().to_owned();
     let text = lines(at, &["body.toml", "--tolerance", "5 %"]);
-    assert!(row(&text).contains("0.125664 m³, exactly that of the dimensions"), "{}", row(&text));
+    assert!(row(&text).contains("0.125664 m³, exact for the given dimensions"), "{}", row(&text));
     write(at, "hull.obj", &hull());
     let (text, out) =
         (lines(at, &[&["hull.obj"], &ONE_MESH[..]].concat()), record(at, &[&["hull.obj"], &ONE_MESH[..]].concat()));

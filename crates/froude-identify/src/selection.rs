@@ -206,13 +206,15 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
     if model.law.is_nonlinear() {
         return Score {
             rmse: Vec::new(),
-            note: Some("not scorable: the law is not linear in its coefficients".to_owned()),
+            note: Some("not possible: the law is not linear in its coefficients".to_owned()),
         };
     }
     if let Some(all) = &data.sample {
         let note = match all.configurations.len() {
             few @ ..3 => {
-                format!("not scorable: leave-one-configuration-out needs three configurations, there are {few}")
+                format!(
+                    "not possible: leaving one configuration out needs at least three configurations, and there are {few}"
+                )
             }
             _ => "not scored: no configuration is left out of a table that is read in chunks".to_owned(),
         };
@@ -231,18 +233,18 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
                     fit::select::Score::NotScorable { reason } => {
                         out.note = Some(if names.len() < 3 {
                             format!(
-                                "not scorable: leave-one-configuration-out needs three configurations, there are {}",
+                                "not possible: leaving one configuration out needs at least three configurations, and there are {}",
                                 names.len()
                             )
                         } else {
-                            format!("{}: not scorable: {reason}", score.component)
+                            format!("{}: not possible: {reason}", score.component)
                         });
                     }
                 }
             }
             out
         }
-        Err(reason) => Score { rmse: Vec::new(), note: Some(format!("not scorable: {reason}")) },
+        Err(reason) => Score { rmse: Vec::new(), note: Some(format!("not possible: {reason}")) },
     }
 }
 

@@ -26,7 +26,7 @@ const fn option(name: &'static str, takes: &'static str, help: &'static str) -> 
 }
 
 const fn words(name: &'static str, words: &'static [&'static str], help: &'static str) -> AddedMassOption {
-    AddedMassOption { words, ..option(name, "WORD", help) }
+    AddedMassOption { words, ..option(name, "AXIS", help) }
 }
 
 const fn switch(name: &'static str, help: &'static str) -> AddedMassOption {
@@ -38,7 +38,7 @@ const DIRECTIONS: &[&str] = &["x", "-x", "y", "-y", "z", "-z"];
 
 /// All of them.
 pub const ADDED_MASS_OPTIONS: [AddedMassOption; 15] = [
-    option("links", "K|A..B|K,K", "Links of a robot: 3, or 1..9 for a table with its least squares, or 1,3,6"),
+    option("links", "K|A..B|K,K", "Links of a robot: 3, or 1..9 for a table with a least-squares fit, or 1,3,6"),
     option("density", "QUANTITY", "Density of the water, with its unit [default: the body file's]"),
     words(
         "axes",

@@ -14,7 +14,7 @@ pub(crate) fn findings_by_severity(findings: &[Finding], tables: &mut Tables) ->
             "error",
             "contradict physics or the file itself: do not use the numbers as they are.",
         ),
-        (Severity::Warning, "Warnings", "warning", "doubtful: look before trusting the numbers."),
+        (Severity::Warning, "Warnings", "warning", "check these before trusting the numbers."),
         (Severity::Note, "Notes", "note", "worth knowing; nothing was changed because of them."),
     ];
     let mut parts = Vec::new();

@@ -554,7 +554,7 @@ fn notes(estimates: &[Estimate], with_cross_validation: bool) -> Markup {
     }
 }
 
-/// The sentence that says which input to improve first.
+/// The sentence that says which input contributes most.
 fn improve_first(source: &SourceSection) -> Markup {
     let rows = budget_rows(source);
     let ranked = ranked_inputs(&rows);
@@ -562,9 +562,9 @@ fn improve_first(source: &SourceSection) -> Markup {
     html! {
         @if let Some((input, part)) = ranked.first() {
             p class="lead" {
-                "Improve first: " b { (input) } ". It makes " (number::percent(*part))
+                "Largest contribution: " b { (input) } ", " (number::percent(*part))
                 " of the variance, averaged over the coefficients of model " (model)
-                @if let Some((next, part)) = ranked.get(1) { "; then " (next) " with " (number::percent(*part)) }
+                @if let Some((next, part)) = ranked.get(1) { "; next: " (next) ", " (number::percent(*part)) }
                 "."
             }
         }

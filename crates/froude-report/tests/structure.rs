@@ -355,7 +355,8 @@ fn what_no_model_can_be_scored_on_is_said_once() {
         component: component.to_owned(),
         delta_aicc: Ok(0.0),
         cross_validation: Err(
-            "not scorable: leave-one-configuration-out needs three configurations, there are 2".to_owned()
+            "not possible: leaving one configuration out needs at least three configurations, and there are 2"
+                .to_owned(),
         ),
         ..SelectionRow::default()
     };
@@ -364,9 +365,9 @@ fn what_no_model_can_be_scored_on_is_said_once() {
     let mut report = report_of(vec![e]);
     report.sources[0].selection = vec![row("f1", "f_x"), row("f1", "f_y"), row("f2", "f_x"), row("f2", "f_y")];
     let text = words(&html(&report).unwrap());
-    assert_eq!(text.matches("scorable").count(), 1, "{text}");
+    assert_eq!(text.matches("leaving one configuration out").count(), 1, "{text}");
     assert!(text.contains(
-        "Cross-validation is not scorable: leave-one-configuration-out needs three configurations, there are 2."
+        "Cross-validation is not possible: leaving one configuration out needs at least three configurations, and there are 2."
     ));
 }
 

@@ -135,7 +135,7 @@ fn repeatability_table(cells: &[Repeatability]) -> TextTable {
     TextTable {
         caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run."
             .to_owned(),
-        head: ["speed [m/s]", "direction", "force [N]", "std [N]", "std of it", "runs"].map(str::to_owned).to_vec(),
+        head: ["speed [m/s]", "direction", "force [N]", "std [N]", "relative std", "runs"].map(str::to_owned).to_vec(),
         rows: cells
             .iter()
             .map(|c| {

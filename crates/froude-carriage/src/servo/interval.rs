@@ -115,7 +115,7 @@ impl Spread {
     /// What was taken as one piece of evidence, in words.
     #[must_use]
     pub fn pieces(&self) -> String {
-        self.runs.map_or_else(|| format!("blocks of {:.1} s", self.block_s), |n| format!("{n} whole runs as clusters"))
+        self.runs.map_or_else(|| format!("blocks of {:.1} s", self.block_s), |n| format!("{n} clusters, one per run"))
     }
 }
 

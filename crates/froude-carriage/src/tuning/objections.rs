@@ -65,7 +65,7 @@ fn against_margins(m: &Margins) -> Vec<String> {
     }
     match m.phase_rad {
         Some(phase) if phase < demand.phase_rad => out.push(format!(
-            "phase margin {:.0}°, {:.0}° are asked for",
+            "phase margin {:.0}°, at least {:.0}° required",
             phase.to_degrees(),
             demand.phase_rad.to_degrees()
         )),
@@ -73,14 +73,14 @@ fn against_margins(m: &Margins) -> Vec<String> {
         Some(_) => {}
     }
     if let Some(gain) = m.gain.filter(|&g| g < demand.gain) {
-        out.push(format!("gain margin {}, {} is asked for", digits(gain), digits(demand.gain)));
+        out.push(format!("gain margin {}, at least {} required", digits(gain), digits(demand.gain)));
     }
     if let Some(gain) = m.gain_reduction.filter(|g| g * demand.gain > 1.0) {
         out.push(format!("unstable already at {} of its gain", number::percent(gain)));
     }
     if m.largest_sensitivity > demand.sensitivity {
         let (is, may) = (digits(m.largest_sensitivity), digits(demand.sensitivity));
-        out.push(format!("maximum sensitivity {is}, {may} is allowed"));
+        out.push(format!("maximum sensitivity {is}, at most {may} allowed"));
     }
     out
 }

@@ -113,7 +113,7 @@ pub(super) fn same_data_finding(a: &Named<'_>, b: &Named<'_>) -> Finding {
         Severity::Warning,
         "same-data",
         format!(
-            "{} ({}) and {} ({}) come from the same data: that they agree is no evidence, and E_n and χ², which assume \
+            "{} ({}) and {} ({}) come from the same data: their agreement is no evidence, and E_n and χ², which assume \
              independent measurements, are not given",
             a.estimate.source, a.file, b.estimate.source, b.file
         ),

@@ -33,7 +33,7 @@ pub(super) fn rows(source: &SourceResult) -> Vec<SelectionRow> {
                 relative_residual: component.relative_residual,
                 delta_aicc: behind(model, &component.name),
                 cross_validation: rmse
-                    .ok_or_else(|| source.scores[i].note.clone().unwrap_or_else(|| "not scorable".to_owned())),
+                    .ok_or_else(|| source.scores[i].note.clone().unwrap_or_else(|| "not possible".to_owned())),
                 range_blocks: source
                     .blocks
                     .iter()

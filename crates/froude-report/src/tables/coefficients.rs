@@ -139,7 +139,7 @@ impl Tables {
         let recommended = group.iter().any(|e| e.recommended);
         let class = |e: &Estimate| if e.recommended { "best" } else { "" };
         let has_interval = group.iter().any(|e| e.coefficients.values().any(|c| c.interval_95.is_some()));
-        let mut text = format!("Coefficients of {source} by force model");
+        let mut text = format!("Coefficients from {source} for each force model");
         if has_interval {
             text.push_str("; standard uncertainty in brackets, 95 % interval below");
         }

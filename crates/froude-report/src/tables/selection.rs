@@ -86,7 +86,7 @@ impl Tables {
                                         @for (i, unit) in units.iter().enumerate() {
                                             @if i == 0 { ", σ and errors in " (unit_text(unit)) }
                                             @else {
-                                                ", in " (unit_text(unit)) " for "
+                                                @if **unit == *"1" { ", dimensionless for " } @else { ", in " (unit_text(unit)) " for " }
                                                 (own().filter(|r| r.unit == *unit).map(|r| r.model.as_str()).collect::<Vec<_>>().join(", "))
                                             }
                                         }
@@ -158,7 +158,7 @@ impl Tables {
 
 /// Why there is no cross-validation, without the words that say that there is none.
 fn bare_reason(reason: &str) -> &str {
-    reason.strip_prefix("not scorable: ").unwrap_or(reason)
+    reason.strip_prefix("not possible: ").unwrap_or(reason)
 }
 
 /// The sentence that stands for a column in which no model has a cross-validation.
@@ -176,5 +176,5 @@ fn unscored(rows: &[SelectionRow]) -> Markup {
             .collect::<Vec<_>>()
             .join("; "),
     };
-    html! { p class="notes" { "Cross-validation is not scorable: " (sentence) "." } }
+    html! { p class="notes" { "Cross-validation is not possible: " (sentence) "." } }
 }

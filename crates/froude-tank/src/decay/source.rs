@@ -192,7 +192,7 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
     let paths = logs_in(folder)?;
     if paths.is_empty() {
         refuse_others(folder, FREE_DECAY, &recorded_in(folder)?)?;
-        let what = "no releases: put one log each there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)";
+        let what = "no releases: put one log per release there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)";
         return Err(MethodError::input(folder, what));
     }
     let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };

@@ -29,7 +29,7 @@ pub fn candidates_table(outcome: &Tuned) -> TextTable {
         ("delay margin [ms]", |c| c.margins.delay_s.map(|s| 1e3 * s)),
         ("maximum sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
         ("phase margin, heaviest body [°]", |c| c.heaviest?.phase_rad.map(f64::to_degrees)),
-        ("integral feeds swings below [Hz]", |c| Some(c.gains.feeding_hz())),
+        ("integral drives oscillation below [Hz]", |c| Some(c.gains.feeding_hz())),
         ("following error in ramps [mm]", |c| c.following_error_m.map(|m| 1e3 * m)),
         ("motor's speed in homing [mm/s]", |c| c.homing_m_s.map(|v| 1e3 * v)),
         ("objections", |c| Some(c.objections.len() as f64)),
@@ -71,7 +71,7 @@ pub fn sentences(outcome: &Tuned) -> Vec<String> {
         if let Some(load_hz) = c.lowest_load_hz.filter(|hz| *hz < c.gains.feeding_hz()) {
             out.push(format!(
                 "{}: below {:.1} Hz the integral's lag is more than the derivative's lead, and the load with the heaviest body swings at \
-                 {load_hz:.1} Hz: the loop feeds that swing, friction alone damps it. K_i below {} V/(rad s) would not.",
+                 {load_hz:.1} Hz: the loop drives that oscillation, and only friction damps it. K_i below {} V/(rad s) would not.",
                 c.name,
                 c.gains.feeding_hz(),
                 number::significant(c.gains.derivative_v_s_rad * (TAU * load_hz).powi(2), 2)
