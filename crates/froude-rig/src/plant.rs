@@ -18,7 +18,8 @@
 
 use crate::load::Load;
 use crate::parameters::AxisParameters;
-use crate::propagator::{Linear, Propagators};
+use crate::propagator::Propagators;
+use froude_signal::two_mass::TwoMasses;
 
 /// Stiffness of a hard stop, N/m, and its damping, N s/m (chosen: a rubber buffer).
 const STOP: (f64, f64) = (1.0e5, 200.0);
@@ -103,7 +104,7 @@ pub struct Plant {
     motor: Mass,
     load: Mass,
     memory: Memory,
-    linear: Linear,
+    linear: TwoMasses,
     propagators: Propagators,
     step_s: f64,
     /// Reaction of the chain on the motor: driving 1/η, driven η_b.
@@ -132,7 +133,7 @@ impl Plant {
     #[must_use]
     pub fn new(axis: &AxisParameters, load: &Load, step_s: f64, position_m: f64, friction_factor: f64) -> Self {
         let r = axis.chain_m_rad();
-        let linear = Linear {
+        let linear = TwoMasses {
             motor_mass_kg: axis.motor_mass_kg(),
             load_mass_kg: load.mass_kg(axis),
             stiffness_n_m: axis.stiffness_n_m,
@@ -146,7 +147,7 @@ impl Plant {
             load: Mass::at_rest(position_m),
             memory: Memory::NONE,
             linear,
-            propagators: linear.propagators(step_s, reactions),
+            propagators: Propagators::of(&linear, step_s, reactions),
             step_s,
             reactions,
             motor_friction_n: axis.motor_coulomb_n_m / r * friction_factor,
@@ -327,7 +328,7 @@ impl Plant {
     pub fn break_chain(&mut self) {
         self.linear.stiffness_n_m = 0.0;
         self.linear.damping_n_s_m = 0.0;
-        self.propagators = self.linear.propagators(self.step_s, self.reactions);
+        self.propagators = Propagators::of(&self.linear, self.step_s, self.reactions);
     }
 
     /// Sets both masses moving at one speed, the chain slack (a test's initial state).

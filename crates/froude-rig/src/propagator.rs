@@ -1,33 +1,17 @@
 //! Exact motion of two masses and a chain over one step of constant forces.
 //!
-//! The linear part of MCD eq. 2 (inertia, spring, chain damping, viscous forces) is carried over a step by its matrix exponential,
+//! The linear part of MCD eq. 2 (inertia, spring, chain damping, viscous forces: [`TwoMasses`]) is carried over a step by its matrix exponential,
 //! so neither the modes nor the energy depend on the step. What is not linear (friction, drag, gear loss, stops) enters as forces
 //! held constant within the step.
 //!
 //! **Frame.** Chain coordinate: motor position q = Rθ/n, load position y. **Units.** SI; the rotor counts as the mass J_m (n/R)².
 
 use froude_signal::exponential::{Square, exponential};
+use froude_signal::two_mass::TwoMasses;
 
 /// Rows and columns of the augmented system: Δq, Δy, v_q, v_y, then the constants s₀ = q₀ − y₀, f_q, f_y.
 const N: usize = 7;
 type Matrix = Square<N>;
-
-/// The linear two-mass system.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Linear {
-    /// J_m (n/R)², kg.
-    pub motor_mass_kg: f64,
-    /// M with what rides on it, kg.
-    pub load_mass_kg: f64,
-    /// K_e, N/m.
-    pub stiffness_n_m: f64,
-    /// B_e, N s/m.
-    pub damping_n_s_m: f64,
-    /// B_m (n/R)², N s/m.
-    pub motor_viscous_n_s_m: f64,
-    /// B, N s/m.
-    pub load_viscous_n_s_m: f64,
-}
 
 /// One step with both masses sliding: each row gives one of Δq, Δy, v_q', v_y' from (s, v_q, v_y, f_q, f_y).
 pub type Both = [[f64; 5]; 4];
@@ -46,49 +30,48 @@ pub struct Propagators {
     pub load: One,
 }
 
-impl Linear {
-    /// The propagators of a step. The motor feels the chain's force times a reaction factor: 1 for a perfect gear, two values for a
+impl Propagators {
+    /// Those of a step. The motor feels the chain's force times a reaction factor: 1 for a perfect gear, two values for a
     /// lossy one (driving, driven).
     #[must_use]
-    pub fn propagators(&self, step_s: f64, reactions: [f64; 2]) -> Propagators {
+    pub fn of(masses: &TwoMasses, step_s: f64, reactions: [f64; 2]) -> Self {
         let pick = |m: &Matrix, row: usize, columns: [usize; 3]| columns.map(|c| m[row][c]);
-        Propagators {
+        Self {
             both: reactions.map(|reaction| {
-                let m = self.step(step_s, Some(reaction), true);
+                let m = step(masses, step_s, Some(reaction), true);
                 [0, 1, 2, 3].map(|r| [4, 2, 3, 5, 6].map(|c| m[r][c]))
             }),
             motor: reactions.map(|reaction| {
-                let m = self.step(step_s, Some(reaction), false);
+                let m = step(masses, step_s, Some(reaction), false);
                 [0, 2].map(|r| pick(&m, r, [4, 2, 5]))
             }),
             load: {
-                let m = self.step(step_s, None, true);
+                let m = step(masses, step_s, None, true);
                 [1, 3].map(|r| pick(&m, r, [4, 3, 6]))
             },
         }
     }
+}
 
-    /// `reaction`: of the chain on a sliding motor; none when the motor is held.
-    fn step(&self, step_s: f64, reaction: Option<f64>, load_slides: bool) -> Matrix {
-        let (k, c) = (self.stiffness_n_m, self.damping_n_s_m);
-        let mut a = [[0.0; N]; N];
-        if let Some(reaction) = reaction {
-            let (m, k, c) = (self.motor_mass_kg, reaction * k, reaction * c);
-            a[0][2] = 1.0;
-            a[2] = [-k / m, k / m, -(c + self.motor_viscous_n_s_m) / m, c / m, -k / m, 1.0 / m, 0.0];
-        }
-        if load_slides {
-            let m = self.load_mass_kg;
-            a[1][3] = 1.0;
-            a[3] = [k / m, -k / m, c / m, -(c + self.load_viscous_n_s_m) / m, k / m, 0.0, 1.0 / m];
-        }
-        for row in &mut a {
-            for x in row {
-                *x *= step_s;
-            }
-        }
-        exponential(a)
+/// `reaction`: of the chain on a sliding motor; none when the motor is held.
+fn step(masses: &TwoMasses, step_s: f64, reaction: Option<f64>, load_slides: bool) -> Matrix {
+    // Of the increments; the extension at the start goes in as the motor's position does.
+    let row = |[q, y, v_q, v_y, f_q, f_y]: [f64; 6]| [q, y, v_q, v_y, q, f_q, f_y];
+    let mut a = [[0.0; N]; N];
+    if let Some(reaction) = reaction {
+        a[0][2] = 1.0;
+        a[2] = row(masses.motor(reaction));
     }
+    if load_slides {
+        a[1][3] = 1.0;
+        a[3] = row(masses.load());
+    }
+    for row in &mut a {
+        for x in row {
+            *x *= step_s;
+        }
+    }
+    exponential(a)
 }
 
 #[cfg(test)]
@@ -96,7 +79,7 @@ mod tests {
     use super::*;
 
     /// A spring of 100 N/m between 1 kg and 4 kg: ω² = 100 (1 + 1/4) = 125.
-    const FREE: Linear = Linear {
+    const FREE: TwoMasses = TwoMasses {
         motor_mass_kg: 1.0,
         load_mass_kg: 4.0,
         stiffness_n_m: 100.0,
@@ -109,7 +92,7 @@ mod tests {
     fn the_free_mode_is_a_cosine_at_any_step() {
         let omega = 125.0_f64.sqrt();
         for step_s in [1e-4, 1e-2, 0.3] {
-            let p = FREE.propagators(step_s, [1.0; 2]).both[0];
+            let p = Propagators::of(&FREE, step_s, [1.0; 2]).both[0];
             // From rest with extension 1 the extension is cos ωt: Δq takes 4/5 of the change, Δy 1/5.
             let change = (omega * step_s).cos() - 1.0;
             // Each squaring doubles the rounding; ‖A‖ = 400 h halved eight times at most: 2⁸ · 4 · ε · 1/2.
@@ -121,7 +104,7 @@ mod tests {
     #[test]
     fn a_force_on_both_masses_by_their_weight_moves_them_as_one() {
         let t = 0.25;
-        let p = FREE.propagators(t, [1.0; 2]).both[0];
+        let p = Propagators::of(&FREE, t, [1.0; 2]).both[0];
         let of = |row: [f64; 5]| row[3] * 1.0 + row[4] * 4.0;
         assert!((of(p[0]) - 0.5 * t * t).abs() < 1e-15 && (of(p[2]) - t).abs() < 1e-15);
         assert!((of(p[1]) - 0.5 * t * t).abs() < 1e-15 && (of(p[3]) - t).abs() < 1e-15);
@@ -130,7 +113,7 @@ mod tests {
     #[test]
     fn with_one_mass_held_the_other_swings_alone() {
         let t = 0.2;
-        let p = FREE.propagators(t, [1.0; 2]);
+        let p = Propagators::of(&FREE, t, [1.0; 2]);
         assert!((p.motor[0][1][1] - (10.0 * t).cos()).abs() < 1e-14);
         assert!((p.load[1][1] - (5.0 * t).cos()).abs() < 1e-14);
     }
@@ -139,8 +122,8 @@ mod tests {
     fn a_reaction_factor_acts_as_a_lighter_motor_on_the_same_chain() {
         // m v̇ = −κ F is (m/κ) v̇ = −F: a motor of half the mass, and half its own force.
         let t = 0.1;
-        let light = Linear { motor_mass_kg: 0.5, ..FREE }.propagators(t, [1.0; 2]).both[0];
-        let driven = FREE.propagators(t, [1.0, 2.0]).both[1];
+        let light = Propagators::of(&TwoMasses { motor_mass_kg: 0.5, ..FREE }, t, [1.0; 2]).both[0];
+        let driven = Propagators::of(&FREE, t, [1.0, 2.0]).both[1];
         for (l, d) in light.iter().zip(&driven) {
             for (i, (l, d)) in l.iter().zip(d).enumerate() {
                 let scale = if i == 3 { 0.5 } else { 1.0 };
@@ -151,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_lone_viscous_mass_decays_exponentially() {
-        let slow = Linear { stiffness_n_m: 0.0, load_viscous_n_s_m: 3.0, ..FREE };
-        assert!((slow.propagators(2.0, [1.0; 2]).both[0][3][2] - (-1.5_f64).exp()).abs() < 1e-15);
+        let slow = TwoMasses { stiffness_n_m: 0.0, load_viscous_n_s_m: 3.0, ..FREE };
+        assert!((Propagators::of(&slow, 2.0, [1.0; 2]).both[0][3][2] - (-1.5_f64).exp()).abs() < 1e-15);
     }
 }

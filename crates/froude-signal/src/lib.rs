@@ -15,9 +15,10 @@
 //! | [`stream`]          | the same chain a chunk at a time, in bounded memory               | as above                |
 //! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
 //! | [`exponential`]     | exact step of a linear system whose inputs stand still             | –                       |
+//! | [`two_mass`]        | two masses and a chain: rows of their accelerations, modes         | –                       |
 //! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
 //!
-//! **Units.** A rate is in Hz, a time in s, the values are whatever they were.
+//! **Units.** A rate is in Hz, a time in s, the values are whatever they were (SI in [`two_mass`]).
 //! **Time.** Samples are equidistant; gaps and jitter are the caller's, reported before they come here.
 //!
 //! Not here: high-pass and band-pass filters, resampling by fractions, the Ljung–Box test
@@ -38,6 +39,7 @@ mod pages;
 pub mod savitzky_golay;
 pub mod spectrum;
 pub mod stream;
+pub mod two_mass;
 pub mod zero_phase;
 
 pub use error::SignalError;

@@ -18,10 +18,10 @@
 //!
 //! Moreau (1988), *Unilateral contact and dry friction in finite freedom dynamics*, CISM 302 (time stepping of friction impulses);
 //! Golub & Van Loan (2013), *Matrix Computations*, 9.3 (exponential by scaling and squaring); Anderson & Moore (1979), *Optimal
-//! Filtering*, 4.4 (the stationary gain). The gear's law is that of the carriage's twin.
+//! Filtering*, 4.4 (the stationary gain). The linear part ([`TwoMasses`]) and the gear's law are those of the carriage's twin.
 
 use froude_signal::exponential::exponential;
-use std::f64::consts::TAU;
+use froude_signal::two_mass::TwoMasses;
 
 use crate::servo::error::ServoError;
 
@@ -77,16 +77,29 @@ impl TwoMass {
         delay_s: 0.0,
     };
 
+    /// The linear part.
+    #[must_use]
+    pub fn masses(&self) -> TwoMasses {
+        TwoMasses {
+            motor_mass_kg: self.motor_mass_kg,
+            load_mass_kg: self.load_mass_kg,
+            stiffness_n_m: self.stiffness_n_m,
+            damping_n_s_m: self.damping_n_s_m,
+            motor_viscous_n_s_m: self.motor_viscous_n_s_m,
+            load_viscous_n_s_m: self.load_viscous_n_s_m,
+        }
+    }
+
     /// Frequency at which the load swings against a held motor, `√(K/M)/2π`, Hz.
     #[must_use]
     pub fn antiresonance_hz(&self) -> f64 {
-        (self.stiffness_n_m / self.load_mass_kg).sqrt() / TAU
+        self.masses().antiresonance_hz()
     }
 
     /// Frequency at which both swing against each other, Hz.
     #[must_use]
     pub fn resonance_hz(&self) -> f64 {
-        (self.stiffness_n_m * (1.0 / self.load_mass_kg + 1.0 / self.motor_mass_kg)).sqrt() / TAU
+        self.masses().resonance_hz()
     }
 }
 
@@ -169,14 +182,14 @@ impl Stepper {
             return Err(ServoError::Setting { what: "delay (s)", found: axis.delay_s, must });
         }
         let steps = (sample_s / longest_step_s - 1e-9).ceil().max(1.0);
-        let (b_m, b) = (axis.motor_viscous_n_s_m, axis.load_viscous_n_s_m);
-        let mean = 0.5 * (drive + driven);
-        // d/dt [p, ṗ, y, ẏ, F_motor, F_load], forces constant.
+        let masses = axis.masses();
+        // d/dt of motor position and speed, load position and speed, and of two constant forces.
+        let row = |[q, y, v_q, v_y, f_q, f_y]: [f64; 6]| [q, v_q, y, v_y, f_q, f_y];
         let generator = [
             [0.0, 1.0, 0.0, 0.0, 0.0, 0.0],
-            [-mean * k / m, -(mean * d + b_m) / m, mean * k / m, mean * d / m, 1.0 / m, 0.0],
+            row(masses.motor(0.5 * (drive + driven))),
             [0.0, 0.0, 0.0, 1.0, 0.0, 0.0],
-            [k / load, d / load, -k / load, -(d + b) / load, 0.0, 1.0 / load],
+            row(masses.load()),
             [0.0; 6],
             [0.0; 6],
         ];
@@ -368,6 +381,8 @@ impl Stepper {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     fn axis() -> TwoMass {
