@@ -42,6 +42,7 @@ pub mod simulate;
 pub mod synthetic;
 pub mod two_mass;
 
+pub use crate::servo::two_mass::{FlexibleOptions, FlexibleReport, Gear};
 pub use chain::Chain;
 pub use error::ServoError;
 pub use friction::Friction;
@@ -49,4 +50,4 @@ pub use log::ServoLog;
 pub use long::{LongReport, LongServo};
 pub use motor::MotorSide;
 pub use report::{ServoCoefficient, ServoReport, identify_servo};
-pub use two_mass::{FlexibleOptions, FlexibleReport, Gear, identify_flexible};
+pub use two_mass::identify_flexible;

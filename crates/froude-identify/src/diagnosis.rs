@@ -6,12 +6,11 @@ use froude_records::estimate::{Diagnostics, NamedCorrelation};
 use froude_records::finding::{Finding, Severity};
 
 use crate::dataset::Dataset;
-use crate::dissipation;
 use crate::error::IdentifyError;
 use crate::law::Kind;
-use crate::lint;
 use crate::regression::ModelFit;
 use crate::selection::{Score, aicc};
+use crate::{dissipation, lint};
 
 /// Durbin–Watson below which residuals in run order are plainly not independent (lower 1 % bound is about 1.0 for
 /// 15 to 25 rows and one to two regressors: Savin and White 1977).
@@ -70,7 +69,7 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
     if data.sample.is_some() {
         return indexmap::IndexMap::new();
     }
-    let groups = lint::repeat_groups(data);
+    let groups = lint::repeats::repeat_groups(data);
     let n = data.rows;
     let most = groups.iter().copied().max().map_or(0, |m| m + 1);
     let stacked: Vec<usize> = (0..model.problem.response.len()).map(|row| row / n * most + groups[row % n]).collect();

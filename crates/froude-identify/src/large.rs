@@ -193,7 +193,7 @@ fn reduced(
     let mut findings = few.findings.clone();
     findings.extend(left_out(facts.n_used, facts.n_read));
     findings.extend(zero_drift(ends));
-    findings.extend(lint::motion_contradictions(table, keep, ends));
+    findings.extend(lint::motion::motion_contradictions(table, keep, ends));
     one_unit(table, sample, &fitted_loads(campaign, source, ends))?;
     let (validity, found) = validity::ranges(ends, campaign);
     findings.extend(found);

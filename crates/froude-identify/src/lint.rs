@@ -3,28 +3,23 @@
 //! A lint changes nothing except that identical copies are dropped, and says so.
 //! Every limit is a constant with its reason.
 
-use std::f64::consts::{PI, TAU};
+pub(crate) mod motion;
+pub(crate) mod repeats;
+mod volumes;
 
-use froude_records::campaign::{BodySpec, Campaign};
+use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::plausible::AIR_KG_M3;
-use froude_records::table::{ColumnData, Table};
-use indexmap::IndexMap;
 
-use crate::dataset::{Dataset, LOADS, distinct};
+use crate::dataset::{Dataset, LOADS};
+use crate::lint::motion::{force_along_motion, largest, moving};
+use crate::lint::repeats::{AHEAD, repeats};
+use crate::lint::volumes::{volume_channel, volumes};
 
-/// An angle that differs from that of the velocity by more says something else, 1°.
-const ANGLE_CONTRADICTS_RAD: f64 = std::f64::consts::PI / 180.0;
-/// A load below this share of the largest is too small for its sign to say anything.
-pub(crate) const SIGN_MATTERS_ABOVE: f64 = 0.05;
-/// Rows slower than this part of the fastest are at rest: the angle of their velocity is that of noise.
-pub(crate) const AT_REST: f64 = 0.05;
 /// Share of rows at one extreme value that looks like a saturated sensor.
 const SATURATED_SHARE: f64 = 0.02;
 /// A linear and a quadratic term need at least this many distinct speeds.
 const DISTINCT_SPEEDS_NEEDED: usize = 3;
-/// Steps of volume per link that differ by more than this from the median do not add up.
-const VOLUME_STEP_TOLERANCE: f64 = 0.02;
 /// Angles all below this, over at least eight rows, were probably typed in radians (π/2 read as degrees).
 const RADIAN_SUSPICION_RAD: f64 = 1.6 * std::f64::consts::PI / 180.0;
 /// Drag coefficients on frontal area that bodies have (Hoerner 1965: 0.04 streamlined to 2.3 hollow section; margin 2 both ways).
@@ -42,10 +37,6 @@ pub(crate) const NEAR_LARGEST_SPEED: f64 = 0.9;
 /// Density where neither campaign nor table says one: fresh water. Sea water differs by 3 %, which no bound notices.
 const DENSITY_UNSTATED_KG_M3: f64 = 1000.0;
 
-/// How well rigs repeat a setting, as part of the largest: 2 mm/s in 1 m/s moves a drag by 0.4 % there.
-const REPEATS_WITHIN: f64 = 2e-3;
-/// Share of the speed along x from which a body shows its frontal area: within 8°.
-const AHEAD: f64 = 0.99;
 /// The fastest towing carriages run 20 to 30 m/s; a model that is said to go faster was typed in another unit.
 const FASTEST_M_S: f64 = 40.0;
 /// The same of air: at Mach 0.3 its compressibility moves pressures by 5 % (Prandtl and Glauert, 1/√(1 − M²)), and no law here knows of it.
@@ -76,213 +67,6 @@ pub(crate) fn of_ends(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
         findings.extend(volumes(body));
     }
     findings.extend(volume_channel(data, campaign.body.as_ref().and_then(|b| b.link_volume_m3)));
-    findings
-}
-
-/// Rows equal to an earlier one in every column and text: (rows to keep, finding).
-///
-/// Repeats differ in their measured loads; a copy does not, and would count twice.
-#[must_use]
-pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
-    let mut seen: IndexMap<Vec<u64>, usize> = IndexMap::new();
-    let mut keep = Vec::new();
-    let mut copies = Vec::new();
-    let configurations = crate::dataset::labels(&data.configuration);
-    let setups = crate::dataset::labels(&data.setup);
-    let runs = crate::dataset::labels(&data.run);
-    for i in 0..data.rows {
-        let mut key: Vec<u64> = data.channels.values().map(|c| c.values[i].to_bits()).collect();
-        key.extend([configurations[i], setups[i], runs[i]].map(|x| x as u64));
-        if let Some(&first) = seen.get(&key) {
-            copies.push((first, i));
-        } else {
-            seen.insert(key, i);
-            keep.push(i);
-        }
-    }
-    if copies.is_empty() {
-        return (keep, None);
-    }
-    let line = |i: usize| data.line.get(i).copied().unwrap_or(i + 1);
-    let shown: Vec<String> = copies.iter().take(4).map(|&(a, b)| format!("{} = {}", line(b), line(a))).collect();
-    let more = if copies.len() > 4 { ", …" } else { "" };
-    let finding = Finding::new(
-        Severity::Warning,
-        "identical-copies",
-        format!(
-            "{} of {} rows {} dropped (lines {}{more}); real repeats differ in their loads",
-            copies.len(),
-            data.rows,
-            if copies.len() == 1 {
-                "is an identical copy of an earlier one and is"
-            } else {
-                "are identical copies of earlier ones and are"
-            },
-            shown.join(", ")
-        ),
-    );
-    (keep, Some(finding))
-}
-
-/// Speed and angle beside v_x and v_y that say something else: the velocity is used.
-///
-/// `rows` of the table are those of `data`, in its order.
-#[must_use]
-pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> Vec<Finding> {
-    let read = |name: &str| -> Option<Vec<f64>> {
-        table.columns.iter().find(|c| c.name == name).and_then(|c| match &c.data {
-            ColumnData::Number { si, .. } => Some(rows.iter().map(|&i| si[i]).collect()),
-            ColumnData::Text(_) => None,
-        })
-    };
-    let line = |i: usize| data.line.get(i).copied().unwrap_or(i + 1);
-    let mut findings = Vec::new();
-    let has_velocity = read("v_x").is_some() || read("v_y").is_some();
-    if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
-        // At rest there is no angle; a turn more is the same one.
-        let speed = data.values("speed").unwrap_or_default();
-        let moving = moving(speed, AT_REST);
-        let stated_speed = read("speed");
-        let apart = |i: usize| angles_apart(stated[i], stated_speed.as_ref().map(|u| u[i]), derived[i]);
-        let worst = moving.into_iter().rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > ANGLE_CONTRADICTS_RAD) {
-            findings.push(Finding::new(
-                Severity::Warning,
-                "angle-contradicts-velocity",
-                format!(
-                    "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg (line {}); v_x and v_y are used{}",
-                    worst.to_degrees(),
-                    line(row),
-                    match (read("v_x"), read("v_y")) {
-                        (Some(_), None) =>
-                            " (v_y is missing and read as 0): if v_x is the speed of the carriage, name it speed",
-                        (None, Some(_)) => " (v_x is missing and read as 0): give speed and angle, or both velocities",
-                        _ => ": check the sign of v_y, or leave one of the two out",
-                    }
-                ),
-            ));
-        }
-    }
-    if has_velocity && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed")) {
-        let apart = |i: usize| speeds_apart(stated[i], derived[i]);
-        let worst = (0..data.rows).rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
-        let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > 0.01 * scale) {
-            findings.push(Finding::new(
-                Severity::Warning,
-                "speed-contradicts-velocity",
-                format!(
-                    "the speed column differs from |v| by up to {worst:.3e} m/s (line {}); v_x and v_y are used",
-                    line(row)
-                ),
-            ));
-        }
-    }
-    findings
-}
-
-/// How far a stated angle lies from that of the velocity, rad.
-pub(crate) fn angles_apart(stated: f64, stated_speed: Option<f64>, derived: f64) -> f64 {
-    // With a speed below zero the body moves the other way than its angle says.
-    let astern = if stated_speed.is_some_and(|u| u < 0.0) { PI } else { 0.0 };
-    let by = stated + astern - derived;
-    (by - TAU * (by / TAU).round()).abs()
-}
-
-/// How far a stated speed lies from that of the velocity, m/s.
-pub(crate) fn speeds_apart(stated: f64, derived: f64) -> f64 {
-    (stated.abs() - derived.abs()).abs()
-}
-
-/// Rows that move faster than a part of the fastest; a speed below zero goes astern.
-pub(crate) fn moving(speed: &[f64], part: f64) -> Vec<usize> {
-    let fastest = speed.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-    (0..speed.len()).filter(|&i| speed[i].abs() > part * fastest).collect()
-}
-
-/// Forces with the velocity along the same axis.
-pub(crate) const ALONG: [(&str, &str); 3] = [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")];
-
-/// Rows in which a load points along the motion.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Pushed {
-    /// Rows large enough to tell.
-    large: usize,
-    along: usize,
-    /// Line of the first of them.
-    line: usize,
-}
-
-impl Pushed {
-    /// Counts the rows of a load and a motion, of which the largest are known.
-    pub(crate) fn count(&mut self, data: &Dataset, (f, v): (&[f64], &[f64]), [largest_f, largest_v]: [f64; 2]) {
-        for (i, (f, v)) in f.iter().zip(v).enumerate() {
-            if f.abs() > SIGN_MATTERS_ABOVE * largest_f && v.abs() > SIGN_MATTERS_ABOVE * largest_v {
-                self.large += 1;
-                if f * v > 0.0 {
-                    if self.along == 0 {
-                        self.line = data.line.get(i).copied().unwrap_or(0);
-                    }
-                    self.along += 1;
-                }
-            }
-        }
-    }
-}
-
-/// The largest size of some numbers.
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
-}
-
-/// Loads along the motion: a drag that pushes.
-fn force_along_motion(data: &Dataset) -> Vec<Finding> {
-    let counted = |(load, motion): (&'static str, &'static str)| {
-        let (f, v) = (data.values(load)?, data.values(motion)?);
-        let mut pushed = Pushed::default();
-        pushed.count(data, (f, v), [largest(f), largest(v)]);
-        Some((load, motion, pushed))
-    };
-    along_motion(&ALONG.into_iter().filter_map(counted).collect::<Vec<_>>(), data.rows, data)
-}
-
-/// The message about loads along the motion, of so many rows; `data` says which channels there are.
-pub(crate) fn along_motion(
-    counted: &[(&'static str, &'static str, Pushed)],
-    n_rows: usize,
-    data: &Dataset,
-) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    for (load, motion, Pushed { large, along, line }) in counted {
-        if *along == 0 {
-            continue;
-        }
-        let all = along * 2 > *large;
-        let of = if *large == n_rows {
-            format!("in {along} of {large} rows")
-        } else {
-            format!("in {along} of the {large} rows large enough to tell ({n_rows} in all)")
-        };
-        findings.push(Finding::new(
-            if all { Severity::Error } else { Severity::Warning },
-            "force-along-motion",
-            if all {
-                format!(
-                    "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
-                     way round, write sign = -1 for its column{}",
-                    if *motion == "v_y" && data.channels.contains_key("angle") {
-                        "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write it for the angle's"
-                    } else {
-                        ""
-                    }
-                )
-            } else {
-                format!(
-                    "{load} points along {motion} {of}, first on line {line}; check zero and mounting of these runs"
-                )
-            },
-        ));
-    }
     findings
 }
 
@@ -446,131 +230,6 @@ fn one_sign_of_angle(data: &Dataset) -> Option<Finding> {
     })
 }
 
-/// How many settings were repeated, which is what pure error comes from.
-fn repeats(data: &Dataset) -> Option<Finding> {
-    data.values("speed")?;
-    let groups = repeat_groups(data);
-    let repeated = distinct_usize(&groups);
-    let spare = data.rows - repeated;
-    (spare == 0 && data.rows >= 4).then(|| {
-        Finding::new(
-            Severity::Note,
-            "no-repeats",
-            "no setting was repeated: lack of fit cannot be distinguished from scatter".to_owned(),
-        )
-    })
-}
-
-/// Settings as labels: rows with the same configuration and setup, and the same motion as far as a rig repeats it.
-///
-/// A measured speed is never twice the same number. Values of a channel within 0.2 % of its largest belong
-/// together, counted from the smallest of them, so that a fine sweep does not run together.
-#[must_use]
-pub fn repeat_groups(data: &Dataset) -> Vec<usize> {
-    let mut keys = vec![crate::dataset::labels(&data.configuration), crate::dataset::labels(&data.setup)];
-    for (name, channel) in &data.channels {
-        if !is_outcome(name) {
-            keys.push(within(&channel.values, REPEATS_WITHIN));
-        }
-    }
-    let mut seen: IndexMap<Vec<usize>, usize> = IndexMap::new();
-    (0..data.rows)
-        .map(|i| {
-            let next = seen.len();
-            *seen.entry(keys.iter().map(|k| k[i]).collect()).or_insert(next)
-        })
-        .collect()
-}
-
-/// Channels that differ between repeats of a setting: what is measured, what counts the rows, and what follows from speed and angle.
-pub(crate) fn is_outcome(name: &str) -> bool {
-    LOADS.contains(&name)
-        || name.starts_with("std_")
-        || name.starts_with("zero_")
-        || matches!(name, "repeat" | "run" | "time" | "temperature" | "density" | "kinematic_viscosity" | "v_x" | "v_y")
-}
-
-/// Labels of values that lie within a part of the largest from the smallest of their group.
-pub(crate) fn within(values: &[f64], part: f64) -> Vec<usize> {
-    let width = part * values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
-    let mut out = vec![0; values.len()];
-    let (mut label, mut first) = (0, order.first().map_or(0.0, |&i| values[i]));
-    for i in order {
-        if values[i] > first + width {
-            label += 1;
-            first = values[i];
-        }
-        out[i] = label;
-    }
-    out
-}
-
-/// Volumes of the configurations that do not grow by one link's volume a link.
-fn volumes(body: &BodySpec) -> Vec<Finding> {
-    let mut points: Vec<(f64, f64)> = body
-        .volumes
-        .iter()
-        .filter_map(|(name, v)| froude_records::table::links_of_configuration(name).map(|k| (f64::from(k), *v)))
-        .collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    volume_steps(&points, body.link_volume_m3)
-}
-
-/// The same for a `volume` channel of the table.
-fn volume_channel(data: &Dataset, link_m3: Option<f64>) -> Vec<Finding> {
-    let (Some(k), Some(v)) = (data.values("n_links"), data.values("volume")) else { return Vec::new() };
-    let mut points: Vec<(f64, f64)> = k.iter().copied().zip(v.iter().copied()).collect();
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points.dedup();
-    volume_steps(&points, link_m3)
-}
-
-/// Steps of volume between configurations against their median and the stated link.
-fn volume_steps(points: &[(f64, f64)], link_m3: Option<f64>) -> Vec<Finding> {
-    let steps: Vec<(f64, f64)> = points
-        .windows(2)
-        .filter(|w| w[1].0 > w[0].0)
-        .map(|w| (w[1].0, (w[1].1 - w[0].1) / (w[1].0 - w[0].0)))
-        .collect();
-    if steps.len() < 3 {
-        return Vec::new();
-    }
-    let mut sorted: Vec<f64> = steps.iter().map(|s| s.1).collect();
-    sorted.sort_by(f64::total_cmp);
-    let median = sorted[sorted.len() / 2];
-    let mut findings = Vec::new();
-    let odd: Vec<String> = steps
-        .iter()
-        .filter(|(_, step)| (step - median).abs() > VOLUME_STEP_TOLERANCE * median.abs())
-        .map(|(k, step)| format!("{step:.4e} m^3 to k = {k}"))
-        .collect();
-    if !odd.is_empty() {
-        findings.push(Finding::new(
-            Severity::Warning,
-            "volumes-do-not-add-up",
-            format!(
-                "the volume grows by {median:.4e} m^3 a link (median), but by {}: these configurations are not the same body with one more link",
-                odd.join(", ")
-            ),
-        ));
-    }
-    if let Some(link) = link_m3
-        && (link - median).abs() > VOLUME_STEP_TOLERANCE * median
-    {
-        findings.push(Finding::new(
-            Severity::Warning,
-            "link-volume",
-            format!(
-                "a link displaces {link:.4e} m^3 on its own, but the body grows by {median:.4e} m^3 a link: joints overlap, \
-                 or the coefficient's reference volume is not the link's"
-            ),
-        ));
-    }
-    findings
-}
-
 /// A drag coefficient on a stated frontal area that no body has.
 ///
 /// `d_n_s2_m2` is the quadratic coefficient D of F = D·v|v|; C_D = D/(½ρA).
@@ -607,9 +266,4 @@ fn distinct_count(values: &[f64]) -> usize {
     sorted.sort_unstable();
     sorted.dedup();
     sorted.len()
-}
-
-fn distinct_usize(labels: &[usize]) -> usize {
-    let texts: Vec<String> = labels.iter().map(usize::to_string).collect();
-    distinct(&texts).len()
 }

@@ -54,7 +54,7 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
         return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read });
     }
     let mut data = data.subset(&keep);
-    let (unique, dropped) = crate::lint::identical_copies(&data);
+    let (unique, dropped) = crate::lint::repeats::identical_copies(&data);
     if let Some(finding) = dropped {
         findings.push(finding);
         data = data.subset(&unique);
@@ -62,7 +62,7 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
     }
     // The findings about the observations concern those that are fitted.
     findings.extend(zero_drift(&data));
-    findings.extend(crate::lint::motion_contradictions(&table, &keep, &data));
+    findings.extend(crate::lint::motion::motion_contradictions(&table, &keep, &data));
     one_unit(&table, &data, &fitted_loads(campaign, source, &data))?;
     let mut shared_errors = Vec::new();
     if let Some(tare) = &source.tare {

@@ -12,7 +12,8 @@
 use std::collections::BTreeMap;
 
 use crate::dataset::{Dataset, labels};
-use crate::lint::{SIGN_MATTERS_ABOVE, is_outcome, within};
+use crate::lint::motion::SIGN_MATTERS_ABOVE;
+use crate::lint::repeats::{is_outcome, within};
 
 /// Rows slower than this part of the fastest are left to the zero of the sensor.
 const SLOW: f64 = 0.3;

@@ -9,7 +9,7 @@ use froude_records::finding::{Finding, Severity};
 use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
-use crate::lint::moving;
+use crate::lint::motion::moving;
 
 /// Blockage above which a correction or a remark is due (ITTC 7.5-02-02-01 corrects resistance for blockage well below it).
 const BLOCKAGE_LIMIT: f64 = 0.05;

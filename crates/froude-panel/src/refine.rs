@@ -1,115 +1,24 @@
 //! Meshes refined until the tolerance is met, with the cost stated beforehand.
 
+mod forecast;
+mod stop;
+
 use froude_mesh::Mesh;
 use froude_mesh::check::extent;
 use froude_mesh::measure::Measure;
-use froude_mesh::sections::SectionError;
 
-use crate::chain::ChainError;
 use crate::convergence::Converged;
 use crate::family::{Family, Member};
 use crate::frame::Frame;
 use crate::matrix::AddedMass;
-use crate::mirror::{Across, Mirror, positive_part};
+use crate::mirror::{Mirror, positive_part};
 use crate::problem::{Problem, Report, Solution};
+use crate::solve;
 use crate::study::{SLOW, Size, Study, study};
-use crate::tank::{Surface, Tank, TankError};
-use crate::{fast, is_plain, solve};
+use crate::tank::{Surface, Tank};
 
-/// Why there is no matrix at all.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum RefineError {
-    /// The dimensions give no body.
-    #[error(transparent)]
-    Sections(#[from] SectionError),
-    /// The chain cannot be bent so.
-    #[error(transparent)]
-    Chain(#[from] ChainError),
-    /// Panels lie across a mirror plane.
-    #[error(transparent)]
-    Across(#[from] Across),
-    /// The body does not fit into the tank.
-    #[error(transparent)]
-    Tank(#[from] TankError),
-    /// The coarsest mesh has more panels than are allowed.
-    #[error(
-        "the coarsest mesh has {coarsest} panels, and {most} are allowed; write --most-panels {third}, because the numerical uncertainty needs \
-         three meshes, or {coarsest} for a value without"
-    )]
-    TooFine {
-        /// Its panels.
-        coarsest: usize,
-        /// Those of the third.
-        third: usize,
-        /// How many are allowed.
-        most: usize,
-    },
-    /// Not even the coarsest mesh fits into the memory.
-    #[error(transparent)]
-    Memory(NoMemory),
-    /// The equations were not solved.
-    #[error(
-        "the equations of {panels} panels were not solved: after {iterations} iterations the residual is {residual:.1e} of the right-hand side; \
-         panels that nearly touch others make them nearly singular; give such places finer panels, or a gap of a panel's size"
-    )]
-    Unsolved {
-        /// Panels.
-        panels: usize,
-        /// Iterations.
-        iterations: usize,
-        /// Norm of what is left over that of the right-hand side.
-        residual: f64,
-    },
-    /// A family without a member.
-    #[error("the body has no mesh")]
-    NoMesh,
-}
-
-/// A mesh that does not fit into the memory.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error(
-    "{panels} panels would take {} of memory and {} may be used; some {fits} panels would fit",
-    size_text(*.needed_bytes), size_text(*.free_bytes)
-)]
-pub struct NoMemory {
-    /// Its panels.
-    pub panels: usize,
-    /// What it would take.
-    pub needed_bytes: f64,
-    /// What may be used.
-    pub free_bytes: f64,
-    /// Panels that would fit.
-    pub fits: usize,
-}
-
-/// Bytes as a person says them.
-fn size_text(bytes: f64) -> String {
-    let (size, unit) = [(1e9, "GB"), (1e6, "MB")].into_iter().find(|(size, _)| bytes >= *size).unwrap_or((1e3, "kB"));
-    let number = bytes / size;
-    let digits = usize::from(number < 9.95);
-    format!("{number:.digits$} {unit}")
-}
-
-/// Why the refinement ended above the tolerance.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Stop {
-    /// The next mesh has more panels than are allowed.
-    #[error("the next mesh has {panels} panels, and {most} are allowed (--most-panels)")]
-    Panels {
-        /// Its panels.
-        panels: usize,
-        /// How many are allowed.
-        most: usize,
-    },
-    /// The next mesh does not fit into the memory.
-    #[error(transparent)]
-    Memory(NoMemory),
-    /// It was the finest that is made.
-    #[error("no finer mesh is made")]
-    Finest,
-}
+pub use crate::refine::forecast::{Forecast, duration, forecast};
+pub use crate::refine::stop::{NoMemory, RefineError, Stop};
 
 /// What is asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -215,17 +124,6 @@ pub struct Finest {
     pub solution: Solution,
 }
 
-/// Time and memory of a solution, before it starts.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Forecast {
-    /// Unknowns.
-    pub unknowns: usize,
-    /// Time, s, on as many threads as there are.
-    pub seconds: f64,
-    /// Memory, bytes.
-    pub memory_bytes: f64,
-}
-
 /// An entry with its numerical uncertainty.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
@@ -241,33 +139,8 @@ const AT_EDGES: f64 = 3.0;
 const ENOUGH: usize = 3;
 /// Residual above which a solution is none.
 const LOOSE: f64 = 1e-6;
-/// Time of a near pair and of a pair of boxes over a whole solution, one thread, s: as measured on a processor with AVX-512.
-const NEAR_S: f64 = 25e-9;
-const FAR_S: f64 = 40e-6;
-/// Time of a pair of panels in the plain solver, s.
-const PLAIN_S: f64 = 80e-9;
-/// Multiplications of the plain solver's factorisation a second.
-const PLAIN_PER_S: f64 = 2e10;
 /// Part of the free memory that may be asked for.
 const MEMORY_PART: f64 = 0.8;
-
-/// What a problem will take.
-#[must_use]
-pub fn forecast(problem: &Problem) -> Forecast {
-    let n = problem.facets.len() as f64;
-    let threads = std::thread::available_parallelism().map_or(1.0, |t| t.get() as f64);
-    if is_plain(problem) {
-        // A matrix for each class of signs: a body with three planes has six.
-        let classes = if problem.mirrors.is_empty() { 1.0 } else { 6.0 };
-        let images = f64::from(1_u32 << problem.mirrors.len());
-        let seconds = n * n * images * PLAIN_S / threads + classes * n.powi(3) / 1.5 / PLAIN_PER_S;
-        return Forecast { unknowns: problem.facets.len(), seconds, memory_bytes: 8.0 * (classes + 2.0) * n * n };
-    }
-    let cost = fast::cost(problem);
-    let blocks = problem.columns().div_ceil(8) as f64;
-    let seconds = blocks * (cost.near_pairs as f64 * NEAR_S + cost.far_pairs as f64 * FAR_S) / threads + 0.1;
-    Forecast { unknowns: cost.unknowns, seconds, memory_bytes: cost.memory_bytes as f64 }
-}
 
 /// Free memory of the machine, bytes; `None` where it cannot be known.
 #[must_use]
@@ -618,16 +491,4 @@ fn worst(entries: &[[Entry; 6]; 6], least_m5: f64) -> f64 {
         }
     }
     out
-}
-
-/// A time as a person says it.
-#[must_use]
-pub fn duration(seconds: f64) -> String {
-    if seconds < 1.0 {
-        "less than a second".to_owned()
-    } else if seconds < 120.0 {
-        format!("{seconds:.0} s")
-    } else {
-        format!("{:.0} min", seconds / 60.0)
-    }
 }

@@ -25,35 +25,34 @@
 //! MCD eq. 2a, 2b, 3b for the sums; Ljung (1999), *System Identification*, 2nd ed., 7.2 and 4.3 (prediction errors of a state-space model
 //! in innovations form).
 
-use froude_fit::budget::Uncertain;
-use froude_fit::distribution::coverage_factor;
+mod covariance;
+mod report;
+
 use froude_fit::faer::Mat;
-use froude_fit::propagate::effective_dof;
 use froude_fit::{End, Report};
 use froude_signal::{decimate, differences};
 
-use crate::drag::mbdp;
 use crate::servo::chain::Chain;
 use crate::servo::cluster::{Clustered, Enlarged, stretches};
 use crate::servo::error::ServoError;
 use crate::servo::flexible::{Stepper, TwoMass};
 use crate::servo::friction::Friction;
 use crate::servo::gauss_newton::{DIFFERENCE, Fitted, minimise};
-use crate::servo::interval::{IntervalOptions, Whiteness, hac_covariance, whiteness};
+use crate::servo::interval::{hac_covariance, whiteness};
 use crate::servo::log::ServoLog;
-use crate::servo::motor::MotorSide;
 use crate::servo::regression::{inverse_gram, least_squares, solve};
 use crate::servo::report::ServoCoefficient;
 use crate::servo::rows::norm;
+use crate::servo::two_mass::covariance::{Covariance, PARAMETERS, add_outer, quadratic, times, unit_vector};
+
+pub use crate::servo::two_mass::covariance::radius_power;
+pub use crate::servo::two_mass::report::{FlexibleOptions, FlexibleReport, Gear, Split};
 
 /// Mean and standard deviation of a fraction of which nothing is known.
 const KNOWS_NOTHING: [f64; 2] = [0.5, 0.288_675_134_594_812_9];
 
 /// Parameters at the chain: two masses, stiffness, damping, sums of viscous and of Coulomb friction.
 pub const CHAIN_PARAMETERS: usize = 6;
-
-/// Parameters of the iteration: logarithms of four, sums of two, fractions of two.
-const PARAMETERS: usize = 8;
 
 /// Most rough searches, the ratio of force to noise chosen anew before each.
 const SEARCHES: usize = 2;
@@ -66,143 +65,6 @@ const RATIO_TOLERANCE: f64 = 0.1;
 /// Rate at which free simulation and record are compared, Hz, and what is dropped at each end, s.
 const SPEED_RATE_HZ: f64 = 100.0;
 const TRIM_S: f64 = 0.2;
-
-/// What is known of the gear between motor and chain.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Gear {
-    /// There is none, or it takes nothing.
-    Lossless,
-    /// It takes some of the torque, and how much is not declared: what lies behind it is found as it appears through the gear.
-    Undeclared,
-    /// Declared or calibrated.
-    Declared {
-        /// η, the motor drives.
-        forward: Uncertain,
-        /// η_b, the load drives.
-        backward: Uncertain,
-    },
-}
-
-/// How a flexible axis is identified.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FlexibleOptions {
-    /// The drive.
-    pub motor: MotorSide,
-    /// Its gear.
-    pub gear: Gear,
-    /// Drag of the load over ẏ|ẏ|, N s²/m²: a body in the water. It is not identified.
-    pub load_drag_n_s2_m2: Uncertain,
-    /// From the command to the force, s.
-    pub delay_s: Uncertain,
-    /// Standard uncertainty of force per volt, as a part.
-    pub force_relative: f64,
-    /// That of the sprocket's radius, which makes torques into forces and counts into metres.
-    pub radius_relative: f64,
-    /// Longest step of the simulation, s.
-    pub step_s: f64,
-    /// Antiresonances tried as a start, Hz.
-    pub start_hz: Vec<f64>,
-    /// How intervals are made; of the blocks only their length is used.
-    pub intervals: IntervalOptions,
-}
-
-impl FlexibleOptions {
-    /// For a mode between some 2 and 40 Hz; no gear, no drag, no delay.
-    #[must_use]
-    pub fn new(motor: MotorSide) -> Self {
-        Self {
-            motor,
-            gear: Gear::Lossless,
-            load_drag_n_s2_m2: Uncertain::new(0.0, 0.0),
-            delay_s: Uncertain::new(0.0, 0.0),
-            force_relative: 0.0,
-            radius_relative: 0.0,
-            step_s: 2e-4,
-            start_hz: vec![2.5, 3.2, 4.0, 5.0, 6.5, 8.0, 10.0, 13.0, 17.0, 22.0, 30.0],
-            intervals: IntervalOptions::default(),
-        }
-    }
-
-    /// Declared inputs: η, η_b, drag, delay.
-    fn declared(&self) -> [Uncertain; 4] {
-        let one = Uncertain::new(1.0, 0.0);
-        let [forward, backward] = match self.gear {
-            Gear::Declared { forward, backward } => [forward, backward],
-            Gear::Lossless | Gear::Undeclared => [one; 2],
-        };
-        [forward, backward, self.load_drag_n_s2_m2, self.delay_s]
-    }
-}
-
-/// How much of a friction sits at the motor.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Split {
-    /// `B_m/B` or `C_m/C`.
-    pub name: &'static str,
-    /// Share of the motor; it means nothing unless identified.
-    pub share_of_motor: f64,
-    /// Its interval.
-    pub interval: [f64; 2],
-    /// Whether the interval lies inside 0…1 and is shorter than half of it.
-    pub is_identified: bool,
-}
-
-/// What a record says about a flexible axis.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FlexibleReport {
-    /// At the chain: `m`, `M`, `K_e`, `B_e`, `B_sum`, `C_sum`; at the motor: `J_m`, `J_eff`, `B_eff`, `C_eff`; `f_antiresonance`, `f_resonance`.
-    ///
-    /// `block_std` and the interval include the uncertainties of the declared inputs, of the force per volt and of the radius, the other two
-    /// only scatter.
-    pub coefficients: Vec<ServoCoefficient>,
-    /// Covariance of the first [`CHAIN_PARAMETERS`] of them, at the chain, from scatter.
-    pub scatter: Mat<f64>,
-    /// Degrees of freedom of each of these.
-    pub dof: Vec<f64>,
-    /// What the declared gear, drag and delay and the prior of the splits add to it; the force per volt and the radius are apart, since other
-    /// records of the rig share them.
-    pub declared: Mat<f64>,
-    /// Splits of friction between motor and load.
-    pub splits: Vec<Split>,
-    /// The axis with these parameters.
-    pub axis: TwoMass,
-    /// Whether what lies behind the gear is as it appears through it, because its efficiency is not declared.
-    pub is_apparent: bool,
-    /// `‖speed − model‖/‖speed‖` of the motor in a free simulation.
-    pub relative_speed_error: f64,
-    /// Standard deviation of what is not predicted from sample to sample, m.
-    pub innovation_m: f64,
-    /// Whether that is white.
-    pub whiteness: Option<Whiteness>,
-    /// Samples compared.
-    pub n_rows: usize,
-    /// How the iteration ended.
-    pub end: Report,
-    /// What a reader must know before using the numbers.
-    pub findings: Vec<String>,
-}
-
-impl FlexibleReport {
-    /// The coefficient of that name.
-    #[must_use]
-    pub fn coefficient(&self, name: &str) -> Option<&ServoCoefficient> {
-        self.coefficients.iter().find(|c| c.name == name)
-    }
-
-    /// The chain for drag by the model of two masses (MCD eq. 9 with the chain's force).
-    ///
-    /// Positions are differentiated over a third of the period of the fastest mode.
-    #[must_use]
-    pub fn flexible(&self) -> mbdp::Flexible {
-        mbdp::Flexible {
-            motor_mass_kg: self.axis.motor_mass_kg,
-            load_mass_kg: self.axis.load_mass_kg,
-            stiffness_n_m: self.axis.stiffness_n_m,
-            damping_n_s_m: self.axis.damping_n_s_m,
-            span_s: (3.0 * self.axis.resonance_hz()).recip(),
-        }
-    }
-}
 
 /// Identifies a flexible axis from command and motor position, at rest in the beginning.
 ///
@@ -575,76 +437,12 @@ fn is_told([low, high]: [f64; 2]) -> bool {
     low > 0.0 && high < 1.0 && high - low < 0.5
 }
 
-struct Covariance {
-    classical: Mat<f64>,
-    hac: Mat<f64>,
-    clustered: Clustered,
-    /// Of the prior and of declared gear, drag and delay.
-    declared: Mat<f64>,
-    /// With the force per volt: known, not estimated.
-    known: Mat<f64>,
-    radius_relative: f64,
-    confidence: f64,
-}
-
-impl Covariance {
-    /// Of what goes along `gradient` with the parameters and by `radius` with the sprocket's relative radius.
-    fn variance(&self, gradient: &[f64; PARAMETERS], radius: f64) -> f64 {
-        quadratic(gradient, &self.clustered.covariance) + self.known(gradient, radius)
-    }
-
-    fn known(&self, gradient: &[f64; PARAMETERS], radius: f64) -> f64 {
-        quadratic(gradient, &self.known) + (radius * self.radius_relative).powi(2)
-    }
-
-    /// Of the interval, with the degrees of freedom by Welch and Satterthwaite.
-    fn half_width(&self, gradient: &[f64; PARAMETERS], radius: f64) -> f64 {
-        let scatter = quadratic(gradient, &self.clustered.covariance);
-        let known = self.known(gradient, radius);
-        let dof = effective_dof(&[(scatter, self.clustered.dof(gradient)), (known, f64::INFINITY)]);
-        coverage_factor(self.confidence, dof) * (scatter + known).sqrt()
-    }
-}
-
-/// The power with which the sprocket's radius goes into a coefficient of the chain: it makes forces of torques, and motions of counts. What
-/// is brought to the motor's shaft leaves it again, and frequencies do not have it.
-#[must_use]
-pub fn radius_power(name: &str) -> f64 {
-    match name {
-        "m" | "M" | "K_e" | "B_e" | "B_sum" => -2.0,
-        "C_sum" => -1.0,
-        _ => 0.0,
-    }
-}
-
-fn unit_vector(j: usize, value: f64) -> [f64; PARAMETERS] {
-    let mut out = [0.0; PARAMETERS];
-    out[j] = value;
-    out
-}
-
-/// `gᵀ C g`.
-fn quadratic(g: &[f64; PARAMETERS], c: &Mat<f64>) -> f64 {
-    (0..PARAMETERS).map(|i| (0..PARAMETERS).map(|j| g[i] * c[(i, j)] * g[j]).sum::<f64>()).sum::<f64>().max(0.0)
-}
-
-/// `C x`.
-fn times(c: &Mat<f64>, x: &[f64]) -> Vec<f64> {
-    (0..PARAMETERS).map(|i| (0..PARAMETERS).map(|j| c[(i, j)] * x[j]).sum()).collect()
-}
-
-/// Adds `(s x)(s x)ᵀ`.
-fn add_outer(out: &mut Mat<f64>, x: &[f64], s: f64) {
-    for i in 0..PARAMETERS {
-        for j in 0..PARAMETERS {
-            out[(i, j)] += s * x[i] * s * x[j];
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use froude_fit::budget::Uncertain;
+
     use super::*;
+    use crate::servo::motor::MotorSide;
     use crate::servo::synthetic::{Noise, carriage, record};
 
     /// Two seeds; the validation has a hundred. Four standard deviations with some ten degrees of freedom: one in 400.

@@ -15,7 +15,8 @@ use super::rows::{End, Ends, Row, Sample, without_rows};
 use crate::dataset::{Dataset, LOADS};
 use crate::error::IdentifyError;
 use crate::large::limits::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
-use crate::lint::{self, Pushed};
+use crate::lint;
+use crate::lint::motion::Pushed;
 use crate::reduce::{kept_rows, observed, zeros_of};
 use crate::source::models::MOMENTS;
 use crate::validity::{self, AT_REST, off_axis, per_observation};
@@ -260,14 +261,15 @@ impl Seconds {
             if chunk.has_velocity() {
                 let stated_speed = chunk.read("speed");
                 if let (Some(stated), Some(derived)) = (chunk.read("angle"), data.values("angle")) {
-                    let apart =
-                        |i: usize| lint::angles_apart(stated[keep[i]], stated_speed.map(|u| u[keep[i]]), derived[i]);
-                    put("angles apart", &mut faster(lint::AT_REST).map(|i| (keep[i], apart(i))));
+                    let apart = |i: usize| {
+                        lint::motion::angles_apart(stated[keep[i]], stated_speed.map(|u| u[keep[i]]), derived[i])
+                    };
+                    put("angles apart", &mut faster(lint::motion::AT_REST).map(|i| (keep[i], apart(i))));
                 }
                 if let Some(stated) = stated_speed {
                     put(
                         "speeds apart",
-                        &mut (0..data.rows).map(|i| (keep[i], lint::speeds_apart(stated[keep[i]], speed[i]))),
+                        &mut (0..data.rows).map(|i| (keep[i], lint::motion::speeds_apart(stated[keep[i]], speed[i]))),
                     );
                 }
             }
@@ -295,7 +297,7 @@ impl Seconds {
             put(name, &mut chunk.placed(&values));
         }
         if self.pushed.is_empty() {
-            let both = lint::ALONG.into_iter().filter(|(load, motion)| has(data, load) && has(data, motion));
+            let both = lint::motion::ALONG.into_iter().filter(|(load, motion)| has(data, load) && has(data, motion));
             self.pushed = both.map(|(load, motion)| (load, motion, Pushed::default())).collect();
         }
         for (load, motion, pushed) in &mut self.pushed {
@@ -311,7 +313,7 @@ impl Seconds {
 
     /// The lints that count rows; `data` says which channels there are.
     pub(super) fn findings(&self, facts: &Facts, data: &Dataset) -> Vec<Finding> {
-        let mut out = lint::along_motion(&self.pushed, facts.n_used, data);
+        let mut out = lint::motion::along_motion(&self.pushed, facts.n_used, data);
         out.extend(facts.saturation());
         out.extend(has(data, "angle").then(|| lint::in_radians(self.angles.count(), facts.largest("angle"))).flatten());
         out.extend(has(data, "speed").then(|| lint::few_speeds(self.speeds.count())).flatten());

@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::{ForceLaw, aliased};
-use crate::lint::moving;
+use crate::lint::motion::moving;
 use crate::validity::{AT_REST, off_axis};
 
 /// Built-in models that need no body.

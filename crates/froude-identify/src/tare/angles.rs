@@ -11,7 +11,7 @@ use froude_records::finding::{Finding, Severity};
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
-use crate::lint::moving;
+use crate::lint::motion::moving;
 use crate::tare::size::size;
 use crate::validity::{AT_REST, OFF_AXIS, off_axis};
 

@@ -7,7 +7,7 @@ use froude_records::text::counted;
 use super::angles::SAME_ANGLE_RAD;
 use crate::dataset::Dataset;
 use crate::law::ForceLaw;
-use crate::lint::moving;
+use crate::lint::motion::moving;
 use crate::tare::size::size;
 use crate::validity::{ALONG, AT_REST, OFF_AXIS, off_axis};
 

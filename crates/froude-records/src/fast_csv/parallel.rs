@@ -3,7 +3,8 @@
 use std::num::NonZeroUsize;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
-use super::{Chunk, FastCsv, FastCsvError, Layout, Memory, Reader, Summary};
+use super::{Chunk, FastCsv, Layout, Memory, Reader, Summary};
+use crate::fast_csv::error::FastCsvError;
 
 impl FastCsv {
     /// Maps every chunk on some thread, then folds the results in the file's order.

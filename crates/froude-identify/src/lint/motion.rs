@@ -1,0 +1,179 @@
+//! Motions that contradict each other, and loads along them.
+
+use std::f64::consts::{PI, TAU};
+
+use froude_records::finding::{Finding, Severity};
+use froude_records::table::{ColumnData, Table};
+
+use crate::dataset::Dataset;
+
+/// An angle that differs from that of the velocity by more says something else, 1°.
+pub(crate) const ANGLE_CONTRADICTS_RAD: f64 = std::f64::consts::PI / 180.0;
+
+/// A load below this share of the largest is too small for its sign to say anything.
+pub(crate) const SIGN_MATTERS_ABOVE: f64 = 0.05;
+
+/// Rows slower than this part of the fastest are at rest: the angle of their velocity is that of noise.
+pub(crate) const AT_REST: f64 = 0.05;
+
+/// Speed and angle beside v_x and v_y that say something else: the velocity is used.
+///
+/// `rows` of the table are those of `data`, in its order.
+#[must_use]
+pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> Vec<Finding> {
+    let read = |name: &str| -> Option<Vec<f64>> {
+        table.columns.iter().find(|c| c.name == name).and_then(|c| match &c.data {
+            ColumnData::Number { si, .. } => Some(rows.iter().map(|&i| si[i]).collect()),
+            ColumnData::Text(_) => None,
+        })
+    };
+    let line = |i: usize| data.line.get(i).copied().unwrap_or(i + 1);
+    let mut findings = Vec::new();
+    let has_velocity = read("v_x").is_some() || read("v_y").is_some();
+    if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
+        // At rest there is no angle; a turn more is the same one.
+        let speed = data.values("speed").unwrap_or_default();
+        let moving = moving(speed, AT_REST);
+        let stated_speed = read("speed");
+        let apart = |i: usize| angles_apart(stated[i], stated_speed.as_ref().map(|u| u[i]), derived[i]);
+        let worst = moving.into_iter().rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > ANGLE_CONTRADICTS_RAD) {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "angle-contradicts-velocity",
+                format!(
+                    "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg (line {}); v_x and v_y are used{}",
+                    worst.to_degrees(),
+                    line(row),
+                    match (read("v_x"), read("v_y")) {
+                        (Some(_), None) =>
+                            " (v_y is missing and read as 0): if v_x is the speed of the carriage, name it speed",
+                        (None, Some(_)) => " (v_x is missing and read as 0): give speed and angle, or both velocities",
+                        _ => ": check the sign of v_y, or leave one of the two out",
+                    }
+                ),
+            ));
+        }
+    }
+    if has_velocity && let (Some(stated), Some(derived)) = (read("speed"), data.values("speed")) {
+        let apart = |i: usize| speeds_apart(stated[i], derived[i]);
+        let worst = (0..data.rows).rev().map(|i| (apart(i), i)).max_by(|a, b| a.0.total_cmp(&b.0));
+        let scale = derived.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        if let Some((worst, row)) = worst.filter(|(worst, _)| *worst > 0.01 * scale) {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "speed-contradicts-velocity",
+                format!(
+                    "the speed column differs from |v| by up to {worst:.3e} m/s (line {}); v_x and v_y are used",
+                    line(row)
+                ),
+            ));
+        }
+    }
+    findings
+}
+
+/// How far a stated angle lies from that of the velocity, rad.
+pub(crate) fn angles_apart(stated: f64, stated_speed: Option<f64>, derived: f64) -> f64 {
+    // With a speed below zero the body moves the other way than its angle says.
+    let astern = if stated_speed.is_some_and(|u| u < 0.0) { PI } else { 0.0 };
+    let by = stated + astern - derived;
+    (by - TAU * (by / TAU).round()).abs()
+}
+
+/// How far a stated speed lies from that of the velocity, m/s.
+pub(crate) fn speeds_apart(stated: f64, derived: f64) -> f64 {
+    (stated.abs() - derived.abs()).abs()
+}
+
+/// Rows that move faster than a part of the fastest; a speed below zero goes astern.
+pub(crate) fn moving(speed: &[f64], part: f64) -> Vec<usize> {
+    let fastest = speed.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+    (0..speed.len()).filter(|&i| speed[i].abs() > part * fastest).collect()
+}
+
+/// Forces with the velocity along the same axis.
+pub(crate) const ALONG: [(&str, &str); 3] = [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")];
+
+/// Rows in which a load points along the motion.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pushed {
+    /// Rows large enough to tell.
+    large: usize,
+    along: usize,
+    /// Line of the first of them.
+    line: usize,
+}
+
+impl Pushed {
+    /// Counts the rows of a load and a motion, of which the largest are known.
+    pub(crate) fn count(&mut self, data: &Dataset, (f, v): (&[f64], &[f64]), [largest_f, largest_v]: [f64; 2]) {
+        for (i, (f, v)) in f.iter().zip(v).enumerate() {
+            if f.abs() > SIGN_MATTERS_ABOVE * largest_f && v.abs() > SIGN_MATTERS_ABOVE * largest_v {
+                self.large += 1;
+                if f * v > 0.0 {
+                    if self.along == 0 {
+                        self.line = data.line.get(i).copied().unwrap_or(0);
+                    }
+                    self.along += 1;
+                }
+            }
+        }
+    }
+}
+
+/// The largest size of some numbers.
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0_f64, |m, x| m.max(x.abs()))
+}
+
+/// Loads along the motion: a drag that pushes.
+pub(crate) fn force_along_motion(data: &Dataset) -> Vec<Finding> {
+    let counted = |(load, motion): (&'static str, &'static str)| {
+        let (f, v) = (data.values(load)?, data.values(motion)?);
+        let mut pushed = Pushed::default();
+        pushed.count(data, (f, v), [largest(f), largest(v)]);
+        Some((load, motion, pushed))
+    };
+    along_motion(&ALONG.into_iter().filter_map(counted).collect::<Vec<_>>(), data.rows, data)
+}
+
+/// The message about loads along the motion, of so many rows; `data` says which channels there are.
+pub(crate) fn along_motion(
+    counted: &[(&'static str, &'static str, Pushed)],
+    n_rows: usize,
+    data: &Dataset,
+) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    for (load, motion, Pushed { large, along, line }) in counted {
+        if *along == 0 {
+            continue;
+        }
+        let all = along * 2 > *large;
+        let of = if *large == n_rows {
+            format!("in {along} of {large} rows")
+        } else {
+            format!("in {along} of the {large} rows large enough to tell ({n_rows} in all)")
+        };
+        findings.push(Finding::new(
+            if all { Severity::Error } else { Severity::Warning },
+            "force-along-motion",
+            if all {
+                format!(
+                    "{load} points along {motion} {of}: a drag must oppose the motion; if the sensor is mounted the other \
+                     way round, write sign = -1 for its column{}",
+                    if *motion == "v_y" && data.channels.contains_key("angle") {
+                        "; if the angle is counted in the opposite sense (as beta of a ship's drift test is), write it for the angle's"
+                    } else {
+                        ""
+                    }
+                )
+            } else {
+                format!(
+                    "{load} points along {motion} {of}, first on line {line}; check zero and mounting of these runs"
+                )
+            },
+        ));
+    }
+    findings
+}

@@ -1,0 +1,115 @@
+//! What bounds and priors hold, and what the observations say against them.
+
+use froude_fit as fit;
+use froude_fit::budget::{OUTSIDE_95, Part, combine};
+use froude_records::campaign::SourceKind;
+use froude_records::finding::{Finding, Severity};
+
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::law::{CoefficientSpec, ForceLaw};
+use crate::regression::fitted::Settings;
+use crate::regression::problem::step;
+use crate::uncertainty::{Linearised, contributions, scatter};
+
+/// Violation of a constraint, relative to the coefficients, that counts as none.
+pub(crate) const VIOLATED: f64 = 1e-9;
+
+/// Cosine above which two cuts say the same.
+pub(crate) const NEARLY_PARALLEL: f64 = 0.999;
+
+/// Distance of a prior from what the data say, in standard uncertainties, that is no chance.
+pub(crate) const PRIOR_CONTRADICTED_ABOVE: f64 = 3.0;
+
+/// Priors that the data alone, with their budget, contradict: the two then have no common answer, and σ grows to cover
+/// the gap.
+pub(crate) fn contradicted_priors(
+    law: &ForceLaw,
+    data: &Dataset,
+    settings: Settings<'_>,
+    problem: &fit::Problem,
+    options: &fit::Options,
+    specs: &[CoefficientSpec],
+) -> Result<Vec<Finding>, IdentifyError> {
+    let alone = fit::Options { priors: Vec::new(), ..options.clone() };
+    let Some(free) = (!options.priors.is_empty()).then(|| fit::fit(problem, &alone).ok()).flatten() else {
+        return Ok(Vec::new());
+    };
+    let values = step(&free);
+    let at = Linearised { law, data, coefficients: &values[..law.coefficients.len()], sensitivity: &free.sensitivity };
+    let declared = contributions(
+        at,
+        settings.budget,
+        settings.campaign,
+        settings.shared_errors,
+        settings.kind != SourceKind::Cfd,
+    )?;
+    let parts: Vec<Part> = std::iter::once(scatter(&free)).chain(declared).collect();
+    let mut findings = Vec::new();
+    for prior in &options.priors {
+        let c = &free.coefficients[prior.index];
+        let (Some(value), Some(_)) = (c.unconstrained, c.standard) else { continue };
+        let standard = combine(&parts, prior.index, OUTSIDE_95).standard;
+        let apart = (value - prior.value).abs() / standard.hypot(prior.standard);
+        if apart > PRIOR_CONTRADICTED_ABOVE {
+            findings.push(Finding::new(
+                Severity::Warning,
+                "prior-contradicted",
+                format!(
+                    "{}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior is {:.4} ± {:.4} {unit}: \
+                     {apart:.1} standard uncertainties apart; the fit between them agrees with neither",
+                    law.name,
+                    specs[prior.index].name,
+                    prior.value,
+                    prior.standard,
+                    unit = specs[prior.index].unit
+                ),
+            ));
+        }
+    }
+    Ok(findings)
+}
+
+/// Holds a fit to many inequalities by cutting planes: the most violated ones are added until none is violated.
+///
+/// At the solution at most as many are active as there are coefficients; thousands of nearly parallel rows at
+/// once would leave the solver without digits. False when some are still violated after the last round.
+pub(crate) fn hold(
+    problem: &fit::Problem,
+    options: &mut fit::Options,
+    fitted: &mut fit::Fit,
+    rows: &[fit::Constraint],
+) -> Result<bool, fit::FitError> {
+    for _ in 0..MOST_CUTS {
+        let beta: Vec<f64> = fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect();
+        let size: f64 = beta.iter().map(|b| b.abs()).sum();
+        let excess = |c: &fit::Constraint| c.row.iter().zip(&beta).map(|(a, b)| a * b).sum::<f64>() - c.value;
+        let mut violated: Vec<(f64, &fit::Constraint)> =
+            rows.iter().map(|c| (excess(c), c)).filter(|(e, _)| *e > VIOLATED * size).collect();
+        if violated.is_empty() {
+            return Ok(true);
+        }
+        violated.sort_by(|a, b| b.0.total_cmp(&a.0));
+        // One cut a round per end of the chain and sign of the velocity; parallel neighbours add nothing.
+        let mut cuts: Vec<&fit::Constraint> = Vec::new();
+        for (_, c) in violated {
+            if cuts.iter().all(|k| cosine(&k.row, &c.row) < NEARLY_PARALLEL) {
+                cuts.push(c);
+            }
+            if cuts.len() == 4 {
+                break;
+            }
+        }
+        options.inequalities.extend(cuts.into_iter().cloned());
+        *fitted = fit::fit(problem, options)?;
+    }
+    Ok(false)
+}
+
+pub(crate) fn cosine(a: &[f64], b: &[f64]) -> f64 {
+    let dot = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(p, q)| p * q).sum::<f64>();
+    dot(a, b) / (dot(a, a) * dot(b, b)).sqrt()
+}
+
+/// Rounds of cutting planes for the constraint that no power is delivered.
+pub(crate) const MOST_CUTS: usize = 40;

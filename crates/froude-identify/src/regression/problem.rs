@@ -1,0 +1,185 @@
+//! The least-squares problem of a law: columns, response, weights.
+
+use faer::Mat;
+use froude_fit as fit;
+use froude_records::campaign::{AngleOffset, Identify};
+
+use crate::dataset::{Dataset, distinct, labels};
+use crate::error::IdentifyError;
+use crate::law::{CoefficientSpec, ForceLaw};
+use crate::regression::fitted::{Settings, Weight};
+
+/// Logarithms of the loads, for the error model "every point has the same relative error".
+pub(crate) fn logarithms(
+    law: &ForceLaw,
+    newtons: &[f64],
+    data: &Dataset,
+    settings: Settings<'_>,
+) -> Result<Vec<f64>, IdentifyError> {
+    let crate::law::Kind::PowerLaw { channel, .. } = &law.kind else { return Ok(newtons.to_vec()) };
+    let v = data.values(channel).unwrap_or_default();
+    newtons
+        .iter()
+        .zip(v)
+        .enumerate()
+        .map(|(i, (f, v))| {
+            if f * v < 0.0 {
+                Ok(f.abs().ln())
+            } else {
+                Err(IdentifyError::Campaign {
+                    place: format!("source {:?}, model {}", settings.source_name, law.name),
+                    what: format!(
+                        "a fit in logarithms needs a load that opposes the motion in every row; on line {} \
+                         {channel} is {v} and the load {f}: leave the row out with `keep`, or use power_law",
+                        data.line.get(i).copied().unwrap_or(i + 1)
+                    ),
+                })
+            }
+        })
+        .collect()
+}
+
+/// Setups whose angle offset is estimated, and the setup of each row.
+pub(crate) struct OffsetSetups {
+    pub(crate) names: Vec<String>,
+    of_row: Vec<usize>,
+}
+
+pub(crate) fn offset_setups(law: &ForceLaw, data: &Dataset, identify: &Identify) -> OffsetSetups {
+    let both_loads = law.responses == ["f_x", "f_y"];
+    if identify.angle_offset != AngleOffset::Estimate || !both_loads {
+        return OffsetSetups { names: Vec::new(), of_row: Vec::new() };
+    }
+    OffsetSetups { names: distinct(&data.setup), of_row: labels(&data.setup) }
+}
+
+/// The stacked, weighted linear problem at the current coefficients.
+///
+/// With an angle offset δ between sensor and body, f_sensor = Rᵀ(δ) f_body: the measured pair is rotated
+/// back by the current δ, and the columns of dδ are (f_y, −f_x) of the current fit.
+pub(crate) fn problem(
+    law: &ForceLaw,
+    data: &Dataset,
+    specs: &[CoefficientSpec],
+    measured: &[f64],
+    weight: Option<Vec<f64>>,
+    setups: &OffsetSetups,
+    beta: &[f64],
+) -> Result<fit::Problem, IdentifyError> {
+    let n = data.rows;
+    let p = law.coefficients.len();
+    let mut slopes = law.regressors(data, &beta[..p])?;
+    let mut current = law.predict(data, &beta[..p])?;
+    if law.in_logarithms() {
+        for i in 0..measured.len() {
+            for j in 0..p {
+                slopes[(i, j)] /= current[i];
+            }
+            current[i] = current[i].abs().ln();
+        }
+    }
+    let mut design = Mat::zeros(measured.len(), specs.len());
+    for i in 0..measured.len() {
+        for j in 0..p {
+            design[(i, j)] = slopes[(i, j)];
+        }
+    }
+    let mut response = measured.to_vec();
+    if law.is_nonlinear() {
+        for i in 0..response.len() {
+            let linear: f64 = (0..p).map(|j| slopes[(i, j)] * beta[j]).sum();
+            response[i] += linear - current[i];
+        }
+    }
+    if !setups.names.is_empty() {
+        for i in 0..n {
+            let s = setups.of_row[i];
+            let (sin, cos) = beta[p + s].sin_cos();
+            let (x, y) = (measured[i], measured[n + i]);
+            response[i] = cos * x - sin * y;
+            response[n + i] = sin * x + cos * y;
+            design[(i, p + s)] = current[n + i];
+            design[(n + i, p + s)] = -current[i];
+            // Solved for the whole offset, so that a fixed value or a prior means the offset and not its last step.
+            response[i] += beta[p + s] * design[(i, p + s)];
+            response[n + i] += beta[p + s] * design[(n + i, p + s)];
+        }
+    }
+    let component: Vec<usize> = (0..measured.len()).map(|row| row / n).collect();
+    Ok(fit::Problem {
+        design,
+        response,
+        weight,
+        component,
+        components: law.responses.clone(),
+        cluster: data.group.as_ref().map(|g| {
+            let of_row = labels(g);
+            (0..measured.len()).map(|row| of_row[row % n]).collect()
+        }),
+        names: specs.iter().map(|s| s.name.clone()).collect(),
+    })
+}
+
+/// Relative weights from `std_*` columns, scaled so that their mean is one within a response.
+pub(crate) fn weights(law: &ForceLaw, data: &Dataset, weight: Weight) -> Result<Option<Vec<f64>>, IdentifyError> {
+    let stds: Vec<Option<&[f64]>> = law.responses.iter().map(|r| data.values(&format!("std_{r}"))).collect();
+    if weight == Weight::One || stds.iter().all(Option::is_none) {
+        return Ok(None);
+    }
+    let mut out = Vec::with_capacity(stds.len() * data.rows);
+    for (std, response) in stds.into_iter().zip(&law.responses) {
+        let Some(std) = std else {
+            out.extend(std::iter::repeat_n(1.0, data.rows));
+            continue;
+        };
+        if let Some(i) = std.iter().position(|s| *s <= 0.0) {
+            return Err(IdentifyError::Campaign {
+                place: format!("model {}", law.name),
+                what: format!(
+                    "std_{response} on line {} is {}: a weight needs a standard deviation above zero",
+                    data.line.get(i).copied().unwrap_or(i + 1),
+                    std[i]
+                ),
+            });
+        }
+        // A logarithm has the relative standard deviation.
+        let loads = data.values(response).unwrap_or_default();
+        let weight: Vec<f64> = std
+            .iter()
+            .zip(loads)
+            .map(|(s, f)| if law.in_logarithms() { (f / s).powi(2) } else { 1.0 / (s * s) })
+            .collect();
+        let mean = weight.iter().sum::<f64>() / weight.len() as f64;
+        out.extend(weight.iter().map(|w| w / mean));
+    }
+    Ok(Some(out))
+}
+
+/// Where the iteration starts: zero for linear laws, the log–log line for the power law.
+pub(crate) fn start(law: &ForceLaw, data: &Dataset, measured: &[f64], p: usize) -> Vec<f64> {
+    let mut beta = vec![0.0; p];
+    if let crate::law::Kind::PowerLaw { channel, .. } = &law.kind
+        && let Some(v) = data.values(channel)
+    {
+        let points: Vec<(f64, f64)> = v
+            .iter()
+            .zip(measured)
+            .filter(|(v, f)| v.abs() > 0.0 && **v * **f < 0.0)
+            .map(|(v, f)| (v.abs().ln(), f.abs().ln()))
+            .collect();
+        let count = points.len() as f64;
+        let (mx, my) =
+            (points.iter().map(|p| p.0).sum::<f64>() / count, points.iter().map(|p| p.1).sum::<f64>() / count);
+        let sxx: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
+        let sxy: f64 = points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum();
+        let n = if sxx > 0.0 { sxy / sxx } else { 2.0 };
+        beta[0] = if count > 0.0 { (my - n * mx).exp() } else { 1.0 };
+        beta[1] = n;
+    }
+    beta
+}
+
+/// The next coefficients.
+pub(crate) fn step(fitted: &fit::Fit) -> Vec<f64> {
+    fitted.coefficients.iter().map(|c| c.value.unwrap_or(0.0)).collect()
+}
