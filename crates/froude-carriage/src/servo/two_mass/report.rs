@@ -98,7 +98,7 @@ pub struct FlexibleReport {
     /// `block_std` and the interval include the uncertainties of the declared inputs, of the force per volt and of the radius, the other two
     /// only scatter.
     pub coefficients: Vec<ServoCoefficient>,
-    /// Covariance of the first [`CHAIN_PARAMETERS`] of them, at the chain, from scatter.
+    /// Covariance of the first [`CHAIN_PARAMETERS`](super::CHAIN_PARAMETERS) of them, at the chain, from scatter.
     pub scatter: Mat<f64>,
     /// Degrees of freedom of each of these.
     pub dof: Vec<f64>,
