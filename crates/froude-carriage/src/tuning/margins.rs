@@ -24,6 +24,8 @@ pub struct Margins {
     /// Smallest phase margin over its own frequency, s.
     pub delay_s: Option<f64>,
     /// Largest |1/(1 + L)| over the measured frequencies.
+    ///
+    /// The largest of many noisy points: biased upwards, and no interval of the one point allows for that.
     pub largest_sensitivity: f64,
     /// |L| at the first and the last frequency.
     pub end_moduli: [f64; 2],
