@@ -23,7 +23,7 @@ use super::frame::{Orientation, sentence};
 use super::load::is_body_file;
 use super::options::Asked;
 use super::record::{About, estimate};
-use super::shape::{family, robot};
+use super::shape::family;
 use crate::error::AddedMassError;
 use crate::outcome::not_within;
 use crate::water::Water;
@@ -92,7 +92,7 @@ pub fn links(
         return Err(not_links());
     }
     let body = read_body(&job.input)?;
-    let Shape::Robot { .. } = body.shape else { return Err(not_links()) };
+    let Shape::Robot(robot) = body.shape else { return Err(not_links()) };
     let density_kg_m3 = water.density_kg_m3(job, body.density_kg_m3)?;
     let wanted = Wanted {
         frame: Frame { axes: job.axes.vectors(Orientation::default()), ..Frame::at([0.0; 3]) },
@@ -102,7 +102,7 @@ pub fn links(
     for &links in &job.links {
         let name = format!("H{links}LT");
         let refined = refine(&family(&body.shape, links), &wanted, &|step| progress(&format!("{name}: {step}")))?;
-        let length_m = robot(&body.shape).length_m(links);
+        let length_m = robot.length_m(links);
         configurations.push(Configuration { links, name, length_m, refined });
     }
     let rows: Vec<Row> = configurations.iter().map(|c| Row::of(c, density_kg_m3)).collect();

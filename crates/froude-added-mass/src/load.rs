@@ -79,8 +79,8 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
         of_a_mesh_only(job)?;
         let body = read_body(&job.input)?;
         let links = match (&body.shape, job.links.first()) {
-            (Shape::Robot { .. }, Some(links)) => *links,
-            (Shape::Robot { .. }, None) => return Err(AddedMassError::HowManyLinks { path: job.input.clone() }),
+            (Shape::Robot(_), Some(links)) => *links,
+            (Shape::Robot(_), None) => return Err(AddedMassError::HowManyLinks { path: job.input.clone() }),
             (_, Some(_)) => return Err(AddedMassError::NoLinks { path: job.input.clone() }),
             (_, None) => 0,
         };

@@ -9,7 +9,7 @@ use froude_mesh::Mesh;
 use froude_mesh::measure::Measure;
 use froude_mesh::parts::parts;
 use froude_mesh::refine::subdivided;
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::Robot;
 use froude_mesh::sections::Resolution;
 use froude_mesh::vector::{norm, sub};
 use froude_panel::chain::{Chain, ChainError, DiagonalForm, diagonal_form, whole};
@@ -32,7 +32,6 @@ use super::frame::{Axes, sentence};
 use super::load::{is_body_file, load, of_a_mesh_only};
 use super::options::Asked;
 use super::record::{MOTIONS, diagonal_head, entry_name_of_parts, signs, unit};
-use super::shape::robot;
 use crate::error::AddedMassError;
 use crate::options::Apart;
 use crate::water::Water;
@@ -166,7 +165,7 @@ fn not_within(worst: f64, tolerance: f64, why: &Stop) -> Finding {
 
 /// A chain, meshed as finely as one likes.
 struct Bent {
-    robot: ModularRobot,
+    robot: Robot,
     links: usize,
     angle_rad: f64,
     /// Axes of the result in those of a link.
@@ -178,7 +177,7 @@ impl Bent {
         let along = MULTIPLES[number];
         let resolution = Resolution { along, around: 8 * along };
         let angles = vec![self.angle_rad; self.links + 1];
-        let mut chain = Chain::new(&self.robot, self.links, &angles, self.robot.pitch_m / 4.0, resolution)?;
+        let mut chain = Chain::new(&self.robot, self.links, &angles, self.robot.pitch_m() / 4.0, resolution)?;
         for frame in &mut chain.frames {
             let own = frame.axes;
             frame.axes = self.axes.map(|a| core::array::from_fn(|k| (0..3).map(|m| a[m] * own[m][k]).sum()));
@@ -263,12 +262,11 @@ fn links_of(job: &Asked, angle_rad: f64) -> Result<Several, AddedMassError> {
     }
     of_a_mesh_only(job)?;
     let body = read_body(&job.input)?;
-    let (Shape::Robot { .. }, Some(&links)) = (body.shape, job.links.first()) else { return Err(why()) };
-    Ok(Several { density_kg_m3: body.density_kg_m3, ..chain(&body.name, &body.shape, links, angle_rad, job)? })
+    let (Shape::Robot(robot), Some(&links)) = (body.shape, job.links.first()) else { return Err(why()) };
+    Ok(Several { density_kg_m3: body.density_kg_m3, ..chain(&body.name, robot, links, angle_rad, job)? })
 }
 
-fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &Asked) -> Result<Several, AddedMassError> {
-    let robot = robot(shape);
+fn chain(name: &str, robot: Robot, links: usize, angle: f64, job: &Asked) -> Result<Several, AddedMassError> {
     let bent = Bent { robot, links, angle_rad: angle, axes: axes_of(job) };
     // What cannot be bent so is reported before anything is computed.
     bent.chain(0)?;
@@ -282,8 +280,8 @@ fn chain(name: &str, shape: &Shape, links: usize, angle: f64, job: &Asked) -> Re
         number::degrees(angle)
     )];
     let name = format!("{name}, H{links}LT, link by link");
-    let volume_m3 = core::f64::consts::PI * robot.half_height_m * robot.half_width_m * robot.pitch_m;
-    let size = Size { volume_m3, length_m: robot.pitch_m };
+    let volume_m3 = robot.link.volume_m3();
+    let size = Size { volume_m3, length_m: robot.pitch_m() };
     Ok(Several { size, name, density_kg_m3: None, parts, levels: Box::new(bent), notes, findings: Vec::new() })
 }
 

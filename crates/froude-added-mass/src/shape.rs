@@ -1,6 +1,6 @@
 //! The meshes of a shape that a body file gives.
 
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::sections;
 use froude_mesh::sections::SectionBody;
 use froude_panel::family::Family;
 use froude_records::body::Shape;
@@ -10,11 +10,10 @@ use froude_records::body::Shape;
 pub fn family(shape: &Shape, links: usize) -> Family {
     let mut first = 0;
     let (body, planes) = match *shape {
-        Shape::Robot { .. } => {
-            let robot = robot(shape);
+        Shape::Robot(robot) => {
             // Two cells on a ramp are too few: the surge of a necked robot is then off by twice its uncertainty.
             first = 1;
-            (robot.body(links, robot.pitch_m / 4.0), vec![1, 2])
+            (sections(&robot, links, robot.pitch_m() / 4.0), vec![1, 2])
         }
         Shape::Ellipsoid { semi_axes_m } => {
             let [a, b, c] = semi_axes_m;
@@ -48,25 +47,9 @@ pub fn family(shape: &Shape, links: usize) -> Family {
 /// Height over width of the section, or the other way round.
 fn flatness(shape: &Shape) -> f64 {
     let (major, minor) = match *shape {
-        Shape::Robot { section, .. } | Shape::Capsule { section, .. } | Shape::Cylinder { section, .. } => {
-            (section.major_m, section.minor_m)
-        }
+        Shape::Robot(robot) => (robot.link.major_semi_axis_m, robot.link.minor_semi_axis_m),
+        Shape::Capsule { section, .. } | Shape::Cylinder { section, .. } => (section.major_m, section.minor_m),
         Shape::Ellipsoid { semi_axes_m: [_, b, c] } => (b, c),
     };
     (major / minor).max(minor / major)
-}
-
-/// The robot of a shape; any other shape has none.
-#[must_use]
-pub fn robot(shape: &Shape) -> ModularRobot {
-    let Shape::Robot { section, pitch_m, joint, end_m } = *shape else { return ModularRobot::NECKED_MAMBA };
-    ModularRobot {
-        half_height_m: section.major_m,
-        half_width_m: section.minor_m,
-        pitch_m,
-        neck_m: joint.map_or(0.0, |j| j.length_m),
-        neck_scale: joint.map_or(1.0, |j| j.scale),
-        ramp_m: joint.map_or(0.0, |j| j.ramp_m),
-        end_m,
-    }
 }

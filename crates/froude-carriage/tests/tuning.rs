@@ -121,6 +121,23 @@ impl Drive {
     }
 }
 
+/// The load's mode of 3 % damping: its peak of |1/(1 + L)| is narrower than the spacing of 80 points from 2.5 to 121 Hz.
+#[test]
+fn a_narrow_peak_of_the_sensitivity_is_found_to_seven_per_cent() {
+    let gains = LoopGains {
+        proportional_v_rad: 20.8,
+        derivative_v_s_rad: 0.132,
+        integral_v_rad_s: 104.0,
+        derivative_filter_hz: 300.0,
+        tick_s: 2.5e-4,
+    };
+    let largest = |n| margins(&measured(n, 2.5, 121.0, |s| DRIVE.response(s)), &gains).largest_sensitivity;
+    let (coarse, fine) = (largest(80), largest(20_000));
+    println!("{coarse:.3} for {fine:.3}");
+    assert!((fine - 1.57).abs() < 0.05, "{fine}");
+    assert!(coarse < fine && coarse > 0.93 * fine, "{coarse} for {fine}");
+}
+
 #[test]
 fn both_modes_come_back_from_the_exact_response() {
     let plant = measured(80, 1.0, 60.0, |s| DRIVE.response(s));

@@ -62,8 +62,8 @@ mod in_memory;
 
 use std::ops::Range;
 
+use froude_lanes::LANES;
 use kernel::groups_per_block;
-use lanes::LANES;
 
 pub use accumulator::Accumulator;
 pub use cluster::{ClusterAccumulator, ClusterCovariance, ClusterFactors, ClusterKind};
@@ -75,8 +75,7 @@ pub use non_negative::NonNegative;
 mod cluster;
 mod gram;
 mod kernel;
-pub(crate) mod lanes;
-mod non_negative;
+pub(crate) mod non_negative;
 #[doc(hidden)]
 pub mod reference;
 #[cfg(test)]

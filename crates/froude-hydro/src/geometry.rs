@@ -12,6 +12,7 @@
 //! | half the wetted area       | `π ½(a+b) · 2l`      | USR eq. 8     |
 //! | volume of a link           | `πab · 2l`           | elliptic cylinder |
 //! | side area of `HkLT`        | `A_yH + k·2l·2a + A_yT` | USR eq. 14 |
+//! | length of `HkLT`, a solid  | `2·end + neck + k·2l` | half-ellipsoid ends, necks at the joints |
 
 use core::f64::consts::PI;
 
@@ -35,6 +36,30 @@ pub struct Body {
     pub head_side_area_m2: f64,
     /// `A_yT`, side area of the tail, m².
     pub tail_side_area_m2: f64,
+}
+
+/// The narrower part at a joint of a robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Neck {
+    /// Its length with both ramps, m.
+    pub length_m: f64,
+    /// Its section over that of the link, both ways \[-\].
+    pub scale: f64,
+    /// Length of the conical ramp on each side, m.
+    pub ramp_m: f64,
+}
+
+/// A modular robot as a solid: `k` links, `k + 1` joints between and around them, a half-ellipsoid at each end.
+///
+/// The links are `2l` long from joint to joint; water that a flooded neck holds is not part of the solid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Robot {
+    /// The link that is repeated.
+    pub link: Link,
+    /// What narrows at every joint; `None` for a smooth chain.
+    pub neck: Option<Neck>,
+    /// Length of the half-ellipsoid at each end, m.
+    pub end_m: f64,
 }
 
 /// A length or an area that no body has.
@@ -97,6 +122,40 @@ impl Link {
         positive("the link's major semi-axis", self.major_semi_axis_m)?;
         positive("the link's minor semi-axis", self.minor_semi_axis_m)?;
         positive("the link's half-length", self.half_length_m)
+    }
+}
+
+impl Robot {
+    /// The stand-in that reproduces Table 6 of the USR paper for H3LT to H9LT (not unique; `data/usr-fluid-parameters`).
+    pub const NECKED_MAMBA: Self = Self {
+        link: Link { major_semi_axis_m: 0.0588, minor_semi_axis_m: 0.0394, half_length_m: 0.09 },
+        neck: Some(Neck { length_m: 0.060, scale: 0.7, ramp_m: 0.004 }),
+        end_m: 0.031,
+    };
+
+    /// The smooth stand-in of the same source.
+    pub const SMOOTH_MAMBA: Self = Self {
+        link: Link { major_semi_axis_m: 0.0524, minor_semi_axis_m: 0.0372, half_length_m: 0.09 },
+        neck: None,
+        end_m: 0.0772,
+    };
+
+    /// From joint to joint, `2l`, m.
+    #[must_use]
+    pub fn pitch_m(&self) -> f64 {
+        2.0 * self.link.half_length_m
+    }
+
+    /// Length of a neck with its ramps, m; 0 for a smooth chain.
+    #[must_use]
+    pub fn neck_length_m(&self) -> f64 {
+        self.neck.map_or(0.0, |neck| neck.length_m)
+    }
+
+    /// From tip to tip with `links` links, m.
+    #[must_use]
+    pub fn length_m(&self, links: usize) -> f64 {
+        2.0 * self.end_m + self.neck_length_m() + self.pitch_m() * links as f64
     }
 }
 

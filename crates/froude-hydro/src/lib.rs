@@ -59,4 +59,4 @@ pub mod strip;
 pub mod tabulated;
 
 pub use drag::{Axis, CoefficientInfo, CrossTerm, DragModel, Factor, MAX_COEFFICIENTS, Motion, Restrictions, Setting};
-pub use geometry::{Body, GeometryError, Link};
+pub use geometry::{Body, GeometryError, Link, Neck, Robot};

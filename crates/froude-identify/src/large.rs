@@ -62,12 +62,12 @@ pub(crate) fn identify_source(
     }
     progress("the ranges of a long table");
     let mut facts = Facts::new(limits.sample);
-    each(campaign, source, &mut |chunk| facts.take(chunk, source))?;
+    each(campaign, source, true, &mut |chunk| facts.take(chunk, source))?;
     if facts.n_used == 0 {
         return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read });
     }
     let mut seconds = Seconds::default();
-    each(campaign, source, &mut |chunk| {
+    each(campaign, source, true, &mut |chunk| {
         seconds.take(chunk, &facts, campaign);
         Ok(())
     })?;
@@ -109,14 +109,23 @@ fn weighs_all(reduced: &Reduced) -> Option<String> {
     is_hc3.then(|| "HC3, which suits computations without five clusters (each row weighs by its residual)".to_owned())
 }
 
-/// Reads the table once.
+/// Whether a law or `keep` reads the speed or the angle of the motion, and not only its velocities.
+fn reads_speed(source: &Source, laws: &[ForceLaw]) -> bool {
+    let is_one = |name: &str| matches!(name, "speed" | "angle");
+    let clauses = source.keep.iter().flat_map(|keep| &keep.clauses);
+    laws.iter().flat_map(ForceLaw::channels).any(is_one)
+        || clauses.map(|clause| &clause.column).any(|name| is_one(name))
+}
+
+/// Reads the table once; `has_speed` as of a chunk.
 fn each(
     campaign: &Campaign,
     source: &Source,
+    has_speed: bool,
     take: &mut dyn FnMut(&Chunk) -> Result<(), IdentifyError>,
 ) -> Result<(), IdentifyError> {
     for_each_chunk(source.input.path(), source.sidecar.as_deref(), &mut |table| {
-        take(&Chunk::of(table, campaign, source)?)
+        take(&Chunk::of(table, campaign, source, has_speed)?)
     })
 }
 
@@ -253,7 +262,7 @@ fn regressed(
     let is_clustered = reduced.scatter == Scatter::Cluster;
     let begin = |law| linear(law, source).map(|law| Fold::new(law, &source.name, is_clustered));
     let mut folds: Vec<Result<Fold<'_>, IdentifyError>> = reduced.laws.iter().map(begin).collect();
-    each(campaign, source, &mut |chunk| {
+    each(campaign, source, reads_speed(source, &reduced.laws), &mut |chunk| {
         let group = chunk.data.group.as_deref().unwrap_or_default();
         let clusters = if is_clustered { numbered(&facts.groups, group) } else { Vec::new() };
         for fold in &mut folds {
@@ -300,7 +309,8 @@ fn with_residuals(
 ) -> Result<(Vec<Fitted>, Vec<Option<f64>>), IdentifyError> {
     let models: Vec<&mut ModelFit> = fitted.iter_mut().filter_map(|model| model.as_mut().ok()).collect();
     let mut residuals: Vec<Residuals> = models.iter().map(|model| Residuals::new(model)).collect();
-    each(campaign, source, &mut |chunk| {
+    let laws: Vec<ForceLaw> = models.iter().map(|model| model.law.clone()).collect();
+    each(campaign, source, reads_speed(source, &laws), &mut |chunk| {
         models.iter().zip(&mut residuals).try_for_each(|(model, residuals)| residuals.take(model, &chunk.data))
     })?;
     let into = |(model, residuals): (&mut ModelFit, Residuals)| residuals.into_model(model, sample);

@@ -6,6 +6,7 @@
 //! current coefficients.
 
 use faer::Mat;
+use froude_hydro::power_law::PowerLaw;
 use froude_hydro::{Axis, Body, CrossTerm, DragModel, Link, Setting};
 use froude_records::estimate::{Estimate, Measured};
 use froude_records::units::Dimension;
@@ -242,9 +243,10 @@ impl ForceLaw {
             Kind::PowerLaw { channel, .. } => {
                 let v = self.channel(data, channel)?;
                 for i in 0..n {
-                    let [shape, slope] = power_law_terms(v[i], at[0], at[1]);
-                    out[(i, 0)] = shape;
-                    out[(i, 1)] = slope;
+                    // What the fluid does to the body opposes the motion.
+                    let [by_k, by_n] = PowerLaw { k_n: at[0], exponent: at[1] }.sensitivity(v[i] / REFERENCE_SPEED_M_S);
+                    out[(i, 0)] = -by_k;
+                    out[(i, 1)] = -by_n;
                 }
             }
         }
@@ -349,16 +351,6 @@ impl ForceLaw {
             known: data.channels.keys().cloned().collect(),
         })
     }
-}
-
-/// ∂F/∂k and ∂F/∂n of F = −k·sgn(v)·|v|ⁿ (v in units of 1 m/s); zero at rest.
-fn power_law_terms(v: f64, k: f64, n: f64) -> [f64; 2] {
-    let speed = v.abs() / REFERENCE_SPEED_M_S;
-    if speed == 0.0 {
-        return [0.0, 0.0];
-    }
-    let shape = -v.signum() * speed.powf(n);
-    [shape, k * shape * speed.ln()]
 }
 
 /// The channel name behind the ship theorist's letters: `u v w p q r` and `X Y Z K M N`.

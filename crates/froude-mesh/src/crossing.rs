@@ -287,7 +287,7 @@ mod tests {
     use super::*;
     use crate::check::check;
     use crate::mesh::Panel;
-    use crate::robot::ModularRobot;
+    use crate::robot::{Robot, sections};
     use crate::sections::{Resolution, SectionBody};
 
     fn ball(x_m: f64, along: usize) -> Mesh {
@@ -302,7 +302,7 @@ mod tests {
     #[test]
     fn sound_bodies_cross_nothing() {
         assert_eq!(reported(&ball(0.0, 4)), <[&str; 0]>::default());
-        let robot = ModularRobot::NECKED_MAMBA.body(3, 0.03).mesh(Resolution { along: 2, around: 24 }).unwrap().mesh;
+        let robot = sections(&Robot::NECKED_MAMBA, 3, 0.03).mesh(Resolution { along: 2, around: 24 }).unwrap().mesh;
         assert_eq!(reported(&robot), <[&str; 0]>::default());
         let flat =
             SectionBody::flat_cylinder(1.0, 0.5, 0.5, [3, 5]).mesh(Resolution { along: 2, around: 16 }).unwrap().mesh;

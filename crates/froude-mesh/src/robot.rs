@@ -4,95 +4,51 @@
 //! conical ramp on each side. Water that a flooded neck holds is not in the mesh. The head points to +x; part 0 is the tail's end, part
 //! `i` the i-th link from the tail, part `k + 1` the head. A neck belongs half to each of its neighbours.
 
+pub use froude_hydro::geometry::{Neck, Robot};
+
 use crate::sections::{Curve, Grading, Piece, Section, SectionBody};
 
-/// Dimensions of a modular robot, m.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ModularRobot {
-    /// Half of a link's height, along z.
-    pub half_height_m: f64,
-    /// Half of its width, along y.
-    pub half_width_m: f64,
-    /// From joint to joint.
-    pub pitch_m: f64,
-    /// Length of a neck with its ramps; 0 for a smooth chain.
-    pub neck_m: f64,
-    /// Section of the neck over that of the link, both ways.
-    pub neck_scale: f64,
-    /// Length of the ramp on each side of a neck.
-    pub ramp_m: f64,
-    /// Length of the half-ellipsoid at each end.
-    pub end_m: f64,
-}
-
-impl ModularRobot {
-    /// The stand-in that reproduces Table 6 of the USR paper for H3LT to H9LT (not unique; `data/usr-fluid-parameters`).
-    pub const NECKED_MAMBA: Self = Self {
-        half_height_m: 0.0588,
-        half_width_m: 0.0394,
-        pitch_m: 0.180,
-        neck_m: 0.060,
-        neck_scale: 0.7,
-        ramp_m: 0.004,
-        end_m: 0.031,
-    };
-
-    /// The smooth stand-in of the same source.
-    pub const SMOOTH_MAMBA: Self = Self {
-        half_height_m: 0.0524,
-        half_width_m: 0.0372,
-        pitch_m: 0.180,
-        neck_m: 0.0,
-        neck_scale: 1.0,
-        ramp_m: 0.0,
-        end_m: 0.0772,
-    };
-
-    /// From tip to tip, m.
-    #[must_use]
-    pub fn length_m(&self, links: usize) -> f64 {
-        2.0 * self.end_m + self.neck_m + self.pitch_m * links as f64
-    }
-
-    /// The body of HkLT, its middle at the origin, in cells of about `cell_m`.
-    #[must_use]
-    pub fn body(&self, links: usize, cell_m: f64) -> SectionBody {
-        let full = |x_m| Section::new(x_m, self.half_width_m, self.half_height_m);
-        let narrow = |x_m| Section::new(x_m, self.neck_scale * self.half_width_m, self.neck_scale * self.half_height_m);
-        let mut x_m = -0.5 * self.length_m(links);
-        let mut pieces = Vec::new();
-        let mut last = Section::new(x_m, 0.0, 0.0);
-        let mut go = |to: fn(f64) -> f64, section: &dyn Fn(f64) -> Section, length_m: f64, curve, grading, part| {
-            if length_m == 0.0 {
-                return;
-            }
-            x_m += length_m;
-            let next = section(x_m);
-            let cells = (to(length_m) / cell_m).round().max(1.0) as usize;
-            pieces.push(Piece { ends: [last, next], curve, grading, cells, part });
-            last = next;
-        };
-        let whole = |l: f64| l;
-        // A quarter of an ellipse is longer than its axis.
-        let arc = |l: f64| 1.5 * l;
-        let neck = self.neck_m - 2.0 * self.ramp_m;
-        // The shoulders of a neck are sharp: cells are finer towards them on both sides.
-        let [after, before] = if self.neck_m > 0.0 { [Grading::End, Grading::Start] } else { [Grading::Even; 2] };
-        go(arc, &full, self.end_m, Curve::Elliptic, after, 0);
-        for joint in 0..=links {
-            go(whole, &narrow, self.ramp_m, Curve::Straight, Grading::Both, joint);
-            go(whole, &narrow, 0.5 * neck, Curve::Straight, Grading::Start, joint);
-            go(whole, &narrow, 0.5 * neck, Curve::Straight, Grading::End, joint + 1);
-            go(whole, &full, self.ramp_m, Curve::Straight, Grading::Both, joint + 1);
-            if joint < links {
-                let length_m = self.pitch_m - self.neck_m;
-                go(whole, &full, length_m, Curve::Straight, Grading::Both, joint + 1);
-            }
+/// The body of HkLT, its middle at the origin, in cells of about `cell_m`.
+#[must_use]
+pub fn sections(robot: &Robot, links: usize, cell_m: f64) -> SectionBody {
+    let Neck { length_m: neck_m, scale, ramp_m } =
+        robot.neck.unwrap_or(Neck { length_m: 0.0, scale: 1.0, ramp_m: 0.0 });
+    let (half_width_m, half_height_m) = (robot.link.minor_semi_axis_m, robot.link.major_semi_axis_m);
+    let full = |x_m| Section::new(x_m, half_width_m, half_height_m);
+    let narrow = |x_m| Section::new(x_m, scale * half_width_m, scale * half_height_m);
+    let mut x_m = -0.5 * robot.length_m(links);
+    let mut pieces = Vec::new();
+    let mut last = Section::new(x_m, 0.0, 0.0);
+    let mut go = |to: fn(f64) -> f64, section: &dyn Fn(f64) -> Section, length_m: f64, curve, grading, part| {
+        if length_m == 0.0 {
+            return;
         }
-        let tip = |x_m| Section::new(x_m, 0.0, 0.0);
-        go(arc, &tip, self.end_m, Curve::Elliptic, before, links + 1);
-        SectionBody { pieces }
+        x_m += length_m;
+        let next = section(x_m);
+        let cells = (to(length_m) / cell_m).round().max(1.0) as usize;
+        pieces.push(Piece { ends: [last, next], curve, grading, cells, part });
+        last = next;
+    };
+    let whole = |l: f64| l;
+    // A quarter of an ellipse is longer than its axis.
+    let arc = |l: f64| 1.5 * l;
+    let neck = neck_m - 2.0 * ramp_m;
+    // The shoulders of a neck are sharp: cells are finer towards them on both sides.
+    let [after, before] = if neck_m > 0.0 { [Grading::End, Grading::Start] } else { [Grading::Even; 2] };
+    go(arc, &full, robot.end_m, Curve::Elliptic, after, 0);
+    for joint in 0..=links {
+        go(whole, &narrow, ramp_m, Curve::Straight, Grading::Both, joint);
+        go(whole, &narrow, 0.5 * neck, Curve::Straight, Grading::Start, joint);
+        go(whole, &narrow, 0.5 * neck, Curve::Straight, Grading::End, joint + 1);
+        go(whole, &full, ramp_m, Curve::Straight, Grading::Both, joint + 1);
+        if joint < links {
+            let length_m = robot.pitch_m() - neck_m;
+            go(whole, &full, length_m, Curve::Straight, Grading::Both, joint + 1);
+        }
     }
+    let tip = |x_m| Section::new(x_m, 0.0, 0.0);
+    go(arc, &tip, robot.end_m, Curve::Elliptic, before, links + 1);
+    SectionBody { pieces }
 }
 
 #[cfg(test)]
@@ -106,12 +62,12 @@ mod tests {
     fn the_necked_mamba_has_the_volume_of_its_source() {
         for links in [1, 3, 9] {
             let volume = |along: usize| {
-                let body = ModularRobot::NECKED_MAMBA.body(links, 0.03);
+                let body = sections(&Robot::NECKED_MAMBA, links, 0.03);
                 Measure::of(&body.mesh(Resolution { along, around: 24 * along }).unwrap().mesh).volume_m3
             };
             let (coarse, fine) = (volume(2), volume(4));
             let limit = fine + (fine - coarse) / 3.0;
-            let exact = ModularRobot::NECKED_MAMBA.body(links, 0.03).volume_m3();
+            let exact = sections(&Robot::NECKED_MAMBA, links, 0.03).volume_m3();
             assert!((limit / exact - 1.0).abs() < 1e-3, "{links}: {limit} {exact}");
             let printed = 1.1013e-3 * links as f64 + 0.529e-3;
             assert!((limit - printed).abs() < 0.5e-7 * links as f64 + 0.5e-6, "{links}: {limit} {printed}");

@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::time::Instant;
 
 use froude_mesh::Mesh;
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::Robot;
 use froude_mesh::sections::{Resolution, SectionBody};
 use froude_panel::chain::Chain;
 use froude_panel::problem::Problem;
@@ -37,7 +37,7 @@ fn mesh(case: &str) -> Mesh {
     let robot = |along, around| {
         let angles = [10.0_f64, -20.0, 25.0, -15.0].map(f64::to_radians);
         let resolution = Resolution { along, around };
-        Chain::new(&ModularRobot::NECKED_MAMBA, 3, &angles, 0.05, resolution).unwrap().surface.mesh
+        Chain::new(&Robot::NECKED_MAMBA, 3, &angles, 0.05, resolution).unwrap().surface.mesh
     };
     match case {
         "spheroid-2000" => spheroid(5, 40),

@@ -9,7 +9,7 @@
 //! between joint and tip), x along it towards the head, z that of the mesh. The tail's end lies as in the straight robot.
 
 use froude_mesh::panel::facets;
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::{Robot, sections};
 use froude_mesh::sections::{PartMesh, Resolution, SectionError};
 use froude_mesh::vector::{Vec3, add, scale, sub};
 
@@ -69,7 +69,7 @@ impl Chain {
     ///
     /// [`ChainError`] for another number of angles, or one that folds the surface.
     pub fn new(
-        robot: &ModularRobot,
+        robot: &Robot,
         links: usize,
         angles_rad: &[f64],
         cell_m: f64,
@@ -78,7 +78,7 @@ impl Chain {
         if angles_rad.len() != links + 1 {
             return Err(ChainError::Angles { links, found: angles_rad.len() });
         }
-        let straight = robot.body(links, cell_m).mesh(resolution)?;
+        let straight = sections(robot, links, cell_m).mesh(resolution)?;
         let line = CentreLine::new(robot, links, angles_rad);
         for (joint, &angle_rad) in angles_rad.iter().enumerate() {
             let inside = |x: f64| (x - line.joints_m[joint]).abs() <= line.reach_m + 1e-12;
@@ -134,11 +134,12 @@ fn beside(heading: f64) -> Vec3 {
 }
 
 impl CentreLine {
-    fn new(robot: &ModularRobot, links: usize, angles: &[f64]) -> Self {
+    fn new(robot: &Robot, links: usize, angles: &[f64]) -> Self {
         let tip_m = 0.5 * robot.length_m(links);
-        let reach_m = if robot.neck_m > 0.0 { 0.5 * robot.neck_m } else { robot.half_width_m };
-        let joints_m: Vec<f64> =
-            (0..=links).map(|j| -tip_m + robot.end_m + 0.5 * robot.neck_m + robot.pitch_m * j as f64).collect();
+        let reach_m = if robot.neck.is_some() { 0.5 * robot.neck_length_m() } else { robot.link.minor_semi_axis_m };
+        let joints_m: Vec<f64> = (0..=links)
+            .map(|j| -tip_m + robot.end_m + 0.5 * robot.neck_length_m() + robot.pitch_m() * j as f64)
+            .collect();
         let bounds: Vec<f64> = [-tip_m].into_iter().chain(joints_m.iter().copied()).chain([tip_m]).collect();
         let middles_m = bounds.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
         let mut headings = vec![0.0];
@@ -147,7 +148,7 @@ impl CentreLine {
         }
         let mut pivots = vec![[joints_m[0], 0.0, 0.0]];
         for heading in &headings[1..=links] {
-            pivots.push(add(pivots[pivots.len() - 1], scale(along(*heading), robot.pitch_m)));
+            pivots.push(add(pivots[pivots.len() - 1], scale(along(*heading), robot.pitch_m())));
         }
         Self { joints_m, reach_m, middles_m, pivots, headings, angles: angles.to_vec() }
     }
@@ -275,9 +276,9 @@ mod tests {
 
     #[test]
     fn a_straight_chain_is_the_robot_and_a_bent_one_keeps_its_joints() {
-        let robot = ModularRobot::NECKED_MAMBA;
+        let robot = Robot::NECKED_MAMBA;
         let straight = Chain::new(&robot, 3, &[0.0; 4], 0.03, RESOLUTION).unwrap();
-        let body = robot.body(3, 0.03).mesh(RESOLUTION).unwrap();
+        let body = sections(&robot, 3, 0.03).mesh(RESOLUTION).unwrap();
         for (a, b) in straight.surface.mesh.vertices.iter().zip(&body.mesh.vertices) {
             assert!(dot(sub(*a, *b), sub(*a, *b)) < 1e-28);
         }
@@ -295,14 +296,14 @@ mod tests {
 
     #[test]
     fn an_angle_that_folds_the_surface_is_refused_with_the_largest() {
-        let why = Chain::new(&ModularRobot::SMOOTH_MAMBA, 2, &[0.0, 1.7, 0.0], 0.03, RESOLUTION).unwrap_err();
+        let why = Chain::new(&Robot::SMOOTH_MAMBA, 2, &[0.0, 1.7, 0.0], 0.03, RESOLUTION).unwrap_err();
         assert_eq!(
             why.to_string(),
             "joint 1 bends by 97.4 degrees: its arc has a radius of 0.0327 m and the body there a half-width of 0.0372 m; the largest \
              angle is 90.0 degrees"
         );
         assert!(matches!(
-            Chain::new(&ModularRobot::SMOOTH_MAMBA, 2, &[0.0; 2], 0.03, RESOLUTION),
+            Chain::new(&Robot::SMOOTH_MAMBA, 2, &[0.0; 2], 0.03, RESOLUTION),
             Err(ChainError::Angles { links: 2, found: 2 })
         ));
     }

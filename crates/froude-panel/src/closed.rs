@@ -10,6 +10,7 @@
 
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
+use froude_lanes::{Kernel, Vectors, run};
 use froude_mesh::panel::Facet;
 use froude_mesh::vector::{Vec3, cross, dot, norm, scale, sub};
 
@@ -83,48 +84,45 @@ impl FromIterator<Vec3> for Points {
     }
 }
 
-/// A function that is compiled for AVX-512 and for AVX2 as well, and goes to what the processor has.
-macro_rules! vectorised {
-    ($(#[$doc:meta])* $name:ident => $plain:ident ($($argument:ident: $kind:ty),*)) => {
-        $(#[$doc])*
-        pub(crate) fn $name($($argument: $kind),*) {
-            #[cfg(target_arch = "x86_64")]
-            {
-                #[target_feature(enable = "avx512f,avx512dq,avx512vl,fma")]
-                fn avx512($($argument: $kind),*) {
-                    $plain($($argument),*);
-                }
-                #[target_feature(enable = "avx2,fma")]
-                fn avx2($($argument: $kind),*) {
-                    $plain($($argument),*);
-                }
-                let has_512 = is_x86_feature_detected!("avx512f")
-                    && is_x86_feature_detected!("avx512dq")
-                    && is_x86_feature_detected!("avx512vl");
-                if has_512 {
-                    // SAFETY: the processor was asked.
-                    #[allow(unsafe_code)]
-                    return unsafe { avx512($($argument),*) };
-                }
-                if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-                    // SAFETY: the processor was asked.
-                    #[allow(unsafe_code)]
-                    return unsafe { avx2($($argument),*) };
-                }
-            }
-            $plain($($argument),*);
-        }
-    };
+/// ∫ 1/r dS and ∫ ∂(1/r)/∂n_y dS of a panel at points, into two rows as long as theirs.
+pub(crate) fn near(polygon: &Polygon, points: &Points, source: &mut [f64], dipole: &mut [f64]) {
+    run(Near { polygon, points, source, dipole });
 }
 
-vectorised! {
-    /// ∫ 1/r dS and ∫ ∂(1/r)/∂n_y dS of a panel at points, into two rows as long as theirs.
-    near => near_plain(polygon: &Polygon, points: &Points, source: &mut [f64], dipole: &mut [f64])
+/// Adds to sums, `8 × points`, what strengths give there: `values` has the points of the first strength, then of the next.
+pub(crate) fn accumulate(values: &[f32], strengths: &[[f64; 8]], sums: &mut [f64]) {
+    run(Accumulate { values, strengths, sums });
 }
 
-vectorised! {
-    /// Adds to sums, `8 × points`, what strengths give there: `values` has the points of the first strength, then of the next.
-    accumulate => accumulate_plain(values: &[f32], strengths: &[[f64; 8]], sums: &mut [f64])
+struct Near<'a> {
+    polygon: &'a Polygon,
+    points: &'a Points,
+    source: &'a mut [f64],
+    dipole: &'a mut [f64],
+}
+
+impl Kernel for Near<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) {
+        near_plain(self.polygon, self.points, self.source, self.dipole);
+    }
+}
+
+struct Accumulate<'a> {
+    values: &'a [f32],
+    strengths: &'a [[f64; 8]],
+    sums: &'a mut [f64],
+}
+
+impl Kernel for Accumulate<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Vectors>(self, _: V) {
+        accumulate_plain(self.values, self.strengths, self.sums);
+    }
 }
 
 #[inline(always)]

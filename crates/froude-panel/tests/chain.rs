@@ -1,7 +1,7 @@
 //! Chains of links: the parts add up to the whole.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::Robot;
 use froude_mesh::sections::Resolution;
 use froude_panel::chain::{Chain, diagonal_form, whole};
 use froude_panel::problem::{Frame, Problem};
@@ -11,7 +11,7 @@ const RESOLUTION: Resolution = Resolution { along: 1, around: 12 };
 
 #[test]
 fn the_links_of_a_bent_chain_add_up_to_the_body() {
-    let chain = Chain::new(&ModularRobot::NECKED_MAMBA, 2, &[0.3, -0.4, 0.2], 0.05, RESOLUTION).unwrap();
+    let chain = Chain::new(&Robot::NECKED_MAMBA, 2, &[0.3, -0.4, 0.2], 0.05, RESOLUTION).unwrap();
     let links = dense::solve(&chain.problem(false).unwrap());
     let mesh = &chain.surface.mesh;
     let body = Frame { origin_m: [0.1, -0.2, 0.3], axes: [[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]] };
@@ -38,7 +38,7 @@ const TRAVELLING: [f64; 2] = [0.16, 0.19];
 
 #[test]
 fn bending_a_joint_changes_the_matrix_and_the_diagonal_form_errs() {
-    for robot in [ModularRobot::NECKED_MAMBA, ModularRobot::SMOOTH_MAMBA] {
+    for robot in [Robot::NECKED_MAMBA, Robot::SMOOTH_MAMBA] {
         let mut sway = Vec::new();
         for degrees in [0.0_f64, 15.0, 30.0] {
             let angles = [0.0, degrees.to_radians(), 0.0, 0.0];

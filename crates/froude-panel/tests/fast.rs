@@ -1,7 +1,7 @@
 //! The fast solver against the plain one, on the same panels.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::{Robot, sections};
 use froude_mesh::sections::{Resolution, SectionBody};
 use froude_mesh::{Mesh, Panel};
 use froude_panel::mirror::{Kind, Mirror, positive_part};
@@ -59,6 +59,6 @@ fn a_slender_body_a_box_and_a_body_beside_mirrors_are_those_of_the_plain_solver(
     let mirrors = [Mirror::body(1), wall];
     let half = positive_part(&slender, &mirrors).unwrap();
     compared("half a capsule under a free surface", &Problem::rigid(&half, &mirrors));
-    let robot = ModularRobot::NECKED_MAMBA.body(3, 0.03).mesh(Resolution { along: 3, around: 24 }).unwrap();
+    let robot = sections(&Robot::NECKED_MAMBA, 3, 0.03).mesh(Resolution { along: 3, around: 24 }).unwrap();
     compared("robot", &Problem::rigid(&robot.mesh, &[]));
 }

@@ -9,7 +9,7 @@ use froude_hydro::closed_form::{spheroid_axial_coefficient, spheroid_transverse_
 use froude_hydro::ellipsoid::ellipsoid_added_mass;
 use froude_mesh::Mesh;
 use froude_mesh::measure::Measure;
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::{Robot, sections};
 use froude_mesh::sections::{Resolution, SectionBody};
 use froude_mesh::vector::{cross, dot, scale, sub};
 use froude_panel::convergence::converged;
@@ -209,7 +209,7 @@ fn the_pressures_on_a_body_in_steady_motion_give_the_same_moment() {
 /// Kinetic energy is not negative: no eigenvalue below zero by more than the asymmetry of the mesh.
 #[test]
 fn the_matrix_is_positive_semi_definite() {
-    let necked = mesh(&ModularRobot::NECKED_MAMBA.body(1, 0.04), 1, 16);
+    let necked = mesh(&sections(&Robot::NECKED_MAMBA, 1, 0.04), 1, 16);
     let round = mesh(&SectionBody::ellipsoid([3.0, 1.0, 1.0], 2), 2, 16);
     for body in [lopsided(), necked, round] {
         let a = matrix(&body);

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 use froude_mesh::measure::Measure;
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::{Robot, sections};
 use froude_mesh::sections::Resolution;
 use froude_panel::convergence::converged;
 use froude_panel::dense::solve;
@@ -21,7 +21,7 @@ fn the_necked_robot_has_the_added_mass_that_another_code_found() {
     let planes = [Mirror::body(1), Mirror::body(2)];
     let levels = [2, 3, 4];
     for (links, sway_kg, surge) in INDEPENDENT {
-        let body = ModularRobot::NECKED_MAMBA.body(links, 0.04);
+        let body = sections(&Robot::NECKED_MAMBA, links, 0.04);
         let found = levels.map(|m| {
             let mesh = body.mesh(Resolution { along: m, around: 8 * m }).unwrap().mesh;
             let a = solve(&Problem::rigid(&positive_part(&mesh, &planes).unwrap(), &planes)).added_mass(0).matrix;

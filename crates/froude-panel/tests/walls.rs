@@ -4,7 +4,7 @@
 use core::f64::consts::PI;
 
 use froude_mesh::Mesh;
-use froude_mesh::robot::ModularRobot;
+use froude_mesh::robot::{Robot, sections};
 use froude_mesh::sections::{Resolution, SectionBody};
 use froude_panel::convergence::converged;
 use froude_panel::mirror::{Kind, Mirror, positive_part};
@@ -131,7 +131,7 @@ const PRINT: f64 = 0.005;
 #[test]
 fn the_pool_of_the_paper_adds_what_another_program_found() {
     let pool = Tank { length_m: 1.5, width_m: 0.9, depth_m: 1.0 };
-    let body = ModularRobot::SMOOTH_MAMBA.body(2, 0.05);
+    let body = sections(&Robot::SMOOTH_MAMBA, 2, 0.05);
     let levels = [2, 3, 4];
     let more = levels.map(|m| {
         let mesh = body.mesh(Resolution { along: m, around: 8 * m }).unwrap().mesh;

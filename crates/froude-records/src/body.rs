@@ -20,6 +20,8 @@
 
 use std::path::Path;
 
+use froude_hydro::{Link, Neck, Robot};
+
 use crate::error::{RecordError, read_bytes, utf8};
 use crate::plausible;
 use crate::section::{Section, Source, found, parse};
@@ -55,16 +57,7 @@ pub struct SemiAxes {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     /// A modular robot: head, links, tail; their number is asked for elsewhere.
-    Robot {
-        /// Section of a link.
-        section: SemiAxes,
-        /// From joint to joint, m.
-        pitch_m: f64,
-        /// The narrower part at a joint; `None` for a smooth chain.
-        joint: Option<Joint>,
-        /// Half-ellipsoid at each end, m.
-        end_m: f64,
-    },
+    Robot(Robot),
     /// An ellipsoid: semi-axes along x, y, z, m.
     Ellipsoid {
         /// Semi-axes.
@@ -86,17 +79,6 @@ pub enum Shape {
         /// Section.
         section: SemiAxes,
     },
-}
-
-/// The narrower part at a joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Joint {
-    /// Its length with both ramps, m.
-    pub length_m: f64,
-    /// Its section over that of the link.
-    pub scale: f64,
-    /// Length of the ramp on each side, m.
-    pub ramp_m: f64,
 }
 
 /// Reads a body file.
@@ -196,21 +178,28 @@ fn end(s: &Section<'_>) -> Result<f64, RecordError> {
 
 fn robot(s: &Section<'_>) -> Result<Shape, RecordError> {
     s.only(&["shape", "link", "joint", "ends", CENTRE_OF_GRAVITY])?;
-    let link = s.section("link")?.ok_or_else(|| {
+    let link = link(s)?.ok_or_else(|| {
         s.missing(
             "link",
             "write link = { major_semi_axis = \"58.8 mm\", minor_semi_axis = \"39.4 mm\", half_length = \"90 mm\" }",
         )
     })?;
-    link.only(&["major_semi_axis", "minor_semi_axis", "half_length"])?;
-    let pitch_m = 2.0 * need(&link, "half_length")?;
-    let joint = s.section("joint")?.map(|j| joint(&j, pitch_m)).transpose()?;
-    Ok(Shape::Robot { section: section_of(&link)?, pitch_m, joint, end_m: end(s)? })
+    let neck = s.section("joint")?.map(|j| neck(&j, 2.0 * link.half_length_m)).transpose()?;
+    Ok(Shape::Robot(Robot { link, neck, end_m: end(s)? }))
 }
 
-fn joint(j: &Section<'_>, pitch_m: f64) -> Result<Joint, RecordError> {
+/// The link of a `[body]`, of a body file and of a campaign.
+pub(crate) fn link(s: &Section<'_>) -> Result<Option<Link>, RecordError> {
+    let Some(link) = s.section("link")? else { return Ok(None) };
+    link.only(&["major_semi_axis", "minor_semi_axis", "half_length"])?;
+    let half_length_m = need(&link, "half_length")?;
+    let SemiAxes { major_m, minor_m } = section_of(&link)?;
+    Ok(Some(Link { major_semi_axis_m: major_m, minor_semi_axis_m: minor_m, half_length_m }))
+}
+
+fn neck(j: &Section<'_>, pitch_m: f64) -> Result<Neck, RecordError> {
     j.only(&["length", "scale", "ramp"])?;
-    let joint = Joint {
+    let neck = Neck {
         length_m: need(j, "length")?,
         scale: j
             .number("scale")?
@@ -221,25 +210,25 @@ fn joint(j: &Section<'_>, pitch_m: f64) -> Result<Joint, RecordError> {
         Some(value) => j.wrong(key, value, problem),
         None => j.missing(key, "write it"),
     };
-    if !(joint.scale > 0.0 && joint.scale <= 1.0) {
+    if !(neck.scale > 0.0 && neck.scale <= 1.0) {
         return Err(refused(
             "scale",
-            format!("is {}; a joint's section lies between 0 and 1 of the link's", joint.scale),
+            format!("is {}; a joint's section lies between 0 and 1 of the link's", neck.scale),
         ));
     }
-    if 2.0 * joint.ramp_m >= joint.length_m {
+    if 2.0 * neck.ramp_m >= neck.length_m {
         return Err(refused(
             "ramp",
-            format!("is {} m; two of them must be shorter than the joint of {} m", joint.ramp_m, joint.length_m),
+            format!("is {} m; two of them must be shorter than the joint of {} m", neck.ramp_m, neck.length_m),
         ));
     }
-    if joint.length_m >= pitch_m {
+    if neck.length_m >= pitch_m {
         return Err(refused(
             "length",
-            format!("is {} m; it must be shorter than the link from joint to joint, {pitch_m} m", joint.length_m),
+            format!("is {} m; it must be shorter than the link from joint to joint, {pitch_m} m", neck.length_m),
         ));
     }
-    Ok(joint)
+    Ok(neck)
 }
 
 fn ellipsoid(s: &Section<'_>) -> Result<Shape, RecordError> {
@@ -287,9 +276,7 @@ ends = { length = "31 mm" }
     #[test]
     fn a_robot_is_read() {
         let body = read(ROBOT).unwrap();
-        let Shape::Robot { section, pitch_m, joint: Some(joint), end_m } = body.shape else { panic!("{body:?}") };
-        assert_eq!((body.density_kg_m3, pitch_m, end_m), (Some(1025.0), 0.18, 0.031));
-        assert_eq!((section.major_m, joint.scale), (0.0588, 0.7));
+        assert_eq!((body.density_kg_m3, body.shape), (Some(1025.0), Shape::Robot(Robot::NECKED_MAMBA)));
     }
 
     #[test]

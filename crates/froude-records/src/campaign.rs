@@ -8,6 +8,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_hydro::Link;
 use indexmap::IndexMap;
 
 use crate::added_mass_options::GivenOption;
@@ -66,7 +67,7 @@ pub struct BodySpec {
     /// The point that velocities are of and moments are about, in words.
     pub reference_point: Option<String>,
     /// One module.
-    pub link: Option<LinkSpec>,
+    pub link: Option<Link>,
     /// Side area of the head, A_yH.
     pub head_side_area_m2: Option<f64>,
     /// Side area of the tail, A_yT.
@@ -83,17 +84,6 @@ pub struct BodySpec {
     pub volumes: IndexMap<String, f64>,
     /// Displaced volume of one link.
     pub link_volume_m3: Option<f64>,
-}
-
-/// Elliptic section and length of one module.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinkSpec {
-    /// Major semi-axis a, vertical.
-    pub major_semi_axis_m: f64,
-    /// Minor semi-axis b, lateral.
-    pub minor_semi_axis_m: f64,
-    /// Half the length, l.
-    pub half_length_m: f64,
 }
 
 /// The tank.

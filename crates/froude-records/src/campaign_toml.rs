@@ -8,11 +8,11 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use crate::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
+use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
-    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, DecaySpec, Fluid, Identify, Input, LinkSpec,
-    Motion, PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth,
-    UserModel,
+    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, DecaySpec, Fluid, Identify, Input, Motion,
+    PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
 };
 use crate::carriage_toml::{INERTIA, carriage, positive_constant};
 use crate::error::RecordError;
@@ -88,22 +88,6 @@ fn fluid(s: &Section<'_>) -> Result<Fluid, RecordError> {
 }
 
 fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
-    let link = s
-        .section("link")?
-        .map(|l| -> Result<LinkSpec, RecordError> {
-            l.only(&["major_semi_axis", "minor_semi_axis", "half_length"])?;
-            let need = |key| {
-                l.positive(key, Dimension::LENGTH)?
-                    .ok_or_else(|| l.missing(key, "a link needs major_semi_axis, minor_semi_axis and half_length"))
-            };
-            let out = LinkSpec {
-                major_semi_axis_m: need("major_semi_axis")?,
-                minor_semi_axis_m: need("minor_semi_axis")?,
-                half_length_m: need("half_length")?,
-            };
-            Ok(out)
-        })
-        .transpose()?;
     let mut volumes = IndexMap::new();
     if let Some(table) = s.section("volumes")? {
         for (configuration, _, value) in table.entries() {
@@ -120,7 +104,7 @@ fn body(s: &Section<'_>) -> Result<BodySpec, RecordError> {
     }
     let out = BodySpec {
         reference_point: s.text("reference_point")?.map(str::to_owned),
-        link,
+        link: link(s)?,
         head_side_area_m2: s.positive("head_side_area", Dimension::AREA)?,
         tail_side_area_m2: s.positive("tail_side_area", Dimension::AREA)?,
         reference_length_m: s.positive("reference_length", Dimension::LENGTH)?,

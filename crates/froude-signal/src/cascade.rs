@@ -7,7 +7,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::butterworth::LowPass;
-use crate::lanes::{Kernel, LANES, Lane, Vectors, eight, run};
+use froude_lanes::{Kernel, LANES, Lane, Vectors, eight, run};
 
 /// A record is cut where a stretch is this many times as long as what it must forget.
 const WORTH: usize = 2;
@@ -157,8 +157,8 @@ fn through<V: Vectors, const IS_BACKWARD: bool>(vectors: V, sections: &mut [InLa
 mod tests {
     use super::*;
     use crate::butterworth::low_pass;
-    use crate::lanes::run_all;
     use crate::zero_phase::Pass;
+    use froude_lanes::Level;
     use proptest::prelude::*;
 
     proptest! {
@@ -181,14 +181,13 @@ mod tests {
             let mut forward: Vec<_> = (0..3).map(|_| (rest(0.5), x.to_vec())).collect();
             let mut backward = forward.clone();
             let (mut free_forward, mut free_backward) = (forward.iter_mut(), backward.iter_mut());
-            let ran = run_all(|| {
+            let mut ran = Vec::new();
+            for level in Level::available() {
                 let (states, to) = free_forward.next().unwrap();
-                Stretches::<false> { low_pass: &f, states, stretch: length, from: Some(x), to }
-            });
-            run_all(|| {
+                ran.push(level.run(Stretches::<false> { low_pass: &f, states, stretch: length, from: Some(x), to }));
                 let (states, to) = free_backward.next().unwrap();
-                Stretches::<true> { low_pass: &f, states, stretch: length, from: None, to }
-            });
+                level.run(Stretches::<true> { low_pass: &f, states, stretch: length, from: None, to });
+            }
             prop_assert!(ran.iter().all(|is_finite| *is_finite));
             for (found, expected) in [(&forward, &there), (&backward, &back)] {
                 for (_, found) in &found[..ran.len()] {

@@ -7,8 +7,8 @@
 #![allow(clippy::inline_always)]
 
 use crate::error::{SignalError, all_finite};
-use crate::lanes::{Kernel, LANES, Lane, Vectors, eight, run};
 use crate::pages::zeros;
+use froude_lanes::{Kernel, LANES, Lane, Vectors, eight, run};
 
 /// Outputs of a stretch between two interleavings: with its neighbours it stays in the first-level cache.
 const STRETCH: usize = 256;
@@ -128,9 +128,14 @@ fn interleave<V: Vectors>(vectors: V, samples: &[f64], stretch: usize, lanes: &m
     }
 }
 
+/// Outputs that share what they load: their sums and both of their sides, three registers each, stay in the processor.
+const fn share<V: Vectors>() -> usize {
+    if V::REGISTERS >= 32 { 8 } else { 4 }
+}
+
 #[inline(always)]
 fn sums<V: Vectors>(vectors: V, parity: Parity, centre: f64, side: &[f64], lanes: &[Lane], out: &mut [f64]) {
-    match (V::SHARE, parity) {
+    match (share::<V>(), parity) {
         (8, Parity::Even) => folded::<V, 8, false>(vectors, centre, side, lanes, out),
         (8, Parity::Odd) => folded::<V, 8, true>(vectors, centre, side, lanes, out),
         (_, Parity::Even) => folded::<V, 4, false>(vectors, centre, side, lanes, out),
@@ -188,7 +193,7 @@ fn folded<V: Vectors, const SHARE: usize, const IS_ODD: bool>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lanes::run_all;
+    use froude_lanes::Level;
     use proptest::prelude::*;
 
     proptest! {
@@ -211,7 +216,7 @@ mod tests {
                 let out = vec![0.0; x.len()];
                 Convolve { centre, side: &side, parity, beyond: |_| 0.25, record: &x, out }
             };
-            for found in run_all(kernel) {
+            for found in Level::available().map(|level| level.run(kernel())) {
                 for (a, b) in found.unwrap().iter().zip(&expected) {
                     prop_assert!((a - b).abs() < 121.0 * f64::EPSILON, "{} {}", a, b);
                 }

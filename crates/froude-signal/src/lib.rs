@@ -34,7 +34,6 @@ pub mod differences;
 mod error;
 pub mod exponential;
 pub mod gaussian;
-mod lanes;
 mod pages;
 pub mod savitzky_golay;
 pub mod spectrum;

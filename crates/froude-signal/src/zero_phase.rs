@@ -12,8 +12,8 @@
 use crate::butterworth::{LowPass, Section};
 use crate::cascade;
 use crate::error::{SignalError, all_finite};
-use crate::lanes::LANES;
 use crate::pages::zeros;
+use froude_lanes::LANES;
 
 /// Filters a record forward and backward.
 ///

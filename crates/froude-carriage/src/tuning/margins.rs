@@ -23,9 +23,10 @@ pub struct Margins {
     pub gain_reduction: Option<f64>,
     /// Smallest phase margin over its own frequency, s.
     pub delay_s: Option<f64>,
-    /// Largest |1/(1 + L)| over the measured frequencies.
+    /// Largest |1/(1 + L)| over the measured frequencies and between them.
     ///
-    /// The largest of many noisy points: biased upwards, and no interval of the one point allows for that.
+    /// Noise makes the largest of many points larger, a peak narrower than their spacing makes it smaller, and no interval of single points
+    /// allows for either: it has none.
     pub largest_sensitivity: f64,
     /// |L| at the first and the last frequency.
     pub end_moduli: [f64; 2],
@@ -38,6 +39,9 @@ impl Margins {
         self.end_moduli[0] > 1.0 && self.end_moduli[1] < 0.5
     }
 }
+
+/// Steps between two measured points in which the largest sensitivity is looked for.
+const BETWEEN: u32 = 8;
 
 /// A point of the open loop, ready for a Bode plot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,12 +77,14 @@ pub fn margins(plant: &[ResponsePoint], gains: &LoopGains) -> Margins {
     let points = open_loop(plant, gains);
     let end = |p: Option<&LoopPoint>| p.map_or(f64::NAN, |p| p.modulus);
     let mut out = Margins { end_moduli: [end(points.first()), end(points.last())], ..Margins::default() };
-    for p in &points {
-        let distance = (1.0 + Complex64::from_polar(p.modulus, p.phase_rad)).norm();
-        out.largest_sensitivity = out.largest_sensitivity.max(1.0 / distance);
-    }
     for pair in points.windows(2) {
         let (a, b) = (pair[0], pair[1]);
+        for k in 0..=BETWEEN {
+            let t = f64::from(k) / f64::from(BETWEEN);
+            let modulus = between(a.modulus.ln(), b.modulus.ln(), t).exp();
+            let distance = (1.0 + Complex64::from_polar(modulus, between(a.phase_rad, b.phase_rad, t))).norm();
+            out.largest_sensitivity = out.largest_sensitivity.max(1.0 / distance);
+        }
         if let Some(t) = crossing(a.modulus.ln(), b.modulus.ln()) {
             let frequency_hz = between(a.frequency_hz.ln(), b.frequency_hz.ln(), t).exp();
             // Not folded into one turn: a delay of a whole turn more is no margin.

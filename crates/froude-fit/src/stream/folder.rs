@@ -2,7 +2,7 @@
 
 use super::gram::add_products;
 use super::kernel::{Ahead, absorb, clear_from, groups_per_block, put};
-use super::lanes::{LANES, Lane, Level};
+use froude_lanes::{LANES, Lane, Level};
 
 use super::Shape;
 

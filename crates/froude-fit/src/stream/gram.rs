@@ -9,8 +9,13 @@
 // What a kernel calls must become part of it, or it is compiled plainly.
 #![allow(clippy::inline_always)]
 
-use super::kernel::Ahead;
-use super::lanes::{Kernel, Lane, Level, Vectors};
+use super::kernel::{Ahead, tile};
+use froude_lanes::{Kernel, Lane, Level, Vectors};
+
+/// Columns in a panel, P: the registers hold all P² products of two panels, the columns of one and a column of the other.
+const fn panel<V: Vectors>() -> usize {
+    if V::REGISTERS >= 32 { 5 } else { 3 }
+}
 
 /// Largest variance inflation factor at which products stand in for a QR factor.
 ///
@@ -60,12 +65,12 @@ impl Kernel for AddProducts<'_> {
     fn run<V: Vectors>(self, vectors: V) {
         let mut ahead = self.ahead;
         for (r, pilot) in self.pilot.chunks_exact(self.regressors.max(1)).enumerate() {
-            for (k, betas) in pilot.chunks(V::TILE).enumerate() {
-                let place = [k * V::TILE, self.regressors + r];
+            for (k, betas) in pilot.chunks(tile::<V>()).enumerate() {
+                let place = [k * tile::<V>(), self.regressors + r];
                 macro_rules! tile {
                     ($($m:literal)*) => {
                         match betas.len() {
-                            $($m if $m <= V::TILE => subtract_fit::<V, $m>(
+                            $($m if $m <= tile::<V>() => subtract_fit::<V, $m>(
                                 vectors, self.block, self.width, place, betas, &mut ahead,
                             ),)*
                             _ => {}
@@ -76,7 +81,7 @@ impl Kernel for AddProducts<'_> {
             }
         }
         // Panels of columns, as even as they go.
-        let count = self.width.div_ceil(V::PANEL);
+        let count = self.width.div_ceil(panel::<V>());
         let bound = |k: usize| k * self.width / count.max(1);
         for a in 0..count {
             for b in 0..=a {
@@ -84,10 +89,10 @@ impl Kernel for AddProducts<'_> {
                 macro_rules! panel {
                     ($($m:literal)*) => {
                         match (rows.len(), a == b) {
-                            $(($m, true) if $m <= V::PANEL => self_products::<V, $m>(
+                            $(($m, true) if $m <= panel::<V>() => self_products::<V, $m>(
                                 vectors, self.block, self.width, rows.start, self.sums, &mut ahead,
                             ),
-                            ($m, false) if $m <= V::PANEL => cross_products::<V, $m>(
+                            ($m, false) if $m <= panel::<V>() => cross_products::<V, $m>(
                                 vectors, self.block, self.width, rows.start,
                                 [columns.start, columns.len()], self.sums, &mut ahead,
                             ),)*
@@ -183,7 +188,7 @@ fn cross_products<V: Vectors, const M: usize>(
     macro_rules! count {
         ($($n:literal)*) => {
             match count {
-                $($n if $n <= V::PANEL => cross_tile::<V, M, $n>(
+                $($n if $n <= panel::<V>() => cross_tile::<V, M, $n>(
                     vectors, block, width, start, other, sums, ahead,
                 ),)*
                 _ => {}

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::gram::pairs;
 use super::kernel::Ahead;
-use super::lanes::Lane;
+use froude_lanes::Lane;
 
 use super::error::StreamError;
 use super::factor::Factor;

@@ -13,7 +13,12 @@
 
 use std::ops::Range;
 
-use super::lanes::{Kernel, LANES, Lane, Level, Vectors};
+use froude_lanes::{Kernel, LANES, Lane, Level, Vectors};
+
+/// Columns that a sweep takes at a time: what is subtracted, the sum and the column itself are three registers each.
+pub(crate) const fn tile<V: Vectors>() -> usize {
+    (V::REGISTERS - 1) / 3
+}
 
 /// Bytes that a block may take: it and the two fetched ahead stay in the first-level
 /// cache. Twice as much costs a third of the speed.
@@ -90,11 +95,11 @@ fn sweep_all<V: Vectors, const TURN: bool>(
     while start < width {
         // Even tiles: 12 columns go as 6 + 6 where 10 is the most, not as 10 + 2.
         let left = width - start;
-        let tile = left.div_ceil(left.div_ceil(V::TILE));
+        let count = left.div_ceil(left.div_ceil(tile::<V>()));
         macro_rules! tile {
             ($($m:literal)*) => {
-                match tile {
-                    $($m if $m <= V::TILE => sweep::<V, $m, TURN>(
+                match count {
+                    $($m if $m <= tile::<V>() => sweep::<V, $m, TURN>(
                         vectors, block, width, [first, start], turns, dots, ahead,
                     ),)*
                     _ => {}
@@ -102,7 +107,7 @@ fn sweep_all<V: Vectors, const TURN: bool>(
             };
         }
         tile!(1 2 3 4 5 6 7 8 9 10);
-        start += tile;
+        start += count;
     }
 }
 

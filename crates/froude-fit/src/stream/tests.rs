@@ -7,10 +7,10 @@ use rand_pcg::rand_core::Rng;
 use super::gram::{add_products, pairs};
 use super::kernel::put;
 use super::kernel::{Ahead, absorb};
-use super::lanes::{Lane, Level};
 use super::*;
 use crate::stream::reference::triangularise;
 use faer::Mat;
+use froude_lanes::{Lane, Level};
 
 fn uniform(generator: &mut Pcg64) -> f64 {
     (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64 - 0.5

@@ -25,14 +25,19 @@ impl Expression {
             Self::Name(place) => Ok(names[*place].clone()),
             Self::Call(function, argument) => argument.value(names)?.function(*function),
             Self::Chain(first, rest) => {
-                rest.iter().try_fold(first.value(names)?, |left, (op, right)| left.joined(*op, right.value(names)?))
+                let mut value = first.value(names)?;
+                for (op, right) in rest {
+                    value = value.joined(*op, right.value(names)?)?;
+                }
+                Ok(value)
             }
         }
     }
 }
 
 impl Affine {
-    /// What a name or a number gives.
+    /// What a name or a number gives; out of line as the others below, so that a nested formula takes little of the stack.
+    #[inline(never)]
     pub(super) fn known_as(text: &str, op: Op, unit: Unit) -> Self {
         Self::fixed(Part { program: vec![op], unit, text: text.to_owned(), binding: Binding::Atom })
     }
@@ -65,6 +70,7 @@ impl Affine {
         if is_sum { format!("({})", self.text()) } else { self.text() }
     }
 
+    #[inline(never)]
     fn joined(self, op: Binary, other: Self) -> Result<Self, FormulaError> {
         match op {
             Binary::Add | Binary::Subtract => self.sum(other, op),
@@ -127,6 +133,7 @@ impl Affine {
         Err(FormulaError::NotLinear { term: format!("{term} {what}") })
     }
 
+    #[inline(never)]
     fn function(self, function: Function) -> Result<Self, FormulaError> {
         match self.known() {
             Some(argument) => argument.clone().function(function).map(Self::fixed),

@@ -17,7 +17,7 @@ use crate::error::IdentifyError;
 use crate::large::limits::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
 use crate::lint;
 use crate::lint::motion::Pushed;
-use crate::reduce::{kept_rows, observed, zeros_of};
+use crate::reduce::{conditioned, kept_rows, zeros_of};
 use crate::source::models::MOMENTS;
 use crate::validity::{self, AT_REST, off_axis, per_observation};
 
@@ -30,8 +30,14 @@ pub(super) struct Chunk {
 }
 
 impl Chunk {
-    pub(super) fn of(table: Table, campaign: &Campaign, source: &Source) -> Result<Self, IdentifyError> {
-        let all = observed(&table, campaign, source, &mut Vec::new())?;
+    /// `has_speed`: with the speed and angle of its velocities.
+    pub(super) fn of(
+        table: Table,
+        campaign: &Campaign,
+        source: &Source,
+        has_speed: bool,
+    ) -> Result<Self, IdentifyError> {
+        let all = conditioned(&table, campaign, source, &mut Vec::new(), has_speed)?;
         let keep = kept_rows(&all, source)?;
         let data = if keep.len() < all.rows { all.subset(&keep) } else { all };
         Ok(Self { table, data, keep })
@@ -142,7 +148,11 @@ impl Facts {
         for &i in keep {
             self.sample.take(table, i);
         }
-        add(&mut self.configurations, &data.configuration, MOST_CONFIGURATIONS, source, "configurations")?;
+        // Where the table names none, all rows are of the one without a name.
+        let is_named = table.columns.iter().any(|column| column.name == "configuration");
+        let configurations =
+            if is_named { &data.configuration[..] } else { data.configuration.get(..1).unwrap_or_default() };
+        add(&mut self.configurations, configurations, MOST_CONFIGURATIONS, source, "configurations")?;
         add(&mut self.groups, data.group.as_deref().unwrap_or_default(), MOST_CLUSTERS, source, "clusters of `group`")
     }
 

@@ -1,6 +1,6 @@
 //! The laws that a source asks for, as its observations allow them.
 
-use froude_hydro::{Body, CrossTerm, DragModel, Link};
+use froude_hydro::{Body, CrossTerm, DragModel};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::nearest::meant;
@@ -282,7 +282,7 @@ pub(crate) fn strut(data: &Dataset, source: &Source) -> Result<ForceLaw, Identif
 /// The body of f1 … f6, or the keys that the campaign lacks.
 pub(crate) fn body(campaign: &Campaign, data: &Dataset, model: &str) -> Result<Body, IdentifyError> {
     let spec = campaign.body.as_ref();
-    let link = spec.and_then(|b| b.link.as_ref());
+    let link = spec.and_then(|b| b.link);
     let (head, tail) = (spec.and_then(|b| b.head_side_area_m2), spec.and_then(|b| b.tail_side_area_m2));
     let mut missing = Vec::new();
     let mut need = |there: bool, key: &str| {
@@ -296,15 +296,9 @@ pub(crate) fn body(campaign: &Campaign, data: &Dataset, model: &str) -> Result<B
     need(data.dimension("density").is_some(), "fluid.density (or temperature)");
     need(data.dimension("n_links").is_some(), "a table column configuration (HkLT) or n_links [1]");
     match (link, head, tail) {
-        (Some(link), Some(head), Some(tail)) if missing.is_empty() => Ok(Body {
-            link: Link {
-                major_semi_axis_m: link.major_semi_axis_m,
-                minor_semi_axis_m: link.minor_semi_axis_m,
-                half_length_m: link.half_length_m,
-            },
-            head_side_area_m2: head,
-            tail_side_area_m2: tail,
-        }),
+        (Some(link), Some(head), Some(tail)) if missing.is_empty() => {
+            Ok(Body { link, head_side_area_m2: head, tail_side_area_m2: tail })
+        }
         _ => Err(IdentifyError::NoBody { model: model.to_owned(), missing }),
     }
 }

@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use froude_mesh::robot::ModularRobot;
+use froude_hydro::Link;
+use froude_mesh::robot::{Neck, Robot, sections};
 use froude_mesh::sections::{Curve, Grading, Piece, Section, SectionBody};
 use froude_panel::mirror::Mirror;
 use froude_panel::revolution::{Meridian, Stretch};
@@ -185,16 +186,17 @@ fn necked([width, height, half]: [f64; 3], random: &mut Random) -> Body {
     let links = if half > 6.0 { 2 } else { 1 };
     let end_m = random.between(0.3, 0.5) * half / links as f64;
     let neck_m = random.between(0.25, 0.5) * half / links as f64;
-    let robot = ModularRobot {
-        half_height_m: height,
-        half_width_m: width,
-        pitch_m: (2.0 * (half - end_m) - neck_m) / links as f64,
-        neck_m,
-        neck_scale: random.between(0.6, 0.9),
-        ramp_m: random.between(0.1, 0.3) * neck_m,
+    let pitch_m = (2.0 * (half - end_m) - neck_m) / links as f64;
+    let robot = Robot {
+        link: Link { major_semi_axis_m: height, minor_semi_axis_m: width, half_length_m: 0.5 * pitch_m },
+        neck: Some(Neck {
+            length_m: neck_m,
+            scale: random.between(0.6, 0.9),
+            ramp_m: random.between(0.1, 0.3) * neck_m,
+        }),
         end_m,
     };
-    let mut shape = robot.body(links, 2.0);
+    let mut shape = sections(&robot, links, 2.0);
     if let Some(head) = shape.pieces.last_mut() {
         head.ends[1].x_m += random.between(-0.3, 0.5) * end_m;
         head.cells = 2;

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use froude::hydro::ellipsoid::ellipsoid_added_mass;
 use froude::hydro::near_wall::{Boundary, Direction, sphere_far_from_plane};
-use froude::mesh::robot::ModularRobot;
+use froude::mesh::robot::Robot;
 use froude::mesh::sections::{Resolution, SectionBody};
 use froude::methods::added_mass::body::body;
 use froude::methods::added_mass::options::Asked;
@@ -211,9 +211,9 @@ fn pool(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
 }
 
 fn chains(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
-    let robot = ModularRobot::NECKED_MAMBA;
+    let robot = Robot::NECKED_MAMBA;
     let resolution = Resolution { along: 3, around: 24 };
-    let chain = Chain::new(&robot, 3, &[0.2, -0.3, 0.25, -0.1], robot.pitch_m / 4.0, resolution)?;
+    let chain = Chain::new(&robot, 3, &[0.2, -0.3, 0.25, -0.1], robot.pitch_m() / 4.0, resolution)?;
     let parts = chain.problem(true)?;
     let solution = solve(&parts);
     let whole = froude::panel::chain::whole(&solution, &Frame::at([0.0; 3]));
@@ -233,7 +233,7 @@ fn chains(claims: &mut Claims) -> Result<(), Box<dyn Error>> {
         format!("{apart:.1e}"),
         apart < 1e-6,
     );
-    let straight = Chain::new(&robot, 9, &[0.0; 10], robot.pitch_m / 4.0, resolution)?;
+    let straight = Chain::new(&robot, 9, &[0.0; 10], robot.pitch_m() / 4.0, resolution)?;
     let form = diagonal_form(&solve(&straight.problem(true)?));
     let percent = |x: f64| format!("{:.1} %", 100.0 * x);
     claims.add(

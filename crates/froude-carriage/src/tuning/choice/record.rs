@@ -12,7 +12,7 @@ use crate::tuning::response::POINT_DOF;
 use crate::tuning::{LoopGains, ResponsePoint};
 
 /// What is read off the open loop.
-const READINGS: usize = 7;
+const READINGS: usize = 6;
 
 /// An estimate for each candidate, called after where its gains come from, so that those of two days are compared each with its own.
 #[must_use]
@@ -33,8 +33,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
     if c.is_extended {
         // What the model extended is what the candidate was judged by; its bandwidth was not measured.
         let m = &c.margins;
-        let judged =
-            [m.crossover_hz, None, m.phase_rad, m.gain, m.gain_reduction, m.delay_s, Some(m.largest_sensitivity)];
+        let judged = [m.crossover_hz, None, m.phase_rad, m.gain, m.gain_reduction, m.delay_s];
         readings.iter_mut().zip(judged).for_each(|(reading, value)| reading.2 = value);
     }
     let of_response = of_response(source, (law, ("open_loop", "1")), &readings, spread.as_ref(), tuned.band_hz);
@@ -47,18 +46,14 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
         measured("derivative_filter", g.derivative_filter_hz, "Hz"),
         measured("tick", g.tick_s, "s"),
     ];
-    let foreseen = |name: &str, value: Option<f64>, unit: &str| {
-        let formula = "the hardest ramps through the two masses that the response shows".to_owned();
-        let number = Derived { formula, value, unit: unit.to_owned(), standard_uncertainty: None, interval_95: None };
-        (name.to_owned(), number)
+    // No interval is known of these.
+    let derived = |name: &str, value: Option<f64>, unit: &str, formula: &str| {
+        let (formula, unit) = (formula.to_owned(), unit.to_owned());
+        (name.to_owned(), Derived { formula, value, unit, standard_uncertainty: None, interval_95: None })
     };
-    let with_heaviest = {
-        let formula = "phase margin with the heaviest body, on the two masses that the response shows".to_owned();
-        let value = c.heaviest.and_then(|margins| margins.phase_rad);
-        let unit = "rad".to_owned();
-        let number = Derived { formula, value, unit, standard_uncertainty: None, interval_95: None };
-        ("phase_margin_heaviest".to_owned(), number)
-    };
+    let ramps = "the hardest ramps through the two masses that the response shows";
+    let heaviest = "phase margin with the heaviest body, on the two masses that the response shows";
+    let largest = "largest |1/(1 + L)| over the measured band; noise makes it larger, a peak narrower than the points' spacing smaller";
     let extended = c.is_extended.then(|| {
         "the loop is not whole within the measured band: its margins beyond are the fitted two-mass model's".to_owned()
     });
@@ -71,9 +66,10 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
         law: Law { constants: constants.into(), ..of_response.law },
         n_observations: tuned.plant.len(),
         derived: [
-            foreseen("following_error", c.following_error_m, "m"),
-            foreseen("homing_speed", c.homing_m_s, "m/s"),
-            with_heaviest,
+            derived("largest_sensitivity", Some(c.margins.largest_sensitivity), "1", largest),
+            derived("following_error", c.following_error_m, "m", ramps),
+            derived("homing_speed", c.homing_m_s, "m/s", ramps),
+            derived("phase_margin_heaviest", c.heaviest.and_then(|margins| margins.phase_rad), "rad", heaviest),
         ]
         .into(),
         diagnostics: Diagnostics {
@@ -96,7 +92,6 @@ fn readings(plant: &[ResponsePoint], gains: &LoopGains) -> [Reading; READINGS] {
         ("gain_margin", "1", m.gain),
         ("gain_reduction", "1", m.gain_reduction),
         ("delay_margin", "s", m.delay_s),
-        ("largest_sensitivity", "1", Some(m.largest_sensitivity)),
     ]
 }
 
