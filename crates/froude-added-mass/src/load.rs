@@ -86,7 +86,7 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
         };
         let name = if job.links.is_empty() { body.name } else { format!("{}, H{links}LT", body.name) };
         let family = family(&body.shape, links);
-        let notes = vec!["Meshes from the dimensions; every mesh is similar to the others.".to_owned()];
+        let notes = vec!["Meshes from the dimensions; all meshes are geometrically similar.".to_owned()];
         return Ok(Loaded {
             name,
             family,

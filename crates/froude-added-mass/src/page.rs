@@ -128,7 +128,7 @@ pub fn convergence_chart(refined: &Refined) -> Chart {
     Chart {
         name: "convergence".to_owned(),
         title: "Convergence with the number of panels".to_owned(),
-        caption: "Relative difference of each mesh's diagonal from the value that is given.".to_owned(),
+        caption: "Relative difference of each mesh's diagonal from the reported value.".to_owned(),
         x_label: "panels [1]".to_owned(),
         x_scale: Scale::Logarithmic,
         panels: vec![ChartPanel { y_label: "|A/A∞ − 1| [1]".to_owned(), y_scale: Scale::Logarithmic, series }],
@@ -146,15 +146,18 @@ pub fn convergence_words(refined: &Refined) -> Vec<String> {
         "No order of convergence can be seen on these meshes: values are extrapolated with the second order all the same; check the meshes."
             .to_owned()
     } else {
-        format!("Observed order of convergence: {}. Flat panels of constant potential have 2.", orders.join(", "))
+        format!(
+            "Observed order of convergence: {}. Flat panels of constant potential on a smooth body converge with order 2; edges lower it.",
+            orders.join(", ")
+        )
     }];
     out.push(match &refined.stopped {
         None if refined.worst < 1e-4 => {
             "The largest numerical uncertainty is less than 0.01 %.".to_owned()
         }
         None => format!(
-            "The largest numerical uncertainty is {:.2} %: of a diagonal entry, or of √(A_ii A_jj); a rotation counts as 1 % of the largest, or of \
-             ρV(L/2)², at least.",
+            "The largest numerical uncertainty is {:.2} % (a diagonal entry relative to itself, another one to √(A_ii A_jj); an entry of rotation that is smaller than 1 % of the largest one, or of \
+             ρV(L/2)², relative to that).",
             100.0 * refined.worst
         ),
         Some(why) if !refined.worst.is_finite() => format!("There is no finer one: {why}."),

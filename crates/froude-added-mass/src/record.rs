@@ -14,7 +14,7 @@ use indexmap::IndexMap;
 const COVERAGE: f64 = 2.0;
 
 /// What the covariance says, and what it takes for granted.
-const COVARIANCE: &str = "numerical uncertainty, 95 % taken as k = 2: what the meshes have in common fully correlated, the rest of each entry alone";
+const COVARIANCE: &str = "discretisation error, 95 % taken as k = 2: the part common to all entries fully correlated, the rest of each entry independent";
 
 /// Motions in the order of the matrix.
 pub const MOTIONS: [&str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];

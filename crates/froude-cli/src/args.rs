@@ -30,7 +30,7 @@ pub enum Verb {
         #[arg(default_value = "froude-demo")]
         dir: PathBuf,
     },
-    /// Fit every force model asked for, choose, and write estimate.json and report.html; identify the servo of a log.
+    /// Fit every force model asked for, select one, and write estimate.json and report.html; identify the servo of a log.
     #[command(after_help = "Examples:\n  froude identify campaign.toml\n  froude identify tow.csv --models quadratic")]
     Identify {
         /// A campaign (.toml), a bare table (.csv, .parquet), or a servo's log whose sidecar names time, position and command.
@@ -78,7 +78,7 @@ pub enum Verb {
         #[arg(long)]
         replace: bool,
     },
-    /// Drive a towing carriage, or its twin, through a campaign: pre-flight, runs, records; resumes where it stopped.
+    /// Drive a towing carriage, or its simulated twin, through a campaign: pre-flight, runs, records; resumes where it stopped.
     #[command(after_help = "Examples:\n  froude run campaign.toml --check\n  froude run campaign.toml")]
     Run {
         /// The campaign, with its `rig` and `carriage` sections.
@@ -93,7 +93,7 @@ pub enum Verb {
         #[arg(long)]
         yes: bool,
     },
-    /// Added mass from potential flow, of a mesh, a shape given by its dimensions, or the robot with any number of links.
+    /// Added mass from potential flow, of a mesh, a shape given by its dimensions, or a snake robot with any number of links.
     #[command(
         after_help = "Examples:\n  froude added-mass hull.stl --density '1025 kg/m^3'\n  froude added-mass robot.toml --links 1..9"
     )]

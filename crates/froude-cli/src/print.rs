@@ -40,7 +40,7 @@ pub fn outcome(outcome: &Outcome, all: bool) {
     match &outcome.file.comparison {
         Some(c) if outcome.sources.is_empty() => comparison(c, all),
         Some(c) if !c.coefficients.is_empty() => {
-            say!("\nThe sources are compared in the report (E_n, χ², predicted forces).");
+            say!("\nThe sources are compared in the report.");
             verdicts(c);
         }
         _ => {}
@@ -307,7 +307,7 @@ fn diagnostics(d: &Diagnostics) -> Vec<(&'static str, String)> {
                 .map_or(String::new(), |c| format!("{} of {} and {}", number::plain(c.value, 3), c.first, c.second)),
         ),
         ("largest leverage", one(d.largest_leverage)),
-        ("largest power to the body, W", one(d.largest_power_w)),
+        ("largest power fed to the body (at most 0 where dissipative), W", one(d.largest_power_w)),
     ];
     out.extend(d.notes.iter().map(|note| ("note", note.clone())));
     out.retain(|(_, value)| !value.is_empty());

@@ -130,7 +130,9 @@ fn coefficient_pair(rows: &[&CoefficientComparison]) {
     }
     say!("{out}");
     if is_stated {
-        say!("  ± U: expanded uncertainty, 95 %, U = k·u; E_n uses the arm of a one-sided interval");
+        say!(
+            "  ± U: expanded uncertainty, 95 %, U = k·u; of an asymmetric interval E_n uses the half-width towards the other value"
+        );
         say!("    {}", coverage_note(one_id, rows.iter().map(|r| &r.first)));
         if one_id != other_id {
             say!("    {}", coverage_note(other_id, rows.iter().map(|r| &r.second)));
@@ -188,7 +190,9 @@ fn forces(c: &Comparison) {
         say!("{out}");
     }
     if c.loads.iter().any(|r| [&r.first, &r.second].iter().any(|side| side.standard_uncertainty.is_some())) {
-        say!("  ± U: expanded uncertainty, 95 %, U = k·u; E_n uses the arm of a one-sided interval");
+        say!(
+            "  ± U: expanded uncertainty, 95 %, U = k·u; of an asymmetric interval E_n uses the half-width towards the other value"
+        );
     }
     for note in &c.coverage {
         say!("    {note}");

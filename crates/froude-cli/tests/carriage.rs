@@ -228,7 +228,7 @@ fn a_twin_without_a_declared_force_sensor_records_no_force_and_none_is_reported(
     let out = json(&["identify", text(&folder.path().join("c.toml")), "--json"]);
     let lacking = &findings_of(&out, "not-fitted")[0].1;
     assert!(
-        lacking.starts_with("fsm (force sensor, zero from still windows): none of the ")
+        lacking.starts_with("fsm (force sensor, zeroed at rest before and after): none of the ")
             && lacking.ends_with(" runs of the role wet has the channel force"),
         "{lacking}"
     );

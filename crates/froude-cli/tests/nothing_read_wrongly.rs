@@ -418,7 +418,7 @@ fn no_column_is_dropped_in_silence() {
     assert_eq!(
         noted,
         [
-            "used by no law and by nothing else that was asked for: `r [rad/s]` (if the motion: w_x, w_y or w_z), `std_speed [m/s]` (weights are \
+            "columns that no law uses, nor anything else that was asked for: `r [rad/s]` (if the motion: w_x, w_y or w_z), `std_speed [m/s]` (weights are \
           standard deviations of fitted loads; of another channel, declare it in [[source.uncertainty]]), `current [A]`, `remark` (text)"
         ]
     );
@@ -552,10 +552,12 @@ fn laws_of_different_loads_are_compared_load_by_load() {
     assert_eq!(best["law"]["name"], "whole", "{}", best["reason"]);
     let reason = best["reason"].as_str().unwrap();
     assert!(
-        reason.contains("what a law leaves out counts as zero; load by load the smallest AICc has: f_x "),
+        reason.contains(
+            "one that a law leaves out is predicted as zero); for single responses the smallest AICc is that of: "
+        ),
         "{reason}"
     );
-    assert!(reason.ends_with("f_y whole alone, m_z whole alone"), "{reason}");
+    assert!(reason.ends_with("whole for f_y (no other explains it), whole for m_z (no other explains it)"), "{reason}");
     // Loads that are noise about zero are no reason for the larger law.
     let mut noise = noise(6);
     let mut ahead = "speed [m/s],f_x [N],f_y [N]\n".to_owned();

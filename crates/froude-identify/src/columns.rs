@@ -97,7 +97,7 @@ pub fn unused(data: &Dataset, campaign: &Campaign, source: &Source, laws: &[Forc
         findings.push(Finding::new(
             Severity::Note,
             "column-not-used",
-            format!("used by no law and by nothing else that was asked for: {}", listed(&others)),
+            format!("columns that no law uses, nor anything else that was asked for: {}", listed(&others)),
         ));
     }
     findings.extend(left_out(data));
@@ -136,7 +136,7 @@ fn left_out(data: &Dataset) -> Vec<Finding> {
         findings.push(Finding::new(
             Severity::Note,
             "column-not-used",
-            format!("the sidecar does not name, so these are not read: {}", listed(&others)),
+            format!("columns that the sidecar does not name, and that are not read: {}", listed(&others)),
         ));
     }
     findings

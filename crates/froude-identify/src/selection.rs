@@ -213,7 +213,7 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
         let note = match all.configurations.len() {
             few @ ..3 => {
                 format!(
-                    "not possible: leaving one configuration out needs at least three configurations, and there are {few}"
+                    "not possible: leaving one configuration out needs at least three configurations; the table has {few}"
                 )
             }
             _ => "not scored: no configuration is left out of a table that is read in chunks".to_owned(),
@@ -233,7 +233,7 @@ pub fn leave_one_out(model: &ModelFit, data: &Dataset) -> Score {
                     fit::select::Score::NotScorable { reason } => {
                         out.note = Some(if names.len() < 3 {
                             format!(
-                                "not possible: leaving one configuration out needs at least three configurations, and there are {}",
+                                "not possible: leaving one configuration out needs at least three configurations; the table has {}",
                                 names.len()
                             )
                         } else {
@@ -418,15 +418,15 @@ fn load_by_load(models: &[ModelFit], data: &Dataset, loads: &[String]) -> String
             ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
             match ranked.as_slice() {
                 [(first, name), (second, next), ..] => {
-                    format!("{load} {name} ({next} is {:.1} behind)", second - first)
+                    format!("{name} for {load} ({next} is {:.1} behind)", second - first)
                 }
-                [(_, name)] => format!("{load} {name} alone"),
-                [] => format!("{load} none has an AICc"),
+                [(_, name)] => format!("{name} for {load} (no other explains it)"),
+                [] => format!("none for {load}"),
             }
         })
         .collect();
     format!(
-        "; not all explain the same loads, and what a law leaves out counts as zero; load by load the smallest AICc has: {}",
+        "; the laws do not all explain the same responses (one that a law leaves out is predicted as zero); for single responses the smallest AICc is that of: {}",
         best.join(", ")
     )
 }

@@ -83,7 +83,7 @@ pub fn ranges(data: &Dataset, campaign: &Campaign) -> (IndexMap<String, Range>, 
                 Severity::Warning,
                 "blockage",
                 format!(
-                    "the body blocks {:.1} % of the tank's cross-section: the flow speeds up around it, and the drag is not that of open water",
+                    "the body blocks {:.1} % of the tank's cross-section: the flow speeds up around it, and the drag is not that in unbounded water",
                     100.0 * worst
                 ),
             ));

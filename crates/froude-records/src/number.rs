@@ -261,6 +261,13 @@ pub fn p_value(p: f64) -> String {
     }
 }
 
+/// The same in a sentence: `p = 0.012`, or `p < 0.001`.
+#[must_use]
+pub fn p_equation(p: f64) -> String {
+    let value = p_value(p);
+    if value.starts_with('<') { format!("p {value}") } else { format!("p = {value}") }
+}
+
 /// A number with a fixed count of places: `2.04`, or a power of ten when it is huge.
 #[must_use]
 pub fn fixed(x: f64, places: usize) -> String {

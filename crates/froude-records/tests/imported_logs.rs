@@ -50,7 +50,7 @@ fn a_servo_log_becomes_a_run_of_axis_y_in_si() {
     assert_eq!(log.lost, []);
     let [finding] = imported.findings.as_slice() else { panic!() };
     assert_eq!((finding.severity, finding.code.as_str()), (Severity::Note, "time-steps"));
-    assert!(finding.message.starts_with("time steps are 1.0000"), "{}", finding.message);
+    assert!(finding.message.starts_with("time steps have a median of 1.0000"), "{}", finding.message);
 }
 
 #[test]

@@ -50,16 +50,17 @@ pub fn html(report: &Report) -> Result<String, ReportError> {
     body.push(page.side_by_side());
     body.push(page.citations());
     body.push(page.versions());
+    let files: BTreeSet<_> = report.data.iter().map(|file| &file.path).collect();
     let title = if report.title.trim().is_empty() { "Report" } else { report.title.trim() };
     let main = html! {
         header class="title" {
-            p class="sort" { "Test report · hydrodynamic coefficients" }
+            p class="sort" { "Test report · identified coefficients" }
             h1 { (title) }
             @if !report.subtitle.is_empty() { p class="subtitle" { (report.subtitle) } }
             p class="meta" {
                 @if let Some(date) = &report.date { span { (date) } }
                 span { (counted(page.source_names(), "source", "sources")) }
-                span { (counted(report.data.len(), "data file", "data files")) }
+                span { (counted(files.len(), "data file", "data files")) }
                 @for (name, version) in report.versions.iter().take(1) { span { (name) " " (version) } }
             }
         }

@@ -2,7 +2,7 @@
 
 use froude_records::comparison::Verdict;
 
-use froude_records::number::{fixed, p_value};
+use froude_records::number::{fixed, p_equation};
 
 /// A verdict in words, with the numbers that it rests on; without a full stop.
 #[must_use]
@@ -16,14 +16,7 @@ pub fn verdict_words(v: &Verdict) -> String {
         .coefficient
         .as_ref()
         .map(|c| format!("largest E_n of the coefficients {} ({})", signed(c.e_n), c.coefficient));
-    let joint = v.p.map(|p| {
-        let p = p_value(p);
-        if p.starts_with('<') {
-            format!("all coefficients together p {p}")
-        } else {
-            format!("all coefficients together p = {p}")
-        }
-    });
+    let joint = v.p.map(|p| format!("all coefficients together {}", p_equation(p)));
     let numbers: Vec<String> = [load, coefficient, joint].into_iter().flatten().collect();
     let verdict = if v.agree { "agree within their uncertainties" } else { "differ by more than their uncertainties" };
     format!("{} and {} {verdict}: {}", v.first, v.second, numbers.join("; "))

@@ -355,7 +355,7 @@ fn what_no_model_can_be_scored_on_is_said_once() {
         component: component.to_owned(),
         delta_aicc: Ok(0.0),
         cross_validation: Err(
-            "not possible: leaving one configuration out needs at least three configurations, and there are 2"
+            "not possible: leaving one configuration out needs at least three configurations; the table has 2"
                 .to_owned(),
         ),
         ..SelectionRow::default()
@@ -367,7 +367,7 @@ fn what_no_model_can_be_scored_on_is_said_once() {
     let text = words(&html(&report).unwrap());
     assert_eq!(text.matches("leaving one configuration out").count(), 1, "{text}");
     assert!(text.contains(
-        "Cross-validation is not possible: leaving one configuration out needs at least three configurations, and there are 2."
+        "Cross-validation is not possible: leaving one configuration out needs at least three configurations; the table has 2."
     ));
 }
 

@@ -1,6 +1,7 @@
 //! The report of a campaign: what its sources, records and findings say, put together for the page.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use froude_identify::IdentifyError;
 use froude_identify::answer::Answer;
@@ -30,13 +31,17 @@ pub fn report(
         }
         let line = InputFile { path: d.path.clone(), sha256: d.sha256.clone(), ..InputFile::default() };
         let readers = sources.iter().filter(|s| s.files().first().is_some_and(|f| f.path.ends_with(&d.path)));
+        // The observations of several runs are those of no single file.
         let lines: Vec<InputFile> = readers
             .filter(|s| s.observations() > 0)
-            .map(|s| InputFile {
-                n_rows: s.fitted().map(|fitted| fitted.n_read),
-                n_used: Some(s.observations()),
-                source: Some(s.name().to_owned()),
-                ..line.clone()
+            .map(|s| {
+                let is_alone = s.files().iter().filter(|f| f.role != "sidecar").count() == 1;
+                InputFile {
+                    n_rows: s.fitted().filter(|_| is_alone).map(|fitted| fitted.n_read),
+                    n_used: is_alone.then(|| s.observations()),
+                    source: Some(s.name().to_owned()),
+                    ..line.clone()
+                }
             })
             .collect();
         data.extend(if lines.is_empty() { vec![line] } else { lines });
@@ -58,7 +63,14 @@ pub fn report(
 }
 
 fn subtitle(sources: &[Answer], published: &[Estimate]) -> String {
-    let observations: usize = sources.iter().map(Answer::observations).sum();
+    // Several laws of the same files have the same observations.
+    let mut of_files: BTreeMap<Vec<&Path>, usize> = BTreeMap::new();
+    for source in sources {
+        let files = source.files().iter().map(|file| file.path.as_path()).collect();
+        let most = of_files.entry(files).or_default();
+        *most = source.observations().max(*most);
+    }
+    let observations: usize = of_files.values().sum();
     if sources.is_empty() {
         return format!("{} side by side", counted(published.len(), "estimate", "estimates"));
     }

@@ -101,7 +101,7 @@ impl Clock {
     fn finding(&self) -> Finding {
         let [mean_ms, shortest_ms, longest_ms] = [self.mean_s(), self.shortest.0, self.longest.0].map(|s| 1e3 * s);
         let text = format!(
-            "time steps are {mean_ms:.6} ms in the mean, {shortest_ms:.6} ms at least and {longest_ms:.6} ms at most: even"
+            "time steps have a mean of {mean_ms:.6} ms, from {shortest_ms:.6} ms to {longest_ms:.6} ms: uniform"
         );
         Finding::new(Severity::Note, "time-steps", text)
     }
@@ -193,7 +193,7 @@ fn coefficient_table(words: &str, report: &LongReport, coefficients: &[ServoCoef
             number::plain(report.rate_hz, 4),
             report.hac_lag_s
         ),
-        head: ["coefficient", "unit", "value", "95 % interval (HAC)", "std (white noise)", "std (HAC)"]
+        head: ["coefficient", "unit", "value", "95 % interval (HAC)", "u (white noise)", "u (HAC)"]
             .map(str::to_owned)
             .to_vec(),
         rows: coefficients.iter().map(row).collect(),

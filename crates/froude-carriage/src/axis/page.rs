@@ -58,12 +58,12 @@ fn of_fit(model: &Model) -> Vec<String> {
     )];
     out.extend(r.whiteness.as_ref().map(|w| {
         format!(
-            "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, p = {}. Standard deviations of least squares with white noise are realistic \
+            "Residuals: r₁ = {:.2}, Ljung–Box({}) = {:.0}, {}. Standard uncertainties of least squares with white noise are realistic \
              only where that p is large; the intervals are those of {}.",
             w.r1,
             w.lags,
             w.ljung_box,
-            number::p_value(w.p),
+            number::p_equation(w.p),
             r.spread.pieces()
         )
     }));
@@ -91,9 +91,9 @@ fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> Text
             "unit",
             "value",
             "95 % interval (clusters)",
-            "std (white noise)",
-            "std (HAC)",
-            "std (clusters)",
+            "u (white noise)",
+            "u (HAC)",
+            "u (clusters)",
         ]
         .map(str::to_owned)
         .to_vec(),

@@ -286,8 +286,8 @@ fn notes(
     }
     if overhauled > 0 {
         out.push(format!(
-            "{} left out: the weight drove the gear, or may have, and the losses of a back-driven gear differ; weights \
-             up to {:.2} N, half the friction, can be lowered under power",
+            "{} left out: the weight may have back-driven the gear, whose losses then differ; weights \
+             up to {:.2} N (half the friction, for safety) can be lowered under power",
             counted(overhauled, "run was", "runs were"),
             // Rounded down: the most that is advised is not refused.
             (1e2 * SURELY_DRIVEN * friction_n).floor() / 1e2

@@ -56,11 +56,11 @@ impl Method {
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
-            Self::Fsm => "force sensor, zero from still windows",
+            Self::Fsm => "force sensor, zeroed at rest before and after",
             Self::Mcd => "motor current difference of wet and dry runs, paired by position",
-            Self::MbdpConstant => "motor current less constant Coulomb and viscous friction",
-            Self::MbdpMapped => "motor current less friction mapped over position",
-            Self::MbdpFlexible => "motor current less two-mass model with friction mapped over position",
+            Self::MbdpConstant => "motor current minus constant Coulomb and viscous friction",
+            Self::MbdpMapped => "motor current minus friction mapped over position",
+            Self::MbdpFlexible => "motor current minus two-mass model with friction mapped over position",
         }
     }
 

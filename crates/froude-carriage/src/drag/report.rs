@@ -250,7 +250,7 @@ fn doubts(
                 Severity::Warning,
                 "constant-beside-drag",
                 format!(
-                    "{name}: a constant force of {:+.3} ± {:.3} N remains beside the drag, {:.1} % of D_d: friction that wet and dry do \
+                    "{name}: a constant force of {:+.3} ± {:.3} N remains beside the drag, {:.1} % of the drag over the speeds towed: friction that wet and dry do \
                      not share (wheel load, wet strut, a drifting zero)",
                     f.value,
                     f.standard,

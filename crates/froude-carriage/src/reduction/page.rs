@@ -83,7 +83,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     }
     if let Some(d) = &report.detectability {
         out.push(format!(
-            "One wet-less-dry difference scatters by {} N (dry repeats, {}); {} at a speed {} a drag above {} N.",
+            "One wet-less-dry difference scatters by {} N (dry repeats, {}); {} at one speed {} a drag above {} N.",
             number::significant(d.difference_n, 2),
             number::degrees_of_freedom(d.dof),
             counted(d.differences, "difference", "differences"),
@@ -91,7 +91,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
             number::significant(d.expanded_n, 2),
         ));
         out.push(format!(
-            "Over all speeds together the smallest D_d that exceeds its expanded uncertainty is {} N s²/m².",
+            "The detection limit of all speeds together is D_d = {} N s²/m² (scatter alone: errors of scale vanish with the drag).",
             number::significant(d.smallest_n_s2_m2, 2)
         ));
         let speeds = report.coefficients.iter().flat_map(|c| c.points.iter().map(|p| p.speed_m_s.abs()));
@@ -102,16 +102,19 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     }
     if let Some(a) = &report.agreement {
         out.push(format!(
-            "The wet repeats scatter by {} N where {} N were predicted (p = {}).",
+            "The wet repeats scatter by {} N where {} N was predicted ({}).",
             number::significant(a.observed_n, 2),
             number::significant(a.predicted_n, 2),
-            number::p_value(a.p),
+            number::p_equation(a.p),
         ));
     }
     if let Some(m) = &report.added_mass {
         let what = match m.ballast_kg {
             Some(kg) if kg != 0.0 => {
-                format!("added mass plus entrained water ({} kg of ballast subtracted)", number::plain(kg, 3))
+                format!(
+                    "added mass plus entrained water (the {} kg of ballast of the wet runs subtracted)",
+                    number::plain(kg, 3)
+                )
             }
             Some(_) => "added mass plus entrained water".to_owned(),
             None => {
@@ -153,9 +156,18 @@ fn methods_table(report: &DragReport) -> TextTable {
     TextTable {
         caption: "D_d by every method that the runs allow; ratio to the force sensor, or to MCD where there is none."
             .to_owned(),
-        head: ["method", "D_d [N s²/m²]", "95 % interval", "half-width", "C_D [1]", "95 % interval", "ratio", "pairs"]
-            .map(str::to_owned)
-            .to_vec(),
+        head: [
+            "method",
+            "D_d [N s²/m²]",
+            "95 % interval",
+            "half-width",
+            "C_D [1]",
+            "95 % interval",
+            "ratio",
+            "pairs per speed",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows,
     }
 }

@@ -32,7 +32,7 @@ pub struct Tuned {
 
 /// Names of the candidates.
 pub(super) const CONFIGURED: &str = "as configured";
-pub(super) const SHAPED: &str = "shaped on the response";
+pub(super) const SHAPED: &str = "tuned on the response";
 pub(super) const BY_CYCLE: &str = "Ziegler–Nichols (1942)";
 
 /// Gains from the logs of a relay and a sweep.

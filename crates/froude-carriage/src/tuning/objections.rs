@@ -31,7 +31,7 @@ pub(super) fn objections(c: &Candidate, limits: &Limits, encoder: &Encoder) -> V
         (Some(error_m), Some(homing_m_s)) => {
             if error_m > TRACKING_PART * limits.following_error_m {
                 out.push(format!(
-                    "following error up to {} mm in the ramps, the fault comes at {} mm",
+                    "following error up to {} mm in the ramps, where the fault trips at {} mm",
                     digits(1e3 * error_m),
                     digits(1e3 * limits.following_error_m)
                 ));
@@ -39,7 +39,7 @@ pub(super) fn objections(c: &Candidate, limits: &Limits, encoder: &Encoder) -> V
             let over_m_s = limits.over_speed_m_s(false);
             if homing_m_s > limits.unhomed_speed_m_s + TRACKING_PART * (over_m_s - limits.unhomed_speed_m_s) {
                 out.push(format!(
-                    "the motor swings on its chain up to {} mm/s in homing at {} mm/s, over-speed comes at {} mm/s",
+                    "peak motor speed {} mm/s on its chain in homing at {} mm/s, where over-speed trips at {} mm/s",
                     digits(1e3 * homing_m_s),
                     digits(1e3 * limits.unhomed_speed_m_s),
                     digits(1e3 * over_m_s)
@@ -76,7 +76,7 @@ fn against_margins(m: &Margins) -> Vec<String> {
         out.push(format!("gain margin {}, at least {} required", digits(gain), digits(demand.gain)));
     }
     if let Some(gain) = m.gain_reduction.filter(|g| g * demand.gain > 1.0) {
-        out.push(format!("unstable already at {} of its gain", number::percent(gain)));
+        out.push(format!("becomes unstable when its gain falls to {}", number::percent(gain)));
     }
     if m.largest_sensitivity > demand.sensitivity {
         let (is, may) = (digits(m.largest_sensitivity), digits(demand.sensitivity));

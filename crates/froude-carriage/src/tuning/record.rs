@@ -30,7 +30,7 @@ pub(super) fn of_response(
         names: known.iter().map(|&j| readings[j].0.to_owned()).collect(),
         matrix: known.iter().map(|&a| known.iter().map(|&b| s.covariance[a][b]).collect()).collect(),
         dof: known.iter().map(|&j| finite(s.dof[j])).collect(),
-        kind: "points of the measured response, each by what its neighbours leave".to_owned(),
+        kind: "scatter of the response points, each estimated from its neighbours".to_owned(),
     });
     let coefficients = readings.iter().enumerate().map(|(j, &(name, unit, value))| {
         let own = value.and(spread).map(|s| (s.covariance[j][j].max(0.0).sqrt(), s.dof[j]));

@@ -45,14 +45,14 @@ pub(crate) fn volume_steps(points: &[(f64, f64)], link_m3: Option<f64>) -> Vec<F
     let odd: Vec<String> = steps
         .iter()
         .filter(|(_, step)| (step - median).abs() > VOLUME_STEP_TOLERANCE * median.abs())
-        .map(|(k, step)| format!("{step:.4e} m^3 to k = {k}"))
+        .map(|(k, step)| format!("{step:.4e} m^3 to {k} links"))
         .collect();
     if !odd.is_empty() {
         findings.push(Finding::new(
             Severity::Warning,
             "volumes-do-not-add-up",
             format!(
-                "the volume grows by {median:.4e} m^3 a link (median), but by {}: these configurations are not the same body with one more link",
+                "the volume grows by {median:.4e} m^3 per link (median), but by {}: these configurations are not the same body with one more link",
                 odd.join(", ")
             ),
         ));
@@ -64,7 +64,7 @@ pub(crate) fn volume_steps(points: &[(f64, f64)], link_m3: Option<f64>) -> Vec<F
             Severity::Warning,
             "link-volume",
             format!(
-                "a link displaces {link:.4e} m^3 on its own, but the body grows by {median:.4e} m^3 a link: joints overlap, \
+                "a link displaces {link:.4e} m^3 on its own, but the body grows by {median:.4e} m^3 per link: joints overlap, \
                  or the coefficient's reference volume is not the link's"
             ),
         ));

@@ -20,7 +20,7 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
     }
     let mut out = vec![
         "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
-         A body towed at speed U under the angle θ has the velocity v = (U cos θ, −U sin θ) through the water."
+         A body towed at speed U and drift angle θ has the velocity v = (U cos θ, −U sin θ) through the water."
             .to_owned(),
     ];
     if sources.is_empty() {
@@ -36,8 +36,8 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
     let bounded = sources.iter().flat_map(|s| &s.models).any(|m| m.options.bounds.iter().any(|b| b.lower == 0.0));
     if bounded {
         out.push(
-            "Coefficients are bounded below by zero, as the campaign asks. A value at its bound is the \
-             constrained fit; its interval is that of the unconstrained fit, cut at the bound."
+            "Coefficients are bounded below by zero, as the campaign asks. Where one is at its bound, the values \
+             are those of the constrained fit and the intervals those of the unconstrained fit, cut at the bounds: a value need not be in the middle of its interval."
                 .to_owned(),
         );
     }

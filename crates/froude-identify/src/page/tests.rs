@@ -76,7 +76,7 @@ fn aicc_is_compared_load_by_load() {
     assert!(aicc(2) < aicc(0).min(aicc(1)), "the trap is not there: {} {} {}", aicc(0), aicc(1), aicc(2));
     assert_eq!(source.recommendation.as_ref().unwrap().index, 0, "the law of both loads, which made them");
     let reason = &source.recommendation.as_ref().unwrap().reason;
-    assert!(reason.contains("; load by load the smallest AICc has: f_x "), "{reason}");
+    assert!(reason.contains("for single responses the smallest AICc is that of: "), "{reason}");
     let rows = rows(&source);
     for load in ["f_x", "f_y"] {
         let behind: Vec<f64> =

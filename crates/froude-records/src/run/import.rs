@@ -195,7 +195,7 @@ fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
     let TimeSteps { median_s, shortest_s, longest_s } = steps;
     let off = (longest_s - median_s).max(median_s - shortest_s);
     let numbers = format!(
-        "time steps are {:.6} ms in the middle, {:.6} ms at least and {:.6} ms at most",
+        "time steps have a median of {:.6} ms, from {:.6} ms to {:.6} ms",
         1e3 * median_s,
         1e3 * shortest_s,
         1e3 * longest_s
@@ -215,7 +215,7 @@ fn finding(table: &Table, steps: TimeSteps, lost: &[Gap]) -> Finding {
         );
         (Severity::Warning, "uneven-time-steps", text)
     } else {
-        let text = format!("{numbers}: even within {:.2e} of a step", off / median_s);
+        let text = format!("{numbers}: uniform to {:.1e} of a step", off / median_s);
         (Severity::Note, "time-steps", text)
     };
     let mut finding = Finding::new(severity, code, message);

@@ -136,7 +136,7 @@ fn draw_residuals(
     }
     let model = recommended(section).map_or_else(String::new, |e| format!(" of model {}", e.law.name));
     let mut caption = format!(
-        "Residuals{model} (measured − fitted), {}{part}: against the fitted load, against the abscissa of the test, \
+        "Residuals{model} (measured − fitted), {}{part}: against the fitted load, against speed, angle or time, \
          and ordered against normal quantiles (line: normal distribution with the residuals' mean and standard deviation).",
         section.name
     );

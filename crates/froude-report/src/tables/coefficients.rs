@@ -334,7 +334,7 @@ fn diagnostics(group: &[&Estimate]) -> Markup {
         (row(html! { "largest correlation" }, each(&|e| {
             e.diagnostics.largest_correlation.as_ref().and_then(|c| finite(Some(c.value), &|x| number::fixed(x, 3)))
         })))
-        (row(html! { "largest power to the body " span class="unit" { "[W]" } },
+        (row(html! { "largest power fed to the body (≤ 0: dissipative) " span class="unit" { "[W]" } },
             each(&|e| finite(e.diagnostics.largest_power_w, &|x| number::plain(x, 2)))))
     };
     html! { @if !rows.0.is_empty() { tfoot { (rows) } } }

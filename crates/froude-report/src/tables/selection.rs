@@ -131,7 +131,7 @@ impl Tables {
                             th scope="col" class="num" { "F" }
                             th scope="col" class="num" { "Degrees of freedom" }
                             th scope="col" class="num" { "p" }
-                            th scope="col" { "At 5 %" }
+                            th scope="col" { "At 1 %" }
                         }
                     }
                     tbody {
@@ -144,7 +144,7 @@ impl Tables {
                                 td class="num" { (number::p_value(t.p)) }
                                 td {
                                     @if !t.p.is_finite() { (MISSING) }
-                                    @else if t.p < 0.05 { (t.general) " fits better" }
+                                    @else if t.p < 0.01 { (t.general) " fits better" }
                                     @else { "no evidence against " (t.simple) }
                                 }
                             }

@@ -131,7 +131,8 @@ fn estimate(source: &str, method: &str, words: &str, coefficient: Coefficient) -
         method: MethodUsed { name: method.to_owned(), version: 1, words: words.to_owned() },
         frame: Frame { words: "y along the travel of the carriage".to_owned(), ..Frame::chain() },
         signs: Signs(
-            "force of the drive on the carriage at the chain per volt of its command, driving forward".to_owned(),
+            "force of the drive on the carriage at the chain per volt of its command, the motor driving the gear"
+                .to_owned(),
         ),
         law: Law {
             name: FORCE_PER_VOLT.to_owned(),

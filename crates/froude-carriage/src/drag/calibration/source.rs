@@ -178,7 +178,7 @@ fn section(c: Option<&Calibration>, setup: &DragSetup, results: &[Answer], jogs:
     let mut tables = Vec::new();
     if c.is_some() {
         tables.push(TextTable {
-            caption: "Force per volt of the command, driving forward.".to_owned(),
+            caption: "Force per volt of the command, the motor driving the gear (not back-driven).".to_owned(),
             head: head(&["from", "force per volt [N/V]", "standard uncertainty [N/V]", "95 % interval [N/V]"]),
             rows: results.iter().flat_map(Answer::estimates).map(row).collect(),
         });
@@ -186,7 +186,7 @@ fn section(c: Option<&Calibration>, setup: &DragSetup, results: &[Answer], jogs:
     if !jogs.is_empty() {
         let row = |j: &Jog| {
             let verdict = match j.verdict {
-                Verdict::Right => "right".to_owned(),
+                Verdict::Right => "correct".to_owned(),
                 Verdict::Reversed { after_m } => format!("REVERSED, seen after {:.2} mm", 1e3 * after_m),
                 Verdict::NoMotion { .. } => "not known: it did not move".to_owned(),
             };
@@ -212,12 +212,12 @@ fn sentences(c: &Calibration, setup: &DragSetup) -> Vec<String> {
             counted(c.used, "driving run", "driving runs"),
             counted(
                 c.overhauled,
-                "run in which the weight drove the gear was",
-                "runs in which the weight drove the gear were"
+                "run in which the weight may have back-driven the gear was",
+                "runs in which the weight may have back-driven the gear were"
             )
         ),
         format!(
-            "Gear efficiency {} against the ideal {:.4} N/V; carriage friction {:.3} N.",
+            "Gear efficiency {}, with the uncertainty of the motor constant, amplifier and radius, against the ideal {:.4} N/V; carriage friction {:.3} N.",
             number::short_form(c.efficiency.value, c.efficiency.standard),
             setup.ideal_force_per_volt_n,
             c.friction_n

@@ -6,8 +6,13 @@ use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
 
 use super::Tuned;
+
 use crate::tuning::candidate::Candidate;
+use crate::tuning::gains::Demand;
 use crate::tuning::margins::open_loop;
+
+/// Scatter of the relay's period, as a part of it, below which it counts as none: the tick hides it.
+const LEAST_SCATTER: f64 = 1e-4;
 
 /// Gains, margins, what a count of the encoder does to the command, and the ramps; a column for each candidate.
 #[must_use]
@@ -21,32 +26,39 @@ pub fn candidates_table(outcome: &Tuned) -> TextTable {
         ("K_p [V/count]", |c| Some(c.counts.proportional)),
         ("K_d [V s/count]", |c| Some(c.counts.derivative)),
         ("K_i [V/(count tick)]", |c| Some(c.counts.integral)),
-        ("command per count [V]", |c| Some(c.volts_per_count)),
+        ("command step of one count [V]", |c| Some(c.volts_per_count)),
         ("crossover [Hz]", |c| c.margins.crossover_hz),
         ("phase margin [°]", |c| c.margins.phase_rad.map(f64::to_degrees)),
         ("gain margin [1]", |c| c.margins.gain),
-        ("gain may fall to [1]", |c| c.margins.gain_reduction),
+        ("gain margin downwards [1]", |c| c.margins.gain_reduction),
         ("delay margin [ms]", |c| c.margins.delay_s.map(|s| 1e3 * s)),
         ("maximum sensitivity [1]", |c| Some(c.margins.largest_sensitivity)),
-        ("phase margin, heaviest body [°]", |c| c.heaviest?.phase_rad.map(f64::to_degrees)),
+        ("phase margin with the heaviest body [°]", |c| c.heaviest?.phase_rad.map(f64::to_degrees)),
         ("integral drives oscillation below [Hz]", |c| Some(c.gains.feeding_hz())),
         ("following error in ramps [mm]", |c| c.following_error_m.map(|m| 1e3 * m)),
-        ("motor's speed in homing [mm/s]", |c| c.homing_m_s.map(|v| 1e3 * v)),
-        ("objections", |c| Some(c.objections.len() as f64)),
+        ("peak motor speed in homing [mm/s]", |c| c.homing_m_s.map(|v| 1e3 * v)),
+        ("requirements not met", |c| Some(c.objections.len() as f64)),
     ];
     let cell = |x: Option<f64>| x.map_or_else(|| number::MISSING.to_owned(), |x| number::significant(x, 3));
+    let demand = Demand::default();
     let names = outcome.candidates.iter().map(|c| c.name.clone());
     TextTable {
         caption: format!(
-            "Gains of MCD eq. 6 in SI and per count and tick (V); margins on the response measured from {:.1} to {:.0} Hz; following error and speed of the motor from the campaign's hardest ramps, bare and with the heaviest body, run through the two masses that \
-             the response shows. A margin without a value: the loop does not cross there.",
-            outcome.band_hz[0], outcome.band_hz[1]
+            "Gains of the controller (eq. 6 of the MCD paper) in SI; per count of the encoder K_p and K_d, per count and tick K_i. Margins are those of the bare carriage, on the response measured \
+             from {:.1} to {:.0} Hz; one without a value has no crossing within that band. Following error and motor speed are those of the campaign's hardest ramps, bare and with the heaviest body, run through \
+             the two masses that the response shows. Required: bare, a phase margin of {:.0}°, gain margins of {} and 1/{}, a maximum sensitivity of {} at most; with the heaviest body, stability.",
+            outcome.band_hz[0],
+            outcome.band_hz[1],
+            demand.phase_rad.to_degrees(),
+            demand.gain,
+            demand.gain,
+            demand.sensitivity
         ),
         head: std::iter::once("quantity".to_owned()).chain(names).collect(),
         rows: quantities
             .iter()
             .map(|(name, of)| match *name {
-                "objections" => std::iter::once((*name).to_owned())
+                "requirements not met" => std::iter::once((*name).to_owned())
                     .chain(outcome.candidates.iter().map(|c| c.objections.len().to_string()))
                     .collect(),
                 _ => {
@@ -68,10 +80,10 @@ pub fn sentences(outcome: &Tuned) -> Vec<String> {
                 c.name, outcome.band_hz[0], outcome.band_hz[1]
             ));
         }
-        if let Some(load_hz) = c.lowest_load_hz.filter(|hz| *hz < c.gains.feeding_hz()) {
+        if let Some(load_hz) = drives_load(c) {
             out.push(format!(
-                "{}: below {:.1} Hz the integral's lag is more than the derivative's lead, and the load with the heaviest body swings at \
-                 {load_hz:.1} Hz: the loop drives that oscillation, and only friction damps it. K_i below {} V/(rad s) would not.",
+                "{}: below {:.1} Hz the integral's lag exceeds the derivative's lead, and the load with the heaviest body oscillates at \
+                 {load_hz:.1} Hz: the loop drives that oscillation, and only friction damps it. With K_i below {} V/(rad s) the loop would not drive it.",
                 c.name,
                 c.gains.feeding_hz(),
                 number::significant(c.gains.derivative_v_s_rad * (TAU * load_hz).powi(2), 2)
@@ -81,7 +93,7 @@ pub fn sentences(outcome: &Tuned) -> Vec<String> {
             out.push(format!("{}: {}.", c.name, c.objections.join("; ")));
         }
     }
-    out.extend(outcome.unshaped.as_ref().map(|e| format!("Nothing was shaped on the response: {e}.")));
+    out.extend(outcome.unshaped.as_ref().map(|e| format!("No gains could be tuned on the response: {e}.")));
     match outcome.recommended.map(|i| &outcome.candidates[i]) {
         Some(c) if c.name == outcome.candidates[0].name => {
             out.push("Recommended: the gains as configured.".to_owned());
@@ -98,14 +110,22 @@ pub fn sentences(outcome: &Tuned) -> Vec<String> {
                 d(c.gains.derivative_filter_hz)
             ));
             if outcome.candidates[0].objections.is_empty() {
-                out.push(
-                    "The gains as configured also meet every requirement: there is no need to change them.".to_owned(),
-                );
+                let is_driven = drives_load(&outcome.candidates[0]).is_some();
+                out.push(if is_driven {
+                    "The gains as configured meet every requirement, but drive the oscillation of the heaviest body: reduce K_i.".to_owned()
+                } else {
+                    "The gains as configured also meet every requirement: there is no need to change them.".to_owned()
+                });
             }
         }
         None => out.push("None of these gains is recommended.".to_owned()),
     }
     out
+}
+
+/// The mode of the heaviest body, Hz, where the integral drives it.
+fn drives_load(c: &Candidate) -> Option<f64> {
+    c.lowest_load_hz.filter(|hz| *hz < c.gains.feeding_hz())
 }
 
 /// The section of the page: table, sentences and the open loop.
@@ -124,15 +144,22 @@ pub fn section(outcome: &Tuned) -> DocumentSection {
         panels[1].series.push(series(points.iter().map(|p| p.phase_rad.to_degrees()).collect()));
     }
     let cycle = match &outcome.cycle {
-        Ok(c) => format!(
-            "The relay's limit cycle: {} periods of {} s (± {} s), amplitude {} rad; K_u = {} V/rad at {} Hz.",
-            c.cycles,
-            number::plain(c.period_s, 4),
-            number::significant(c.period_std_s, 1),
-            number::plain(c.amplitude_rad, 3),
-            number::plain(c.ultimate_gain_v_rad, 3),
-            number::plain(1.0 / c.period_s, 3)
-        ),
+        Ok(c) => {
+            let scatter = if c.period_std_s < LEAST_SCATTER * c.period_s {
+                "the same in every one".to_owned()
+            } else {
+                format!("standard deviation {} s", number::significant(c.period_std_s, 1))
+            };
+            format!(
+                "The relay's limit cycle: {} periods of {} s ({}), amplitude {} rad; ultimate gain K_u = {} V/rad at {} Hz.",
+                c.cycles,
+                number::plain(c.period_s, 4),
+                scatter,
+                number::plain(c.amplitude_rad, 3),
+                number::plain(c.ultimate_gain_v_rad, 3),
+                number::plain(1.0 / c.period_s, 3)
+            )
+        }
         Err(error) => format!("The relay gave no limit cycle: {error}."),
     };
     DocumentSection {

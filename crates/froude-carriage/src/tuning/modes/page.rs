@@ -54,7 +54,7 @@ pub fn modes_table(outcome: &CarriageModes) -> TextTable {
     }
     let body = |s: &StateModes| if s.body == "none" { "bare".to_owned() } else { s.body.clone() };
     TextTable {
-        caption: "Modes from the motor's side: the load on a held motor (to shape for) and both masses free."
+        caption: "Modes seen from the motor: that of the load with the motor held (the dip of the response, to shape for), and that of both masses free (its peak)."
             .to_owned(),
         head: std::iter::once("mode".to_owned()).chain(outcome.states.iter().map(body)).collect(),
         rows,
@@ -75,8 +75,8 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
             .map(|(body, load)| format!("{body} {}", number::percent(shaper.residual(load.frequency_hz, load.damping))))
             .collect();
         out.push(format!(
-            "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{damping:.3} 1\", robust_shaper = true. It adds {:.0} ms \
-             to a move. Of the swing it leaves, at the modes measured: {}; at most {} at a mode 10 % off its own.",
+            "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{damping:.3} 1\", robust_shaper = true. It is one shaper for all bodies, between their \
+             modes; a bare carriage is not shaped for. It adds {:.0} ms to a move. Residual swing at the measured modes: {}; at most {} at a mode within 10 % of its own.",
             1e3 * shaper.added_s,
             left.join(", "),
             number::percent(shaper.residual_10_percent_low.max(shaper.residual_10_percent_high))
@@ -91,8 +91,8 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
         out.push(match outcome.efficiency {
             Some(e) => format!(
                 "The free mode is seen through a gear that drives: the sweep rides on a steady motion, so that the motor feels the chain's force \
-                 over η, and f_a² = f_l² (1 + R/η). With the declared η = {} the loss is taken out, f² = f_l² (1 + η R_a); the uncertainty of η \
-                 is in its figure. The load's mode does not depend on η.",
+                 divided by the efficiency η, and f_a² = f_l² (1 + R/η): f_a and f_l are the free and the load's mode, R is the inertia of the load over that of the motor. With the declared \
+                 η = {} the loss is taken out; the uncertainty of η is in the corrected mode. The load's mode does not depend on η.",
                 number::short_form(e.value, e.standard_uncertainty)
             ),
             None => "The free mode is only apparent: the sweep rides on a steady motion, so that the motor feels the chain's force over the gear's \
@@ -102,9 +102,9 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
         });
         out.push(
             "The unexplained part is the root mean square of |model/measured − 1| over the points with a coherence above 0.8. Much of it lies in \
-             the dip, which friction fills, beside the peak, at the lower end of the band, and with a body at multiples of the load's mode, \
-             which the gear makes of its swing; most points are far better, as the median says. It makes the dampings and the depth \
-             of the dip uncertain, hardly the place of the dip, which is all that a shaper needs: it takes 10 % of frequency either way."
+             the dip, which friction fills, beside the peak, and at the lower end of the band; with a body also at harmonics of the load's mode, \
+             which the gear generates. Most points are far better, as the median says. It affects the damping ratios and the depth \
+             of the dip, but hardly its frequency, which is what a shaper needs."
                 .to_owned(),
         );
     }
