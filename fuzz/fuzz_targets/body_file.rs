@@ -10,9 +10,11 @@ fuzz_target!(|text: &str| {
     match parse_body(Path::new("body.toml"), text) {
         Ok(body) => {
             let lengths_m: Vec<f64> = match body.shape {
-                Shape::Robot { section, pitch_m, joint, end_m } => {
-                    let joint = joint.map_or(vec![], |j| vec![j.length_m, j.ramp_m]);
-                    [vec![section.major_m, section.minor_m, pitch_m, end_m], joint].concat()
+                Shape::Robot(robot) => {
+                    let neck = robot.neck.map_or(vec![], |neck| vec![neck.length_m, neck.ramp_m]);
+                    let link = robot.link;
+                    let own = vec![link.major_semi_axis_m, link.minor_semi_axis_m, link.half_length_m, robot.end_m];
+                    [own, neck].concat()
                 }
                 Shape::Ellipsoid { semi_axes_m } => semi_axes_m.to_vec(),
                 Shape::Capsule { length_m, section, end_m } => vec![length_m, section.major_m, section.minor_m, end_m],
