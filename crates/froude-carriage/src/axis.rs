@@ -225,7 +225,7 @@ fn some_or_error(is_some: bool, not_fitted: Vec<(Finding, MethodError)>) -> Resu
 
 /// Kinds of run that tell the servo.
 pub const KINDS: [Role; 3] = [Role::Friction, Role::Dry, Role::Excitation];
-/// Rate at which rows of slow runs are compared, Hz: below the load's mode, so that the rigid model is what moves.
+/// Rate at which rows of slow runs are compared, Hz: below the load mode, so that the rigid model is what moves.
 const ROW_RATE_HZ: f64 = 20.0;
 /// Corner of the position's filter for the rigid model, Hz: the chain's modes lie above it.
 const RIGID_CORNER_HZ: f64 = 3.0;

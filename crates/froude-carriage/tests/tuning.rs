@@ -121,7 +121,7 @@ impl Drive {
     }
 }
 
-/// The load's mode of 3 % damping: its peak of |1/(1 + L)| is narrower than the spacing of 80 points from 2.5 to 121 Hz.
+/// The load mode of 3 % damping: its peak of |1/(1 + L)| is narrower than the spacing of 80 points from 2.5 to 121 Hz.
 #[test]
 fn a_narrow_peak_of_the_sensitivity_is_found_to_seven_per_cent() {
     let gains = LoopGains {

@@ -164,7 +164,7 @@ pub enum CarriageJob {
     /// Run a relay test and a sweep on the position loop: margins on the measured response, proposed gains.
     #[command(after_help = "Example: froude carriage tune campaign.toml")]
     Tune(Experiment),
-    /// Sweep the carriage bare, dry and wet: find the load's mode, and propose an input shaper.
+    /// Sweep the carriage bare, dry and wet: find the load mode, and propose an input shaper.
     #[command(after_help = "Example: froude carriage resonance campaign.toml")]
     Resonance(Experiment),
 }

@@ -27,9 +27,9 @@ fn quantity(name: &str) -> Markup {
     let words = match name {
         "n_links" => "links of the body",
         "Re" => "Reynolds number",
-        "Fr_length" => "Froude number by length",
-        "Fr_depth" => "Froude number by depth of water",
-        "Fr_submergence" => "Froude number by submergence",
+        "Fr_length" => "Froude number of the reference length",
+        "Fr_depth" => "Froude number of the water's depth",
+        "Fr_submergence" => "Froude number of the submergence",
         "KC" => "Keulegan–Carpenter number",
         _ if name.len() > 2 && name.as_bytes()[1] == b'_' => return html_symbol(name),
         _ => return html! { (name.replace('_', " ")) },

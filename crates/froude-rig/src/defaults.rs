@@ -3,7 +3,7 @@
 //! **Model.** What a motor sees that drives through the declared gear ([`AxisParameters::apparent`]): this is what an identification
 //! from currents finds and what the feed-forward needs. The lower bound of friction, for the coast distance, is 0.85 of it.
 //!
-//! **Gains.** The position loop must be stiff against the chain, or the load's mode and the motor's mix: K_p (n/R)² K_T K_amp is ten
+//! **Gains.** The position loop must be stiff against the chain, or the load mode and the motor's mix: K_p (n/R)² K_T K_amp is ten
 //! times K_e on the long axis. The motor alone on that stiffness is damped with ratio 0.7 by K_d; T_i is 0.2 s. The paper's ratios
 //! (T_i = 1 s, K_d/K_p = 0.1 s) belong to a loop that is softer than its chain.
 //!

@@ -14,7 +14,7 @@
 //! | the values | [`declared`] | MCD Table II; chosen; derived |
 //!
 //! Two things to keep apart. The **motor-side mode** (13 Hz, 45 Hz) is the free-free one: the motor swings against the load, and
-//! the drive current sees it. The **load's mode** is what the load does when a stiff loop holds the motor still: it is lower
+//! the drive current sees it. The **load mode** is what the load does when a stiff loop holds the motor still: it is lower
 //! (6.7 Hz bare on the long axis, below 4 Hz with a wet body), the encoder hardly sees it, and it is what ripples the tow.
 //!
 //! Gear efficiency is not in eq. 3b. With it, the motor that drives sees `M (R/n)²/η` and `C R/(n η)`:

@@ -137,7 +137,7 @@ fn ripple_m_s(rig: &ClosedLoop, ramp_s: f64, reference: Reference) -> f64 {
     largest
 }
 
-/// Root mean square of the ripple over ramps of one to two periods of the load's mode.
+/// Root mean square of the ripple over ramps of one to two periods of the load mode.
 fn mean_ripple_m_s(mounting: Mounting, longer_s: f64, reference: Reference) -> f64 {
     let rig = ready(mounting, Spread::NONE, 0.5, |control| {
         if let Reference::Shaped(mode_hz) = reference {
@@ -151,7 +151,7 @@ fn mean_ripple_m_s(mounting: Mounting, longer_s: f64, reference: Reference) -> f
     (square / ramps.len() as f64).sqrt()
 }
 
-/// The load's mode with the motor held, and the motor-side mode.
+/// The load mode with the motor held, and the motor-side mode.
 fn modes_hz(mounting: Mounting) -> (f64, f64) {
     let y = AxisParameters::long();
     let mass_kg = Load::mounted(mounting).mass_kg(&y);

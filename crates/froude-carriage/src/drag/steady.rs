@@ -79,7 +79,7 @@ pub enum Rejected {
     /// The load swings on the chain until the window ends.
     #[error(
         "run {run:?}: the load swings on the chain so far that the motor's command falls to {least:.0} % of what friction alone needs \
-         (less than {needed:.0} %): the gear is then back-driven by the load, and its losses differ. Shape the reference for the load's mode \
+         (less than {needed:.0} %): the gear is then back-driven by the load, and its losses differ. Shape the reference for the load mode \
          (froude carriage resonance), accelerate more gently, or tow further"
     )]
     Swings {

@@ -132,7 +132,7 @@ fn recorded(
         },
         law: law(&method, formula, constants),
         coefficients: coefficients.collect(),
-        type_a: type_a(names, fit.covariance, fit.dof, fit.pieces.clone()),
+        type_a: type_a(names, fit.covariance, fit.dof, format!("scatter of the residuals ({})", fit.pieces)),
         errors,
         sigma: IndexMap::from([(LOAD.to_owned(), measured(fit.sigma_n, "N"))]),
         dof: IndexMap::from([(LOAD.to_owned(), fewest)]),

@@ -10,7 +10,7 @@ use super::{ResponsePoint, TuningError};
 pub mod page;
 pub mod record;
 
-/// The load's mode in one state of the body.
+/// The load mode in one state of the body.
 #[derive(Debug, Clone)]
 pub struct StateModes {
     /// `none`, `dry`, `wet`.

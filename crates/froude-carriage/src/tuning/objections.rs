@@ -15,7 +15,7 @@ pub(super) fn objections(c: &Candidate, limits: &Limits, encoder: &Encoder) -> V
     let digits = |x: f64| number::significant(x, 3);
     let mut out = against_margins(&c.margins);
     if let Some(heaviest) = &c.heaviest {
-        // Stable, no more: a light damping brings a stiff loop close to −1 at the load's mode, where it moves the motor by nothing.
+        // Stable, no more: a light damping brings a stiff loop close to −1 at the load mode, where it moves the motor by nothing.
         if heaviest.phase_rad.is_none_or(|x| x <= 0.0) {
             out.push("unstable with the heaviest body".to_owned());
         }

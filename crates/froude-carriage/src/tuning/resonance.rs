@@ -218,7 +218,7 @@ impl TwoMassModes {
     }
 }
 
-/// First guesses: the load's mode anywhere in the range, the free one above it by what light to heavy loads give.
+/// First guesses: the load mode anywhere in the range, the free one above it by what light to heavy loads give.
 fn starts(plant: &[ResponsePoint]) -> Vec<[f64; PARAMETERS]> {
     let (first, last) = (&plant[0], &plant[plant.len() - 1]);
     let k = last.plant_rad_v.norm() * (std::f64::consts::TAU * last.frequency_hz).powi(2);

@@ -2,7 +2,7 @@
 //!
 //! The margins say whether a loop is stable, not whether it holds. A soft loop lets the motor swing on its chain: the feed-forward for the
 //! inertia of both masses meets the motor alone first. So the ramps of homing and towing are run through the identified drive
-//! (MCD eq. 2 in units of the motor: acceleration k per volt, inertia ratio R, load's mode ω_l), friction at the load that sticks, a held
+//! (MCD eq. 2 in units of the motor: acceleration k per volt, inertia ratio R, load mode ω_l), friction at the load that sticks, a held
 //! command, counts, and the controller of MCD eq. 6 with feed-forward, tick by tick.
 //!
 //! **Units.** Motor angle, rad. Not here: drag of the body; a shaped reference, which only gets gentler.

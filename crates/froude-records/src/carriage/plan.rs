@@ -277,7 +277,7 @@ pub fn tuning(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> 
     planner.steps
 }
 
-/// The same sweep bare, with the body dry, and wet: the load's mode in each state.
+/// The same sweep bare, with the body dry, and wet: the load mode in each state.
 #[must_use]
 pub fn resonance(asked: &CarriagePlan, start_m: f64, experiments: &Experiments) -> Vec<Step> {
     let mut planner =

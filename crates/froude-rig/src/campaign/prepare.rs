@@ -94,7 +94,7 @@ impl Prepared {
         self.steps.iter().filter_map(|s| if let Step::Run(r) = s { Some(r) } else { None })
     }
 
-    /// Whether the reference of the axis that tows is shaped for the load's mode.
+    /// Whether the reference of the axis that tows is shaped for the load mode.
     #[must_use]
     pub fn is_shaped(&self) -> bool {
         self.control.axes[self.asked.axis as usize].mode_hz > 0.0

@@ -79,8 +79,12 @@ pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
             names: vec![FORCE_PER_VOLT.to_owned()],
             matrix: vec![vec![c.type_a * c.type_a]],
             dof: vec![finite(c.type_a_dof)],
-            kind: if c.is_pulley_measured { "HC3, the declared loss of the pulley as a prior" } else { "HC3" }
-                .to_owned(),
+            kind: if c.is_pulley_measured {
+                "scatter of the runs (HC3), the declared loss of the pulley as a prior"
+            } else {
+                "scatter of the runs (HC3)"
+            }
+            .to_owned(),
         }),
         errors,
         n_observations: c.used,

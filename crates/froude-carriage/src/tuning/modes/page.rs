@@ -20,15 +20,15 @@ pub fn free_without_loss(modes: &TwoMassModes, efficiency: Option<Declared>) -> 
 pub fn modes_table(outcome: &CarriageModes) -> TextTable {
     let missing = || number::MISSING.to_owned();
     let mut rows: Vec<Vec<String>> = [
-        "load's mode [Hz]",
-        "its damping [1]",
-        "free mode, seen through the driving gear [Hz]",
-        "its damping [1]",
+        "load mode f_l (anti-resonance) [Hz]",
+        "its damping ratio [1]",
+        "free mode f_a (resonance), apparent [Hz]",
+        "its damping ratio [1]",
         "free mode, corrected for the gear's loss [Hz]",
-        "load over motor inertia, seen [1]",
-        "the same, corrected for the gear's loss [1]",
-        "unexplained part of the response",
-        "the same, median of the points",
+        "load over motor inertia R, apparent [1]",
+        "R, corrected for the gear's loss [1]",
+        "unexplained part of the response, RMS",
+        "unexplained part of the response, median",
     ]
     .map(|name| vec![name.to_owned()])
     .to_vec();
@@ -75,34 +75,35 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
             .map(|(body, load)| format!("{body} {}", number::percent(shaper.residual(load.frequency_hz, load.damping))))
             .collect();
         out.push(format!(
-            "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{damping:.3} 1\", robust_shaper = true. It is one shaper for all bodies, between their \
+            "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{:.1} %\", robust_shaper = true. It is one shaper for all bodies, between their \
              modes; a bare carriage is not shaped for. It adds {:.0} ms to a move. Residual swing at the measured modes: {}; at most {} at a mode within 10 % of its own.",
+            1e2 * damping,
             1e3 * shaper.added_s,
             left.join(", "),
             number::percent(shaper.residual_10_percent_low.max(shaper.residual_10_percent_high))
         ));
         out.push(
             "The free mode, which the motor's current shows, is not the one to shape for: a stiff position loop holds the motor still, \
-             and the load swings on the chain at √(K_e/M)/2π. Shaping for the free mode leaves that swing as it was."
+             and the load swings on the chain at f_l = √(K_e/M)/2π, with the stiffness K_e of the chain and the mass M of the load. Shaping for the free mode leaves that swing as it was."
                 .to_owned(),
         );
     }
     if outcome.states.iter().any(|s| s.modes.is_ok()) {
         out.push(match outcome.efficiency {
             Some(e) => format!(
-                "The free mode is seen through a gear that drives: the sweep rides on a steady motion, so that the motor feels the chain's force \
-                 divided by the efficiency η, and f_a² = f_l² (1 + R/η): f_a and f_l are the free and the load's mode, R is the inertia of the load over that of the motor. With the declared \
-                 η = {} the loss is taken out; the uncertainty of η is in the corrected mode. The load's mode does not depend on η.",
+                "The free mode is apparent, seen through a gear that drives: the sweep rides on a steady motion, so that the motor feels the chain's force \
+                 divided by the efficiency η, and f_a² = f_l² (1 + R/η), where R is the inertia of the load over that of the motor. With the declared \
+                 η = {} the loss is taken out; the uncertainty of η is in the corrected mode. The load mode does not depend on η.",
                 number::short_form(e.value, e.standard_uncertainty)
             ),
             None => "The free mode is only apparent: the sweep rides on a steady motion, so that the motor feels the chain's force over the gear's \
-                     efficiency η, and f_a² = f_l² (1 + R/η). Declare `efficiency` in [rig.y] and the loss is taken out. The load's mode does \
+                     efficiency η, and f_a² = f_l² (1 + R/η). Declare `efficiency` in [rig.y] and the loss is taken out. The load mode does \
                      not depend on η."
                 .to_owned(),
         });
         out.push(
             "The unexplained part is the root mean square of |model/measured − 1| over the points with a coherence above 0.8. Much of it lies in \
-             the dip, which friction fills, beside the peak, and at the lower end of the band; with a body also at harmonics of the load's mode, \
+             the dip, which friction fills, beside the peak, and at the lower end of the band; with a body also at harmonics of the load mode, \
              which the gear generates. Most points are far better, as the median says. It affects the damping ratios and the depth \
              of the dip, but hardly its frequency, which is what a shaper needs."
                 .to_owned(),

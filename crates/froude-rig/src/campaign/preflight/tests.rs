@@ -128,7 +128,7 @@ fn a_configuration_that_the_controller_does_not_take_is_reported_with_its_key_an
     let with = |speed: f64| objections(&[(key, &format!("unhomed_speed_limit = \"{speed} m/s\""))]);
     assert_eq!(with(advised), []);
     assert_eq!(with(advised + 0.001).len(), 1);
-    let found = objections(&[(r#"shaped_damping = "0.017 1""#, r#"shaped_damping = "0.95 1""#)]);
+    let found = objections(&[(r#"shaped_damping = "1.7 %""#, r#"shaped_damping = "0.95 1""#)]);
     assert_eq!(found[0].text, "controller.shaped_damping is 0.95; the controller accepts 0 to 0.9");
 }
 

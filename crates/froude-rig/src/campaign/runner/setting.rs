@@ -30,7 +30,7 @@ pub struct Setting {
     pub return_speed_m_s: f64,
     /// Longest that homing may take, s, by axis.
     pub homing_s: [f64; AXES],
-    /// Shape the reference for the load's mode.
+    /// Shape the reference for the load mode.
     pub is_shaped: bool,
     /// The axis of the body that lies along the travel; `None` where nobody declared it.
     pub travel: Option<BodyAxis>,
