@@ -5,11 +5,13 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_fit::distribution::coverage_factor;
 use froude_fit::series::mean;
 use froude_identify::method::MethodError;
 use froude_identify::source::ReadFile;
 use froude_records::estimate::{Estimate, OWN};
 use froude_records::finding::{Finding, Severity};
+use froude_records::number;
 use froude_records::run::{BodyState, Declared, Role, RunLog, import_run};
 use froude_records::table::sidecar_of;
 use froude_records::units::Dimension;
@@ -20,6 +22,7 @@ use crate::runs::{Runs, column, for_drag, mounts};
 use crate::servo::motor::{Drive, MotorSide};
 use crate::servo::report::{effective, of_runs as of_several};
 use crate::servo::rows::Rows;
+use crate::servo::scale::ForcePerVolt;
 use crate::servo::two_mass::FlexibleReport;
 use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_servo, record};
 use crate::source::file_of;
@@ -124,27 +127,33 @@ pub struct AxisModels {
     pub findings: Vec<Finding>,
 }
 
-/// Rigid models of a log of another program, called `name`; its sidecar says what force a volt of the command is.
+/// Rigid models of a log of another program, called `name`; its sidecar says what force a volt of the command is, `gain` what is declared of
+/// its error.
 ///
 /// # Errors
 ///
 /// A log that cannot be read, without the force per volt, or that no model can be fitted to.
-pub fn of_table(path: &Path, sidecar: Option<&Path>, name: &str) -> Result<AxisModels, MethodError> {
+pub fn of_table(
+    path: &Path,
+    sidecar: Option<&Path>,
+    name: &str,
+    asked: &[AxisModel],
+    gain: &ForcePerVolt<'_>,
+) -> Result<AxisModels, MethodError> {
     let imported = import_run(path, sidecar)?;
     let log = &imported.log;
-    let gain_n_v = force_per_volt_n_v(path, sidecar)?;
     let servo = servo_log(log)?;
     // The mean step, as the chunks of a long log have it.
     let rate_hz = servo.rate_hz().map_err(MethodError::refused)?;
-    let asked = [AxisModel::Symmetric, AxisModel::Asymmetric].map(|model| (model, friction_of(model)));
-    let fit = |friction| identify_servo(&servo, &log_chain(gain_n_v, rate_hz, friction)).map_err(MethodError::refused);
-    let rigid = asked.into_iter().filter_map(|(model, friction)| Some((model.friction()?, fit(friction))));
+    let fit = |friction| identify_servo(&servo, &log_chain(gain.n_v, rate_hz, friction)).map_err(MethodError::refused);
+    let rigid = asked.iter().filter_map(|model| Some((model.friction()?, fit(friction_of(*model)))));
     let (models, not_fitted) = each(rigid);
     let not_fitted = some_or_error(!models.is_empty(), not_fitted)?;
     let mut findings = reported(&models, imported.findings);
+    findings.extend(by_direction(&models));
     findings.extend(not_fitted);
     let files = files_of_table(path, sidecar);
-    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain_n_v, None), files.clone());
+    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain), files.clone());
     Ok(AxisModels {
         estimates: models.iter().map(rigid).collect(),
         models,
@@ -171,7 +180,11 @@ fn log_chain(force_per_volt_n_v: f64, rate_hz: f64, friction: Friction) -> Chain
 }
 
 /// What a sidecar says that a volt of the command is, N/V.
-fn force_per_volt_n_v(log: &Path, sidecar: Option<&Path>) -> Result<f64, MethodError> {
+///
+/// # Errors
+///
+/// A sidecar that cannot be read, or says nothing of it.
+pub fn force_per_volt_n_v(log: &Path, sidecar: Option<&Path>) -> Result<f64, MethodError> {
     let gain = sidecar_of(log, sidecar)?.and_then(|sidecar| Some(sidecar.constants.get("drive_gain")?.value_si));
     gain.ok_or_else(|| {
         let what = "the sidecar must state the force per volt of the command: [constants] drive_gain = \"35.15 N/V\"";
@@ -262,6 +275,7 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
             each(rigid.map(|(name, friction)| (name, friction.and_then(|f| of_slow(&slow, &motor, f)))));
     }
     let mut findings = reported(&models, runs.findings.clone());
+    findings.extend(by_direction(&models));
     findings.extend(varies(&models));
     let declared = runs.campaign.as_ref().and_then(|c| c.carriage.as_ref()).and_then(|c| c.rig.y.coulomb_n_m);
     findings.extend(declared.and_then(|d| contradicted(&models, &motor, d)));
@@ -281,7 +295,6 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
         findings.extend(report.findings.iter().map(|t| Finding::new(Severity::Note, "two-mass", t.clone())));
     }
     let repeatability = repeatability(&slow, &motor)?;
-    let gain_n_v = motor.force_per_volt_n_v();
     let files = |logs: &[&RunLog]| -> Vec<ReadFile> { logs.iter().copied().map(file_of).collect() };
     let part = |d: &Declared| d.standard_uncertainty / d.value;
     let drive = Drive {
@@ -290,7 +303,8 @@ pub fn of_runs(runs: &Runs, asked: &[AxisModel], name: &str) -> Result<AxisModel
         radius_relative: part(&constants.sprocket_radius_m),
         rig: rig_key(runs, Some(constants)).unwrap_or_else(|| format!("{OWN}rig")),
     };
-    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain_n_v, Some(&drive)), files(&slow));
+    let gain = ForcePerVolt::of_drive(&drive);
+    let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, &gain), files(&slow));
     let excited: Vec<&RunLog> = pulses(&runs.logs).into_iter().collect();
     let two_mass = |report: &FlexibleReport| (record::two_mass(name, report, &drive), files(&excited));
     let estimates = models.iter().map(rigid).chain(flexible.as_ref().map(two_mass)).collect();
@@ -361,6 +375,38 @@ fn of_slow(logs: &[&RunLog], motor: &MotorSide, friction: Friction) -> Result<Se
     let mut report = of_several(runs, &chain).map_err(MethodError::refused)?;
     report.record_rate_hz = record_rate_hz;
     Ok(report)
+}
+
+/// Whether friction differs with the direction: the symmetric model then has a mean of both, and of neither. Two differences are looked at, each at
+/// half of 5 %.
+fn by_direction(models: &[Model]) -> Option<Finding> {
+    let report = &models.iter().find(|m| m.name == ASYMMETRIC)?.report;
+    let place = |name: String| report.coefficients.iter().position(|c| c.name == name);
+    let differences = ["F_v", "F_c"].into_iter().filter_map(|name| {
+        let (i, j) = (place(format!("{name}+"))?, place(format!("{name}-"))?);
+        let (a, b) = (&report.coefficients[i], &report.coefficients[j]);
+        let c = &report.spread.covariance;
+        let variance = c[(i, i)] + c[(j, j)] - 2.0 * c[(i, j)];
+        let half = coverage_factor(0.975, report.spread.dof[i].min(report.spread.dof[j])) * variance.max(0.0).sqrt();
+        let difference = a.value - b.value;
+        (difference.abs() > half).then(|| {
+            format!(
+                "{name}+ less {name}- is {} ± {} {}",
+                number::fixed(difference, 1),
+                number::significant(half, 2),
+                a.unit
+            )
+        })
+    });
+    let found: Vec<String> = differences.collect();
+    (!found.is_empty()).then(|| {
+        let text = format!(
+            "friction differs with the direction of motion: {} (97.5 %, scatter alone); the symmetric model has a mean of both, which holds in \
+             neither direction: use servo_asymmetric",
+            found.join(", ")
+        );
+        Finding::new(Severity::Warning, "friction-by-direction", text)
+    })
 }
 
 /// Whether a constant friction stands for one that changes along the travel: its interval is then that of a mean, and of no place.

@@ -93,80 +93,22 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
     let mut complete = Complete::default();
     let files = files(paths)?;
     for file in &files {
-        let sidecar = file.with_extension("toml");
-        if sidecar.exists() {
-            let meta = match read_run_meta(&sidecar) {
-                // Another file of TOML that lies in the folder.
-                Err(_) if !file.exists() => continue,
-                meta => meta?,
-            };
-            if meta.method != TOW {
-                others.push(meta);
-                continue;
-            }
-            if !roles.contains(&meta.role) {
-                if meta.status == RunStatus::Complete && file.exists() && !is_put_aside(file, &meta) {
-                    complete.add(file, &meta);
-                }
-                continue;
-            }
-            if is_put_aside(file, &meta) {
-                out.findings.push(put_aside(file, &meta));
-                continue;
-            }
-            if meta.status != RunStatus::Complete {
-                out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&meta)));
-                continue;
-            }
-            if !file.exists() {
-                out.findings.push(left_out_for(gone(file, &meta)));
-                continue;
-            }
-        }
-        let reader = match RunReader::open(file) {
-            // A sidecar says that a run was recorded there: its log is damaged where not even its beginning is one.
-            Err(error @ RecordError::Syntax { .. }) if sidecar.exists() => {
-                out.findings.push(left_out_for(Finding::new(Severity::Error, "run-damaged", error.to_string())));
-                continue;
-            }
-            reader => reader?,
-        };
-        let wanted: Vec<String> =
-            reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
-        let log = reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?;
-        if log.meta.method != TOW {
-            others.push(log.meta);
-            continue;
-        }
-        if !roles.contains(&log.meta.role) {
-            if log.meta.status == RunStatus::Complete {
+        match seen(file, roles)? {
+            Seen::Nothing => {}
+            Seen::OfAnotherMethod(meta) => others.push(meta),
+            Seen::OfAnotherRole(meta) => complete.add(file, &meta),
+            Seen::LeftOut(why) => out.findings.push(why),
+            Seen::Whole(log) => {
                 complete.add(file, &log.meta);
+                members.push(Member::of(file, &log.meta)?);
+                doubts.extend(log.doubts.iter().cloned());
+                for gap in &log.lost {
+                    let text = format!("{}: {}", log.meta.id, gap.text);
+                    out.findings.push(Finding::new(Severity::Warning, "run-gap", text));
+                }
+                out.logs.push(*log);
             }
-            continue;
         }
-        if is_put_aside(file, &log.meta) {
-            out.findings.push(put_aside(file, &log.meta));
-            continue;
-        }
-        if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Exchanged) {
-            return Err(MethodError::NoSet { first: doubt.text.clone(), more: 0 });
-        }
-        if let Some(doubt) = log.doubts.iter().find(|doubt| doubt.kind == DoubtKind::Damaged) {
-            out.findings.push(left_out_for(doubt.finding()));
-            continue;
-        }
-        // A log without a sidecar says itself how it ended.
-        if log.meta.status != RunStatus::Complete {
-            out.findings.push(Finding::new(Severity::Note, "run-left-out", left_out(&log.meta)));
-            continue;
-        }
-        complete.add(file, &log.meta);
-        members.push(Member::of(file, &log.meta)?);
-        doubts.extend(log.doubts.iter().cloned());
-        for gap in &log.lost {
-            out.findings.push(Finding::new(Severity::Warning, "run-gap", format!("{}: {}", log.meta.id, gap.text)));
-        }
-        out.logs.push(log);
     }
     let mut set = doubles(&members);
     set.extend(strangers(&members)?);
@@ -176,50 +118,14 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
     }
     out.findings.extend(set);
     out.findings.extend(summed_up(&doubts));
-    let singles: Vec<PathBuf> = files.iter().filter(|log| !paths.contains(&folder_of(log))).cloned().collect();
-    // A calibration from another folder, beside whole folders of runs, is no part of a campaign: it is asked for its force per volt alone.
-    let is_borrowed = |log: &PathBuf| {
-        let role = out.logs.iter().find(|known| &known.path == log).map(|known| known.meta.role);
-        role == Some(Role::Calibration) && paths.iter().any(|path| path.is_dir())
-    };
-    let parts: Vec<PathBuf> = singles.iter().filter(|log| !is_borrowed(log)).cloned().collect();
-    out.beside = beside(&parts, roles)?.len();
-    let mut folders: Vec<PathBuf> = paths.iter().filter(|path| path.is_dir()).cloned().collect();
-    if out.beside == 0 {
-        // All that lies there was named, one by one.
-        folders.extend(parts.iter().map(|log| folder_of(log)).collect::<BTreeSet<_>>());
-    }
-    for folder in &folders {
-        // That a campaign stopped early is said by whoever pays for it.
-        let lacking = complete.against_plan(folder, roles).filter(|finding| finding.severity > Severity::Note);
-        out.findings.extend(lacking);
-    }
-    out.named = match folders.as_slice() {
-        [folder] if out.beside == 0 => Named { first: folder.clone(), more: 0 },
-        _ => {
-            let of_folders = paths.iter().filter(|path| path.is_dir()).count();
-            let first = paths.iter().find(|path| path.is_dir()).or(singles.first());
-            Named { first: first.cloned().unwrap_or_default(), more: (of_folders + singles.len()).saturating_sub(1) }
-        }
-    };
+    out.take_folders(paths, &files, roles, &complete)?;
     let copy = out.folder.join(CAMPAIGN_COPY);
     let path = campaign.map(Path::to_owned).or_else(|| copy.exists().then_some(copy));
     out.campaign = path.as_deref().map(read_campaign).transpose()?;
     out.travel = attitude(&out.logs, out.campaign.as_ref())?;
     if out.logs.is_empty() {
         refuse_others(&out.folder, TOW, &others)?;
-        let names: Vec<&str> = roles.iter().map(|k| k.name()).collect();
-        let left = match out.findings.first() {
-            Some(first) => format!("; left out: {}", first.message),
-            None => String::new(),
-        };
-        return Err(MethodError::input(
-            &out.folder,
-            format!(
-                "no complete run of the roles {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
-                names.join(", ")
-            ),
-        ));
+        return Err(out.no_run(roles));
     }
     if let Some(first) = others.first() {
         let text = format!(
@@ -231,6 +137,144 @@ pub fn read(paths: &[PathBuf], roles: &[Role], campaign: Option<&Path>) -> Resul
         out.findings.push(Finding::new(Severity::Note, "run-of-another-method", text));
     }
     Ok(out)
+}
+
+impl Runs {
+    /// Which whole folders were read, what they lack of their campaign, and what the results are called after.
+    fn take_folders(
+        &mut self,
+        paths: &[PathBuf],
+        files: &[PathBuf],
+        roles: &[Role],
+        complete: &Complete,
+    ) -> Result<(), MethodError> {
+        let singles: Vec<PathBuf> = files.iter().filter(|log| !paths.contains(&folder_of(log))).cloned().collect();
+        // A calibration from another folder, beside whole folders of runs, is no part of a campaign: it is asked for its force per volt alone.
+        let is_borrowed = |log: &PathBuf| {
+            let role = self.logs.iter().find(|known| &known.path == log).map(|known| known.meta.role);
+            role == Some(Role::Calibration) && paths.iter().any(|path| path.is_dir())
+        };
+        let parts: Vec<PathBuf> = singles.iter().filter(|log| !is_borrowed(log)).cloned().collect();
+        self.beside = beside(&parts, roles)?.len();
+        let mut folders: Vec<PathBuf> = paths.iter().filter(|path| path.is_dir()).cloned().collect();
+        if self.beside == 0 {
+            // All that lies there was named, one by one.
+            folders.extend(parts.iter().map(|log| folder_of(log)).collect::<BTreeSet<_>>());
+        }
+        for folder in &folders {
+            // That a campaign stopped early is said by whoever pays for it.
+            let lacking = complete.against_plan(folder, roles).filter(|finding| finding.severity > Severity::Note);
+            self.findings.extend(lacking);
+        }
+        self.named = match folders.as_slice() {
+            [folder] if self.beside == 0 => Named { first: folder.clone(), more: 0 },
+            _ => {
+                let of_folders = paths.iter().filter(|path| path.is_dir()).count();
+                let first = paths.iter().find(|path| path.is_dir()).or(singles.first());
+                Named {
+                    first: first.cloned().unwrap_or_default(),
+                    more: (of_folders + singles.len()).saturating_sub(1),
+                }
+            }
+        };
+        Ok(())
+    }
+
+    fn no_run(&self, roles: &[Role]) -> MethodError {
+        let names: Vec<&str> = roles.iter().map(|k| k.name()).collect();
+        let left = match self.findings.first() {
+            Some(first) => format!("; left out: {}", first.message),
+            None => String::new(),
+        };
+        let text = format!(
+            "no complete run of the roles {}; drive a campaign first: froude run CAMPAIGN.toml{left}",
+            names.join(", ")
+        );
+        MethodError::input(&self.folder, text)
+    }
+}
+
+/// What a file is to a reading of some roles.
+enum Seen {
+    /// Another file of TOML, or a run of another role that is not complete.
+    Nothing,
+    OfAnotherMethod(RunMeta),
+    /// A complete run of another role.
+    OfAnotherRole(RunMeta),
+    LeftOut(Finding),
+    Whole(Box<RunLog>),
+}
+
+fn seen(file: &Path, roles: &[Role]) -> Result<Seen, MethodError> {
+    let sidecar = file.with_extension("toml");
+    if sidecar.exists() {
+        let meta = match read_run_meta(&sidecar) {
+            // Another file of TOML that lies in the folder.
+            Err(_) if !file.exists() => return Ok(Seen::Nothing),
+            meta => meta?,
+        };
+        if let Some(seen) = by_sidecar(file, meta, roles) {
+            return Ok(seen);
+        }
+    }
+    let reader = match RunReader::open(file) {
+        // A sidecar says that a run was recorded there: its log is damaged where not even its beginning is one.
+        Err(error @ RecordError::Syntax { .. }) if sidecar.exists() => {
+            let damaged = Finding::new(Severity::Error, "run-damaged", error.to_string());
+            return Ok(Seen::LeftOut(left_out_for(damaged)));
+        }
+        reader => reader?,
+    };
+    let wanted: Vec<String> =
+        reader.channels().iter().map(|c| c.0.clone()).filter(|name| !name.starts_with("truth/")).collect();
+    by_log(file, reader.select(&wanted.iter().map(String::as_str).collect::<Vec<_>>())?.read_all()?, roles)
+}
+
+/// What the sidecar alone decides; `None` where the log is to be read.
+fn by_sidecar(file: &Path, meta: RunMeta, roles: &[Role]) -> Option<Seen> {
+    let is_whole = meta.status == RunStatus::Complete;
+    if meta.method != TOW {
+        return Some(Seen::OfAnotherMethod(meta));
+    }
+    if !roles.contains(&meta.role) {
+        let counts = is_whole && file.exists() && !is_put_aside(file, &meta);
+        return Some(if counts { Seen::OfAnotherRole(meta) } else { Seen::Nothing });
+    }
+    let why = if is_put_aside(file, &meta) {
+        put_aside(file, &meta)
+    } else if !is_whole {
+        Finding::new(Severity::Note, "run-left-out", left_out(&meta))
+    } else if !file.exists() {
+        left_out_for(gone(file, &meta))
+    } else {
+        return None;
+    };
+    Some(Seen::LeftOut(why))
+}
+
+/// What the log itself says, which may have no sidecar.
+fn by_log(file: &Path, log: RunLog, roles: &[Role]) -> Result<Seen, MethodError> {
+    let is_whole = log.meta.status == RunStatus::Complete;
+    if log.meta.method != TOW {
+        return Ok(Seen::OfAnotherMethod(log.meta));
+    }
+    if !roles.contains(&log.meta.role) {
+        return Ok(if is_whole { Seen::OfAnotherRole(log.meta) } else { Seen::Nothing });
+    }
+    if is_put_aside(file, &log.meta) {
+        return Ok(Seen::LeftOut(put_aside(file, &log.meta)));
+    }
+    let doubt = |kind| log.doubts.iter().find(|doubt| doubt.kind == kind);
+    if let Some(doubt) = doubt(DoubtKind::Exchanged) {
+        return Err(MethodError::NoSet { first: doubt.text.clone(), more: 0 });
+    }
+    Ok(if let Some(doubt) = doubt(DoubtKind::Damaged) {
+        Seen::LeftOut(left_out_for(doubt.finding()))
+    } else if is_whole {
+        Seen::Whole(Box::new(log))
+    } else {
+        Seen::LeftOut(Finding::new(Severity::Note, "run-left-out", left_out(&log.meta)))
+    })
 }
 
 /// The axis of the body along the travel, on which the runs and their campaign must agree as far as they declare it.

@@ -38,6 +38,7 @@ pub mod record;
 mod regression;
 pub mod report;
 pub(crate) mod rows;
+pub mod scale;
 pub mod simulate;
 pub mod synthetic;
 pub mod two_mass;

@@ -113,7 +113,7 @@ pub enum Verb {
 /// What `froude carriage` does.
 #[derive(Debug, Subcommand)]
 pub enum CarriageJob {
-    /// Identify inertia, friction, flexibility and repeatability, from runs or from any servo log (CSV with a sidecar).
+    /// Identify inertia, friction, flexibility and repeatability from runs, or inertia and friction from any servo log (CSV with a sidecar).
     #[command(after_help = "Examples:\n  froude carriage identify campaign-runs\n  froude carriage identify servo.csv")]
     Identify {
         /// Folders of runs, runs (.mcap), or one log (.csv).

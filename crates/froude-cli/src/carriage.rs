@@ -242,7 +242,7 @@ fn minutes(seconds: f64) -> String {
 pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
     match job {
         CarriageJob::Identify { input, sidecar, out } => {
-            let job = Job { sidecar, purpose: Some(Purpose::Servo), ..servo(&input, out) };
+            let job = Job { sidecar, purpose: Some(Purpose::Servo), ..servo(&input, out)? };
             crate::identify(job, is_json, false).map_err(|error| mistaken::SERVO.explain(error, &input))
         }
         CarriageJob::Drag { runs, campaign, out } => {
@@ -274,16 +274,27 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
 }
 
 /// Folders of runs and runs, or one log of another program, whose results lie beside it.
-fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Job {
+fn servo(input: &[PathBuf], out: Option<PathBuf>) -> Result<Job, Failure> {
     let is_log = |path: &&PathBuf| path.extension().is_some_and(|e| e == "csv" || e == "parquet");
-    match input {
+    if let (Some(log), true) = (input.iter().find(is_log), input.len() > 1) {
+        return Err(Failure::Instead {
+            path: log.clone(),
+            found: "a log of its own",
+            verb: "carriage identify",
+            takes: "one log, or runs of one rig",
+            instead:
+                "identify each log by itself, and compare their records: froude compare A/estimate.json B/estimate.json"
+                    .to_owned(),
+        });
+    }
+    Ok(match input {
         [log] if is_log(&log) => {
             let stem = log.file_stem().unwrap_or_default().to_string_lossy();
             let beside = log.with_file_name(format!("{stem}-servo"));
             Job { out: Some(out.unwrap_or(beside)), ..Job::new(log) }
         }
         runs => Job { out, ..Job::of(Input::Runs { paths: runs.to_vec(), campaign: None }) },
-    }
+    })
 }
 
 /// Sprocket radius that makes the counted distances the measured one.

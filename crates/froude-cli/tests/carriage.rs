@@ -438,6 +438,13 @@ fn anyones_servo_log_is_identified_with_intervals() {
     assert_eq!(symmetric["law"]["name"], "servo_symmetric");
     let mass = &symmetric["coefficients"]["M"];
     assert!((mass["value"].as_f64().unwrap() - 95.1089).abs() < 0.1085, "{mass}");
+    // Viscous friction differs by 70 N s/m with the direction, as Janot, Gautier & Brunot's asymmetric model has it.
+    let findings = found["findings"].as_array().unwrap();
+    let by_direction = findings.iter().find(|f| f["code"] == "friction-by-direction").unwrap();
+    assert!(
+        by_direction["message"].as_str().unwrap().contains("F_v+ less F_v- is −73.9 ± 7.9 N s/m"),
+        "{by_direction}"
+    );
     assert!(out.join("report.html").exists());
 }
 
@@ -457,6 +464,53 @@ fn a_sidecar_tells_a_servo_log_from_a_table() {
     let sourced = json(&["identify", text(&campaign), "--json"]);
     assert_eq!(sourced["estimates"][1]["id"], "EMPS/servo_asymmetric");
     assert_eq!(sourced["estimates"][0]["coefficients"], of_verb["estimates"][0]["coefficients"]);
+
+    // One model by its name, and an error of the force per volt, which all coefficients have alike.
+    let with = |more: &str| std::fs::write(&campaign, format!("{source}{more}")).unwrap();
+    let budget = "[[source.uncertainty]]\nquantity = \"drive_gain\"\nname = \"data sheet\"\nstandard = \"1 %\"\nshared = \"campaign\"\n";
+    with(&format!("method = \"servo_asymmetric\"\n{budget}"));
+    let one = json(&["identify", text(&campaign), "--json"]);
+    assert_eq!(one["estimates"].as_array().unwrap().len(), 1);
+    let (known, exact) = (&one["estimates"][0], &sourced["estimates"][1]);
+    for (name, c) in known["coefficients"].as_object().unwrap() {
+        let number = |key: &str| c[key].as_f64().unwrap();
+        assert_eq!(c["value"], exact["coefficients"][name]["value"]);
+        assert!((number("type_b") / number("value").abs() - 0.01).abs() < 1e-12, "{name}");
+        let both = number("type_a").hypot(number("type_b"));
+        assert!((number("standard_uncertainty") / both - 1.0).abs() < 1e-12, "{name}");
+    }
+    let (key, error) = known["errors"].as_object().unwrap().iter().next().unwrap();
+    assert!(key.ends_with("/data sheet/drive_gain relative 1e-2"), "{key}");
+    assert_eq!(error["sensitivity"][0][0], known["coefficients"]["M"]["value"]);
+    assert!(known["method"]["words"].as_str().unwrap().contains("Butterworth low-pass of order 4 at 100 Hz"));
+
+    let told = json(&["inspect", text(&campaign), "--json"]);
+    assert_eq!(told["sources"][0]["models"], serde_json::json!(["servo_asymmetric"]));
+    assert_eq!(
+        (&told["sources"][0]["rows"], &told["sources"][0]["budget"][0]["standard"]),
+        (&24841.into(), &"1 %".into())
+    );
+
+    // Nothing that is asked is passed over.
+    for (more, told) in [
+        ("keep = \"time <= 12 s\"\n", "`keep` is for a table of loads, and this is the log of a servo"),
+        ("models = [\"quadratic\"]\n", "name its models by `method`: servo_symmetric, servo_asymmetric"),
+        ("method = \"servo_two_mass\"\n", "method \"servo_two_mass\" is not one for the log of a servo"),
+        (&budget.replace("drive_gain", "banana"), "quantity = \"banana\" is not known of the log of a servo"),
+        (&budget.replace("\"campaign\"", "\"sample\""), "the force per volt of a log is one number"),
+        (&budget.replace("1 %", "1 N"), "in per cent or in N/V"),
+        (&format!("{budget}{budget}"), "\"drive_gain\" has 2 entries"),
+    ] {
+        with(more);
+        for verb in ["identify", "inspect"] {
+            let said = refusal(&[verb, text(&campaign)]);
+            assert!(said.contains(told) && said.contains("axis.toml:"), "{said}");
+        }
+    }
+    let said = refusal(&["carriage", "identify", text(&csv), text(&csv)]);
+    assert!(said.contains("takes one log, or runs of one rig. identify each log by itself"), "{said}");
+    let said = refusal(&["identify", text(&csv), "--models", "quadratic"]);
+    assert!(said.contains("--models: names the laws of a table of loads, and there is none here"), "{said}");
 
     // Without the force per volt it is still a servo's log, and without a command it is neither.
     let sidecar = std::fs::read_to_string(&toml).unwrap();

@@ -7,7 +7,7 @@ use froude_records::carriage::{CarriageCampaign, Directions, RigKind};
 use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::json::read_estimates;
-use froude_records::run::Meaning;
+use froude_records::run::{Meaning, is_servo_log};
 use froude_records::table::{ColumnData, Table, read_table};
 use froude_records::text::counted;
 
@@ -193,7 +193,7 @@ fn doubts(campaign: &Campaign, source: &Source, reduced: &Observations) -> Vec<F
     findings.into_iter().map(|f| f.of_source(&source.name)).collect()
 }
 
-/// Inspects a campaign and its sources; what a mesh is asked for is checked by whoever computes it.
+/// Inspects a campaign and its sources; what a mesh or the log of a servo is asked for is checked by whoever computes it.
 ///
 /// # Errors
 ///
@@ -276,6 +276,10 @@ fn source_facts(campaign: &Campaign, source: &Source) -> Result<(SourceFacts, Ve
     };
     let mut findings = Vec::new();
     match &source.input {
+        Input::Table(log) if is_servo_log(log, source.sidecar.as_deref())? => {
+            let table = read_table(log, source.sidecar.as_deref())?;
+            (out.rows, out.columns) = (Some(table.n_rows), columns(&table));
+        }
         Input::Table(table) => {
             out.models = asked_models(campaign, source)?;
             if out.exists {

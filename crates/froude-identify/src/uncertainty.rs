@@ -167,18 +167,25 @@ pub fn contributions(
     Ok(out)
 }
 
-/// An entry that all sources of a campaign share, as one error of unit size: those that give it one name mean one instrument.
+/// An entry that all sources of a campaign share, as one error of unit size.
 fn origin(entry: &BudgetEntry, campaign: &str, moved: &Mat<f64>) -> Option<Origin> {
-    let is_common = entry.shared == Shared::Campaign && !campaign.is_empty() && moved.ncols() == 1;
+    let key = common_key(entry, campaign).filter(|_| moved.ncols() == 1)?;
+    Some(Origin {
+        key,
+        quantity: entry.quantity.clone(),
+        covariance: Mat::identity(1, 1),
+        sensitivity: moved.clone(),
+        limits: None,
+    })
+}
+
+/// Key of an entry that all sources of a campaign share: those that give it one name mean one instrument. `None` of any other.
+#[must_use]
+pub fn common_key(entry: &BudgetEntry, campaign: &str) -> Option<String> {
+    let is_common = entry.shared == Shared::Campaign && !campaign.is_empty();
     entry.name.as_ref().filter(|_| is_common).map(|name| {
         let relative = if entry.relative { " relative" } else { "" };
-        Origin {
-            key: format!("{campaign}/{name}/{}{relative} {:e}", entry.quantity, entry.standard),
-            quantity: entry.quantity.clone(),
-            covariance: Mat::identity(1, 1),
-            sensitivity: moved.clone(),
-            limits: None,
-        }
+        format!("{campaign}/{name}/{}{relative} {:e}", entry.quantity, entry.standard)
     })
 }
 

@@ -195,7 +195,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
     let (methods, method_places): (Vec<String>, Vec<_>) = s.placed_texts("method")?.into_iter().unzip();
-    if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs { .. })) {
+    if let (Some(value), false) = (s.get("method"), matches!(input, Input::Runs { .. } | Input::Table(_))) {
         return Err(s.wrong("method", value, "says how runs are reduced, but the source names no runs"));
     }
     // What belongs to the rows of a table would be passed over.

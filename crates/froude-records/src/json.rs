@@ -402,33 +402,7 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         }
     }
     for (name, coefficient) in coefficients {
-        let Coefficient {
-            label: _,
-            value,
-            unit: _,
-            status: _,
-            nuisance: _,
-            standard_uncertainty,
-            type_a,
-            type_b,
-            interval_95,
-            effective_dof,
-        } = coefficient;
-        let named = [
-            ("value", value),
-            ("standard_uncertainty", standard_uncertainty),
-            ("type_a", type_a),
-            ("type_b", type_b),
-            ("effective_dof", effective_dof),
-        ];
-        for (key, number) in named {
-            if let Some(number) = number {
-                see(&|| format!("coefficients.{name}.{key}"), *number);
-            }
-        }
-        for end in interval_95.iter().flatten() {
-            see(&|| format!("coefficients.{name}.interval_95"), *end);
-        }
+        numbers_of_coefficient(name, coefficient, see);
     }
     for (name, Derived { formula: _, value, unit: _, standard_uncertainty, interval_95 }) in derived {
         for number in value.iter().chain(standard_uncertainty).chain(interval_95.iter().flatten()) {
@@ -454,6 +428,42 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         see(&|| format!("validity.{name}"), range.low);
         see(&|| format!("validity.{name}"), range.high);
     }
+    numbers_of_diagnostics(diagnostics, see);
+}
+
+/// Every number of a coefficient with its path.
+fn numbers_of_coefficient(name: &str, coefficient: &Coefficient, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
+    let Coefficient {
+        label: _,
+        value,
+        unit: _,
+        status: _,
+        nuisance: _,
+        standard_uncertainty,
+        type_a,
+        type_b,
+        interval_95,
+        effective_dof,
+    } = coefficient;
+    let named = [
+        ("value", value),
+        ("standard_uncertainty", standard_uncertainty),
+        ("type_a", type_a),
+        ("type_b", type_b),
+        ("effective_dof", effective_dof),
+    ];
+    for (key, number) in named {
+        if let Some(number) = number {
+            see(&|| format!("coefficients.{name}.{key}"), *number);
+        }
+    }
+    for end in interval_95.iter().flatten() {
+        see(&|| format!("coefficients.{name}.interval_95"), *end);
+    }
+}
+
+/// Every number of the diagnostics with its path.
+fn numbers_of_diagnostics(diagnostics: &Diagnostics, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
     let Diagnostics {
         condition_number,
         largest_correlation,

@@ -54,7 +54,7 @@ mod sync;
 pub use crate::run::doubt::{Doubt, DoubtKind};
 pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
-pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, run_of_table};
+pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{

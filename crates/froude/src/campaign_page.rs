@@ -51,7 +51,7 @@ pub fn report(
         subtitle: subtitle(sources, &published),
         blocks: summaries.iter().map(|summary| summary.section.clone()).chain(blocks).collect(),
         date,
-        method: method::sentences(campaign, sources),
+        method: method::sentences(campaign, sources, &published),
         sources: sources.iter().map(section).collect::<Result<_, _>>()?,
         published,
         findings: file.findings.clone(),

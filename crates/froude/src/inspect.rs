@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use froude_added_mass::options::Asked;
+use froude_carriage::axis::source::Servo;
 use froude_carriage::runs::inspect::{folder, run, without_log};
 pub use froude_identify::inspect::{BudgetFacts, ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude_identify::inspect::{campaign, estimates, table};
 use froude_records::campaign::Input;
+use froude_records::run::is_servo_log;
 
-use crate::Error;
+use crate::{Error, method};
 
 /// Inspects a table, a campaign, an estimate record or a run, by the ending of its name; a run also by its sidecar; a folder of
 /// runs as a set.
@@ -35,10 +37,16 @@ pub fn inspect(path: &Path, sidecar: Option<&Path>) -> Result<Inspection, Error>
 }
 
 fn of_campaign(path: &Path) -> Result<Inspection, Error> {
-    let (campaign, found) = campaign(path)?;
-    for source in &campaign.sources {
-        if let Input::Mesh(path) = &source.input {
-            Asked::read(path, &source.added_mass)?;
+    let (campaign, mut found) = campaign(path)?;
+    for (source, facts) in campaign.sources.iter().zip(&mut found.sources) {
+        match &source.input {
+            Input::Mesh(path) => drop(Asked::read(path, &source.added_mass)?),
+            Input::Table(log) if is_servo_log(log, source.sidecar.as_deref())? => {
+                Servo::check_log(source)?;
+                let asked = method::of(source, None)?;
+                facts.models = asked.into_iter().flat_map(|(_, names)| names).map(str::to_owned).collect();
+            }
+            _ => {}
         }
     }
     Ok(found)

@@ -1,14 +1,16 @@
 //! The list of all methods, and the one that a source asks for.
 
 use froude_added_mass::source::AddedMass;
-use froude_carriage::axis::source::{Servo, is_servo_log};
+use froude_carriage::axis::source::Servo;
 use froude_carriage::drag::calibration::source::KnownWeights;
 use froude_carriage::source::Carriage;
 use froude_carriage::tuning::source::{Resonance, Tuning};
+use froude_identify::IdentifyError;
 use froude_identify::method::Method;
 use froude_identify::table::Table;
 use froude_records::campaign::{Input, Source};
 use froude_records::nearest::meant;
+use froude_records::run::is_servo_log;
 
 use crate::Error;
 use crate::pipeline::Purpose;
@@ -36,20 +38,57 @@ pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>
             Ok(vec![(method, method.names().to_vec())])
         }
         Input::Runs { .. } => named(source),
-        Input::Table(log) if purpose == Some(Purpose::Servo) || is_servo_log(log, source.sidecar.as_deref())? => {
-            Ok(vec![(&Servo, Servo::OF_LOGS.to_vec())])
-        }
+        Input::Table(log) if purpose == Some(Purpose::Servo) || is_servo_log(log, source.sidecar.as_deref())? => of_log(source),
+        Input::Table(_) if !source.methods.is_empty() => Err(refused(
+            source,
+            0,
+            "`method` says how runs are reduced, but the source names no runs; of tables only the log of a servo takes it, whose sidecar names time, position \
+             and command"
+                .to_owned(),
+        )),
         Input::Mesh(_) => Ok(vec![(&AddedMass, AddedMass.names().to_vec())]),
         _ => Ok(vec![(&Table, vec!["table"])]),
     }
 }
 
+/// What is wrong with the name at `i` in `method`, with its place.
+fn refused(source: &Source, i: usize, what: String) -> Error {
+    let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);
+    Error::Identify(IdentifyError::Campaign { place, what })
+}
+
+/// The models of a servo's log: those that are named, else all that need no rig.
+fn of_log(source: &Source) -> Result<Vec<Asked>, Error> {
+    let mut asked = Vec::new();
+    for (i, name) in source.methods.iter().enumerate() {
+        let Some(known) = Servo::OF_LOGS.into_iter().find(|known| known == name) else {
+            let all = Servo::OF_LOGS.join(", ");
+            let advice = meant(name, Servo::OF_LOGS).unwrap_or_else(|| format!("expected {all}"));
+            return Err(refused(source, i, format!("method {name:?} is not one for the log of a servo; {advice}")));
+        };
+        if asked.contains(&known) {
+            return Err(refused(source, i, format!("method {name:?} is named twice")));
+        }
+        asked.push(known);
+    }
+    Ok(vec![(&Servo, if asked.is_empty() { Servo::OF_LOGS.to_vec() } else { asked })])
+}
+
+/// Whether a source is fitted by laws, which `models` name.
+///
+/// # Errors
+///
+/// As [`of`].
+pub(crate) fn takes_laws(source: &Source, purpose: Option<Purpose>) -> Result<bool, Error> {
+    if matches!(source.input, Input::Record { .. }) {
+        return Ok(false);
+    }
+    Ok(of(source, purpose)?.iter().any(|(method, _)| method.names() == Table.names()))
+}
+
 /// The methods that a source of runs names, in the order of their first names.
 fn named(source: &Source) -> Result<Vec<Asked>, Error> {
-    let refuse = |i: usize, what: String| {
-        let place = source.method_places.get(i).map_or_else(String::new, ToString::to_string);
-        Err(Error::Identify(froude_identify::IdentifyError::Campaign { place, what }))
-    };
+    let refuse = |i: usize, what: String| Err(refused(source, i, what));
     let mut out: Vec<Asked> = Vec::new();
     for (i, name) in source.methods.iter().enumerate() {
         let known = || METHODS.iter().flat_map(|method| method.names().iter().map(move |name| (*method, *name)));

@@ -9,7 +9,7 @@ use froude_identify::answer::Answer;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared};
 use froude_identify::data_files::DataFiles;
 use froude_identify::method::{Export, Found, Method, observes};
-use froude_identify::{asked, observations};
+use froude_identify::{IdentifyError, asked, observations};
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
 use froude_records::estimate::{Estimate, EstimateFile};
@@ -42,6 +42,13 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         campaign.identify.model_places.clear();
         for source in &mut campaign.sources {
             source.models.clear();
+        }
+    }
+    if !job.models.is_empty() {
+        let taken = campaign.sources.iter().map(|source| method::takes_laws(source, job.purpose));
+        if !taken.collect::<Result<Vec<_>, _>>()?.contains(&true) {
+            let what = "names the laws of a table of loads, and there is none here: leave it out".to_owned();
+            return Err(Error::Identify(IdentifyError::Campaign { place: "--models".to_owned(), what }));
         }
     }
     asked::runs_once(&campaign)?;

@@ -17,10 +17,12 @@ use froude_records::page::{DocumentSection, TextTable};
 use froude_records::table::Table;
 use froude_records::units::Dimension;
 
+use super::page::with_declared;
 use super::{AxisModel, friction_of, log_chain};
 use crate::runs::implausible;
 use crate::servo::log::{is_even, rate_of};
 use crate::servo::report::negative;
+use crate::servo::scale::ForcePerVolt;
 use crate::servo::{LongReport, LongServo, ServoCoefficient, ServoError, record};
 
 /// Whether a log has more rows than are kept.
@@ -107,19 +109,19 @@ impl Clock {
     }
 }
 
-/// Rigid models of a long log, called `name`, whose volt is a force of `gain_n_v`.
+/// Rigid models of a long log, called `name`, whose volt is a force of `gain`.
 pub(super) fn of_table(
     path: &Path,
     sidecar: Option<&Path>,
     (name, kind): (&str, &str),
-    gain_n_v: f64,
+    gain: &ForcePerVolt<'_>,
     asked: &[AxisModel],
 ) -> Result<Found, MethodError> {
     let clock = clock(path, sidecar)?;
     let rate_hz = clock.rate_hz().map_err(MethodError::refused)?;
     let rigid = asked.iter().filter_map(|model| Some((model.friction()?, friction_of(*model))));
     let mut under_way = rigid
-        .map(|(words, friction)| Ok((words, LongServo::new(&log_chain(gain_n_v, rate_hz, friction), rate_hz)?)))
+        .map(|(words, friction)| Ok((words, LongServo::new(&log_chain(gain.n_v, rate_hz, friction), rate_hz)?)))
         .collect::<Result<Vec<_>, ServoError>>()
         .map_err(MethodError::refused)?;
     for_each_chunk(path, sidecar, &mut |table| {
@@ -145,9 +147,9 @@ pub(super) fn of_table(
         let doubts: Vec<String> = negative(&coefficients).collect();
         let said = doubts.iter().map(|text| Finding::new(Severity::Warning, "servo", format!("{words}: {text}")));
         out.findings.extend(said);
-        tables.push(coefficient_table(words, &report, &coefficients));
-        let mut estimate = record::long(name, words, (&report, &coefficients), &doubts, gain_n_v);
+        let mut estimate = record::long(name, words, (&report, &coefficients), &doubts, gain);
         kind.clone_into(&mut estimate.kind);
+        tables.push(with_declared(coefficient_table(words, &report, &coefficients), Some(&estimate)));
         let name = format!("{name}, {}", estimate.method.name);
         out.results.push(Made { name, estimate, files: super::files_of_table(path, sidecar) }.into());
     }
@@ -232,8 +234,9 @@ mod tests {
         std::fs::write(path.with_extension("toml"), sidecar).unwrap();
         assert!(is_long(&path));
         let asked = [AxisModel::Symmetric, AxisModel::Asymmetric];
-        let found = of_table(&path, None, ("log", "towing"), 6.0, &asked).unwrap();
-        let whole = in_memory(&path, None, "log").unwrap();
+        let gain = ForcePerVolt::of_log(6.0, None);
+        let found = of_table(&path, None, ("log", "towing"), &gain, &asked).unwrap();
+        let whole = in_memory(&path, None, "log", &asked, &gain).unwrap();
         assert_eq!(found.results.len(), whole.estimates.len());
         for (found, (expected, files)) in found.results.iter().zip(&whole.estimates) {
             let [estimate] = found.estimates() else { panic!("one estimate") };

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
+use froude_records::estimate::Estimate;
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
 
 use super::{AxisModels, CONSTANT, Model, Repeatability};
 use crate::runs::mounted;
 use crate::servo::ServoCoefficient;
+use crate::servo::record::law_of;
 use crate::servo::report::effective;
 use crate::servo::two_mass::FlexibleReport;
 
@@ -19,12 +21,16 @@ pub fn sections(outcome: &AxisModels) -> (DocumentSection, Vec<DocumentSection>)
         let r = &model.report;
         let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
         let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
-        tables.push(coefficient_table(caption, &r.coefficients));
+        let pieces = if r.spread.runs.is_some() { "clusters" } else { "blocks" };
+        let estimate =
+            outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.method.name == law_of(&model.name));
+        tables.push(with_declared(coefficient_table(caption, &r.coefficients, pieces), estimate));
         if let Some(motor) = outcome.motor.as_ref().filter(|_| model.name == CONSTANT) {
             tables.push(coefficient_table(
                 "The same at the motor's shaft (MCD Table II). The losses of the gear are included in these numbers."
                     .to_owned(),
                 &effective(r, motor),
+                pieces,
             ));
         }
     }
@@ -51,9 +57,10 @@ pub fn sections(outcome: &AxisModels) -> (DocumentSection, Vec<DocumentSection>)
 fn of_fit(model: &Model) -> Vec<String> {
     let r = &model.report;
     let mut out = vec![format!(
-        "{} rows at {} Hz; relative force error {}.",
+        "{} rows at {} Hz ({}); relative force error {}.",
         number::count(r.n_rows),
         number::plain(r.rate_hz, 4),
+        r.preparation,
         number::percent(r.relative_force_error)
     )];
     out.extend(r.whiteness.as_ref().map(|w| {
@@ -82,21 +89,19 @@ fn splits(f: &FlexibleReport) -> impl Iterator<Item = String> {
     })
 }
 
-/// Coefficients with the published-style standard deviation beside the realistic interval.
-fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> TextTable {
+/// Coefficients with the published-style standard deviation beside the realistic interval, which is that of `pieces`.
+fn coefficient_table(caption: String, coefficients: &[ServoCoefficient], pieces: &str) -> TextTable {
     TextTable {
         caption,
-        head: [
-            "coefficient",
-            "unit",
-            "value",
-            "95 % interval (clusters)",
-            "u (white noise)",
-            "u (HAC)",
-            "u (clusters)",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+        head: vec![
+            "coefficient".to_owned(),
+            "unit".to_owned(),
+            "value".to_owned(),
+            format!("95 % interval ({pieces})"),
+            "u (white noise)".to_owned(),
+            "u (HAC)".to_owned(),
+            format!("u ({pieces})"),
+        ],
         rows: coefficients
             .iter()
             .map(|c| {
@@ -115,10 +120,20 @@ fn coefficient_table(caption: String, coefficients: &[ServoCoefficient]) -> Text
     }
 }
 
+/// The intervals of scatter and declared errors together, where the estimate has any that are declared.
+pub(super) fn with_declared(mut table: TextTable, estimate: Option<&Estimate>) -> TextTable {
+    let Some(estimate) = estimate.filter(|estimate| !estimate.errors.is_empty()) else { return table };
+    table.head.push("95 % interval (with declared errors)".to_owned());
+    for (row, c) in table.rows.iter_mut().zip(estimate.coefficients.values()) {
+        row.push(c.interval_95.map_or_else(|| number::MISSING.to_owned(), number::interval));
+    }
+    table
+}
+
 /// Two masses; behind a gear whose efficiency is not declared every row is marked as apparent.
 fn flexible_table(report: &FlexibleReport, mounted: &str) -> TextTable {
     let caption = format!("Two masses: motor, chain and load from motor-side signals{mounted}.");
-    let mut table = coefficient_table(caption, &report.coefficients);
+    let mut table = coefficient_table(caption, &report.coefficients, "clusters");
     if report.is_apparent {
         for (row, c) in table.rows.iter_mut().zip(&report.coefficients) {
             // The rotor lies before the gear, and frequencies do not care.

@@ -1,18 +1,20 @@
 //! An axis as a source: its models from runs of a carriage, or from anyone's log of a servo.
 
-use std::path::Path;
-
+use froude_identify::IdentifyError;
 use froude_identify::answer::Made;
 use froude_identify::method::{Found, Method, MethodError, Need};
-use froude_records::RecordError;
-use froude_records::campaign::{Campaign, Input, Source};
+use froude_identify::uncertainty::common_key;
+use froude_records::Place;
+use froude_records::campaign::{Campaign, Input, Shared, Source};
+use froude_records::estimate::OWN;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::TOW;
-use froude_records::table::sidecar_of;
+use froude_records::units::Dimension;
 
 use super::page::sections;
 use super::{AxisModel, AxisModels, KINDS, force_per_volt_n_v, long, of_runs, of_table};
 use crate::runs::read;
+use crate::servo::scale::{ForcePerVolt, Scale};
 use crate::source::lacking_in;
 
 /// The models of an axis.
@@ -25,6 +27,15 @@ const NAMES: [&str; 4] = {
 };
 
 impl Servo {
+    /// Refuses what a source asks of the log of a servo and no fit would take.
+    ///
+    /// # Errors
+    ///
+    /// No force per volt; a key or a budget that a log does not have.
+    pub fn check_log(source: &Source) -> Result<(), MethodError> {
+        declared_gain(source, "").map(drop)
+    }
+
     /// What a log tells that no rig is known of.
     pub const OF_LOGS: [&'static str; 2] = [AxisModel::Symmetric.name(), AxisModel::Asymmetric.name()];
 }
@@ -66,7 +77,7 @@ impl Method for Servo {
 
     fn identify(
         &self,
-        _: &Campaign,
+        campaign: &Campaign,
         source: &Source,
         asked: &[&'static str],
         progress: &dyn Fn(&str),
@@ -84,19 +95,80 @@ impl Method for Servo {
                 found.is_part = runs.beside > 0;
                 Ok(found)
             }
-            input if long::is_long(input.path()) => {
-                progress("identifying the axis from a long log");
-                let (path, sidecar) = (input.path(), source.sidecar.as_deref());
-                let gain_n_v = force_per_volt_n_v(path, sidecar)?;
-                long::of_table(path, sidecar, (&source.name, source.kind.name()), gain_n_v, &asked)
-            }
             input => {
+                let (path, sidecar) = (input.path(), source.sidecar.as_deref());
+                let gain = declared_gain(source, &campaign.key)?;
+                if long::is_long(path) {
+                    progress("identifying the axis from a long log");
+                    return long::of_table(path, sidecar, (&source.name, source.kind.name()), &gain, &asked);
+                }
                 progress("identifying the axis");
-                let axis = of_table(input.path(), source.sidecar.as_deref(), &source.name)?;
-                found(axis, source, &asked, |_| None)
+                found(of_table(path, sidecar, &source.name, &asked, &gain)?, source, &asked, |_| None)
             }
         }
     }
+}
+
+/// The constant of a sidecar that is the force per volt, and its name in a budget.
+const DRIVE_GAIN: &str = "drive_gain";
+
+/// The force per volt of a log, with the error that the campaign declares of it.
+///
+/// # Errors
+///
+/// A sidecar without it; what is asked of rows of a table, which a log does not have; an error of anything else.
+fn declared_gain(source: &Source, campaign: &str) -> Result<ForcePerVolt<'static>, MethodError> {
+    let n_v = force_per_volt_n_v(source.input.path(), source.sidecar.as_deref())?;
+    let refused = |place: &Place, what: String| {
+        Err(MethodError::from(IdentifyError::Campaign { place: place.to_string(), what }))
+    };
+    let of_rows = [
+        ("keep", source.keep.is_some()),
+        ("group", source.group.is_some()),
+        ("tare", source.tare.is_some()),
+        ("models", !source.models.is_empty()),
+    ];
+    if let Some((key, _)) = of_rows.into_iter().find(|(_, is_given)| *is_given) {
+        let instead = match key {
+            "keep" => "filters need all of its rows: cut the log itself",
+            "models" => "name its models by `method`: servo_symmetric, servo_asymmetric",
+            _ => "leave it out",
+        };
+        return refused(
+            &source.place,
+            format!("`{key}` is for a table of loads, and this is the log of a servo; {instead}"),
+        );
+    }
+    let entry = match source.uncertainty.as_slice() {
+        [] => return Ok(ForcePerVolt::of_log(n_v, None)),
+        [entry] if entry.quantity == DRIVE_GAIN => entry,
+        several => {
+            let other = several.iter().find(|entry| entry.quantity != DRIVE_GAIN);
+            let what = match other {
+                Some(entry) => format!(
+                    "quantity = {:?} is not known of the log of a servo; expected {DRIVE_GAIN:?}, its force per volt",
+                    entry.quantity
+                ),
+                None => format!("{DRIVE_GAIN:?} has {} entries; write one, with their sum of squares", several.len()),
+            };
+            return refused(other.or(several.last()).map_or(&source.place, |entry| &entry.place), what);
+        }
+    };
+    if entry.shared == Shared::Sample {
+        let what = "the force per volt of a log is one number: its error is shared; expected shared = \"setup\" or \"campaign\"";
+        return refused(&entry.place, what.to_owned());
+    }
+    if !entry.relative && Some(entry.dimension) != Dimension::FORCE.checked_div(Dimension::VOLTAGE) {
+        return refused(
+            &entry.place,
+            "the standard uncertainty of the force per volt is in per cent or in N/V".to_owned(),
+        );
+    }
+    let relative = if entry.relative { entry.standard } else { entry.standard / n_v.abs() };
+    let key = common_key(entry, campaign).unwrap_or_else(|| format!("{OWN}{DRIVE_GAIN}"));
+    let name = entry.name.clone().unwrap_or_else(|| "force per volt, declared".to_owned());
+    let quantity = DRIVE_GAIN.to_owned();
+    Ok(ForcePerVolt::of_log(n_v, Some(Scale { key, name, quantity, relative, dof: entry.dof, is_radius: false })))
 }
 
 /// An answer for each model, in the order asked for; `lacking` says what the runs do not have for one that somebody named.
@@ -132,18 +204,4 @@ fn found(
         ));
     }
     Ok(Found { results: out, summary: Some(summary), blocks, findings, ..Found::default() })
-}
-
-/// Channels that make a log one of a servo.
-const OF_SERVO: [&str; 3] = ["time", "position", "command"];
-
-/// Whether the sidecar of a table says that it is the log of a servo: time, position and command of an axis, and no load on a body.
-///
-/// # Errors
-///
-/// A sidecar that cannot be read.
-pub fn is_servo_log(table: &Path, sidecar: Option<&Path>) -> Result<bool, RecordError> {
-    let Some(sidecar) = sidecar_of(table, sidecar)? else { return Ok(false) };
-    let has = |name: &str| sidecar.columns.values().any(|column| column.name.trim_start_matches("y/") == name);
-    Ok(OF_SERVO.into_iter().all(has))
 }

@@ -15,7 +15,7 @@ use super::record;
 use super::run::{BodyState, DragRun, RunKind};
 use super::steady::Rejected;
 use crate::drag::differences::coefficient;
-use crate::drag::point::{Method, Point};
+use crate::drag::point::Method;
 use crate::drag::setup::{Ballast, DragSetup, Efficiency};
 
 /// Fewer pairs than this have an interval that is mostly Student's t.
@@ -186,25 +186,48 @@ fn doubts(
     detectability: Option<&Detectability>,
     agreement: Option<Agreement>,
 ) -> Vec<Finding> {
-    let mut out = Vec::new();
-    let mut warn = |code: &str, text: String| out.push(Finding::new(Severity::Warning, code, text));
-    if setup.calibration.is_none() && all.iter().any(|c| c.method.is_sensorless()) {
-        let text = match setup.efficiency {
-            Efficiency::Undeclared => "the drive is not calibrated and no gear efficiency is declared: eq. 8 and 9 are used as \
-                 printed, which gives F/η (25 % too much at η = 0.8); the intervals cover efficiencies from 0.6 to 1. Calibrate \
-                 with a known weight over a pulley"
-                .to_owned(),
-            Efficiency::Declared(e) => format!(
-                "not calibrated: no D_d from the motor's current is more accurate than the declared efficiency ({:.1} %) and K_T \
-                 ({:.1} %) allow",
-                100.0 * e.relative(),
-                100.0 * setup.torque_constant_relative
-            ),
-        };
-        warn("not-calibrated", text);
+    let mut out: Vec<Finding> = not_calibrated(setup, all).into_iter().chain(wheel_load(runs, setup)).collect();
+    for c in all {
+        out.extend(setup.reference_area_m2.and_then(|area| {
+            let name = format!("D_d ({})", c.method.name());
+            froude_identify::lint::drag_coefficient(&name, c.value, setup.density_kg_m3, area)
+        }));
+        out.extend([few_pairs(c), constant_beside_drag(c), drifts_in_window(c)].into_iter().flatten());
     }
-    if let Ballast::Unballasted { unloaded_n, rolling: None } = setup.ballast {
-        warn(
+    if let (Some(d), Some(c)) = (detectability, all.iter().find(|c| c.method == Method::Mcd)) {
+        let slowest = c.points.iter().map(|p| p.speed_m_s.abs()).fold(f64::INFINITY, f64::min);
+        let advice = d.advice(c.value, slowest);
+        out.extend(advice.map(|text| Finding::new(Severity::Note, "under-uncertainty", text)));
+    }
+    out.extend(sensor_against_current(all));
+    out.extend(agreement.filter(|a| !a.is_within_band()).map(wet_scatters_otherwise));
+    out
+}
+
+fn not_calibrated(setup: &DragSetup, all: &[Coefficient]) -> Option<Finding> {
+    if setup.calibration.is_some() || !all.iter().any(|c| c.method.is_sensorless()) {
+        return None;
+    }
+    let text = match setup.efficiency {
+        Efficiency::Undeclared => "the drive is not calibrated and no gear efficiency is declared: eq. 8 and 9 are used as \
+             printed, which gives F/η (25 % too much at η = 0.8); the intervals cover efficiencies from 0.6 to 1. Calibrate \
+             with a known weight over a pulley"
+            .to_owned(),
+        Efficiency::Declared(e) => format!(
+            "not calibrated: no D_d from the motor's current is more accurate than the declared efficiency ({:.1} %) and K_T \
+             ({:.1} %) allow",
+            100.0 * e.relative(),
+            100.0 * setup.torque_constant_relative
+        ),
+    };
+    Some(Finding::new(Severity::Warning, "not-calibrated", text))
+}
+
+/// What buoyancy takes from the wheels, where nothing replaces it or the runs say otherwise than the setup.
+fn wheel_load(runs: &[DragRun<'_>], setup: &DragSetup) -> Option<Finding> {
+    let is_dry_and_light = |r: &DragRun<'_>| r.kind == RunKind::Tow && r.body == BodyState::Dry && !r.is_ballasted;
+    let (code, text) = match setup.ballast {
+        Ballast::Unballasted { unloaded_n, rolling: None } => (
             "wet-not-ballasted",
             format!(
                 "the wet runs carried no ballast to replace the wheel load that buoyancy removes, {unloaded_n:.0} N: at a \
@@ -212,92 +235,73 @@ fn doubts(
                  coefficients from 0 to 0.02",
                 0.01 * unloaded_n
             ),
-        );
-    } else if matches!(setup.ballast, Ballast::Matched { .. })
-        && runs.iter().any(|r| r.kind == RunKind::Tow && r.body == BodyState::Dry && !r.is_ballasted)
-    {
-        warn(
+        ),
+        Ballast::Matched { .. } if runs.iter().any(is_dry_and_light) => (
             "ballast-contradicts",
             "the setup states that wheel loads match, but runs are marked as not ballasted; state how much load buoyancy removes"
                 .to_owned(),
+        ),
+        _ => return None,
+    };
+    Some(Finding::new(Severity::Warning, code, text))
+}
+
+fn few_pairs(c: &Coefficient) -> Option<Finding> {
+    let scatter_dof = c.budget.iter().find(|p| p.kind == Kind::A).map_or(0.0, |p| p.dof[0]);
+    if c.pairs >= FEW_PAIRS || scatter_dof >= FEW_PAIRS as f64 {
+        return None;
+    }
+    let so = match (c.interval_95, scatter_dof.round() as usize) {
+        (None, _) => "their scatter is not known, and no interval is stated".to_owned(),
+        (_, dof) => format!(
+            "the scatter has {} and the width of its interval is mostly due to Student's t",
+            counted(dof, "degree of freedom", "degrees of freedom")
+        ),
+    };
+    let text = format!("{}: {}; {so}", c.method.name(), counted(c.pairs, "pair", "pairs"));
+    Some(Finding::new(Severity::Warning, "few-pairs", text))
+}
+
+fn constant_beside_drag(c: &Coefficient) -> Option<Finding> {
+    let f = c.offset_n.filter(|f| f.value.abs() > OFFSET_REPORTED * f.standard)?;
+    let share = Some(offset_share(c, f.value)).filter(|share| *share > OFFSET_MATTERS)?;
+    let text = format!(
+        "{}: a constant force of {:+.3} ± {:.3} N remains beside the drag, {:.1} % of the drag over the speeds towed: friction that wet and dry do \
+         not share (wheel load, wet strut, a drifting zero)",
+        c.method.name(),
+        f.value,
+        f.standard,
+        100.0 * share
+    );
+    Some(Finding::new(Severity::Warning, "constant-beside-drag", text))
+}
+
+fn drifts_in_window(c: &Coefficient) -> Option<Finding> {
+    let trending = c.points.iter().filter(|p| p.trend_n.is_some()).count();
+    let is_observed = c.method.is_sensorless() && c.method != Method::MbdpConstant;
+    (is_observed && trending > 1 + c.points.len() / 10).then(|| {
+        let text = format!(
+            "{}: in {trending} of {} windows the force changes by more than its noise explains",
+            c.method.name(),
+            c.points.len()
         );
-    }
-    for c in all {
-        let name = c.method.name();
-        if let Some(area) = setup.reference_area_m2
-            && let Some(finding) =
-                froude_identify::lint::drag_coefficient(&format!("D_d ({name})"), c.value, setup.density_kg_m3, area)
-        {
-            out.push(finding);
+        Finding::new(Severity::Note, "force-drifts-in-window", text)
+    })
+}
+
+fn wet_scatters_otherwise(a: Agreement) -> Finding {
+    let text = format!(
+        "wet repeats scatter by {:.3} N where the dry ones predict {:.3} N (p = {:.4}): {}",
+        a.observed_n,
+        a.predicted_n,
+        a.p,
+        if a.ratio > 1.0 {
+            "water not at rest, or a mount that does not repeat"
+        } else {
+            "the dry runs were disturbed, and the detection limit is too pessimistic"
         }
-        let scatter_dof = c.budget.iter().find(|p| p.kind == Kind::A).map_or(0.0, |p| p.dof[0]);
-        if c.pairs < FEW_PAIRS && scatter_dof < FEW_PAIRS as f64 {
-            let so = match (c.interval_95, scatter_dof.round() as usize) {
-                (None, _) => "their scatter is not known, and no interval is stated".to_owned(),
-                (_, dof) => format!(
-                    "the scatter has {} and the width of its interval is mostly due to Student's t",
-                    counted(dof, "degree of freedom", "degrees of freedom")
-                ),
-            };
-            let pairs = counted(c.pairs, "pair", "pairs");
-            out.push(Finding::new(Severity::Warning, "few-pairs", format!("{name}: {pairs}; {so}")));
-        }
-        if let Some(f) = c.offset_n
-            && f.value.abs() > OFFSET_REPORTED * f.standard
-            && offset_share(c, f.value) > OFFSET_MATTERS
-        {
-            out.push(Finding::new(
-                Severity::Warning,
-                "constant-beside-drag",
-                format!(
-                    "{name}: a constant force of {:+.3} ± {:.3} N remains beside the drag, {:.1} % of the drag over the speeds towed: friction that wet and dry do \
-                     not share (wheel load, wet strut, a drifting zero)",
-                    f.value,
-                    f.standard,
-                    100.0 * offset_share(c, f.value)
-                ),
-            ));
-        }
-        let trending: Vec<&Point> = c.points.iter().filter(|p| p.trend_n.is_some()).collect();
-        if c.method.is_sensorless() && c.method != Method::MbdpConstant && trending.len() > 1 + c.points.len() / 10 {
-            out.push(Finding::new(
-                Severity::Note,
-                "force-drifts-in-window",
-                format!(
-                    "{name}: in {} of {} windows the force changes by more than its noise explains",
-                    trending.len(),
-                    c.points.len()
-                ),
-            ));
-        }
-    }
-    if let (Some(d), Some(c)) = (detectability, all.iter().find(|c| c.method == Method::Mcd)) {
-        let slowest = c.points.iter().map(|p| p.speed_m_s.abs()).fold(f64::INFINITY, f64::min);
-        if let Some(text) = d.advice(c.value, slowest) {
-            out.push(Finding::new(Severity::Note, "under-uncertainty", text));
-        }
-    }
-    out.extend(sensor_against_current(all));
-    if let Some(a) = agreement
-        && !a.is_within_band()
-    {
-        out.push(Finding::new(
-            Severity::Warning,
-            "wet-scatters-otherwise",
-            format!(
-                "wet repeats scatter by {:.3} N where the dry ones predict {:.3} N (p = {:.4}): {}",
-                a.observed_n,
-                a.predicted_n,
-                a.p,
-                if a.ratio > 1.0 {
-                    "water not at rest, or a mount that does not repeat"
-                } else {
-                    "the dry runs were disturbed, and the detection limit is too pessimistic"
-                }
-            ),
-        ));
-    }
-    out
+    );
+    Finding::new(Severity::Warning, "wet-scatters-otherwise", text)
 }
 
 /// One sentence for all runs that a swinging load has spoiled: they have one cause.

@@ -12,6 +12,7 @@
 //! Gautier (1997), ICRA, *Dynamic identification of robots with power model*, and Janot, Vandanjon & Gautier (2014), IEEE Trans.
 //! Control Syst. Technol. 22, 132: position filter, central differences, parallel decimation.
 
+use froude_records::number::plain;
 use froude_signal::{butterworth, decimate, differences, zero_phase};
 
 use crate::servo::error::ServoError;
@@ -52,6 +53,20 @@ impl Chain {
             friction,
             intervals: IntervalOptions::default(),
         }
+    }
+
+    /// How rows are made of a record at `rate_hz`, in words.
+    #[must_use]
+    pub fn words(&self, rate_hz: f64) -> String {
+        format!(
+            "position through a Butterworth low-pass of order {} at {} Hz, forwards and backwards, and differentiated twice; every {}th of the \
+             {} rows per second after an anti-alias filter, without {} s at each end",
+            self.filter_order,
+            plain(self.corner_hz, 3),
+            self.decimation,
+            plain(rate_hz, 4),
+            plain(self.trim_s, 3)
+        )
     }
 
     /// Filtered motion of a record at its full rate.

@@ -57,6 +57,8 @@ pub struct LongReport {
     pub relative_force_error: f64,
     /// Least and largest value of each regressor.
     pub ranges: Vec<[f64; 2]>,
+    /// How the rows of the regression were made, in words.
+    pub preparation: String,
     /// Rows of the regression.
     pub n_rows: usize,
     /// Their rate, Hz.
@@ -289,6 +291,7 @@ impl LongServo {
             coefficients: solution.coefficients,
             classical: solution.standard,
             sigma_n: solution.sigma,
+            preparation: self.chain.words(self.rate_hz),
             n_rows: rows,
             rate_hz,
         })

@@ -10,11 +10,11 @@
 //! | `servo_two_mass`      | motor and load with a chain between them (MCD eq. 2 and 3): no formula          |
 //!
 //! An error of the force per volt scales all coefficients of the chain alike, one of the sprocket's radius those of speed, acceleration and stretch
-//! twice: they are type B, by the key of the rig, so that two records of one rig have them in common. Of a log without a rig nothing is
-//! known of them, and the force per volt is taken as exact.
+//! twice: they are type B, by the key of the rig, so that two records of one rig have them in common. Of a log without a rig the force
+//! per volt is taken as exact, unless a campaign declares its error.
 
 use froude_fit::faer::Mat;
-use froude_fit::propagate::{effective_dof, expanded};
+use froude_fit::propagate::effective_dof;
 use froude_records::estimate::{
     Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, OWN, Output,
     Range, SharedError, Signs, Status, TypeA,
@@ -24,6 +24,7 @@ use indexmap::IndexMap;
 use crate::servo::long::LongReport;
 use crate::servo::motor::Drive;
 use crate::servo::report::{ServoCoefficient, ServoReport};
+use crate::servo::scale::{ForcePerVolt, combined, errors_of};
 use crate::servo::two_mass::{CHAIN_PARAMETERS, FlexibleReport, radius_power};
 
 /// Name of the law of two masses.
@@ -32,30 +33,24 @@ pub const TWO_MASS: &str = "servo_two_mass";
 /// The load that the laws give.
 const LOAD: &str = "drive_force";
 
-/// A rigid model as an estimate of `source`; `friction` names its law, `force_per_volt_n_v` is what made volts into forces, `drive` what is
-/// declared of it.
+/// A rigid model as an estimate of `source`; `friction` names its law, `gain` is what made volts into forces.
 #[must_use]
-pub fn rigid(
-    source: &str,
-    friction: &str,
-    report: &ServoReport,
-    force_per_volt_n_v: f64,
-    drive: Option<&Drive>,
-) -> Estimate {
+pub fn rigid(source: &str, friction: &str, report: &ServoReport, gain: &ForcePerVolt<'_>) -> Estimate {
     let fit = RigidFit {
         coefficients: &report.coefficients,
         dof: &report.spread.dof,
         covariance: &report.spread.covariance,
         pieces: report.spread.pieces(),
         sigma_n: report.sigma_n,
+        preparation: &report.preparation,
         n_rows: report.n_rows,
         relative_force_error: report.relative_force_error,
         findings: &report.findings,
     };
-    let recorded = recorded(source, friction, &fit, force_per_volt_n_v, drive);
+    let recorded = recorded(source, friction, &fit, gain);
     Estimate {
         clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
-        derived: effective(report, drive),
+        derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(report, drive)),
         validity: validity(report.rows.names.iter().zip(&report.rows.columns).map(|((name, _), column)| {
             let bounds = [f64::INFINITY, f64::NEG_INFINITY];
             (name.as_str(), column.iter().fold(bounds, |[low, high], x| [low.min(*x), high.max(*x)]))
@@ -65,15 +60,14 @@ pub fn rigid(
     }
 }
 
-/// The same of a record of hours, whose rows were not kept; its force per volt is taken as exact. `coefficients` are those of the report with
-/// their intervals.
+/// The same of a record of hours, whose rows were not kept. `coefficients` are those of the report with their intervals.
 #[must_use]
 pub fn long(
     source: &str,
     friction: &str,
     (report, coefficients): (&LongReport, &[ServoCoefficient]),
     findings: &[String],
-    force_per_volt_n_v: f64,
+    gain: &ForcePerVolt<'_>,
 ) -> Estimate {
     let fit = RigidFit {
         coefficients,
@@ -81,12 +75,13 @@ pub fn long(
         covariance: &report.covariance,
         pieces: format!("HAC with a lag of {:.1} s", report.hac_lag_s),
         sigma_n: report.sigma_n,
+        preparation: &report.preparation,
         n_rows: report.n_rows,
         relative_force_error: report.relative_force_error,
         findings,
     };
     let ranges = report.names.iter().zip(&report.ranges).map(|((name, _), range)| (name.as_str(), *range));
-    Estimate { validity: validity(ranges), ..recorded(source, friction, &fit, force_per_volt_n_v, None) }
+    Estimate { validity: validity(ranges), ..recorded(source, friction, &fit, gain) }
 }
 
 /// The fit of a rigid model as its record wants it.
@@ -97,38 +92,42 @@ struct RigidFit<'a> {
     /// What was taken as one piece of evidence.
     pieces: String,
     sigma_n: f64,
+    preparation: &'a str,
     n_rows: usize,
     relative_force_error: f64,
     findings: &'a [String],
 }
 
-fn recorded(
-    source: &str,
-    friction: &str,
-    fit: &RigidFit<'_>,
-    force_per_volt_n_v: f64,
-    drive: Option<&Drive>,
-) -> Estimate {
-    let method = format!("servo_{}", friction.replace(' ', "_"));
+/// Name of the law of a rigid model with this friction.
+#[must_use]
+pub fn law_of(friction: &str) -> String {
+    format!("servo_{}", friction.replace(' ', "_"))
+}
+
+fn recorded(source: &str, friction: &str, fit: &RigidFit<'_>, gain: &ForcePerVolt<'_>) -> Estimate {
+    let method = law_of(friction);
     let names: Vec<String> = fit.coefficients.iter().map(|c| in_formulas(&c.name)).collect();
     let coefficients = fit.coefficients.iter().zip(&names).zip(fit.dof).map(|((c, name), dof)| {
         let label = (*name != c.name).then(|| c.name.clone());
-        (name.clone(), Coefficient { label, ..with_drive(c, *dof, drive) })
+        let of_scatter = Coefficient { label, ..coefficient(c, finite(*dof)) };
+        (name.clone(), combined(of_scatter, (c, *dof), &gain.scales, &radii))
     });
     let formula = formula(&names);
-    let constants = IndexMap::from([("force_per_volt".to_owned(), measured(force_per_volt_n_v, "N/V"))]);
+    let constants = IndexMap::from([("force_per_volt".to_owned(), measured(gain.n_v, "N/V"))]);
     let fewest = fit.dof.iter().copied().reduce(f64::min).and_then(finite);
-    let errors = drive.map_or_else(IndexMap::new, |drive| errors_of(drive, fit.coefficients, radii));
+    let errors = errors_of(&gain.scales, fit.coefficients, &radii);
     let exact = errors
         .is_empty()
-        .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike".to_owned());
+        .then(|| "the force per volt is taken as exact: an error of it scales all coefficients alike; declare it by [[source.uncertainty]] with \
+             quantity = \"drive_gain\""
+                .to_owned());
     Estimate {
         id: format!("{source}/{method}"),
         source: source.to_owned(),
         method: MethodUsed {
             name: method.clone(),
             version: 1,
-            words: format!("linear least squares of filtered, decimated rows; friction {friction}"),
+            words: format!("linear least squares; friction {friction}; {}", fit.preparation),
         },
         law: law(&method, formula, constants),
         coefficients: coefficients.collect(),
@@ -150,49 +149,6 @@ fn recorded(
 /// acceleration.
 fn radii(name: &str) -> f64 {
     if name == "M" || name.starts_with("F_v") { -2.0 } else { -1.0 }
-}
-
-/// Errors of the declared drive: K_T and amplifier, and the radius that makes counts into metres and torques into forces and goes into a
-/// coefficient by the power `radii`.
-fn errors_of(
-    drive: &Drive,
-    coefficients: &[ServoCoefficient],
-    radii: impl Fn(&str) -> f64,
-) -> IndexMap<String, SharedError> {
-    let error = |name: &str, quantity: &str, relative: f64, times: &dyn Fn(&str) -> f64| {
-        let sensitivity = coefficients.iter().map(|c| vec![times(&c.name) * c.value]).collect();
-        let error = SharedError {
-            name: name.to_owned(),
-            quantity: quantity.to_owned(),
-            kind: ErrorKind::B,
-            covariance: vec![vec![relative * relative]],
-            dof: None,
-            limits: None,
-            sensitivity,
-        };
-        (relative > 0.0).then(|| (format!("{}/{quantity}", drive.rig), error))
-    };
-    let torque = error("K_T and amplifier gain, declared", "torque_constant", drive.torque_relative, &|_| 1.0);
-    let radius = error("length of an encoder count", "sprocket_radius", drive.radius_relative, &radii);
-    torque.into_iter().chain(radius).collect()
-}
-
-/// A coefficient with what the declared drive adds to its scatter.
-fn with_drive(c: &ServoCoefficient, dof: f64, drive: Option<&Drive>) -> Coefficient {
-    let declared =
-        drive.map(|drive| c.value.abs() * drive.torque_relative.hypot(radii(&c.name) * drive.radius_relative));
-    match declared {
-        Some(type_b) if type_b > 0.0 && c.block_std.is_finite() => {
-            let all = expanded(&[(c.block_std * c.block_std, dof), (type_b * type_b, f64::INFINITY)], 0.95);
-            Coefficient {
-                standard_uncertainty: Some(all.standard),
-                type_b: Some(type_b),
-                interval_95: finite(all.expanded).map(|half| [c.value - half, c.value + half]),
-                ..coefficient(c, finite(all.dof))
-            }
-        }
-        _ => coefficient(c, finite(dof)),
-    }
 }
 
 /// Two masses with a chain between them as an estimate of `source`; `drive` has the uncertainties that the report was made with.
@@ -234,7 +190,10 @@ pub fn two_mass(source: &str, report: &FlexibleReport, drive: &Drive) -> Estimat
         law: law(method, None, IndexMap::new()),
         coefficients: coefficients.collect(),
         type_a: type_a(names, &report.scatter, &report.dof, "CR2 over stretches of the record".to_owned()),
-        errors: [(format!("{OWN}drive"), declared)].into_iter().chain(errors_of(drive, own, radius_power)).collect(),
+        errors: [(format!("{OWN}drive"), declared)]
+            .into_iter()
+            .chain(errors_of(&drive.scales(), own, &radius_power))
+            .collect(),
         n_observations: report.n_rows,
         derived: derived.collect(),
         diagnostics: Diagnostics { notes: report.findings.clone(), ..Diagnostics::default() },
@@ -318,8 +277,7 @@ fn derived(c: &ServoCoefficient, formula: String) -> Derived {
 
 /// J_eff, B_eff and C_eff, where the drive is declared. The radius that made a force of a torque makes it one again, and speeds rates: only K_T and
 /// the amplifier err in them.
-fn effective(report: &ServoReport, drive: Option<&Drive>) -> IndexMap<String, Derived> {
-    let Some(drive) = drive else { return IndexMap::new() };
+fn effective(report: &ServoReport, drive: &Drive) -> IndexMap<String, Derived> {
     let ratio = drive.motor.m_rad();
     let of = |c: ServoCoefficient| {
         let (from, power) = match c.name.as_str() {
@@ -329,8 +287,9 @@ fn effective(report: &ServoReport, drive: Option<&Drive>) -> IndexMap<String, De
         };
         let dof =
             report.coefficients.iter().zip(&report.spread.dof).find(|(own, _)| own.name == from).map(|(_, dof)| *dof);
-        let torque_alone = Drive { radius_relative: 0.0, ..drive.clone() };
-        let whole = with_drive(&c, dof.unwrap_or(f64::INFINITY), Some(&torque_alone));
+        let [torque_alone, _] = drive.scales();
+        let dof = dof.unwrap_or(f64::INFINITY);
+        let whole = combined(coefficient(&c, finite(dof)), (&c, dof), &[torque_alone], &|_| 1.0);
         let number = Derived {
             standard_uncertainty: whole.standard_uncertainty,
             interval_95: whole.interval_95,
@@ -341,17 +300,21 @@ fn effective(report: &ServoReport, drive: Option<&Drive>) -> IndexMap<String, De
     crate::servo::report::effective(report, &drive.motor).into_iter().map(of).collect()
 }
 
-/// Range of the speeds and accelerations of the rows, from those of the columns of the regression.
+/// Range of the speeds and accelerations of the rows, from those of the columns of the regression; a column of one direction is 0 in the other.
 fn validity<'a>(columns: impl Iterator<Item = (&'a str, [f64; 2])>) -> IndexMap<String, Range> {
-    let range = |(name, [low, high]): (&str, [f64; 2])| {
+    let mut out: IndexMap<String, Range> = IndexMap::new();
+    for (name, [low, high]) in columns {
         let (key, unit) = match name {
             "M" => ("v_y_dot", "m/s^2"),
-            "F_v" => ("v_y", "m/s"),
-            _ => return None,
+            "F_v" | "F_v+" | "F_v-" => ("v_y", "m/s"),
+            _ => continue,
         };
-        (low <= high).then(|| (key.to_owned(), Range { low, high, unit: unit.to_owned() }))
-    };
-    columns.filter_map(range).collect()
+        if low <= high {
+            let range = out.entry(key.to_owned()).or_insert_with(|| Range { low, high, unit: unit.to_owned() });
+            (range.low, range.high) = (range.low.min(low), range.high.max(high));
+        }
+    }
+    out
 }
 
 /// Scatter as a record holds it; `None` where it is not finite.

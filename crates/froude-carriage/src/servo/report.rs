@@ -42,6 +42,8 @@ pub struct ServoCoefficient {
 pub struct ServoReport {
     /// Coefficients in the order of the regression.
     pub coefficients: Vec<ServoCoefficient>,
+    /// How the rows of the regression were made, in words.
+    pub preparation: String,
     /// Rows of the regression.
     pub n_rows: usize,
     /// Their rate, Hz.
@@ -126,7 +128,7 @@ pub fn of_rows(rows: Rows, chain: &Chain) -> Result<ServoReport, ServoError> {
     let solution = least_squares(&rows)?;
     let spread = spread(&rows, &solution, &chain.intervals)?;
     let whole = 0..rows.force_n.len();
-    Ok(reported(rows, vec![whole], &solution, spread))
+    Ok(reported(rows, vec![whole], &solution, spread, chain))
 }
 
 /// As [`identify_servo`], from several runs of the same axis: the run is the piece of evidence.
@@ -168,7 +170,7 @@ pub fn of_runs(runs: Vec<Rows>, chain: &Chain) -> Result<ServoReport, ServoError
     }
     let solution = least_squares(&rows)?;
     match over_runs(&rows, &solution, &ranges, &chain.intervals) {
-        Ok(spread) => Ok(reported(rows, ranges.clone(), &solution, spread)),
+        Ok(spread) => Ok(reported(rows, ranges.clone(), &solution, spread, chain)),
         Err(error @ ServoError::Alone { .. }) => by_blocks(rows, &error.to_string()),
         Err(error) => Err(error),
     }
@@ -199,7 +201,7 @@ pub fn effective(report: &ServoReport, motor: &MotorSide) -> Vec<ServoCoefficien
     .collect()
 }
 
-fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Spread) -> ServoReport {
+fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Spread, chain: &Chain) -> ServoReport {
     let residuals_n = rows.residuals_n(&solution.coefficients);
     let whiteness = whiteness(&residuals_n, rows.rate_hz);
     let design = Mat::from_fn(rows.force_n.len(), rows.columns.len(), |i, j| rows.columns[j][i]);
@@ -220,6 +222,7 @@ fn reported(rows: Rows, runs: Vec<Range<usize>>, solution: &Solution, spread: Sp
         .collect();
     ServoReport {
         findings: findings(&coefficients, whiteness.as_ref(), &spread),
+        preparation: chain.words(rows.rate_hz * chain.decimation as f64),
         n_rows: rows.force_n.len(),
         rate_hz: rows.rate_hz,
         record_rate_hz: rows.rate_hz,

@@ -1,5 +1,6 @@
 //! Forces that the estimates predict over the range that they share.
 
+use faer::Mat;
 use froude_records::comparison::{Comparison, LoadComparison, coverage_note};
 use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::{Finding, Severity};
@@ -32,131 +33,162 @@ pub(super) fn predict_forces(all: &[Named<'_>], labels: &[String], out: &mut Com
     let all: Vec<(&Named<'_>, &String)> = all.iter().zip(labels).filter(|(n, _)| gives_forces(n.estimate)).collect();
     let recommended: Vec<_> = all.iter().copied().filter(|(n, _)| n.estimate.recommended).collect();
     let chosen = if recommended.len() >= 2 { recommended } else { all };
-    let range = |name: &str| -> Option<Range> {
-        let stated: Vec<&Range> = chosen.iter().filter_map(|(n, _)| n.estimate.validity.get(name)).collect();
-        let first = stated.first()?;
-        Some(Range {
-            low: stated.iter().map(|r| r.low).fold(f64::NEG_INFINITY, f64::max),
-            high: stated.iter().map(|r| r.high).fold(f64::INFINITY, f64::min),
-            unit: first.unit.clone(),
-        })
+    let points = match Points::shared(&chosen) {
+        Ok(Some(points)) => points,
+        Ok(None) => return,
+        Err(what) => {
+            out.findings.push(Finding::new(
+                Severity::Warning,
+                "no-common-range",
+                format!("{what} do not overlap: no force can be compared without extrapolation"),
+            ));
+            return;
+        }
     };
-    let Some(speed) = range("speed") else { return };
-    let angle = range("angle").unwrap_or(Range { low: 0.0, high: 0.0, unit: "rad".to_owned() });
-    if speed.low > speed.high || angle.low > angle.high {
-        out.findings.push(Finding::new(
-            Severity::Warning,
-            "no-common-range",
-            "the fitted ranges of speed or angle do not overlap: no force can be compared without extrapolation"
-                .to_owned(),
-        ));
-        return;
-    }
-    let links = range("n_links");
-    if links.as_ref().is_some_and(|r| r.low > r.high) {
-        out.findings.push(Finding::new(
-            Severity::Warning,
-            "no-common-range",
-            "the numbers of links that were tested do not overlap: no force can be compared without extrapolation"
-                .to_owned(),
-        ));
-        return;
-    }
-    let has_links = links.is_some()
-        || chosen.iter().any(|(n, _)| froude_hydro::DragModel::from_name(&n.estimate.law.name).is_some());
-    let links: Vec<f64> =
-        links.map_or_else(|| vec![1.0], |r| if r.low == r.high { vec![r.low] } else { vec![r.low, r.high] });
-    let data = operating_points(
-        &speed,
-        &angle,
-        &links,
-        chosen.first().and_then(|(n, _)| n.estimate.density()).map_or(1000.0, |d| d.value),
-    );
-    let (mut predictions, mut ids) = (Vec::new(), Vec::new());
-    for &(n, label) in &chosen {
-        let Ok(law) = ForceLaw::of_estimate(n.estimate, &data) else { continue };
-        let values: Option<Vec<f64>> =
-            law.coefficients.iter().map(|c| n.estimate.coefficients.get(&c.name)?.value).collect();
-        let Some(values) = values else { continue };
-        let (Ok(force), Ok(slopes)) = (law.predict(&data, &values), law.regressors(&data, &values)) else { continue };
-        ids.push(label.clone());
-        predictions.push((law, force, slopes, n));
-    }
+    let predictions: Vec<Prediction<'_>> =
+        chosen.iter().filter_map(|&(named, label)| Prediction::of(named, label, &points.data)).collect();
     if predictions.len() < 2 {
         return;
     }
-    for (.., n) in &predictions {
-        if !n.estimate.validity.contains_key("speed") {
-            out.findings.push(
-                Finding::new(
-                    Severity::Note,
-                    "range-not-stated",
-                    format!(
-                        "{} states no range of speed and angle: whether its forces are extrapolated is not known",
-                        n.estimate.id
-                    ),
-                )
-                .of_source(&n.estimate.source),
+    out.findings.extend(doubts(&predictions));
+    out.loads = loads(&predictions, &points);
+    let of = |label: &String| {
+        let sides = out.loads.iter().flat_map(|row| [&row.first, &row.second]);
+        coverage_note(label, sides.filter(|side| &side.source == label))
+    };
+    out.coverage = if out.loads.is_empty() { Vec::new() } else { predictions.iter().map(|p| of(p.label)).collect() };
+}
+
+/// Motions at which forces are set side by side.
+struct Points {
+    data: Dataset,
+    /// Whether the number of links means anything to these laws.
+    has_links: bool,
+}
+
+impl Points {
+    /// Over the range that all share; `None` where none states a range of speed, `Err` with what does not overlap.
+    fn shared(chosen: &[(&Named<'_>, &String)]) -> Result<Option<Self>, &'static str> {
+        let range = |name: &str| -> Option<Range> {
+            let stated: Vec<&Range> = chosen.iter().filter_map(|(n, _)| n.estimate.validity.get(name)).collect();
+            let first = stated.first()?;
+            Some(Range {
+                low: stated.iter().map(|r| r.low).fold(f64::NEG_INFINITY, f64::max),
+                high: stated.iter().map(|r| r.high).fold(f64::INFINITY, f64::min),
+                unit: first.unit.clone(),
+            })
+        };
+        let Some(speed) = range("speed") else { return Ok(None) };
+        let angle = range("angle").unwrap_or(Range { low: 0.0, high: 0.0, unit: "rad".to_owned() });
+        if speed.low > speed.high || angle.low > angle.high {
+            return Err("the fitted ranges of speed or angle");
+        }
+        let links = range("n_links");
+        if links.as_ref().is_some_and(|r| r.low > r.high) {
+            return Err("the numbers of links that were tested");
+        }
+        let is_of_links = |law: &str| froude_hydro::DragModel::from_name(law).is_some();
+        let has_links = links.is_some() || chosen.iter().any(|(n, _)| is_of_links(&n.estimate.law.name));
+        let links =
+            links.map_or_else(|| vec![1.0], |r| if r.low == r.high { vec![r.low] } else { vec![r.low, r.high] });
+        let density = chosen.first().and_then(|(n, _)| n.estimate.density()).map_or(1000.0, |d| d.value);
+        Ok(Some(Self { data: operating_points(&speed, &angle, &links, density), has_links }))
+    }
+}
+
+/// Forces of one estimate at these points.
+struct Prediction<'a> {
+    named: &'a Named<'a>,
+    label: &'a String,
+    law: ForceLaw,
+    force: Vec<f64>,
+    slopes: Mat<f64>,
+}
+
+impl<'a> Prediction<'a> {
+    /// `None` where a coefficient has no value, or the law needs what the points do not have.
+    fn of(named: &'a Named<'a>, label: &'a String, data: &Dataset) -> Option<Self> {
+        let law = ForceLaw::of_estimate(named.estimate, data).ok()?;
+        let values: Option<Vec<f64>> =
+            law.coefficients.iter().map(|c| named.estimate.coefficients.get(&c.name)?.value).collect();
+        let values = values?;
+        let (force, slopes) = (law.predict(data, &values).ok()?, law.regressors(data, &values).ok()?);
+        Some(Self { named, label, law, force, slopes })
+    }
+
+    /// The load of one point, with its slope in each coefficient.
+    fn number(&self, component: &str, point: usize, points: usize) -> Number<'_> {
+        let Some(r) = self.law.responses.iter().position(|name| name == component) else {
+            return Number::of_nothing(self.named.estimate);
+        };
+        let row = r * points + point;
+        let slope = |name: &str| self.law.position(name).map_or(0.0, |j| self.slopes[(row, j)]);
+        Number::of_number(self.named.estimate, Some(self.force[row]).filter(|f| f.is_finite()), slope)
+    }
+}
+
+/// What stands against setting these estimates beside the first of them.
+fn doubts(predictions: &[Prediction<'_>]) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for estimate in predictions.iter().map(|p| p.named.estimate) {
+        if !estimate.validity.contains_key("speed") {
+            let text = format!(
+                "{} states no range of speed and angle: whether its forces are extrapolated is not known",
+                estimate.id
             );
+            out.push(Finding::new(Severity::Note, "range-not-stated", text).of_source(&estimate.source));
         }
     }
-    let first = predictions[0].3.estimate;
-    for (.., other) in &predictions[1..] {
+    let first = predictions[0].named.estimate;
+    for other in predictions[1..].iter().map(|p| p.named.estimate) {
         // Of one model it is said already.
-        if first.law.name != other.estimate.law.name {
-            out.findings.extend(axes_not_tied(first, other.estimate));
-            out.findings.extend(density_differs(first, other.estimate));
-            out.findings.extend(common::findings(&[Common::of(first, other.estimate)]));
+        if first.law.name != other.law.name {
+            out.extend(axes_not_tied(first, other));
+            out.extend(density_differs(first, other));
+            out.extend(common::findings(&[Common::of(first, other)]));
         }
     }
-    let predicted_by: Vec<Named<'_>> = predictions.iter().map(|(.., n)| **n).collect();
-    let origins = origins(&predicted_by);
-    let is_same_data: Vec<bool> = (0..predicted_by.len())
-        .map(|j| same_data([&predicted_by[0], &predicted_by[j]], [&origins[0], &origins[j]]))
-        .collect();
-    let commons: Vec<Common<'_>> = predicted_by.iter().map(|n| Common::of(first, n.estimate)).collect();
+    out
+}
+
+/// Each load at each point by the first estimate, beside every other.
+fn loads(predictions: &[Prediction<'_>], points: &Points) -> Vec<LoadComparison> {
+    let data = &points.data;
+    let named: Vec<Named<'_>> = predictions.iter().map(|p| *p.named).collect();
+    let origins = origins(&named);
+    let is_same_data: Vec<bool> =
+        (0..named.len()).map(|j| same_data([&named[0], &named[j]], [&origins[0], &origins[j]])).collect();
+    let commons: Vec<Common<'_>> = named.iter().map(|n| Common::of(named[0].estimate, n.estimate)).collect();
+    let mut out = Vec::new();
     for component in ["f_x", "f_y"] {
         for i in 0..data.rows {
-            let sides: Vec<Number<'_>> = predictions
-                .iter()
-                .map(|(law, force, slopes, n)| {
-                    let Some(r) = law.responses.iter().position(|name| name == component) else {
-                        return Number::of_nothing(n.estimate);
-                    };
-                    let row = r * data.rows + i;
-                    let slope = |name: &str| law.position(name).map_or(0.0, |j| slopes[(row, j)]);
-                    Number::of_number(n.estimate, Some(force[row]).filter(|f| f.is_finite()), slope)
-                })
-                .collect();
+            let sides: Vec<Number<'_>> = predictions.iter().map(|p| p.number(component, i, data.rows)).collect();
             let forces: Vec<Stated> = sides.iter().map(|side| side.stated).collect();
             if forces.iter().all(|f| f.value.is_none()) {
                 continue;
             }
             for j in 1..forces.len() {
+                let (first, second) = (predictions[0].label, predictions[j].label);
                 let missing = [0, j].into_iter().find(|k| forces[*k].value.is_none());
                 let (e_n, note) = noted(match missing {
-                    Some(k) => Err(format!("{} gives no {component}", ids[k])),
-                    None => e_n([&sides[0], &sides[j]], &commons[j], [&ids[0], &ids[j]], is_same_data[j]),
+                    Some(k) => Err(format!("{} gives no {component}", predictions[k].label)),
+                    None => e_n([&sides[0], &sides[j]], &commons[j], [first, second], is_same_data[j]),
                 });
-                out.loads.push(LoadComparison {
+                out.push(LoadComparison {
                     component: component.to_owned(),
                     unit: "N".to_owned(),
-                    n_links: data.values("n_links").map(|v| v[i]).filter(|_| has_links),
+                    n_links: data.values("n_links").map(|v| v[i]).filter(|_| points.has_links),
                     speed_m_s: data.values("speed").map_or(0.0, |v| v[i]),
                     angle_rad: data.values("angle").map_or(0.0, |v| v[i]),
-                    first: forces[0].of(&ids[0]),
-                    second: forces[j].of(&ids[j]),
+                    first: forces[0].of(first),
+                    second: forces[j].of(second),
                     e_n,
                     note,
                 });
             }
         }
     }
-    let of = |id: &String| {
-        let sides = out.loads.iter().flat_map(|row| [&row.first, &row.second]);
-        coverage_note(id, sides.filter(|side| &side.source == id))
-    };
-    out.coverage = if out.loads.is_empty() { Vec::new() } else { ids.iter().map(of).collect() };
+    out
 }
 
 fn operating_points(speed: &Range, angle: &Range, links: &[f64], density: f64) -> Dataset {

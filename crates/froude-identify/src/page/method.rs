@@ -1,15 +1,21 @@
 //! What a page says of the method.
 
 use froude_records::campaign::Campaign;
+use froude_records::estimate::{Estimate, Signs};
 use indexmap::IndexSet;
 
 use super::error_models::error_models;
 use crate::answer::Answer;
 use crate::result::SourceResult;
 
-/// The sentences on frame, fit, uncertainty, selection and error models that hold for these sources.
+/// Frame and signs of loads on a body.
+const OF_A_BODY: &str = "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
+                         A body towed at speed U and drift angle θ has the velocity v = (U cos θ, −U sin θ) through the water.";
+
+/// The sentences on frame, fit, uncertainty, selection and error models that hold for these sources; where there are none, what the signs of the
+/// records mean that are set side by side.
 #[must_use]
-pub fn sentences(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
+pub fn sentences(campaign: &Campaign, answers: &[Answer], records: &[Estimate]) -> Vec<String> {
     let sources: Vec<&SourceResult> = answers.iter().filter_map(Answer::fitted).collect();
     let made = answers.iter().filter(|answer| answer.fitted().is_none()).flat_map(Answer::estimates);
     let made = made.map(|estimate| format!("{}: {}.", estimate.source, estimate.method.words));
@@ -18,14 +24,16 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer]) -> Vec<String> {
     if sources.is_empty() && !answers.is_empty() {
         return made.into_iter().collect();
     }
-    let mut out = vec![
-        "Loads are those that the fluid exerts on the body, in body axes: x forward, y to starboard, z down. \
-         A body towed at speed U and drift angle θ has the velocity v = (U cos θ, −U sin θ) through the water."
-            .to_owned(),
-    ];
-    if sources.is_empty() {
-        return out;
+    if answers.is_empty() {
+        let signs: IndexSet<&str> = records.iter().map(|estimate| estimate.signs.0.as_str()).collect();
+        let of_a_body = Signs::default();
+        let sentence = |signs: &str| match signs {
+            _ if signs == of_a_body.0 => OF_A_BODY.to_owned(),
+            other => format!("Signs: {other}."),
+        };
+        return signs.into_iter().map(sentence).collect();
     }
+    let mut out = vec![OF_A_BODY.to_owned()];
     out.push(
         "Coefficients are estimated by least squares with orthogonal factorisation. Each load component has its own \
          residual standard deviation and degrees of freedom. Type A uncertainty comes from the scatter about the law; \

@@ -26,7 +26,7 @@ use crate::run::channel::{LOG, Meaning};
 use crate::run::log::{Channel, Gap, GapCause, RunLog};
 use crate::run::meta::{Role, RunMeta, RunStatus};
 use crate::sidecar::{Sidecar, read_sidecar};
-use crate::table::{Column, ColumnData, Table};
+use crate::table::{Column, ColumnData, Table, sidecar_of};
 use crate::table_file::read_table;
 use crate::text::counted;
 use crate::units::{Dimension, Unit};
@@ -70,6 +70,20 @@ pub struct TimeSteps {
     pub shortest_s: f64,
     /// The longest.
     pub longest_s: f64,
+}
+
+/// Channels that make a log one of a servo.
+const OF_SERVO: [&str; 3] = ["time", "position", "command"];
+
+/// Whether the sidecar of a table says that it is the log of a servo: time, position and command of an axis, and no load on a body.
+///
+/// # Errors
+///
+/// A sidecar that cannot be read.
+pub fn is_servo_log(table: &Path, sidecar: Option<&Path>) -> Result<bool, RecordError> {
+    let Some(sidecar) = sidecar_of(table, sidecar)? else { return Ok(false) };
+    let has = |name: &str| sidecar.columns.values().any(|column| column.name.trim_start_matches("y/") == name);
+    Ok(OF_SERVO.into_iter().all(has))
 }
 
 /// Reads a CSV (or Parquet) log through its sidecar; `None` for the `.toml` beside it, or for headers `name [unit]`.

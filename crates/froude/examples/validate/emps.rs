@@ -18,8 +18,8 @@ const SECTION: &str = "EMPS: a motor-driven axis from its command and encoder (J
 /// Force per volt of command, N/V (data README).
 const FORCE_PER_VOLT_N_V: f64 = 35.15065188;
 
-/// Period of the trajectory, s.
-const PERIOD_S: f64 = 6.16;
+/// Period of the trajectory, s: its reference repeats to the last digit after 6,240 samples (the description of the data says 6.16 s).
+const PERIOD_S: f64 = 6.24;
 
 /// The loop of the record (data README).
 const LOOP: Loop = Loop::Cascade { position_1_s: 160.18, velocity_v_s_m: 243.45, limit_v: 10.0 };

@@ -5,7 +5,7 @@ use froude_control::config::{AxisConfig, Config};
 use froude_control::profile::{Bounds, Profile};
 use froude_control::request::Move;
 use froude_control::shaper::ShapedProfile;
-use froude_control::travel::preflight;
+use froude_control::travel::{Preflight, preflight};
 use froude_records::carriage::CarriagePlan;
 use froude_records::carriage::plan::PlannedRun;
 use froude_records::run::{BodyState, Role};
@@ -80,35 +80,8 @@ pub(super) fn tow(
         is_shaped: axis.mode_hz > 0.0,
     };
     let controller = preflight(control, axis, from_m, &profile);
-    let margin_m = controller.free_m - controller.needed_m;
-
-    let mut out = Vec::new();
+    let mut out = travel(run, way, &controller, coast_m, expected, axis);
     let mut object = |kind, text: String| out.push(Objection { id: run.id.clone(), kind, text });
-    for (what, at_m) in [("starts", from_m), ("ends", to_m)] {
-        if at_m < controller.soft_low_m || at_m > controller.soft_high_m {
-            object(
-                "travel",
-                format!(
-                    "it {what} at {at_m:.3} m; runs may start and end between {:.3} and {:.3} m, the following error inside the end switches",
-                    controller.soft_low_m, controller.soft_high_m
-                ),
-            );
-        }
-    }
-    if margin_m < 0.0 {
-        let kept_m = limits.following_error_m;
-        object(
-            "coast",
-            format!(
-                "it ends {:.3} m before the hard stop; if the torque fails it coasts {coast_m:.3} m, {:.3} m of them beyond its end, and \
-                 {kept_m:.3} m are kept for the following error: {:.3} m are missing. Shorten the travel or start further back{}",
-                controller.free_m,
-                controller.needed_m - kept_m,
-                -margin_m,
-                expected.guess()
-            ),
-        );
-    }
     if let Some(text) = fall(run, [from_m.min(to_m), from_m.max(to_m)], speed_m_s, axis, expected) {
         object("weight", text);
     }
@@ -150,10 +123,49 @@ pub(super) fn tow(
         current_a,
         rms_current_a,
         coast_m,
-        margin_m,
+        margin_m: controller.free_m - controller.needed_m,
         drag_n: (run.body == BodyState::Wet).then_some(load.drag_n),
     };
     (forecast, out)
+}
+
+/// Where it starts and ends, and what is left before the hard stop if the torque fails.
+fn travel(
+    run: &PlannedRun,
+    way: Way,
+    controller: &Preflight,
+    coast_m: f64,
+    expected: &Expected,
+    axis: &AxisConfig,
+) -> Vec<Objection> {
+    let mut out = Vec::new();
+    let mut object = |kind, text: String| out.push(Objection { id: run.id.clone(), kind, text });
+    for (what, at_m) in [("starts", way.from_m), ("ends", way.to_m)] {
+        if at_m < controller.soft_low_m || at_m > controller.soft_high_m {
+            object(
+                "travel",
+                format!(
+                    "it {what} at {at_m:.3} m; runs may start and end between {:.3} and {:.3} m, the following error inside the end switches",
+                    controller.soft_low_m, controller.soft_high_m
+                ),
+            );
+        }
+    }
+    let missing_m = controller.needed_m - controller.free_m;
+    if missing_m > 0.0 {
+        let kept_m = axis.limits.following_error_m;
+        object(
+            "coast",
+            format!(
+                "it ends {:.3} m before the hard stop; if the torque fails it coasts {coast_m:.3} m, {:.3} m of them beyond its end, and \
+                 {kept_m:.3} m are kept for the following error: {missing_m:.3} m are missing. Shorten the travel or start further back{}",
+                controller.free_m,
+                controller.needed_m - kept_m,
+                expected.guess()
+            ),
+        );
+    }
+    out
 }
 
 /// How long the parts of a tow take, its jerk bound and its shaper counted.

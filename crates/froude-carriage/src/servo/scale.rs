@@ -1,0 +1,120 @@
+//! Declared errors of what makes volts into forces and counts into metres: each scales the coefficients.
+
+use froude_fit::propagate::expanded;
+use froude_records::estimate::{Coefficient, ErrorKind, SharedError};
+use indexmap::IndexMap;
+
+use crate::servo::motor::Drive;
+use crate::servo::report::ServoCoefficient;
+
+/// The force per volt of a command, with what is declared of its error.
+#[derive(Debug, Clone)]
+pub struct ForcePerVolt<'a> {
+    /// N/V.
+    pub n_v: f64,
+    /// Its errors; none where it is taken as exact.
+    pub scales: Vec<Scale>,
+    /// The drive that it follows from; `None` of a log without a rig.
+    pub drive: Option<&'a Drive>,
+}
+
+impl<'a> ForcePerVolt<'a> {
+    /// As it follows from a declared drive.
+    #[must_use]
+    pub fn of_drive(drive: &'a Drive) -> Self {
+        Self { n_v: drive.motor.force_per_volt_n_v(), scales: drive.scales().into(), drive: Some(drive) }
+    }
+
+    /// As a number, with its error where one is declared.
+    #[must_use]
+    pub fn of_log(n_v: f64, scale: Option<Scale>) -> Self {
+        Self { n_v, scales: scale.into_iter().collect(), drive: None }
+    }
+}
+
+/// An error of a factor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scale {
+    /// Its key: what has the same one has the same error.
+    pub key: String,
+    /// What errs, in words.
+    pub name: String,
+    /// The same as a file names it.
+    pub quantity: String,
+    /// Standard uncertainty, as a part of the factor.
+    pub relative: f64,
+    /// Degrees of freedom behind it; infinite where none are given.
+    pub dof: Option<f64>,
+    /// Whether it is the radius that makes counts into metres and torques into forces: it goes into a coefficient by a power of its own, any
+    /// other factor once.
+    pub is_radius: bool,
+}
+
+impl Scale {
+    /// What a part of it changes in a coefficient, as a part of that.
+    fn power(&self, name: &str, radii: &dyn Fn(&str) -> f64) -> f64 {
+        if self.is_radius { radii(name) } else { 1.0 }
+    }
+}
+
+impl Drive {
+    /// Errors of K_T with the amplifier's gain, and of the radius.
+    #[must_use]
+    pub fn scales(&self) -> [Scale; 2] {
+        let scale = |name: &str, quantity: &str, relative, is_radius| Scale {
+            key: format!("{}/{quantity}", self.rig),
+            name: name.to_owned(),
+            quantity: quantity.to_owned(),
+            relative,
+            dof: None,
+            is_radius,
+        };
+        [
+            scale("K_T and amplifier gain, declared", "torque_constant", self.torque_relative, false),
+            scale("length of an encoder count", "sprocket_radius", self.radius_relative, true),
+        ]
+    }
+}
+
+/// Errors of an estimate by their keys; `radii` is the power by which the radius goes into a coefficient.
+pub(super) fn errors_of(
+    scales: &[Scale],
+    coefficients: &[ServoCoefficient],
+    radii: &dyn Fn(&str) -> f64,
+) -> IndexMap<String, SharedError> {
+    let error = |scale: &Scale| SharedError {
+        name: scale.name.clone(),
+        quantity: scale.quantity.clone(),
+        kind: ErrorKind::B,
+        covariance: vec![vec![scale.relative * scale.relative]],
+        dof: scale.dof,
+        limits: None,
+        sensitivity: coefficients.iter().map(|c| vec![scale.power(&c.name, radii) * c.value]).collect(),
+    };
+    scales.iter().filter(|scale| scale.relative > 0.0).map(|scale| (scale.key.clone(), error(scale))).collect()
+}
+
+/// What the errors add to the scatter of a coefficient, `of_scatter`.
+pub(super) fn combined(
+    of_scatter: Coefficient,
+    (c, dof): (&ServoCoefficient, f64),
+    scales: &[Scale],
+    radii: &dyn Fn(&str) -> f64,
+) -> Coefficient {
+    let variance = |scale: &Scale| (scale.power(&c.name, radii) * scale.relative * c.value).powi(2);
+    let known = scales.iter().map(|scale| (variance(scale), scale.dof.unwrap_or(f64::INFINITY)));
+    let parts: Vec<(f64, f64)> = std::iter::once((c.block_std * c.block_std, dof)).chain(known).collect();
+    let type_b = parts[1..].iter().map(|(variance, _)| variance).sum::<f64>().sqrt();
+    if !c.block_std.is_finite() || type_b <= 0.0 {
+        return of_scatter;
+    }
+    let all = expanded(&parts, 0.95);
+    let finite = |x: f64| Some(x).filter(|x| x.is_finite());
+    Coefficient {
+        standard_uncertainty: Some(all.standard),
+        type_b: Some(type_b),
+        interval_95: finite(all.expanded).map(|half| [c.value - half, c.value + half]),
+        effective_dof: finite(all.dof),
+        ..of_scatter
+    }
+}

@@ -1,0 +1,125 @@
+//! A law as a sequence of linear problems, and what is said where one has no solution.
+
+use froude_fit as fit;
+use froude_records::finding::{Finding, Severity};
+
+use crate::dataset::Dataset;
+use crate::error::IdentifyError;
+use crate::law::{CoefficientSpec, ForceLaw, Kind};
+use crate::regression::fitted::Settings;
+use crate::regression::problem::{OffsetSetups, logarithms, offset_setups, problem, start, step, weights};
+
+/// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
+const MOST_ITERATIONS: usize = 50;
+/// Relative change of the coefficients at which they stop.
+const CONVERGED: f64 = 1e-12;
+
+/// One law, the data it is fitted to, and what both fix before the first fit.
+pub(crate) struct Job<'a> {
+    law: &'a ForceLaw,
+    data: &'a Dataset,
+    settings: Settings<'a>,
+    /// Measured loads, one load after the other.
+    pub(crate) newtons: Vec<f64>,
+    /// What is fitted: the loads, or the logarithms of their absolute values.
+    measured: Vec<f64>,
+    weight: Option<Vec<f64>>,
+    setups: OffsetSetups,
+    /// Coefficients of the law, then the angle offset of each setup.
+    pub(crate) specs: Vec<CoefficientSpec>,
+}
+
+impl<'a> Job<'a> {
+    pub(crate) fn new(law: &'a ForceLaw, data: &'a Dataset, settings: Settings<'a>) -> Result<Self, IdentifyError> {
+        let newtons = law.measured(data)?;
+        let measured = if law.in_logarithms() { logarithms(law, &newtons, data, settings)? } else { newtons.clone() };
+        let setups = offset_setups(law, data, settings.identify);
+        let mut specs = law.coefficients.clone();
+        specs.extend(setups.names.iter().map(|s| CoefficientSpec {
+            name: format!("angle_offset{}{s}", if s.is_empty() { "" } else { "_" }),
+            unit: "rad".to_owned(),
+        }));
+        let weight = weights(law, data, settings.weight)?;
+        Ok(Self { law, data, settings, newtons, measured, weight, setups, specs })
+    }
+
+    /// The last linear problem and its fit. A non-linear law or an angle offset is linearised again until nothing changes.
+    pub(crate) fn solve(
+        &self,
+        options: &fit::Options,
+        findings: &mut Vec<Finding>,
+    ) -> Result<(fit::Problem, fit::Fit), IdentifyError> {
+        let fitted = |problem: &fit::Problem| fit::fit(problem, options).map_err(|e| self.refusal(e));
+        let mut beta = start(self.law, self.data, &self.newtons, self.specs.len());
+        let mut problem = match self.settings.condensed {
+            Some(condensed) => condensed.problem.clone(),
+            None => self.linear(&beta)?,
+        };
+        let mut fit = fitted(&problem)?;
+        if !self.law.is_nonlinear() && self.setups.names.is_empty() {
+            return Ok((problem, fit));
+        }
+        for _ in 0..MOST_ITERATIONS {
+            let next = step(&fit);
+            let change = next.iter().zip(&beta).map(|(a, b)| (a - b).abs() / (a.abs() + 1e-9)).fold(0.0, f64::max);
+            beta = next;
+            problem = self.linear(&beta)?;
+            fit = fitted(&problem)?;
+            if change < CONVERGED {
+                return Ok((problem, fit));
+            }
+        }
+        findings.push(self.not_converged(&format!("the iteration did not converge within {MOST_ITERATIONS} steps")));
+        Ok((problem, fit))
+    }
+
+    /// The linear problem at `beta`.
+    fn linear(&self, beta: &[f64]) -> Result<fit::Problem, IdentifyError> {
+        problem(self.law, self.data, &self.specs, &self.measured, self.weight.clone(), &self.setups, beta)
+    }
+
+    pub(crate) fn not_converged(&self, what: &str) -> Finding {
+        Finding::new(Severity::Warning, "not-converged", format!("model {}: {what}", self.law.name))
+    }
+
+    pub(crate) fn no_fit(&self, why: String) -> IdentifyError {
+        IdentifyError::NoFit { source_name: self.settings.source_name.to_owned(), model: self.law.name.clone(), why }
+    }
+
+    /// What the fit refused, with source and law; numbers without bounds are those of the iteration.
+    pub(crate) fn refusal(&self, source: fit::FitError) -> IdentifyError {
+        match source {
+            fit::FitError::DesignNotFinite { .. } | fit::FitError::ResponseNotFinite { .. }
+                if self.law.is_nonlinear() =>
+            {
+                self.no_fit(ran_away(self.law, self.data, &self.newtons))
+            }
+            source => IdentifyError::Fit {
+                source_name: self.settings.source_name.to_owned(),
+                model: self.law.name.clone(),
+                source: Box::new(source),
+            },
+        }
+    }
+}
+
+/// Why the iteration of a power law left all bounds.
+fn ran_away(law: &ForceLaw, data: &Dataset, newtons: &[f64]) -> String {
+    let Kind::PowerLaw { channel, .. } = &law.kind else {
+        return "its iteration exceeds the range of floating point".to_owned();
+    };
+    let speeds = data.values(channel).unwrap_or_default();
+    let moving = speeds.iter().filter(|v| **v != 0.0).count();
+    let opposed = speeds.iter().zip(newtons).filter(|(v, f)| **v * **f < 0.0).count();
+    let load = law.responses.first().map_or("the load", String::as_str);
+    if 2 * opposed < moving {
+        return format!(
+            "{load} opposes {channel} in {opposed} of the {moving} rows that move, and a power law is a resistance: check the sign of \
+             {load}, or leave this law out"
+        );
+    }
+    format!(
+        "its iteration diverges: exponent and factor of {load} are not determined by these rows; use speeds further apart, or a law with a given \
+         exponent (quadratic)"
+    )
+}

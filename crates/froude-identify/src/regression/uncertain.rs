@@ -1,0 +1,112 @@
+//! The combined uncertainty of a fitted law: scatter and budget.
+
+use faer::Mat;
+use froude_fit as fit;
+use froude_fit::budget::{Combined, OUTSIDE_95, Part, combine};
+use froude_fit::replicates;
+use froude_records::campaign::SourceKind;
+
+use crate::dataset::Dataset;
+use crate::eiv;
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+use crate::regression::fitted::{Scatter, Settings};
+use crate::regression::problem::step;
+use crate::uncertainty::{Linearised, contributions, scatter};
+
+/// Type A and type B of all coefficients of a fit.
+pub(crate) struct Uncertainty {
+    /// The scatter, the declared entries, the shared errors.
+    pub(crate) budget: Vec<Part>,
+    /// Combined uncertainty of each coefficient that has one.
+    pub(crate) combined: Vec<Option<Combined>>,
+    /// Combined covariance, p × p.
+    pub(crate) covariance: Mat<f64>,
+    /// Where the scatter comes from, in words.
+    pub(crate) kind: String,
+}
+
+impl Uncertainty {
+    /// `in_variables`: row errors of speed and angle are in the regression's covariance already, also where there is no scatter.
+    pub(crate) fn of(
+        law: &ForceLaw,
+        data: &Dataset,
+        settings: Settings<'_>,
+        fitted: &fit::Fit,
+        in_variables: bool,
+    ) -> Result<Self, IdentifyError> {
+        let p = fitted.coefficients.len();
+        let coefficients = step(fitted);
+        let at = Linearised {
+            law,
+            data,
+            coefficients: &coefficients[..law.coefficients.len()],
+            sensitivity: &fitted.sensitivity,
+        };
+        let is_measured = settings.kind != SourceKind::Cfd;
+        let mut declared = contributions(at, settings.budget, settings.campaign, settings.shared_errors, is_measured)?;
+        if in_variables {
+            for (part, entry) in declared.iter_mut().zip(settings.budget) {
+                part.in_scatter |= eiv::is_input_error(entry);
+            }
+        }
+        let replicates = match settings.scatter {
+            Scatter::Replicates { name, sets } => {
+                Some(replicates::together(name, sets).filter(|part| part.dof.len() == p))
+            }
+            Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,
+        };
+        // Where replicates tell no scatter nothing does: the residuals of one of them are not asked.
+        let is_known = |c: &fit::FitCoefficient| match &replicates {
+            Some(part) => part.is_some() && c.value.is_some(),
+            None => c.standard.is_some(),
+        };
+        let first = replicates.clone().flatten().unwrap_or_else(|| scatter(fitted));
+        let budget: Vec<Part> = std::iter::once(first).chain(declared).collect();
+        let outside = OUTSIDE_95 / settings.looks.max(1) as f64;
+        let combined: Vec<Option<Combined>> = fitted
+            .coefficients
+            .iter()
+            .enumerate()
+            .map(|(j, c)| is_known(c).then(|| combine(&budget, j, outside)))
+            .collect();
+        let kind = match replicates {
+            Some(_) => budget[0].name.clone(),
+            None if in_variables => "model-based, errors in variables".to_owned(),
+            None => residuals_in_words(data, settings),
+        };
+        Ok(Self { covariance: covariance(&budget, &combined), budget, combined, kind })
+    }
+
+    pub(crate) fn variances(&self) -> impl Iterator<Item = f64> {
+        (0..self.combined.len()).map(|j| self.covariance[(j, j)])
+    }
+}
+
+/// The sum of the budget's parts. A coefficient that was not estimated has no covariance, whatever the budget says.
+fn covariance(budget: &[Part], combined: &[Option<Combined>]) -> Mat<f64> {
+    let p = combined.len();
+    let mut sum = Mat::zeros(p, p);
+    for part in budget.iter().filter(|part| !part.in_scatter) {
+        sum += &part.covariance;
+    }
+    for j in (0..p).filter(|j| combined[*j].is_none()) {
+        for k in 0..p {
+            sum[(j, k)] = 0.0;
+            sum[(k, j)] = 0.0;
+        }
+    }
+    sum
+}
+
+/// What the record calls the covariance of residuals.
+fn residuals_in_words(data: &Dataset, settings: Settings<'_>) -> String {
+    let clusters = || data.clusters();
+    let kind = match settings.scatter.of_residuals() {
+        fit::CovarianceKind::Classical => "classical".to_owned(),
+        fit::CovarianceKind::Hc3 => "HC3".to_owned(),
+        fit::CovarianceKind::Cr3 if settings.identify.covariance.is_some() => format!("CR3, {} clusters", clusters()),
+        fit::CovarianceKind::Cr3 => format!("CR3 by {} configurations", clusters()),
+    };
+    if settings.kind == SourceKind::Cfd { format!("{kind}; residuals are model error, not noise") } else { kind }
+}
