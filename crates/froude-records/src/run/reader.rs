@@ -8,6 +8,10 @@
 //! more over the file. All checksums that the file has itself (chunks, data, summary) are checked against it
 //! besides. What does not fit is in [`RunReader::doubts`].
 
+mod channels;
+mod end;
+mod ticks;
+
 use std::fs::{File, TryLockError};
 use std::io::{BufReader, Read, Seek};
 use std::path::{Path, PathBuf};
@@ -20,13 +24,12 @@ use crate::hash::Fingerprint;
 use crate::run::allowance::{Allowance, holds};
 use crate::run::channel::{BOARD, LOG, Meaning};
 use crate::run::doubt::{Doubt, DoubtKind};
-use crate::run::file::{End, FileChannel, Message, Step, Summary, Walk, metadata, records, schema, unpack};
-use crate::run::layout::{Decoder, Kind, PREFIX_KEY, text};
-use crate::run::log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
+use crate::run::file::{Step, Walk, metadata, records, unpack};
+use crate::run::layout::Kind;
+use crate::run::log::{Channel, Event, Gap, GapCause, RunLog};
 use crate::run::meta::{RunMeta, RunStatus};
-use crate::run::seal::{contradiction, difference};
+use crate::run::seal::contradiction;
 use crate::run::sidecar::{END_RECORD_NAME, RECORD_NAME, differing, of_record, read_run_meta};
-use crate::text::counted;
 
 /// Most channels of one run.
 const MOST_CHANNELS: usize = 10_000;
@@ -289,173 +292,12 @@ impl<R: Read + Seek> RunReader<R> {
         Ok(log)
     }
 
-    /// What is declared of a channel has the unit that the log has.
-    fn check_units(&self) -> Result<(), RecordError> {
-        let declared = |name: &String| self.meta.channels.get(name).map(|meaning| &meaning.unit);
-        let mut both = self.channels.iter().filter_map(|(name, unit)| Some((name, unit, declared(name)?)));
-        let Some((name, unit, declared)) = both.find(|(_, unit, declared)| unit != declared) else { return Ok(()) };
-        let path = if self.has_sidecar { self.path.with_extension("toml") } else { self.path.clone() };
-        Err(RecordError::Value {
-            place: Place::whole(&path),
-            key: format!("channels.{name:?}.unit"),
-            problem: format!("is {declared:?}; expected {unit:?}, in which {} was recorded", self.path.display()),
-        })
-    }
-
     fn doubt(&mut self, kind: DoubtKind, problem: &str) {
         self.doubts.push(Doubt { kind, text: format!("{} {problem}", self.path.display()) });
     }
 
-    /// A run has the name of its files; one that was set aside has a word more.
-    fn check_name(&mut self) {
-        let stem = self.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        let rest = stem.strip_prefix(&self.meta.id).map(|rest| rest.is_empty() || rest.starts_with('.'));
-        if rest != Some(true) {
-            let text = format!("is the log of run {}: the file was copied or renamed", self.meta.id);
-            self.doubt(DoubtKind::Renamed, &text);
-        }
-    }
-
-    /// At the end of the file: whether it is the one that the sidecar was written for.
-    fn settle(&mut self) {
-        self.check_name();
-        let sidecar = self.path.with_extension("toml");
-        let sidecar = sidecar.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-        let is_exchanged = self.doubts.iter().any(|doubt| doubt.kind == DoubtKind::Exchanged);
-        let damage = self.damage.take().or_else(|| {
-            let is_cut = self.meta.log.as_ref().zip(self.found.as_ref()).is_some_and(|(a, b)| b.bytes < a.bytes);
-            is_cut.then(String::new)
-        });
-        match (&self.meta.log, &self.found) {
-            (Some(recorded), Some(found)) => match (difference(recorded, found), damage) {
-                (None, _) => {}
-                // What it is instead is said already.
-                (Some(_), _) if is_exchanged => {}
-                (Some(what), Some(_)) => {
-                    self.doubt(DoubtKind::Damaged, &format!("{what}; copy it again from where it was recorded"));
-                }
-                (Some(_), None) => self.doubt(
-                    DoubtKind::Exchanged,
-                    &format!(
-                        "is a whole log, and not the one that {sidecar} was written for (its SHA-256 is another): they come from two drives; \
-                         put the files that belong together side by side"
-                    ),
-                ),
-            },
-            _ => {
-                if let Some(problem) = damage {
-                    self.doubt(DoubtKind::Damaged, &format!("is damaged: {problem}; copy it again from where it was recorded"));
-                }
-                if !self.has_sidecar {
-                    let text = format!("has no sidecar {sidecar}: only the log's own checksums vouch for it");
-                    self.doubt(DoubtKind::NoSidecar, &text);
-                } else if !self.is_unfinished {
-                    let text = format!(
-                        "is not compared with anything: {sidecar} has no SHA-256 of it, as runs of earlier versions; only the log's own \
-                         checksums vouch for it"
-                    );
-                    self.doubt(DoubtKind::NoFingerprint, &text);
-                }
-            }
-        }
-    }
-
     fn failed(&self, error: &std::io::Error) -> RecordError {
         RecordError::Read { path: self.path.clone(), reason: reason(error) }
-    }
-
-    /// Schemas and channels: from the summary of a whole file, else from the beginning up to the first chunk with any.
-    fn find_channels(&mut self) -> Result<(), RecordError> {
-        let summary = self.walk.go_to_summary().map_err(|e| self.failed(&e))?;
-        if let Summary::Damaged(problem) = summary {
-            self.damage.get_or_insert(problem);
-        } else if summary == Summary::None && self.meta.log.is_some() {
-            // A log that was finished has one.
-            self.damage.get_or_insert_with(|| "its end cannot be found".to_owned());
-        } else if summary == Summary::Here {
-            while let Some(opcode) = self.walk.next_of_summary().map_err(|e| self.failed(&e))? {
-                let body = std::mem::take(&mut self.walk.body);
-                self.declare(opcode, &body);
-                self.walk.body = body;
-            }
-        }
-        self.walk.rewind().map_err(|e| self.failed(&e))?;
-        while self.topics.is_empty() {
-            let Step::Record { opcode, offset } = self.walk.next().map_err(|e| self.failed(&e))? else { break };
-            let body = std::mem::take(&mut self.walk.body);
-            match opcode {
-                op::CHUNK => {
-                    let mut unpacked = std::mem::take(&mut self.unpacked);
-                    for (opcode, body) in unpack(&body, &mut unpacked).iter().flat_map(|c| records(c)).flatten() {
-                        self.declare(opcode, body);
-                    }
-                    self.unpacked = unpacked;
-                    self.allowance.take(&self.path, self.unpacked.len())?;
-                }
-                op::METADATA => self.take_metadata(offset, &body)?,
-                _ => self.declare(opcode, &body),
-            }
-            self.walk.body = body;
-        }
-        self.walk.rewind().map_err(|e| self.failed(&e))?;
-        self.allowance = Allowance::of(self.walk.length());
-        self.index_topics();
-        Ok(())
-    }
-
-    fn index_topics(&mut self) {
-        self.topic_of_channel.clear();
-        for (i, topic) in self.topics.iter().enumerate() {
-            let channel = usize::from(topic.channel);
-            if self.topic_of_channel.len() <= channel {
-                self.topic_of_channel.resize(channel + 1, None);
-            }
-            self.topic_of_channel[channel] = Some(i);
-        }
-        self.rows.row = vec![0.0; self.channels.len()];
-    }
-
-    /// Takes a schema or a channel; what is not a flat message of numbers, or no log of events, is left alone.
-    fn declare(&mut self, opcode: u8, body: &[u8]) {
-        match opcode {
-            op::SCHEMA => {
-                if let Some((id, "ros2msg", text)) = schema(body) {
-                    self.schemas.insert(id, String::from_utf8_lossy(text).into_owned());
-                }
-            }
-            op::CHANNEL => {
-                if let Some(channel) = FileChannel::parse(body).filter(|channel| channel.encoding == "cdr") {
-                    self.declare_channel(&channel);
-                }
-            }
-            _ => {}
-        }
-    }
-
-    fn declare_channel(&mut self, channel: &FileChannel<'_>) {
-        let Some(schema) = self.schemas.get(&channel.schema) else { return };
-        if channel.topic == text::TOPIC && schema == text::SCHEMA {
-            self.events_channel = Some(channel.id);
-            return;
-        }
-        let is_known = self.topics.iter().any(|topic| topic.channel == channel.id);
-        let Some(decoder) = Decoder::parse(schema).filter(|_| !is_known) else { return };
-        let prefix = channel.metadata.get(PREFIX_KEY).cloned();
-        let prefix = prefix.unwrap_or_else(|| format!("{}/", channel.topic.trim_matches('/')));
-        let mut fields = Vec::new();
-        for (field, kind, offset) in decoder.fields {
-            let name = format!("{prefix}{field}");
-            let is_taken = self.channels.iter().any(|(own, _)| *own == name);
-            if is_taken || self.channels.len() == MOST_CHANNELS {
-                continue;
-            }
-            let unit = channel.metadata.get(&field).cloned().unwrap_or_else(|| "1".to_owned());
-            fields.push((kind, offset, self.channels.len()));
-            self.channels.push((name, unit));
-        }
-        if !fields.is_empty() {
-            self.topics.push(ReadTopic { channel: channel.id, fields, is_filled: false });
-        }
     }
 
     fn take(&mut self, opcode: u8, offset: u64, block: &mut Block) -> Result<(), RecordError> {
@@ -551,150 +393,6 @@ impl<R: Read + Seek> RunReader<R> {
         self.rows.pending.get_or_insert((GapCause::Damaged, problem));
         Ok(())
     }
-
-    fn take_message(&mut self, body: &[u8], block: &mut Block) {
-        let Some(message) = Message::parse(body) else { return };
-        if Some(message.channel) == self.events_channel {
-            if let Some((kind, text)) = text::decode(message.data) {
-                let time_s = self.seconds(message.log_time);
-                block.events.push(Event { time_s, kind: EventKind::of_name(&kind), text });
-            }
-            return;
-        }
-        let Some(topic) = self.topic_of_channel.get(usize::from(message.channel)).copied().flatten() else { return };
-        if self.rows.n_filled > 0 && message.sequence != self.rows.sequence {
-            // The last tick never became whole; the jump of the ticks tells it.
-            self.topics.iter_mut().for_each(|topic| topic.is_filled = false);
-            self.rows.n_filled = 0;
-        }
-        self.rows.sequence = message.sequence;
-        let topic = &mut self.topics[topic];
-        for (kind, offset, column) in &topic.fields {
-            let Some(value) = Decoder::field(message.data, *kind, *offset) else { return };
-            self.rows.row[*column] = value;
-        }
-        if !std::mem::replace(&mut topic.is_filled, true) {
-            self.rows.n_filled += 1;
-        }
-        if self.rows.n_filled == self.topics.len() {
-            self.topics.iter_mut().for_each(|topic| topic.is_filled = false);
-            self.rows.n_filled = 0;
-            self.take_row(&message, block);
-        }
-    }
-
-    /// Run time of a time in the file.
-    fn seconds(&mut self, log_time: u64) -> f64 {
-        let start = match self.meta.start_unix_ns {
-            0 if self.meta.log_rate_hz <= 0.0 => *self.rows.first_log_time.get_or_insert(log_time),
-            start => start,
-        };
-        // Two parts: a difference of 64 bits would be rounded to microseconds.
-        let ns = i128::from(log_time) - i128::from(start);
-        (ns / 1_000_000_000) as f64 + (ns % 1_000_000_000) as f64 / 1e9
-    }
-
-    /// A tick that is whole: its number, its time, and what is missing before it.
-    fn take_row(&mut self, message: &Message<'_>, block: &mut Block) {
-        let seconds = self.seconds(message.log_time);
-        let rate = self.meta.log_rate_hz;
-        let (tick, time_s) = if rate > 0.0 {
-            let tick = unwrap(message.sequence, seconds * rate);
-            (tick, tick as f64 / rate)
-        } else {
-            (u64::from(message.sequence), seconds)
-        };
-        let rows = &mut self.rows;
-        if let Some(column) = rows.row.iter().position(|v| !v.is_finite()) {
-            let (name, value) = (&self.channels[column].0, rows.row[column]);
-            rows.pending.get_or_insert((GapCause::NotFinite, format!("{name} is {value} in tick {tick}")));
-            return;
-        }
-        if let Some((last, last_s)) = rows.last
-            && (time_s <= last_s || (rate > 0.0 && tick <= last))
-        {
-            let problem = format!("tick {tick} comes after tick {last}");
-            rows.pending.get_or_insert((GapCause::Damaged, problem));
-            return;
-        }
-        let missing = match rows.last {
-            Some((last, _)) if rate > 0.0 => Some(tick - last - 1),
-            _ => None,
-        };
-        if rows.pending.is_some() || missing.is_some_and(|n| n > 0) {
-            let never = || (GapCause::Link, "they never reached the recorder".to_owned());
-            let (cause, why) = rows.pending.take().unwrap_or_else(never);
-            let count = missing.map_or_else(
-                || "an unknown number of ticks is".to_owned(),
-                |n| counted(n as usize, "tick is", "ticks are"),
-            );
-            let from_s = rows.last.map(|(_, s)| s);
-            let text = format!("{count} missing before {time_s} s: {why}");
-            block.lost.push(Gap { from_s, to_s: Some(time_s), ticks: missing, cause, text });
-        }
-        rows.last = Some((tick, time_s));
-        block.time_s.push(time_s);
-        block.columns.iter_mut().zip(&rows.row).for_each(|(column, value)| column.push(*value));
-    }
-
-    /// The end of the file: what is missing there, and what became of the run.
-    fn end(&mut self, end: End, block: &mut Block) -> Result<(), RecordError> {
-        self.has_ended = true;
-        let from_s = self.rows.last.map(|(_, s)| s);
-        if let Some((cause, why)) = self.rows.pending.take() {
-            let text = format!("the last ticks before the end are missing: {why}");
-            block.lost.push(Gap { from_s, to_s: None, ticks: None, cause, text });
-        }
-        let unfinished = |status| match status {
-            RunStatus::Running | RunStatus::Complete => RunStatus::Interrupted,
-            other => other,
-        };
-        match end {
-            End::Whole if self.meta.status == RunStatus::Running => self.meta.status = RunStatus::Interrupted,
-            End::Whole => {}
-            End::Changed { problem } => {
-                if self.meta.status == RunStatus::Running {
-                    self.meta.status = RunStatus::Interrupted;
-                }
-                if self.refuses_damage {
-                    return self.damaged(0, problem);
-                }
-                self.damage.get_or_insert(problem);
-            }
-            End::CutOff { .. } if self.is_being_recorded => self.meta.status = RunStatus::Running,
-            End::CutOff { offset, lost } => {
-                self.meta.status = unfinished(self.meta.status);
-                let text = format!(
-                    "the file ends at byte {} without its end mark: what was recorded after {} is lost, {}",
-                    offset + lost,
-                    from_s.map_or_else(|| "the start".to_owned(), |s| format!("{s} s")),
-                    if lost == 0 {
-                        "no byte of it came to the file".to_owned()
-                    } else {
-                        format!("{lost} bytes of it, from byte {offset} on, are not a whole chunk")
-                    }
-                );
-                if !self.is_unfinished {
-                    self.damage.get_or_insert_with(|| text.clone());
-                }
-                block.lost.push(Gap { from_s, to_s: None, ticks: None, cause: GapCause::CutOff, text });
-            }
-            End::Broken { offset, lost, problem } => {
-                self.meta.status = unfinished(self.meta.status);
-                let problem = format!("{problem}; the {lost} bytes from byte {offset} on cannot be read");
-                if self.refuses_damage {
-                    return self.damaged(offset, problem);
-                }
-                self.damage.get_or_insert_with(|| problem.clone());
-                block.lost.push(Gap { from_s, to_s: None, ticks: None, cause: GapCause::Damaged, text: problem });
-            }
-        }
-        if self.damage.is_none() {
-            self.check_units()?;
-        }
-        self.settle();
-        Ok(())
-    }
 }
 
 /// What a log states about itself at its beginning; `None` where that cannot be read.
@@ -709,12 +407,4 @@ pub(crate) fn head_of(path: &Path) -> Result<Option<RunMeta>, RecordError> {
         }
     }
     Ok(None)
-}
-
-/// The tick with these lowest 32 bits that is nearest to `expected`.
-fn unwrap(sequence: u32, expected: f64) -> u64 {
-    let expected = expected.clamp(0.0, 9e15) as u64;
-    let low = expected as u32;
-    let ahead = sequence.wrapping_sub(low) as i32;
-    expected.saturating_add_signed(i64::from(ahead))
 }
