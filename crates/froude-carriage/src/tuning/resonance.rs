@@ -201,15 +201,15 @@ impl TwoMassModes {
         below.into_iter().chain(plant.iter().copied()).chain(steps(last_hz, high_hz).map(at)).collect()
     }
 
-    /// Free mode without the gear's loss, Hz, and its standard uncertainty: f_l √(1 + ηR_a), R_a = (f_a/f_l)² − 1.
+    /// Free mode without the gear's loss, Hz, and its standard uncertainty: f_l √(1 + ηr_a), r_a = (f_r/f_l)² − 1.
     ///
     /// A motor that drives feels the chain's force over the gear's efficiency η, so that its response has its peak at
-    /// f_a = f_l √(1 + R/η), R = M(R/n)²/J_m; the dip at f_l is the load's alone and does not move.
+    /// f_r = f_l √(1 + r/η), r = M(R/n)²/J_m; the dip at f_l is the load's alone and does not move.
     #[must_use]
     pub fn free_through_gear(&self, efficiency: f64, efficiency_std: f64) -> (f64, f64) {
         let (load, apparent) = (self.load, self.free);
         let free_hz = load.frequency_hz * (1.0 + efficiency * self.inertia_ratio).sqrt();
-        // f² = (1 − η) f_l² + η f_a².
+        // f² = (1 − η) f_l² + η f_r².
         let by_load = (1.0 - efficiency) * load.frequency_hz / free_hz * load.frequency_std_hz;
         let by_free = efficiency * apparent.frequency_hz / free_hz * apparent.frequency_std_hz;
         let by_gear = 0.5 * (apparent.frequency_hz.powi(2) - load.frequency_hz.powi(2)) / free_hz * efficiency_std;

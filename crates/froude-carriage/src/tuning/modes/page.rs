@@ -22,11 +22,11 @@ pub fn modes_table(outcome: &CarriageModes) -> TextTable {
     let mut rows: Vec<Vec<String>> = [
         "load mode f_l (anti-resonance) [Hz]",
         "its damping ratio [1]",
-        "free mode f_a (resonance), apparent [Hz]",
+        "free mode f_r (resonance), apparent [Hz]",
         "its damping ratio [1]",
         "free mode, corrected for the gear's loss [Hz]",
-        "load over motor inertia R, apparent [1]",
-        "R, corrected for the gear's loss [1]",
+        "load over motor inertia r, apparent [1]",
+        "r, corrected for the gear's loss [1]",
         "unexplained part of the response, RMS",
         "unexplained part of the response, median",
     ]
@@ -92,12 +92,12 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
         out.push(match outcome.efficiency {
             Some(e) => format!(
                 "The free mode is apparent, seen through a gear that drives: the sweep rides on a steady motion, so that the motor feels the chain's force \
-                 divided by the efficiency η, and f_a² = f_l² (1 + R/η), where R is the inertia of the load over that of the motor. With the declared \
+                 divided by the efficiency η, and f_r² = f_l² (1 + r/η), where r is the inertia of the load over that of the motor. With the declared \
                  η = {} the loss is taken out; the uncertainty of η is in the corrected mode. The load mode does not depend on η.",
                 number::short_form(e.value, e.standard_uncertainty)
             ),
             None => "The free mode is only apparent: the sweep rides on a steady motion, so that the motor feels the chain's force over the gear's \
-                     efficiency η, and f_a² = f_l² (1 + R/η). Declare `efficiency` in [rig.y] and the loss is taken out. The load mode does \
+                     efficiency η, and f_r² = f_l² (1 + r/η). Declare `efficiency` in [rig.y] and the loss is taken out. The load mode does \
                      not depend on η."
                 .to_owned(),
         });
