@@ -198,7 +198,7 @@ fn least_squares(source: &str, rows: &[Row], density_kg_m3: f64) -> Result<Sourc
 pub fn no_fits(configurations: usize) -> Option<String> {
     (configurations < FIT).then(|| {
         format!(
-            "No least squares: they need {FIT} configurations at least, such as --links 1..{FIT}, and these are {configurations}. \
+            "No least squares: they need {FIT} configurations at least, such as --links 1..{FIT}, and there are {configurations}. \
              links.csv and campaign.toml are written all the same, and the record holds the matrices alone."
         )
     })

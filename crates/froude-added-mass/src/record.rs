@@ -168,7 +168,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
             name: "panels".to_owned(),
             version: 1,
             words: format!(
-                "potential flow, constant panels, direct formulation, {}; meshes of {steps} panels{}",
+                "potential flow, constant-strength panels, direct formulation, {}; meshes of {steps} panels{}",
                 about.surroundings,
                 if refined.steps.len() > 1 { ", extrapolated" } else { "" }
             ),

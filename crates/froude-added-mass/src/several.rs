@@ -465,7 +465,7 @@ fn record(
             name: "panels".to_owned(),
             version: 1,
             words: format!(
-                "potential flow, constant panels, direct formulation, unbounded water; meshes of {} panels{}; numerical uncertainty of each \
+                "potential flow, constant-strength panels, direct formulation, unbounded water; meshes of {} panels{}; numerical uncertainty of each \
                  entry alone, 95 %",
                 panels.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "),
                 if panels.len() > 1 { ", extrapolated" } else { "" }

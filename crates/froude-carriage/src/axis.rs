@@ -391,7 +391,7 @@ fn by_direction(models: &[Model]) -> Option<Finding> {
         let difference = a.value - b.value;
         (difference.abs() > half).then(|| {
             format!(
-                "{name}+ less {name}- is {} ± {} {}",
+                "{name}+ minus {name}- is {} ± {} {}",
                 number::fixed(difference, 1),
                 number::significant(half, 2),
                 a.unit
@@ -401,7 +401,7 @@ fn by_direction(models: &[Model]) -> Option<Finding> {
     let found: Vec<String> = differences.collect();
     (!found.is_empty()).then(|| {
         let text = format!(
-            "friction differs with the direction of motion: {} (97.5 %, scatter alone); the symmetric model has a mean of both, which holds in \
+            "friction differs with the direction of motion: {} (97.5 % each, so that both hold at 95 %; scatter alone); the symmetric model has a mean of both, which holds in \
              neither direction: use servo_asymmetric",
             found.join(", ")
         );

@@ -204,7 +204,7 @@ fn dry_repeats_alone_say_what_can_be_seen() {
         advice,
         format!(
             "below {limit:.3} m/s the drag is smaller than its expanded uncertainty: tow faster or repeat {repeats} times at 0.020 m/s (a repeat is one \
-             wet-less-dry difference; a pair out and back gives two)"
+             wet-minus-dry difference; a pair out and back gives two)"
         )
     );
 }

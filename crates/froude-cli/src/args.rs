@@ -195,7 +195,7 @@ pub struct AddedMassArgs {
     /// What --at was called.
     #[arg(long, hide = true, allow_hyphen_values = true)]
     pub origin: Option<String>,
-    /// Only check the mesh and state what each resolution would require.
+    /// Only check the mesh, and state the time and memory that each resolution would take.
     #[arg(long)]
     pub check: bool,
     /// Write a mesh with the unambiguous faults corrected to this file (.obj or .stl); nothing is computed.

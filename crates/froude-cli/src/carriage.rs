@@ -124,7 +124,7 @@ fn preflight(prepared: &Prepared) {
     };
     print::text_table(&table);
     say!(
-        "\nOne wet-less-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs show it)."
+        "\nOne wet-minus-dry difference is expected to show {detectable_n:.2} N (friction repeating within 2 %, assumed until the dry runs show it)."
     );
     if !prepared.is_shaped() {
         say!(

@@ -131,7 +131,7 @@ fn coefficient_pair(rows: &[&CoefficientComparison]) {
     say!("{out}");
     if is_stated {
         say!(
-            "  ± U: expanded uncertainty, 95 %, U = k·u; of an asymmetric interval E_n uses the half-width towards the other value"
+            "  ± U: expanded uncertainty, 95 %, U = k·u; of an asymmetric interval, E_n takes the side of the other value"
         );
         say!("    {}", coverage_note(one_id, rows.iter().map(|r| &r.first)));
         if one_id != other_id {
@@ -191,7 +191,7 @@ fn forces(c: &Comparison) {
     }
     if c.loads.iter().any(|r| [&r.first, &r.second].iter().any(|side| side.standard_uncertainty.is_some())) {
         say!(
-            "  ± U: expanded uncertainty, 95 %, U = k·u; of an asymmetric interval E_n uses the half-width towards the other value"
+            "  ± U: expanded uncertainty, 95 %, U = k·u; of an asymmetric interval, E_n takes the side of the other value"
         );
     }
     for note in &c.coverage {

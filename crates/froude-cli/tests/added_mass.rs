@@ -234,7 +234,7 @@ fn links_are_tabled_fitted_and_written_and_the_other_verbs_take_the_record() {
         let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
             words.contains(
-                "No least squares: they need 3 configurations at least, such as --links 1..3, and these are 2. links.csv and campaign.toml are \
+                "No least squares: they need 3 configurations at least, such as --links 1..3, and there are 2. links.csv and campaign.toml are \
                  written all the same, and the record holds the matrices alone."
             ),
             "{words}"

@@ -425,7 +425,7 @@ fn the_free_mode_is_reported_as_seen_and_without_the_gears_loss() {
     assert!((free_hz / 13.0 - 1.0).abs() < 0.02, "{bare}");
     assert!((load_hz(0) / 6.71 - 1.0).abs() < 0.02, "{bare}");
     let page = std::fs::read_to_string(folder.path().join("campaign-resonance/report/report.html")).unwrap();
-    assert!(page.contains("seen through a gear that drives") && page.contains("0.800(40)"));
+    assert!(page.contains("includes the loss of the gear") && page.contains("0.800(40)"));
 }
 
 #[test]
@@ -442,7 +442,7 @@ fn anyones_servo_log_is_identified_with_intervals() {
     let findings = found["findings"].as_array().unwrap();
     let by_direction = findings.iter().find(|f| f["code"] == "friction-by-direction").unwrap();
     assert!(
-        by_direction["message"].as_str().unwrap().contains("F_v+ less F_v- is −73.9 ± 7.9 N s/m"),
+        by_direction["message"].as_str().unwrap().contains("F_v+ minus F_v- is −73.9 ± 7.9 N s/m"),
         "{by_direction}"
     );
     assert!(out.join("report.html").exists());

@@ -22,7 +22,7 @@ use crate::verdict::verdict_words;
 
 /// What a reader of two sources needs to know first.
 const SIDE_BY_SIDE: &str = "Coefficients of the same model are set side by side; their normalised difference Eₙ is stated only where both sides state an \
-     uncertainty and rest on different data. Coefficients of one fit are collinear: the predicted forces over the common range are what a user of the \
+     uncertainty and rest on different data. Coefficients of one fit are correlated: the predicted forces over the common range are what a user of the \
      coefficients needs.";
 
 /// The report as one self-contained HTML file.

@@ -85,7 +85,7 @@ fn splits(f: &FlexibleReport) -> impl Iterator<Item = String> {
         } else {
             "not identifiable from the motor's side".to_owned()
         };
-        format!("Split {}: {share}.", s.name)
+        format!("Share of the motor in the friction, {}: {share}.", s.name)
     })
 }
 
@@ -123,7 +123,7 @@ fn coefficient_table(caption: String, coefficients: &[ServoCoefficient], pieces:
 /// The intervals of scatter and declared errors together, where the estimate has any that are declared.
 pub(super) fn with_declared(mut table: TextTable, estimate: Option<&Estimate>) -> TextTable {
     let Some(estimate) = estimate.filter(|estimate| !estimate.errors.is_empty()) else { return table };
-    table.head.push("95 % interval (with declared errors)".to_owned());
+    table.head.push("95 % interval (scatter and declared)".to_owned());
     for (row, c) in table.rows.iter_mut().zip(estimate.coefficients.values()) {
         row.push(c.interval_95.map_or_else(|| number::MISSING.to_owned(), number::interval));
     }
@@ -133,7 +133,7 @@ pub(super) fn with_declared(mut table: TextTable, estimate: Option<&Estimate>) -
 /// Two masses; behind a gear whose efficiency is not declared every row is marked as apparent.
 fn flexible_table(report: &FlexibleReport, mounted: &str) -> TextTable {
     let caption = format!("Two masses: motor, chain and load from motor-side signals{mounted}.");
-    let mut table = coefficient_table(caption, &report.coefficients, "clusters");
+    let mut table = coefficient_table(caption, &report.coefficients, "scatter and declared");
     if report.is_apparent {
         for (row, c) in table.rows.iter_mut().zip(&report.coefficients) {
             // The rotor lies before the gear, and frequencies do not care.
@@ -148,7 +148,7 @@ fn flexible_table(report: &FlexibleReport, mounted: &str) -> TextTable {
 /// Repeats by speed and direction.
 fn repeatability_table(cells: &[Repeatability]) -> TextTable {
     TextTable {
-        caption: "Mean drive force of the steady windows, ideal gear, and its standard deviation from run to run."
+        caption: "Mean drive force of the steady windows, with the gear taken as lossless, and its standard deviation from run to run."
             .to_owned(),
         head: ["speed [m/s]", "direction", "force [N]", "std [N]", "relative std", "runs"].map(str::to_owned).to_vec(),
         rows: cells

@@ -26,7 +26,7 @@ const MOST_REPEATS: usize = 1000;
 /// Prediction from dry repeats.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detectability {
-    /// Standard deviation of one wet-less-dry difference of window means, N.
+    /// Standard deviation of one wet-minus-dry difference of window means, N.
     pub difference_n: f64,
     /// Its degrees of freedom.
     pub dof: f64,
@@ -76,7 +76,7 @@ impl Detectability {
                 |n| format!("repeat {} at {slowest_planned_m_s:.3} m/s", counted(n, "time", "times")),
             );
             format!(
-                "below {limit:.3} m/s the drag is smaller than its expanded uncertainty: tow faster or {repeat} (a repeat is one wet-less-dry difference; \
+                "below {limit:.3} m/s the drag is smaller than its expanded uncertainty: tow faster or {repeat} (a repeat is one wet-minus-dry difference; \
                  a pair out and back gives two)"
             )
         })
@@ -107,7 +107,7 @@ impl DryMean {
     }
 }
 
-/// Prediction for `differences` wet-less-dry differences at each speed, both directions together, from as many `pairs`.
+/// Prediction for `differences` wet-minus-dry differences at each speed, both directions together, from as many `pairs`.
 ///
 /// `None` without two dry runs of one speed and direction.
 #[must_use]

@@ -33,7 +33,7 @@ pub(crate) fn offset(points: &[Point]) -> Option<Uncertain> {
     Some(Uncertain { value: fit(None)?, standard, dof })
 }
 
-/// D_d from wet-less-dry differences, its scatter compared with what the dry repeats show; `None` without a moving point.
+/// D_d from wet-minus-dry differences, its scatter compared with what the dry repeats show; `None` without a moving point.
 ///
 /// # Errors
 ///

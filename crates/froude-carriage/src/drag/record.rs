@@ -156,7 +156,7 @@ pub(super) fn notes(c: &Coefficient, setup: &DragSetup, runs: &[DragRun<'_>]) ->
         out.push("the sensor also carries what hangs below it besides the body".to_owned());
     }
     if setup.strut_n_s2_m2.is_none() {
-        out.push("of body and strut together: no drag of the strut is declared".to_owned());
+        out.push("the drag is that of body and strut together: none of the strut is declared".to_owned());
     }
     out.push(format!(
         "{} given, {} used, {}",

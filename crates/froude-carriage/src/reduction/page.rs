@@ -83,7 +83,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
     }
     if let Some(d) = &report.detectability {
         out.push(format!(
-            "One wet-less-dry difference scatters by {} N (dry repeats, {}); {} at one speed {} a drag above {} N.",
+            "One wet-minus-dry difference scatters by {} N (dry repeats, {}); {} at one speed {} a drag above {} N.",
             number::significant(d.difference_n, 2),
             number::degrees_of_freedom(d.dof),
             counted(d.differences, "difference", "differences"),
@@ -91,7 +91,7 @@ fn summary(report: &DragReport, setup: &DragSetup) -> Vec<String> {
             number::significant(d.expanded_n, 2),
         ));
         out.push(format!(
-            "The detection limit of all speeds together is D_d = {} N s²/m² (scatter alone: errors of scale vanish with the drag).",
+            "The detection limit of all speeds together is D_d = {} N s²/m² (of the scatter alone: scale errors are proportional to the drag).",
             number::significant(d.smallest_n_s2_m2, 2)
         ));
         let speeds = report.coefficients.iter().flat_map(|c| c.points.iter().map(|p| p.speed_m_s.abs()));
@@ -142,7 +142,7 @@ fn methods_table(report: &DragReport) -> TextTable {
         .map(|((c, drag), ratio)| {
             let missing = || number::MISSING.to_owned();
             vec![
-                c.method.words().to_owned(),
+                format!("{} ({})", c.method.words(), c.method.name()),
                 number::plain(c.value, 5),
                 c.interval_95.map_or_else(missing, number::interval),
                 c.relative_half_width().map_or_else(missing, number::percent),

@@ -59,8 +59,8 @@ impl Chain {
     #[must_use]
     pub fn words(&self, rate_hz: f64) -> String {
         format!(
-            "position through a Butterworth low-pass of order {} at {} Hz, forwards and backwards, and differentiated twice; every {}th of the \
-             {} rows per second after an anti-alias filter, without {} s at each end",
+            "position through a zero-phase Butterworth low-pass of order {} at {} Hz and differentiated twice; rows decimated by {} from {} Hz \
+             after an anti-alias filter, without {} s at each end",
             self.filter_order,
             plain(self.corner_hz, 3),
             self.decimation,

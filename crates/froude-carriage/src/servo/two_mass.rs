@@ -293,7 +293,7 @@ impl<'a> Record<'a> {
         let mut findings = Vec::new();
         for s in splits.iter().filter(|s| !s.is_identified) {
             findings.push(format!(
-                "{} is not identifiable from the motor's side: its interval [{:.2}, {:.2}] does not lie inside 0 to 1 or covers half of it",
+                "{} is not identifiable from the motor's side: its interval [{:.2}, {:.2}] leaves the range 0 to 1, or covers half of it or more",
                 s.name, s.interval[0], s.interval[1]
             ));
         }

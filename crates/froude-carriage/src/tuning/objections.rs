@@ -39,7 +39,7 @@ pub(super) fn objections(c: &Candidate, limits: &Limits, encoder: &Encoder) -> V
             let over_m_s = limits.over_speed_m_s(false);
             if homing_m_s > limits.unhomed_speed_m_s + TRACKING_PART * (over_m_s - limits.unhomed_speed_m_s) {
                 out.push(format!(
-                    "peak motor speed {} mm/s on its chain in homing at {} mm/s, where over-speed trips at {} mm/s",
+                    "peak motor speed, as speed of the chain, {} mm/s when homing at {} mm/s; over-speed trips at {} mm/s",
                     digits(1e3 * homing_m_s),
                     digits(1e3 * limits.unhomed_speed_m_s),
                     digits(1e3 * over_m_s)

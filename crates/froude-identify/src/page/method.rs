@@ -51,8 +51,8 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer], records: &[Estimate]) 
     }
     if sources.iter().any(|s| s.models.len() > 1) {
         out.push(
-            "Among several force models the one with the fewest coefficients is recommended whose AICc lies within 2 of the \
-             smallest (smaller differences are no evidence), unless an F test against the best model rejects it at the 1 % level for some load."
+            "Of the force models whose AICc lies within 2 of the smallest (smaller differences are no evidence) the one with the fewest coefficients is \
+             recommended, unless an F test against the best model rejects it at the 1 % level for some load."
                 .to_owned(),
         );
     }

@@ -87,8 +87,8 @@ impl Tables {
                 let caption = self.caption(&format!(
                     "Loads that the sources predict over their common range{}. ± U: expanded uncertainty, 95 %, U = k·u; \
                      Eₙ = (a − b)/U, a from {first}, U the \
-                     expanded uncertainty of the difference: √(U²(a) + U²(b)) where the two have no error in common; of a \
-                     one-sided interval the arm that points to the other value.",
+                     expanded uncertainty of the difference: √(U²(a) + U²(b)) where the two have no error in common; for an \
+                     asymmetric interval U is the half-width on the side of the other value.",
                     if is_all { "" } else { ", at its ends and middle" }
                 ));
                 parts.push(prediction_table(&shown, first, block, &caption));

@@ -100,7 +100,7 @@ impl Prepared {
         self.control.axes[self.asked.axis as usize].mode_hz > 0.0
     }
 
-    /// Smallest drag that one wet-less-dry difference is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
+    /// Smallest drag that one wet-minus-dry difference is expected to show (95 %), N: twice √2 times the assumed change of friction from run to
     /// run. The dry repeats replace it when they are there.
     #[must_use]
     pub fn detectable_n(&self) -> f64 {

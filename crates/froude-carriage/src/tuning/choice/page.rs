@@ -44,7 +44,7 @@ pub fn candidates_table(outcome: &Tuned) -> TextTable {
     let names = outcome.candidates.iter().map(|c| c.name.clone());
     TextTable {
         caption: format!(
-            "Gains of the controller (eq. 6 of the MCD paper) in SI; per count of the encoder K_p and K_d, per count and tick K_i. Margins are those of the bare carriage, on the response measured \
+            "Gains of the controller (eq. 6 of the MCD paper) in SI units, then K_p and K_d per encoder count and K_i per count and tick. Margins are those of the bare carriage, on the response measured \
              from {:.1} to {:.0} Hz; one without a value has no crossing within that band. Following error and motor speed are those of the campaign's hardest ramps, bare and with the heaviest body, run through \
              the two masses that the response shows. Required: bare, a phase margin of {:.0}°, gain margins of {} and 1/{}, a maximum sensitivity of {} at most; with the heaviest body, stability.",
             outcome.band_hz[0],

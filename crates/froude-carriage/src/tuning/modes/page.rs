@@ -76,7 +76,7 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
             .collect();
         out.push(format!(
             "Proposed: [rig.y.controller] shaped_mode = \"{hz:.2} Hz\", shaped_damping = \"{:.1} %\", robust_shaper = true. It is one shaper for all bodies, between their \
-             modes; a bare carriage is not shaped for. It adds {:.0} ms to a move. Residual swing at the measured modes: {}; at most {} at a mode within 10 % of its own.",
+             modes; the bare carriage is not covered. It adds {:.0} ms to a move. Residual swing at the measured modes: {}; at most {} for a mode within 10 % of the shaper's.",
             1e2 * damping,
             1e3 * shaper.added_s,
             left.join(", "),
@@ -91,7 +91,7 @@ pub fn sentences(outcome: &CarriageModes) -> Vec<String> {
     if outcome.states.iter().any(|s| s.modes.is_ok()) {
         out.push(match outcome.efficiency {
             Some(e) => format!(
-                "The free mode is apparent, seen through a gear that drives: the sweep rides on a steady motion, so that the motor feels the chain's force \
+                "The free mode as measured (apparent) includes the loss of the gear: the sweep rides on a steady motion, so that the motor feels the chain's force \
                  divided by the efficiency η, and f_r² = f_l² (1 + r/η), where r is the inertia of the load over that of the motor. With the declared \
                  η = {} the loss is taken out; the uncertainty of η is in the corrected mode. The load mode does not depend on η.",
                 number::short_form(e.value, e.standard_uncertainty)
