@@ -69,12 +69,18 @@ pub enum Verb {
         #[arg(long)]
         sidecar: Option<PathBuf>,
     },
-    /// Write the observation tables that a campaign would give for chosen true coefficients.
+    /// Show the run matrix of a campaign, its time in the tank, and the interval to expect of each coefficient.
+    #[command(after_help = "Example: froude plan campaign.toml")]
+    Plan {
+        /// The campaign, with `source.plan` blocks and, for the intervals, a `simulate` section.
+        campaign: PathBuf,
+    },
+    /// Write the observation tables, or the runs, that a campaign would give for chosen true coefficients.
     #[command(after_help = "Example: froude simulate campaign.toml")]
     Simulate {
         /// The campaign, with its `simulate` section and `source.plan` blocks.
         campaign: PathBuf,
-        /// Write over an existing table.
+        /// Write over existing tables and runs of a twin.
         #[arg(long)]
         replace: bool,
     },

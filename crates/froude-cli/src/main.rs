@@ -22,10 +22,9 @@ use std::process::ExitCode;
 use args::{Cli, Verb};
 use clap::Parser;
 use failure::Failure;
-use froude::identify::simulate::tables;
 use froude::pipeline::{self, Input, Job};
 use froude::records::text::counted;
-use froude::{demo, inspect};
+use froude::{demo, inspect, plan, twin};
 
 fn main() -> ExitCode {
     last_word::guarded(|| {
@@ -72,18 +71,28 @@ fn run(cli: Cli) -> Result<(), Failure> {
             }
             print::inspection(&inspection);
         }
+        Verb::Plan { campaign } => {
+            let prospects = plan::plan(&campaign).map_err(|error| mistaken::PLAN.explain(error, &[campaign]))?;
+            if cli.json {
+                return print::json(&prospects.iter().map(print::prospect_as_json).collect::<Vec<_>>());
+            }
+            for prospect in &prospects {
+                print::summary(&prospect.section);
+            }
+        }
         Verb::Simulate { campaign, replace } => {
             let written =
-                tables::write(&campaign, replace).map_err(|error| mistaken::SIMULATE.explain(error, &[campaign]))?;
+                twin::simulate(&campaign, replace).map_err(|error| mistaken::SIMULATE.explain(error, &[campaign]))?;
             if cli.json {
-                let rows: Vec<_> = written
-                    .iter()
-                    .map(|w| serde_json::json!({"source": w.source, "path": w.path, "rows": w.rows}))
-                    .collect();
-                return print::json(&rows);
+                let one = |w: &twin::Written| {
+                    let count = if w.are_runs { "runs" } else { "rows" };
+                    serde_json::json!({"source": w.source, "path": w.path, count: w.count})
+                };
+                return print::json(&written.iter().map(one).collect::<Vec<_>>());
             }
             for w in written {
-                out::say!("{}: {} in {}", w.source, counted(w.rows, "observation", "observations"), w.path.display());
+                let words = if w.are_runs { ("run", "runs") } else { ("observation", "observations") };
+                out::say!("{}: {} in {}", w.source, counted(w.count, words.0, words.1), w.path.display());
             }
         }
         Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,

@@ -49,6 +49,8 @@ pub const INSPECT: Takes = Takes {
 pub const COMPARE: Takes = Takes { verb: "compare", kinds: &[Kind::Record], words: "records (estimate.json)" };
 pub const SIMULATE: Takes =
     Takes { verb: "simulate", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with plan and truth (.toml)" };
+pub const PLAN: Takes =
+    Takes { verb: "plan", kinds: &[Kind::Campaign], words: "a campaign with a plan of runs (.toml)" };
 pub const RUN: Takes =
     Takes { verb: "run", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with [rig] and [carriage] (.toml)" };
 pub const TUNE: Takes = Takes { verb: "carriage tune", ..RUN };

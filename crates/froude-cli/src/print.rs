@@ -2,6 +2,7 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, LineStyle, Table};
 use froude::identify::answer::Answer;
+use froude::identify::method::{ExpectedCoefficient, Prospect};
 use froude::identify::source::SourceResult;
 use froude::inspect::{ChannelFacts, ColumnFacts, Inspection, SourceFacts};
 use froude::pipeline::{Outcome, Summary};
@@ -60,8 +61,22 @@ pub fn written(Written { estimate, report, exports, .. }: &Written) {
     }
 }
 
+/// The forecast of a plan, for another program.
+pub fn prospect_as_json(prospect: &Prospect) -> serde_json::Value {
+    let one = |e: &ExpectedCoefficient| {
+        serde_json::json!({
+            "model": e.model, "coefficient": e.name, "unit": e.unit, "value": e.value,
+            "standard_uncertainty": e.standard_uncertainty, "half_width_95": e.half_width_95,
+        })
+    };
+    let expected: Vec<_> = prospect.expected.iter().map(one).collect();
+    serde_json::json!({
+        "source": prospect.source, "runs": prospect.runs, "duration": {"value": prospect.duration_s, "unit": "s"}, "expected": expected,
+    })
+}
+
 /// What a method states about all its results: its tables, then its sentences.
-fn summary(section: &DocumentSection) {
+pub fn summary(section: &DocumentSection) {
     for table in &section.tables {
         if !table.caption.is_empty() {
             say!("\n{}", wrapped(&table.caption));

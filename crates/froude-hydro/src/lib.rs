@@ -26,6 +26,7 @@
 //! | [`closed_form`]     | sphere, prolate spheroid, elliptic cylinder                  | Lamb, Stokes, Schiller–Naumann |
 //! | [`ellipsoid`]       | added mass of an ellipsoid with any three semi-axes          | Lamb 1932, Carlson 1995        |
 //! | [`strip`]           | 6×6 of a slender body from its elliptic sections             | Newman 1977                    |
+//! | [`swing`]           | a body swung about a pivot in a stream                       | USR eq. 5, 19                  |
 //! | [`tabulated`]       | plates, prisms, cylinders as printed                         | DNV-RP-C205                    |
 //! | [`near_wall`]       | sphere near a plane, in a shell; rigid or φ = 0              | Lamb 1932, our derivation      |
 //! | [`sloshing`]        | first modes of a tank, frequency number                      | Faltinsen & Timokha 2009       |
@@ -56,6 +57,7 @@ pub mod prime;
 pub mod similarity;
 pub mod sloshing;
 pub mod strip;
+pub mod swing;
 pub mod tabulated;
 
 pub use drag::{Axis, CoefficientInfo, CrossTerm, DragModel, Factor, MAX_COEFFICIENTS, Motion, Restrictions, Setting};

@@ -41,6 +41,24 @@ pub trait Method: Sync {
         asked: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError>;
+
+    /// The logs and sidecars that a source's plan would give, for the true coefficients of `[simulate]`; `None` where the method has no such twin.
+    ///
+    /// # Errors
+    ///
+    /// What the campaign does not declare.
+    fn simulate(&self, _: &Campaign, _: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        Ok(None)
+    }
+
+    /// What a source's plan takes and determines; `None` where the method forecasts nothing.
+    ///
+    /// # Errors
+    ///
+    /// What the campaign does not declare, and what the plan does not determine.
+    fn plan(&self, _: &Campaign, _: &Source) -> Result<Option<Prospect>, MethodError> {
+        Ok(None)
+    }
 }
 
 /// Files that a method needs: those of any one of some roles.
@@ -109,6 +127,38 @@ pub struct Found {
     pub beside: Option<PathBuf>,
     /// True where more lies there than was named: such a result takes the place of no other.
     pub is_part: bool,
+}
+
+/// What the plan of a source takes and determines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prospect {
+    /// Name of the source.
+    pub source: String,
+    /// Its runs.
+    pub runs: usize,
+    /// Their time on the log, s.
+    pub duration_s: f64,
+    /// The intervals to expect.
+    pub expected: Vec<ExpectedCoefficient>,
+    /// All of it for a person: run matrix and intervals.
+    pub section: DocumentSection,
+}
+
+/// The interval to expect of one coefficient.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExpectedCoefficient {
+    /// The force model.
+    pub model: String,
+    /// Its name.
+    pub name: String,
+    /// SI unit text.
+    pub unit: String,
+    /// The truth that the interval is computed at.
+    pub value: f64,
+    /// Combined standard uncertainty.
+    pub standard_uncertainty: f64,
+    /// Half-width of the 95 % interval.
+    pub half_width_95: f64,
 }
 
 /// A file for another program.

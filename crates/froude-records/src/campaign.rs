@@ -14,6 +14,7 @@ use indexmap::IndexMap;
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError};
+use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::run::Declared;
 use crate::units::Dimension;
 
@@ -126,10 +127,14 @@ pub struct Source {
     pub tare: Option<Tare>,
     /// What swings in its releases, for the methods of free decay.
     pub decay: Option<DecaySpec>,
+    /// What a motor swings, for forced oscillation.
+    pub oscillation: Option<OscillationSpec>,
     /// What is asked of its mesh.
     pub added_mass: Vec<GivenOption>,
     /// What is to be run.
     pub plan: Vec<PlanBlock>,
+    /// What is to be run of a forced oscillation.
+    pub oscillation_plan: Vec<OscillationPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
 }
@@ -480,6 +485,8 @@ pub struct SensorSpec {
     pub drift: Option<f64>,
     /// Constant error.
     pub bias: Option<f64>,
+    /// Time over which its noise is correlated, s; white where it is not given.
+    pub correlation_s: Option<f64>,
 }
 
 impl Campaign {
@@ -535,6 +542,7 @@ impl Campaign {
         for source in &self.sources {
             let key = match source.input {
                 Input::Table(_) if !source.plan.is_empty() => continue,
+                Input::Runs { .. } if !source.oscillation_plan.is_empty() => continue,
                 Input::Table(_) => "table",
                 Input::Record { .. } => "record",
                 Input::Runs { .. } => "runs",
@@ -574,6 +582,8 @@ impl Source {
             uncertainty: Vec::new(),
             tare: None,
             decay: None,
+            oscillation: None,
+            oscillation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),
         }

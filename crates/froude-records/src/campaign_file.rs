@@ -9,7 +9,7 @@ use crate::error::{RecordError, read_bytes, utf8};
 /// The largest campaign that is read.
 pub(crate) const LARGEST_BYTES: u64 = 4 << 20;
 
-/// Reads a campaign; the files that it names must exist, except a table that a plan will make.
+/// Reads a campaign; the files that it names must exist, except those that a plan will make.
 ///
 /// # Errors
 ///

@@ -18,7 +18,9 @@ use crate::carriage_toml::{INERTIA, carriage, positive_constant};
 use crate::error::RecordError;
 use crate::hash::short_key;
 use crate::keep::parse_keep;
+use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
+use crate::run::FORCED_OSCILLATION;
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::table::known_dimension;
@@ -129,7 +131,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 18] = [
+const SOURCE_KEYS: [&str; 19] = [
     "name",
     "kind",
     "table",
@@ -146,6 +148,7 @@ const SOURCE_KEYS: [&str; 18] = [
     "uncertainty",
     "tare",
     "decay",
+    "forced_oscillation",
     "added_mass",
     "plan",
 ];
@@ -200,7 +203,11 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     // What belongs to the rows of a table would be passed over.
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
-    let of_table = of_tables.into_iter().find_map(|key| s.get(key).map(|value| (key, value)));
+    // Runs of a tank method have laws, a budget and a plan of their own.
+    let of_tank = methods.iter().any(|method| method == FORCED_OSCILLATION);
+    let is_own = |key: &&str| of_tank && matches!(*key, "models" | "uncertainty" | "plan");
+    let of_table =
+        of_tables.into_iter().filter(|key| !is_own(key)).find_map(|key| s.get(key).map(|value| (key, value)));
     if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
         return Err(s.wrong(key, value, format!("belongs to the rows of a table; {instead}")));
     }
@@ -214,6 +221,12 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
+    if let (Some(value), false) = (s.get("forced_oscillation"), of_tank) {
+        let problem = "describes a forced oscillation, but that is no method of the source: write method = \"forced_oscillation\"";
+        return Err(s.wrong("forced_oscillation", value, problem));
+    }
+    let blocks = s.sections("plan")?;
+    let (of_oscillation, of_speeds): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| of_tank);
     Ok(Source {
         name,
         kind,
@@ -228,7 +241,9 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         tare,
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
-        plan: s.sections("plan")?.iter().map(plan_block).collect::<Result<_, _>>()?,
+        oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
+        plan: of_speeds.into_iter().map(plan_block).collect::<Result<_, _>>()?,
+        oscillation_plan: of_oscillation.into_iter().map(oscillation_plan).collect::<Result<_, _>>()?,
         place: INPUTS
             .into_iter()
             .find_map(|key| s.get(key))
@@ -240,7 +255,9 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 /// Why an input has no rows that something could be said of.
 fn why_no_rows(input: &Input) -> Option<&'static str> {
     match input {
-        Input::Runs { .. } => Some("the budget of runs follows from the campaign that they were driven by"),
+        Input::Runs { .. } => Some(
+            "the budget of runs follows from the campaign that they were driven by (runs of method = \"forced_oscillation\" take models, uncertainty and plan)",
+        ),
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,
     }
@@ -514,7 +531,7 @@ fn simulate(s: &Section<'_>) -> Result<Simulate, RecordError> {
 }
 
 fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
-    s.only(&["quantity", "noise", "resolution", "drift", "bias"])?;
+    s.only(&["quantity", "noise", "resolution", "drift", "bias", "correlation"])?;
     let quantity = s
         .text("quantity")?
         .ok_or_else(|| s.missing("quantity", "name the measured column: f_x, f_y, speed, angle"))?
@@ -533,6 +550,7 @@ fn sensor(s: &Section<'_>) -> Result<SensorSpec, RecordError> {
         resolution: part("resolution")?,
         drift: part("drift")?,
         bias: part("bias")?,
+        correlation_s: s.positive("correlation", Dimension::TIME)?,
         quantity,
     })
 }

@@ -44,6 +44,7 @@ pub mod manifest;
 pub mod memory;
 pub mod nearest;
 pub mod number;
+pub mod oscillation;
 pub mod page;
 mod parquet_sums;
 pub mod parquet_table;

@@ -5,10 +5,14 @@ use std::path::{Path, PathBuf};
 use indexmap::IndexMap;
 
 use crate::error::{Place, RecordError, read_bytes, utf8};
+use crate::estimate::Measured;
 use crate::raw_column::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
+use crate::run::Role;
 use crate::run::channel::Words;
+use crate::run::sidecar::{conditions, configuration};
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
+use crate::section_values::one_of;
 use crate::table::{Column, ColumnData, is_text_column, known_dimension};
 use crate::units::{Dimension, Quantity, Unit, is_plausible, parse_unit};
 
@@ -19,10 +23,25 @@ const LARGEST_BYTES: u64 = 1 << 20;
 pub struct Sidecar {
     /// The file.
     pub path: PathBuf,
+    /// Where the table is the log of a run: what that is.
+    pub run: RunFacts,
     /// `[constants]`.
     pub constants: IndexMap<String, Quantity>,
     /// `[columns]` in the order written: header in the table → what it is.
     pub columns: IndexMap<String, Mapping>,
+}
+
+/// What a log states of its run, in the words of a run that Froude recorded.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RunFacts {
+    /// The method that it belongs to.
+    pub method: Option<String>,
+    /// What it is for there.
+    pub role: Option<Role>,
+    /// Which configuration is mounted; empty where nobody said.
+    pub configuration: String,
+    /// What it was done in.
+    pub conditions: IndexMap<String, Measured>,
 }
 
 /// What one column of the table is.
@@ -34,6 +53,8 @@ pub struct Mapping {
     pub unit: Option<Unit>,
     /// Factor of sign or direction: the number in the table times it is what the name means.
     pub sign: f64,
+    /// What of unit, sign, frame and clock is not written, for methods that take none of them for granted.
+    pub undeclared: Vec<&'static str>,
     /// Factor that gives a dimensionless column its dimension.
     pub scale: Option<Scale>,
     /// The message about it as a channel of a log.
@@ -72,7 +93,16 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     let document = parse(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("sidecar")?;
-    root.only(&["schema", "constants", "columns"])?;
+    root.only(&["schema", "method", "role", "mounted", "conditions", "constants", "columns"])?;
+    if let Some(mounted) = root.section("mounted")? {
+        mounted.only(&["configuration"])?;
+    }
+    let run = RunFacts {
+        method: root.text("method")?.map(str::to_owned),
+        role: one_of(&root, "role", &Role::NAMES, &Role::ALL)?,
+        configuration: configuration(&root)?,
+        conditions: conditions(&root)?,
+    };
     let mut constants = IndexMap::new();
     if let Some(section) = root.section("constants")? {
         for (name, _, value) in section.entries() {
@@ -86,7 +116,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     for (header, _, value) in section.entries() {
         columns.insert(header.to_owned(), mapping(&section.as_section(header, value)?)?);
     }
-    Ok(Sidecar { path: path.to_owned(), constants, columns })
+    Ok(Sidecar { path: path.to_owned(), run, constants, columns })
 }
 
 fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
@@ -139,7 +169,8 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
         });
     }
     let words = Words::read(section, unit.as_ref().map(|unit| unit.dimension))?;
-    Ok(Mapping { name, unit, sign, scale, words, place })
+    let undeclared = ["unit", "sign", "frame", "clock"].into_iter().filter(|key| section.get(key).is_none()).collect();
+    Ok(Mapping { name, unit, sign, undeclared, scale, words, place })
 }
 
 impl Sidecar {

@@ -14,6 +14,7 @@
 //! | [`injection`], [`catalogue`] | what can be broken, and what the controller must say then |
 //! | [`planar`] | motion in the plane with rotation |
 //! | [`decay`] | a body on springs, let go |
+//! | [`oscillation`] | a body on a rod that a servo swings |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock; all chance comes from one seed.
 //!
@@ -52,6 +53,7 @@ pub mod force_sensor;
 pub mod injection;
 pub mod load;
 pub mod noise;
+pub mod oscillation;
 pub mod parameters;
 pub mod planar;
 pub mod plant;

@@ -57,6 +57,17 @@ pub enum SignalError {
         expected: usize,
     },
 
+    /// A record in which no period is found.
+    #[error(
+        "no period is found in {length_s} s of the record (best guess {periods:.2} periods); record several periods, or take the part in which it oscillates"
+    )]
+    NoPeriod {
+        /// Length of the record.
+        length_s: f64,
+        /// Periods at the frequency where the search ended.
+        periods: f64,
+    },
+
     /// A record with a sample that is NaN or infinite.
     #[error("sample {index} is not finite; leave gaps out before filtering")]
     NotFinite {

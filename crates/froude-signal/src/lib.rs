@@ -16,6 +16,7 @@
 //! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
 //! | [`exponential`]     | exact step of a linear system whose inputs stand still             | –                       |
 //! | [`two_mass`]        | two masses and a chain: rows of their accelerations, modes         | –                       |
+//! | [`harmonic`]        | mean, harmonics and their frequency, with uncertainty             | broken periods count    |
 //! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
 //!
 //! **Units.** A rate is in Hz, a time in s, the values are whatever they were (SI in [`two_mass`]).
@@ -34,6 +35,7 @@ pub mod differences;
 mod error;
 pub mod exponential;
 pub mod gaussian;
+pub mod harmonic;
 mod pages;
 pub mod savitzky_golay;
 pub mod spectrum;

@@ -36,8 +36,10 @@ mod error;
 pub mod inspect;
 mod method;
 pub mod pipeline;
+pub mod plan;
 mod registry;
 pub mod results;
+pub mod twin;
 
 /// What most programs need.
 pub mod prelude {

@@ -6,6 +6,7 @@ use froude_carriage::source::Carriage;
 use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::Method;
 use froude_tank::decay::source::FreeDecay;
+use froude_tank::oscillation::source::ForcedOscillation;
 
 /// Names of the methods that read runs of a method.
 pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
@@ -13,4 +14,5 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-pub(crate) const METHODS: [&dyn Method; 6] = [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay];
+pub(crate) const METHODS: [&dyn Method; 7] =
+    [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay, &ForcedOscillation];

@@ -7,9 +7,10 @@ use froude_identify::method::MethodError;
 use froude_identify::runs::{files, logs_in};
 use froude_records::RecordError;
 use froude_records::finding::{Finding, Severity};
+use froude_records::number;
 use froude_records::run::{
-    Block, BodyState, Doubt, DoubtKind, ImportedRun, Mounted, Role, RunMeta, RunReader, RunStatus, TOW, import_run,
-    read_run, read_run_meta,
+    Block, BodyState, Doubt, DoubtKind, FORCED_OSCILLATION, ImportedRun, Mounted, Role, RunMeta, RunReader, RunStatus,
+    TOW, import_run, read_run, read_run_meta,
 };
 use froude_records::text::counted;
 use indexmap::IndexMap;
@@ -147,6 +148,7 @@ fn mounted(mounted: &Mounted) -> String {
 /// Logs of other programs in a folder, as releases are: how long each is, and what it holds.
 fn logs(paths: &[PathBuf]) -> Inspection {
     let (mut facts, mut findings) = (Vec::new(), Vec::new());
+    let mut methods: Vec<String> = Vec::new();
     facts.push((
         "logs".to_owned(),
         format!("{} of other programs; the method that reads them states what they are", paths.len()),
@@ -158,21 +160,41 @@ fn logs(paths: &[PathBuf]) -> Inspection {
                 let rate = log.sample_rate_hz().map_or_else(String::new, |hz| format!(" at {hz:.1} Hz"));
                 let channels = log.channels.iter().map(|(name, c)| format!("{name} [{}]", c.meaning.unit));
                 let channels = channels.collect::<Vec<_>>().join(", ");
+                let stated = stated(&log.meta);
                 facts.push((
                     name,
-                    format!("{}{rate}, {:.3} s: {channels}", counted(log.len(), "sample", "samples"), log.duration_s()),
+                    format!(
+                        "{}{rate}, {:.3} s: {channels}{stated}",
+                        counted(log.len(), "sample", "samples"),
+                        log.duration_s()
+                    ),
                 ));
+                methods.push(log.meta.method);
                 findings.extend(own.into_iter().filter(|finding| finding.severity > Severity::Note));
             }
             Err(error) => findings.push(Finding::new(Severity::Error, "run-unreadable", error.to_string())),
         }
     }
-    facts.push((
-        "next".to_owned(),
-        "runs = \"FOLDER\" and method = \"decay_envelope\" or \"decay_output_error\" in a [[source]] take a folder of releases".to_owned(),
-    ));
+    let next = match methods.first().map(String::as_str) {
+        Some(FORCED_OSCILLATION) => {
+            format!("runs = \"FOLDER\" and method = \"{FORCED_OSCILLATION}\" in a [[source]] take a folder of such runs")
+        }
+        _ => "runs = \"FOLDER\" and method = \"decay_envelope\" or \"decay_output_error\" in a [[source]] take a folder of releases".to_owned(),
+    };
+    facts.push(("next".to_owned(), next));
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     Inspection::new("logs", facts, findings)
+}
+
+/// What the sidecar of a log states about its run; nothing where it states none.
+fn stated(meta: &RunMeta) -> String {
+    if meta.method.is_empty() {
+        return String::new();
+    }
+    let conditions =
+        meta.conditions.iter().map(|(name, c)| format!(", {name} {} {}", number::significant(c.value, 4), c.unit));
+    let mounted = if meta.configuration.is_empty() { String::new() } else { format!(", {}", meta.configuration) };
+    format!("; {}, role {}{mounted}{}", meta.method, meta.role.name(), conditions.collect::<String>())
 }
 
 /// A run: what it was for, its channels, what happened, what is missing.

@@ -53,6 +53,8 @@ const GAP: f64 = 1.5;
 /// A log that was imported, with what was found in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportedRun {
+    /// Its sidecar, where it has one.
+    pub sidecar: Option<Sidecar>,
     /// The run; its gaps are where ticks are missing.
     pub log: RunLog,
     /// How even its time steps are.
@@ -126,7 +128,10 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
     });
     let meta = RunMeta {
         id: table.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
-        role: Role::Excitation,
+        method: sidecar.and_then(|s| s.run.method.clone()).unwrap_or_default(),
+        role: sidecar.and_then(|s| s.run.role).unwrap_or(Role::Excitation),
+        configuration: sidecar.map_or_else(String::new, |s| s.run.configuration.clone()),
+        conditions: sidecar.map(|s| s.run.conditions.clone()).unwrap_or_default(),
         status: RunStatus::Complete,
         constants: constants.collect(),
         channels: channels.iter().map(|(name, channel)| (name.clone(), channel.meaning.clone())).collect(),
@@ -136,7 +141,7 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
     let lost = gaps(&time_s, steps);
     let findings = vec![finding(table, steps, &lost)];
     let log = RunLog { path: table.path.clone(), time_s, channels, lost, meta, ..RunLog::default() };
-    Ok(ImportedRun { log, steps, findings })
+    Ok(ImportedRun { sidecar: sidecar.cloned(), log, steps, findings })
 }
 
 fn channel_name(name: &str) -> String {

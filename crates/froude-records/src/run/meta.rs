@@ -23,6 +23,10 @@ pub struct RunMeta {
     pub role: Role,
     /// What hangs on the strut, and how.
     pub mounted: Mounted,
+    /// Which of the campaign's configurations is mounted; empty where there is one, or nobody said.
+    pub configuration: String,
+    /// What it was done in, by name (`flow = "0.2 m/s"`).
+    pub conditions: IndexMap<String, Measured>,
     /// Where a carriage drove it: how, and on which rig.
     pub carriage: CarriageFacts,
     /// Further constants by name, as a sidecar declares them (`drive_gain = "35.15 N/V"`).
@@ -57,6 +61,8 @@ impl RunMeta {
 
 /// The method of every run that the carriage drives.
 pub const TOW: &str = "tow";
+/// The method of a body that a motor swings.
+pub const FORCED_OSCILLATION: &str = "forced_oscillation";
 /// The method of a body that is let go and swings out.
 pub const FREE_DECAY: &str = "free_decay";
 
@@ -122,11 +128,15 @@ pub enum Role {
     Tare,
     /// A release.
     Decay,
+    /// The test itself, of a tank method: the body in water, moved as the method asks.
+    Test,
+    /// The motion of a test with the body on, in air.
+    DryAir,
 }
 
 impl Role {
     /// Each of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::WarmUp,
         Self::Still,
         Self::Jog,
@@ -139,8 +149,10 @@ impl Role {
         Self::Sweep,
         Self::Tare,
         Self::Decay,
+        Self::Test,
+        Self::DryAir,
     ];
-    pub(crate) const NAMES: [&'static str; 12] = [
+    pub(crate) const NAMES: [&'static str; 14] = [
         "warm_up",
         "still",
         "jog",
@@ -153,6 +165,8 @@ impl Role {
         "sweep",
         "tare",
         "decay",
+        "test",
+        "dry_air",
     ];
 
     /// As it stands in files.

@@ -9,7 +9,9 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use toml::de::DeTable;
+use indexmap::IndexMap;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
 
 use crate::body_axis::BodyAxis;
 use crate::checksum;
@@ -146,7 +148,7 @@ fn written(key: &str, value: &str) -> String {
     if key.starts_with("channels.") {
         return value.to_owned();
     }
-    let is_named_freely = ["versions.", "constants."].iter().any(|section| key.starts_with(section));
+    let is_named_freely = ["versions.", "constants.", "conditions."].iter().any(|section| key.starts_with(section));
     if BARE.contains(&last) && !is_named_freely { value.to_owned() } else { quoted(value) }
 }
 
@@ -194,6 +196,7 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
         ("mounted.ballasted", Some(is_ballasted.to_string())),
         ("mounted.hung_weight", hung_weight_n.map(|w| format!("{w} N"))),
         ("mounted.travel", travel.map(|axis| axis.name().to_owned())),
+        ("mounted.configuration", Some(meta.configuration.clone()).filter(|name| !name.is_empty())),
         ("carriage.axis", Some(axis.name().to_owned())),
         ("carriage.set", set.map(|n| n.to_string())),
         ("carriage.pair", pair.map(|n| n.to_string())),
@@ -246,6 +249,9 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
         put("clock.drift", format!("{} 1", clock.drift));
         put("clock.standard_uncertainty", format!("{} s", clock.standard_uncertainty_s));
     }
+    for (name, condition) in &meta.conditions {
+        put(&format!("conditions.{}", key_word(name)), format!("{} {}", condition.value, condition.unit));
+    }
     for (name, constant) in &meta.constants {
         put(&format!("constants.{}", key_word(name)), format!("{} {}", constant.value, constant.unit));
     }
@@ -285,12 +291,12 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         s.only(&[&ALWAYS[..], &["kind"], &MOUNTED, &CARRIAGE].concat())?;
         (TOW.to_owned(), role("kind")?, mounted(s)?, carriage(s)?)
     } else {
-        s.only(&[&ALWAYS[..], &["method", "role", "mounted", "carriage", "channels"]].concat())?;
+        s.only(&[&ALWAYS[..], &["method", "role", "mounted", "conditions", "carriage", "channels"]].concat())?;
         let method = s.text("method")?.ok_or_else(|| {
             s.missing("method", "state the kind of experiment that it belongs to: \"tow\", \"free_decay\", …")
         })?;
         let mounted = s.section("mounted")?.map(|m| {
-            m.only(&[&MOUNTED[..], &["travel"]].concat())?;
+            m.only(&[&MOUNTED[..], &["travel", "configuration"]].concat())?;
             mounted(&m)
         });
         let carriage = s.section("carriage")?.map(|c| {
@@ -308,6 +314,8 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         role,
         mounted,
         carriage,
+        configuration: configuration(s)?,
+        conditions: conditions(s)?,
         status: one_of(s, "status", &RunStatus::NAMES, &RunStatus::ALL)?.ok_or_else(|| {
             s.missing("status", "state how it ended: \"complete\", \"interrupted\", \"faulted\" or \"cut\"")
         })?,
@@ -352,6 +360,23 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         }
     }
     Ok(out)
+}
+
+/// `configuration` in `[mounted]`.
+pub(crate) fn configuration(s: &Section<'_>) -> Result<String, RecordError> {
+    let Some(mounted) = s.section("mounted")? else { return Ok(String::new()) };
+    Ok(mounted.text("configuration")?.unwrap_or_default().to_owned())
+}
+
+/// `[conditions]`: quantities by name.
+pub(crate) fn conditions(s: &Section<'_>) -> Result<IndexMap<String, Measured>, RecordError> {
+    let Some(section) = s.section("conditions")? else { return Ok(IndexMap::new()) };
+    let one = |(name, _, value): (&str, usize, _)| {
+        let quantity = section.as_quantity(name, value)?;
+        let unit = quantity.unit.dimension.to_string();
+        Ok((name.to_owned(), Measured { value: quantity.value_si, unit }))
+    };
+    section.entries().map(|(name, at, value)| one((name, at, value))).collect()
 }
 
 /// What is mounted: of a section of its own, in schema 1 of the file.
@@ -415,9 +440,18 @@ pub(crate) fn declared(
     key: &'static str,
     dimension: Dimension,
 ) -> Result<Option<Declared>, RecordError> {
-    let Some(value) = s.get(key) else { return Ok(None) };
+    s.get(key).map(|value| declared_value(s, key, value, dimension)).transpose()
+}
+
+/// The same of a key that a person chose.
+pub(crate) fn declared_value<'a>(
+    s: &Section<'a>,
+    key: &str,
+    value: &'a Spanned<DeValue<'a>>,
+    dimension: Dimension,
+) -> Result<Declared, RecordError> {
     if value.get_ref().as_table().is_none() {
-        return Ok(Some(Declared::exact(s.as_quantity_of(key, value, dimension)?)));
+        return Ok(Declared::exact(s.as_quantity_of(key, value, dimension)?));
     }
     let table = s.as_section(key, value)?;
     table.only(&["value", "standard"])?;
@@ -425,7 +459,7 @@ pub(crate) fn declared(
         .get("value")
         .ok_or_else(|| table.missing("value", "a constant is a quantity, or { value = \"…\", standard = \"…\" }"))?;
     let si = table.as_written("value", written, key, dimension)?.value_si;
-    let Some(standard) = table.get("standard") else { return Ok(Some(Declared::exact(si))) };
+    let Some(standard) = table.get("standard") else { return Ok(Declared::exact(si)) };
     let quantity = table.quantity_like("standard", standard, Some((key, dimension)))?;
     let standard_uncertainty = if quantity.unit.text == "%" {
         quantity.value_si * si.abs()
@@ -435,5 +469,5 @@ pub(crate) fn declared(
     if standard_uncertainty < 0.0 {
         return Err(table.wrong("standard", standard, "is negative; a standard uncertainty is not"));
     }
-    Ok(Some(Declared { value: si, standard_uncertainty }))
+    Ok(Declared { value: si, standard_uncertainty })
 }

@@ -55,6 +55,8 @@ impl<'a> Recording<'a> {
                 hung_weight_n: (run.role == Role::Calibration).then_some(run.hung_weight_n),
                 travel: setting.travel.filter(|_| run.body != BodyState::None),
             },
+            configuration: String::new(),
+            conditions: IndexMap::new(),
             carriage: CarriageFacts {
                 set: run.set,
                 pair: run.pair,

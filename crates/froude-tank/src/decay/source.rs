@@ -198,6 +198,13 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
     let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     for path in paths {
         let mut log = import_run(&path, None)?;
+        if !log.log.meta.method.is_empty() && log.log.meta.method != FREE_DECAY {
+            let what = format!(
+                "is a run of {}, and releases are read here; give its folder a source of its own",
+                log.log.meta.method
+            );
+            return Err(MethodError::input(path, what));
+        }
         (log.log.meta.method, log.log.meta.role) = (FREE_DECAY.to_owned(), Role::Decay);
         // Steps that are not even are refused by the methods; that they are is no news.
         out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, dynamic,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, dynamic,
 //! potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -21,6 +21,7 @@ mod eiv;
 mod emps;
 mod flexible;
 mod kvlcc2;
+mod oscillation;
 mod potential;
 mod potential_laws;
 mod rm2;
@@ -76,6 +77,9 @@ fn main() -> ExitCode {
         }
         if wants("decay") {
             decay::all(claims, if full { 2_000 } else { 200 });
+        }
+        if wants("oscillation") {
+            oscillation::all(claims, &root, if full { 2_000 } else { 30 })?;
         }
         if wants("dynamic") {
             dynamic::all(claims, &root, if full { 60 } else { 8 })?;

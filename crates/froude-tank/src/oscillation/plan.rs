@@ -1,0 +1,128 @@
+//! The plan of a forced oscillation: run matrix, time in the tank, and the intervals to expect.
+
+use std::f64::consts::TAU;
+
+use froude_hydro::similarity::keulegan_carpenter;
+use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::campaign::{Campaign, Source};
+use froude_records::number;
+use froude_records::page::{DocumentSection, TextTable};
+
+use super::forces::Drag;
+use super::forecast::{Forecast, forecast};
+use super::setup::Setup;
+use super::simulate::{Planned, Truths, configurations, planned};
+use super::source::{declared, setup_of};
+
+/// What the plan of a source takes and determines.
+///
+/// # Errors
+///
+/// What the campaign does not declare, runs too short for their cycles, coefficients that the plan does not determine.
+pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
+    let spec = declared(source)?;
+    let setup = setup_of(campaign, source, spec, &configurations(source))?;
+    let truth = Truths::of(campaign, source, &setup)?;
+    let planned = planned(source, &setup);
+    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    // Another law than the true one is off by what it lacks, which no linearisation forecasts.
+    let drag = Drag::new(truth.law.clone()).map_err(MethodError::refused)?;
+    let law = drag.law.name.clone();
+    let found = forecast(&planned, &setup, &truth, &drag, sensors, &campaign.identify).map_err(MethodError::refused)?;
+    let expected = found.expected.iter().map(|e| ExpectedCoefficient {
+        model: law.clone(),
+        name: e.name.clone(),
+        unit: e.unit.clone(),
+        value: e.value,
+        standard_uncertainty: e.combined.standard,
+        half_width_95: e.combined.arms[1],
+    });
+    let (expected, tables) =
+        (expected.collect(), vec![runs(&planned, &found.cycles, &setup, campaign), coefficients(&law, &found)]);
+    let duration_s = planned.iter().map(duration_s).sum();
+    let section = DocumentSection {
+        title: format!("Plan of {}", source.name),
+        paragraphs: vec![format!(
+            "{} of {} in all on the log, waits between them and changes of configuration not counted. The intervals are those of the linearised joint fit at the true coefficients of \
+             [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
+            froude_records::text::counted(planned.len(), "run", "runs"),
+            minutes(duration_s)
+        )],
+        tables,
+        charts: Vec::new(),
+    };
+    Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected, section })
+}
+
+fn duration_s(run: &Planned) -> f64 {
+    run.swing.still_s + run.swing.periods * TAU / run.swing.omega_rad_s
+}
+
+fn minutes(seconds: f64) -> String {
+    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
+}
+
+fn runs(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campaign) -> TextTable {
+    let height_m = campaign.body.as_ref().and_then(|b| b.link).map(|link| 2.0 * link.major_semi_axis_m);
+    let rows = planned.iter().zip(cycles).map(|(run, cycles)| {
+        let (alpha, omega) = (run.swing.amplitude_rad, run.swing.omega_rad_s);
+        let speed = setup.radius_m.value.abs() * alpha * omega;
+        vec![
+            run.id.clone(),
+            setup.bodies[run.body].name.clone(),
+            number::significant(run.swing.flow_m_s, 3),
+            number::plain(alpha.to_degrees(), 4),
+            number::plain(omega.to_degrees(), 4),
+            number::plain(omega / TAU, 4),
+            number::significant(speed, 3),
+            number::significant(speed * omega, 3),
+            height_m
+                .map_or_else(|| "–".to_owned(), |h| number::significant(keulegan_carpenter(speed, TAU / omega, h), 3)),
+            cycles.to_string(),
+            number::fixed(duration_s(run), 1),
+        ]
+    });
+    TextTable {
+        caption: "Run matrix.".to_owned(),
+        head: [
+            "run",
+            "configuration",
+            "stream [m/s]",
+            "amplitude [deg]",
+            "ω [deg/s]",
+            "frequency [Hz]",
+            "speed amplitude [m/s]",
+            "acceleration amplitude [m/s²]",
+            "KC [1]",
+            "cycles used",
+            "duration [s]",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+fn coefficients(law: &str, found: &Forecast) -> TextTable {
+    let rows = found.expected.iter().map(|e| {
+        let half = e.combined.arms[1];
+        let relative = if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) };
+        let largest = (0..found.parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
+        vec![
+            e.name.clone(),
+            e.unit.clone(),
+            number::significant(e.value, 4),
+            number::significant(half, 2),
+            relative,
+            largest
+                .map_or_else(String::new, |k| format!("{} ({})", found.parts[k], number::significant(e.by_part[k], 2))),
+        ]
+    });
+    TextTable {
+        caption: format!(
+            "Intervals to expect, with the drag law {law} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
+        ),
+        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
+}

@@ -1,0 +1,245 @@
+//! A forced oscillation as an estimate, and which of several drag laws is recommended.
+
+use froude_fit::Status as Found;
+use froude_fit::faer::Mat;
+use froude_hydro::similarity::keulegan_carpenter;
+use froude_hydro::swing::Medium;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::estimate::{
+    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output, Range,
+    ReferencePoint, SharedError, Signs, Status, TypeA,
+};
+use froude_records::number;
+use froude_records::run::FORCED_OSCILLATION;
+use indexmap::IndexMap;
+
+use super::fit::{ADDED, BUOYANCY, DELAY, OscillationFit};
+use super::forces::{Drag, LOAD};
+use super::motion::Motion;
+use super::setup::{OscillationRun, Setup};
+
+/// Laws whose criterion lies within this of the smallest are not told apart.
+const ALIKE: f64 = 2.0;
+
+/// What an estimate is made from beside its fit.
+#[derive(Debug, Clone, Copy)]
+pub struct Context<'a> {
+    /// The campaign.
+    pub campaign: &'a Campaign,
+    /// The source.
+    pub source: &'a Source,
+    /// What is declared.
+    pub setup: &'a Setup,
+    /// The runs.
+    pub runs: &'a [OscillationRun<'a>],
+    /// Their motions.
+    pub motions: &'a [Motion],
+}
+
+/// The law with the fewest coefficients among those whose AICc, at the effective number of samples, lies within 2 of the smallest.
+#[must_use]
+pub fn chosen(fits: &[(Drag, OscillationFit)]) -> usize {
+    let score = |i: usize| fits[i].1.aicc.unwrap_or(f64::INFINITY);
+    let least = (0..fits.len()).map(score).fold(f64::INFINITY, f64::min);
+    let near = |i: &usize| score(*i) <= least + ALIKE || fits.len() == 1;
+    (0..fits.len()).filter(near).min_by_key(|&i| fits[i].0.columns.len()).unwrap_or(0)
+}
+
+/// The estimate of one drag law; `of` is how many laws it was chosen from, where it is the recommended one.
+#[must_use]
+pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Option<usize>) -> Estimate {
+    let Context { campaign, source, setup, runs, motions } = *context;
+    let names: Vec<String> = fit.unknowns.iter().map(|u| u.name.clone()).collect();
+    let n = names.len();
+    let rows = |m: &Mat<f64>| (0..n).map(|i| (0..n).map(|j| m[(i, j)]).collect()).collect();
+    let scatter = &fit.parts[0];
+    let coefficients = fit.unknowns.iter().map(|u| {
+        let coefficient = Coefficient {
+            label: None,
+            value: u.value,
+            unit: u.unit.clone(),
+            status: status(u.status),
+            nuisance: u.name == DELAY || u.name.starts_with(BUOYANCY),
+            standard_uncertainty: u.combined.map(|c| c.standard),
+            type_a: u.combined.map(|c| c.type_a),
+            type_b: u.combined.map(|c| c.type_b),
+            interval_95: u.value.zip(u.combined).map(|(value, c)| c.interval(value)),
+            effective_dof: u.combined.map(|c| c.dof).filter(|d| d.is_finite()),
+        };
+        (u.name.clone(), coefficient)
+    });
+    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
+    let body = campaign.body.as_ref();
+    let mut refers_to = IndexMap::from([("density".to_owned(), measured(setup.density_kg_m3.value, "kg/m^3"))]);
+    if let Some(volume) = body.and_then(|b| b.link_volume_m3) {
+        refers_to.insert("link_volume".to_owned(), measured(volume, "m^3"));
+    } else if let [only] = setup.bodies.as_slice() {
+        refers_to.insert("volume".to_owned(), measured(only.reference_volume_m3, "m^3"));
+    }
+    let words = body.and_then(|b| b.reference_point.clone());
+    let wet = || runs.iter().zip(motions).filter(|(run, _)| run.medium == Medium::Water);
+    let reason = of.map(|laws| {
+        if laws == 1 {
+            "the only drag law that was asked for".to_owned()
+        } else {
+            "fewest coefficients of the drag laws whose AICc, at the effective number of samples, lies within 2 of the smallest".to_owned()
+        }
+    });
+    Estimate {
+        id: format!("{}/{FORCED_OSCILLATION} {}", source.name, fit.law),
+        source: source.name.clone(),
+        kind: source.kind.name().to_owned(),
+        method: MethodUsed { name: FORCED_OSCILLATION.to_owned(), version: 1, words: method_words(fit, setup) },
+        frame: Frame::body(),
+        point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
+        signs: Signs::default(),
+        attitude: None,
+        law: law(fit, drag, setup),
+        refers_to,
+        data: Vec::new(),
+        n_observations: fit.samples,
+        clusters: Some(Clusters { by: fit.by.to_owned(), n: fit.clusters }),
+        dof: IndexMap::from([(LOAD.to_owned(), scatter.dof.first().copied().filter(|d| d.is_finite()))]),
+        sigma: IndexMap::new(),
+        coefficients: coefficients.collect(),
+        derived: IndexMap::new(),
+        type_a: Some(TypeA {
+            names,
+            matrix: rows(&scatter.covariance),
+            dof: scatter.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
+            kind: format!("CR3, {} {}s", fit.clusters, fit.by),
+        }),
+        errors: errors(fit, campaign),
+        interval: Interval::default(),
+        undetermined: Vec::new(),
+        validity: validity(wet(), setup, campaign),
+        diagnostics: Diagnostics { notes: notes(fit), ..Diagnostics::default() },
+        recommended: of.is_some(),
+        reason,
+    }
+}
+
+fn status(found: Found) -> Status {
+    match found {
+        Found::Free => Status::Free,
+        Found::AtBound => Status::AtBound,
+        Found::Fixed => Status::Fixed,
+        Found::Excluded => Status::Excluded,
+        Found::Prior => Status::Prior,
+        Found::Undetermined => Status::Undetermined,
+        Found::BoundContradicted => Status::BoundContradicted,
+    }
+}
+
+/// What was done to the data, step by step.
+fn method_words(fit: &OscillationFit, setup: &Setup) -> String {
+    let used = setup.cycles.used.map_or_else(|| "all that follow".to_owned(), |n| n.to_string());
+    format!(
+        "cycles of each run: {} of start-up left out, {used} used; angle by {} harmonics of a fitted frequency; motion taken {} ms before the stamp of the force; zero of each run \
+         fitted; {}",
+        setup.cycles.skip,
+        setup.harmonics,
+        number::plain(1e3 * fit.delay_s, 4),
+        setup.pivot.words()
+    )
+}
+
+/// The load as a formula, where the drag law is one; `volume` is the reference volume of the configuration.
+fn law(fit: &OscillationFit, drag: &Drag, setup: &Setup) -> Law {
+    let formula = drag.law.texts.get(LOAD).map(|text| format!("{text} - {ADDED}*density*volume*v_y_dot"));
+    let mut inputs: IndexMap<String, String> =
+        drag.law.channels().into_iter().map(|name| (name.to_owned(), unit_of(name).to_owned())).collect();
+    for name in ["v_y_dot", "density", "volume"] {
+        inputs.insert(name.to_owned(), unit_of(name).to_owned());
+    }
+    let constants = setup.bodies.iter().map(|body| {
+        let of = if body.name.is_empty() { String::new() } else { format!("_{}", body.name) };
+        (format!("volume{of}"), Measured { value: body.reference_volume_m3, unit: "m^3".to_owned() })
+    });
+    Law {
+        name: format!("added_mass_{}", fit.law),
+        version: 1,
+        inputs,
+        outputs: IndexMap::from([(LOAD.to_owned(), Output { unit: "N".to_owned(), formula })]),
+        constants: constants.collect(),
+    }
+}
+
+fn unit_of(channel: &str) -> &'static str {
+    match channel {
+        "v_x" | "v_y" | "speed" => "m/s",
+        "v_y_dot" => "m/s^2",
+        "density" => "kg/m^3",
+        "volume" => "m^3",
+        "angle" => "rad",
+        _ => "1",
+    }
+}
+
+/// Declared errors by key: sources of the campaign that declare them alike have them in common.
+fn errors(fit: &OscillationFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
+    let one = |error: &super::fit::DeclaredError| {
+        let key = format!("{}/{} {:e}", campaign.key, error.name, error.standard);
+        let shared = SharedError {
+            name: error.name.clone(),
+            quantity: error.name.clone(),
+            kind: ErrorKind::B,
+            covariance: vec![vec![error.standard * error.standard]],
+            dof: Some(error.dof).filter(|d| d.is_finite()),
+            limits: None,
+            sensitivity: error.sensitivity.iter().map(|s| vec![*s]).collect(),
+        };
+        (key, shared)
+    };
+    fit.errors.iter().map(one).collect()
+}
+
+/// Where the coefficients are supported: speeds, amplitudes, periods, and the numbers of oscillation.
+fn validity<'a>(
+    runs: impl Iterator<Item = (&'a OscillationRun<'a>, &'a Motion)>,
+    setup: &Setup,
+    campaign: &Campaign,
+) -> IndexMap<String, Range> {
+    let mut ranges: IndexMap<&str, (f64, f64, &str)> = IndexMap::new();
+    let mut take = |name: &'static str, value: f64, unit: &'static str| {
+        let range = ranges.entry(name).or_insert((f64::INFINITY, f64::NEG_INFINITY, unit));
+        (range.0, range.1) = (range.0.min(value), range.1.max(value));
+    };
+    let height_m = campaign.body.as_ref().and_then(|b| b.link).map(|link| 2.0 * link.major_semi_axis_m);
+    for (run, motion) in runs {
+        let amplitude = motion.angle.amplitude(1);
+        let (period, speed) =
+            (motion.angle.period_s(), setup.radius_m.value.abs() * amplitude * motion.angle.omega_rad_s);
+        take("flow", run.flow_m_s, "m/s");
+        take("amplitude", amplitude, "rad");
+        take("period", period, "s");
+        take("speed", speed, "m/s");
+        if let Some(height) = height_m {
+            take("KC", keulegan_carpenter(speed, period, height), "1");
+            if let Some(viscosity) = campaign.fluid.kinematic_viscosity_m2_s {
+                take("beta", height * height / (viscosity * period), "1");
+            }
+        }
+    }
+    let range = |(name, (low, high, unit)): (&str, (f64, f64, &str))| {
+        (name.to_owned(), Range { low, high, unit: unit.to_owned() })
+    };
+    ranges.into_iter().map(range).collect()
+}
+
+/// The budget of each coefficient, in sentences, and what the samples are worth.
+fn notes(fit: &OscillationFit) -> Vec<String> {
+    let mut out = vec![format!(
+        "{} samples are worth {} (residuals correlated over {} samples); residual {} N",
+        number::count(fit.samples),
+        number::count(fit.effective.round() as usize),
+        number::significant(fit.samples as f64 / fit.effective, 2),
+        number::significant(fit.sigma_n, 2)
+    )];
+    out.extend(fit.parts.iter().filter(|part| (0..fit.unknowns.len()).any(|j| part.standard(j) > 0.0)).map(|part| {
+        let each =
+            fit.unknowns.iter().enumerate().map(|(j, u)| format!("{} {:.2e} {}", u.name, part.standard(j), u.unit));
+        format!("{} (type {}): {}", part.name, part.kind, each.collect::<Vec<_>>().join(", "))
+    }));
+    out
+}

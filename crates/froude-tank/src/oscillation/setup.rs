@@ -1,0 +1,131 @@
+//! What a forced oscillation gives: runs over time, and what is declared about body, rig and water.
+
+use froude_fit::budget::Uncertain;
+use froude_hydro::swing::{Medium, Pivot};
+
+use super::error::OscillationError;
+
+/// One run: columns of one length, time increasing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OscillationRun<'a> {
+    /// Name of the run, for messages.
+    pub id: &'a str,
+    /// Which of the bodies of the setup hung on the rod.
+    pub body: usize,
+    /// In water or in air.
+    pub medium: Medium,
+    /// U, m/s.
+    pub flow_m_s: f64,
+    /// Time, s.
+    pub time_s: &'a [f64],
+    /// φ, rad.
+    pub angle_rad: &'a [f64],
+    /// Force of the rig on the body along +y, N; its zero is free.
+    pub force_n: &'a [f64],
+}
+
+/// A configuration, and what is declared of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Its name; empty where there is one body without a name.
+    pub name: String,
+    /// k, links of a snake robot between head and tail; `None` for a body that is no `HkLT`.
+    pub n_links: Option<f64>,
+    /// V: the volume that C_A refers to, m³.
+    pub reference_volume_m3: f64,
+    /// m: all that moves below the load cell, kg.
+    pub mass_kg: Uncertain,
+    /// B: buoyancy less weight, N, as far as it is known beforehand.
+    pub buoyancy_n: Option<Uncertain>,
+}
+
+/// Which cycles of a run are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cycles {
+    /// Whole cycles left out after the motion has begun.
+    pub skip: usize,
+    /// Whole cycles used after those; `None` for all, and the broken one at the end.
+    pub used: Option<usize>,
+    /// Fewest whole cycles.
+    pub fewest: usize,
+}
+
+impl Default for Cycles {
+    fn default() -> Self {
+        Self { skip: 1, used: None, fewest: 5 }
+    }
+}
+
+/// What is declared about rig and water.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// How the pivot lies.
+    pub pivot: Pivot,
+    /// r: from the pivot axis to the body's reference point, m.
+    pub radius_m: Uncertain,
+    /// The configurations.
+    pub bodies: Vec<Body>,
+    /// ρ, kg/m³.
+    pub density_kg_m3: Uncertain,
+    /// U is the run's; this is its standard uncertainty, one error of all runs, as part of U.
+    pub flow_relative: f64,
+    /// Gain error of the angle, as part of it.
+    pub angle_relative: f64,
+    /// Gain error of the force, as part of it.
+    pub force_relative: f64,
+    /// Delay of the force behind the angle, s, as far as it is known beforehand: with a standard uncertainty of 0 it is taken as it is.
+    pub delay_s: Option<Uncertain>,
+    /// Which cycles are used.
+    pub cycles: Cycles,
+    /// Harmonics of the angle.
+    pub harmonics: usize,
+}
+
+impl Setup {
+    /// One pivot along the stream, everything exact, nothing known of buoyancies and delay.
+    #[must_use]
+    pub fn new(radius_m: Uncertain, density_kg_m3: f64, bodies: Vec<Body>) -> Self {
+        Self {
+            pivot: Pivot::Stream,
+            radius_m,
+            bodies,
+            density_kg_m3: Uncertain::new(density_kg_m3, 0.0),
+            flow_relative: 0.0,
+            angle_relative: 0.0,
+            force_relative: 0.0,
+            delay_s: None,
+            cycles: Cycles::default(),
+            harmonics: 3,
+        }
+    }
+
+    /// The numbers are possible.
+    pub(super) fn check(&self) -> Result<(), OscillationError> {
+        let refuse =
+            |what: String, value: f64, must: &'static str| Err(OscillationError::Declared { what, value, must });
+        if !(self.radius_m.value != 0.0 && self.radius_m.value.is_finite()) {
+            return refuse("the radius".to_owned(), self.radius_m.value, "finite and not zero");
+        }
+        if !(self.density_kg_m3.value > 0.0 && self.density_kg_m3.value.is_finite()) {
+            return refuse("the density".to_owned(), self.density_kg_m3.value, "above zero and finite");
+        }
+        for body in &self.bodies {
+            let of =
+                |what: &str| if body.name.is_empty() { what.to_owned() } else { format!("{what} of {}", body.name) };
+            if !(body.mass_kg.value >= 0.0 && body.mass_kg.value.is_finite()) {
+                return refuse(of("the mass"), body.mass_kg.value, "zero or more and finite");
+            }
+            if !(body.reference_volume_m3 > 0.0 && body.reference_volume_m3.is_finite()) {
+                return refuse(of("the reference volume"), body.reference_volume_m3, "above zero and finite");
+            }
+            if self.pivot == Pivot::Upright && body.buoyancy_n.is_some() {
+                return refuse(
+                    of("the buoyancy"),
+                    body.buoyancy_n.map_or(0.0, |b| b.value),
+                    "left out: about an upright pivot it has no part across the body",
+                );
+            }
+        }
+        Ok(())
+    }
+}

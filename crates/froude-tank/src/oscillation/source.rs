@@ -1,0 +1,362 @@
+//! Forced oscillation as a source of a campaign: a folder of logs, one run each, with a sidecar that states what it is.
+
+use std::path::Path;
+
+use froude_fit::budget::Uncertain;
+use froude_hydro::fluid::Water;
+use froude_hydro::swing::Medium;
+use froude_identify::answer::Made;
+use froude_identify::dataset::Dataset;
+use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::runs::{logs_in, recorded_in, refuse_others};
+use froude_identify::source::{ReadFile, laws};
+use froude_records::campaign::{Campaign, Source};
+use froude_records::finding::{Finding, Severity};
+use froude_records::oscillation::OscillationSpec;
+use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role, import_run};
+use froude_records::table::links_of_configuration;
+use froude_records::units::Dimension;
+
+use super::forces::{Drag, LOAD};
+use super::setup::{Body, Cycles, OscillationRun, Setup};
+use super::{findings, fit, motions, page, plan, record, simulate};
+
+/// The joint fit in time.
+pub struct ForcedOscillation;
+
+const WORDS: &str =
+    "added mass, drag, buoyancy and delay fitted together in time, to runs of a body that a motor swings";
+/// The drag law where none is asked for.
+const DEFAULT_LAW: &str = "linear_quadratic";
+
+impl Method for ForcedOscillation {
+    fn names(&self) -> &'static [&'static str] {
+        &[FORCED_OSCILLATION]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        WORDS
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const DRY: Need = Need { is_optional: true, ..Need::of(&["dry_air"], &["angle", "force"]) };
+        const { &[Need::of(&["test"], &["angle", "force"]), DRY] }
+    }
+
+    fn runs(&self) -> &'static str {
+        FORCED_OSCILLATION
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let spec = declared(source)?;
+        progress("reading the runs");
+        let Logs { runs: logs, files, mut findings } = read(source.input.path())?;
+        let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
+        progress("fitting the angles");
+        let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
+        let mut fits = Vec::new();
+        for drag in drags(campaign, source, &setup)? {
+            progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
+            let fit = fit(&runs, &motions, &setup, &drag, &campaign.identify).map_err(MethodError::refused)?;
+            fits.push((drag, fit));
+        }
+        let chosen = record::chosen(&fits);
+        findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
+        findings.extend(fits.iter().flat_map(|(_, fit)| findings::of_fit(fit, &runs, &motions, &setup)));
+        let blocks = fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup)).into_iter().collect();
+        let estimate = |(i, (drag, fit)): (usize, &(Drag, _))| {
+            let context = record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions };
+            let estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
+            Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
+        };
+        let results = fits.iter().enumerate().map(estimate).collect();
+        Ok(Found { results, blocks, findings: distinct(findings), ..Found::default() })
+    }
+
+    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        simulate::files(campaign, source).map(Some)
+    }
+
+    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        plan::prospect(campaign, source).map(Some)
+    }
+}
+
+/// What several fits state alike is reported once.
+fn distinct(findings: Vec<Finding>) -> Vec<Finding> {
+    let mut out: Vec<Finding> = Vec::new();
+    for finding in findings {
+        if !out.contains(&finding) {
+            out.push(finding);
+        }
+    }
+    out
+}
+
+/// Configurations of the runs, in order of first appearance.
+fn configurations(logs: &[ImportedRun]) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for log in logs {
+        if !out.contains(&log.log.meta.configuration) {
+            out.push(log.log.meta.configuration.clone());
+        }
+    }
+    out
+}
+
+fn uncertain(declared: Declared) -> Uncertain {
+    Uncertain::new(declared.value, declared.standard_uncertainty)
+}
+
+/// `[source.forced_oscillation]`.
+///
+/// # Errors
+///
+/// It is not there.
+pub fn declared(source: &Source) -> Result<&OscillationSpec, MethodError> {
+    source.oscillation.as_ref().ok_or_else(|| {
+        let what =
+            "nothing is declared of the body that swings: write [source.forced_oscillation] with pivot, radius and mass";
+        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+    })
+}
+
+/// Everything that the campaign declares, for the configurations that there are.
+///
+/// # Errors
+///
+/// What is missing, and what to write; a budget entry of a quantity that this method does not have.
+pub fn setup_of(
+    campaign: &Campaign,
+    source: &Source,
+    spec: &OscillationSpec,
+    configurations: &[String],
+) -> Result<Setup, MethodError> {
+    let missing = |what: String| MethodError::Undeclared { place: source.place.to_string(), what };
+    let spec_of_body = campaign.body.as_ref();
+    let body = |name: &String| {
+        let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
+        let n_links = links_of_configuration(name).map(f64::from);
+        let per_link = spec_of_body.and_then(|b| b.link_volume_m3).zip(n_links).map(|(v, k)| v * k);
+        let volume = per_link
+            .or_else(|| spec_of_body.and_then(|b| b.volumes.get(name).copied()))
+            .or_else(|| spec_of_body.and_then(|b| b.volume_m3))
+            .ok_or_else(|| {
+                missing(format!(
+                    "C_A means nothing without the volume that it refers to, and none is declared{of}: write [body] volume = \"1.1e-3 m^3\", \
+                     volumes = {{ H1LT = \"…\" }}, or link_volume for HkLT (the volume per link)"
+                ))
+            })?;
+        let mass = spec.mass_kg.of(name).ok_or_else(|| {
+            missing(format!("no mass is declared{of}: write it in [source.forced_oscillation] mass, {name} = {{ value = \"1.63 kg\", standard = \"5 g\" }}"))
+        })?;
+        Ok(Body {
+            name: name.clone(),
+            n_links,
+            reference_volume_m3: volume,
+            mass_kg: uncertain(mass),
+            buoyancy_n: spec.buoyancy_n.of(name).map(uncertain),
+        })
+    };
+    let fluid = &campaign.fluid;
+    let density = match (fluid.density_kg_m3, fluid.temperature_degc) {
+        (Some(density), _) => density,
+        (None, Some(t)) => {
+            let water = Water::at(t, fluid.salinity_g_kg.unwrap_or(0.0));
+            water.map_err(|e| missing(format!("[fluid]: {e}")))?.density_kg_m3
+        }
+        (None, None) => {
+            return Err(missing("the added mass needs the water: write [fluid] density, or temperature".to_owned()));
+        }
+    };
+    let bodies = configurations.iter().map(body).collect::<Result<_, MethodError>>()?;
+    let mut out = Setup {
+        pivot: spec.pivot,
+        delay_s: spec.delay_s.map(uncertain),
+        cycles: Cycles { skip: spec.skip, used: spec.used, fewest: spec.fewest },
+        harmonics: spec.harmonics,
+        ..Setup::new(uncertain(spec.radius_m), density, bodies)
+    };
+    for entry in &source.uncertainty {
+        let part = if entry.relative { entry.standard } else { f64::NAN };
+        let gain = match entry.quantity.as_str() {
+            "density" => {
+                out.density_kg_m3.standard = if entry.relative { entry.standard * density } else { entry.standard };
+                continue;
+            }
+            "angle" => &mut out.angle_relative,
+            "force" | LOAD => &mut out.force_relative,
+            "flow" | "speed" => &mut out.flow_relative,
+            other => {
+                return Err(MethodError::Undeclared {
+                    place: entry.place.to_string(),
+                    what: format!(
+                        "quantity = {other:?} is none that a forced oscillation has: it has force, angle, flow and density; radius, mass, buoyancy and \
+                         delay take their standard uncertainties in [source.forced_oscillation]"
+                    ),
+                });
+            }
+        };
+        if part.is_nan() {
+            return Err(MethodError::Undeclared {
+                place: entry.place.to_string(),
+                what: format!(
+                    "the uncertainty of {} is a gain that all runs share: write it as a percentage (the zero of each run is fitted, and noise shows in \
+                     the scatter)",
+                    entry.quantity
+                ),
+            });
+        }
+        *gain = part;
+    }
+    Ok(out)
+}
+
+/// The drag laws that the source asks for, as the force across the body.
+///
+/// # Errors
+///
+/// An unknown law, or one that cannot be used here.
+pub fn drags(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Vec<Drag>, MethodError> {
+    let mut data = Dataset { rows: 1, ..Dataset::default() };
+    data.configuration = vec![String::new()];
+    (data.setup, data.run, data.line) = (vec![String::new()], vec![String::new()], vec![1]);
+    data.put("v_x", vec![0.1], Dimension::SPEED);
+    data.put("v_y", vec![0.1], Dimension::SPEED);
+    data.speed_and_angle_from_velocity();
+    data.put("density", vec![setup.density_kg_m3.value], Dimension::DENSITY);
+    if setup.bodies.iter().all(|body| body.n_links.is_some()) {
+        data.put("n_links", vec![1.0], Dimension::ONE);
+    }
+    data.put(LOAD, vec![0.0], Dimension::FORCE);
+    let mut asking = source.clone();
+    let nobody =
+        source.models.is_empty() && campaign.identify.models.is_empty() && campaign.identify.user_models.is_empty();
+    if nobody {
+        asking.models = vec![DEFAULT_LAW.to_owned()];
+    }
+    let laws = laws(campaign, &asking, &data)?;
+    laws.into_iter().map(|law| Drag::new(law).map_err(MethodError::refused)).collect()
+}
+
+struct Logs {
+    runs: Vec<ImportedRun>,
+    files: Vec<ReadFile>,
+    findings: Vec<Finding>,
+}
+
+/// Every log of a folder that is a test, or its motion in air.
+fn read(folder: &Path) -> Result<Logs, MethodError> {
+    if folder.is_file() {
+        return Err(MethodError::input(
+            folder,
+            "`runs` is a folder with one log per run; put the logs that are meant into a folder of their own",
+        ));
+    }
+    let paths = logs_in(folder)?;
+    if paths.is_empty() {
+        refuse_others(folder, FORCED_OSCILLATION, &recorded_in(folder)?)?;
+        let what = "no runs: put one log per run there, as CSV or Parquet with time, angle and force, each with a sidecar (.toml)";
+        return Err(MethodError::input(folder, what));
+    }
+    let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
+    for path in paths {
+        let log = import_run(&path, None)?;
+        let meta = &log.log.meta;
+        if meta.method != FORCED_OSCILLATION {
+            let found = if meta.method.is_empty() {
+                "states no method".to_owned()
+            } else {
+                format!("is a run of {}", meta.method)
+            };
+            let what = format!(
+                "{found}; write method = \"{FORCED_OSCILLATION}\", role = \"test\" and [mounted] configuration at the head of {}",
+                path.with_extension("toml").display()
+            );
+            return Err(MethodError::input(path, what));
+        }
+        out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
+        let role = meta.role;
+        if !matches!(role, Role::Test | Role::DryAir) {
+            let text =
+                format!("{}: a run of the role {} is not used by {FORCED_OSCILLATION}", path.display(), role.name());
+            out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
+            continue;
+        }
+        let sidecar = path.with_extension("toml");
+        out.files.push(ReadFile::new(path, role.name()));
+        if sidecar.exists() {
+            out.files.push(ReadFile::new(sidecar, "sidecar"));
+        }
+        out.runs.push(log);
+    }
+    Ok(out)
+}
+
+/// A log as a run: its angle and its force, and the stream that it was done in.
+fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<OscillationRun<'a>, MethodError> {
+    let meta = &log.log.meta;
+    let medium = if meta.role == Role::DryAir { Medium::Air } else { Medium::Water };
+    let flow_m_s = match meta.conditions.get("flow") {
+        Some(flow) if flow.unit == Dimension::SPEED.to_string() => flow.value,
+        Some(flow) => {
+            return Err(MethodError::input(
+                &log.log.path,
+                format!("[conditions] flow is in {}, and is a speed", flow.unit),
+            ));
+        }
+        None if medium == Medium::Air => 0.0,
+        None => {
+            let what = "the speed of the stream is not declared; write [conditions] flow = \"0.2 m/s\" in its sidecar (\"0 m/s\" in water at rest)";
+            return Err(MethodError::input(&log.log.path, what));
+        }
+    };
+    let body = setup.bodies.iter().position(|body| body.name == meta.configuration).unwrap_or(0);
+    Ok(OscillationRun {
+        id: &meta.id,
+        body,
+        medium,
+        flow_m_s,
+        time_s: &log.log.time_s,
+        angle_rad: &channel(log, "angle", Dimension::ANGLE)?.values,
+        force_n: &channel(log, "force", Dimension::FORCE)?.values,
+    })
+}
+
+/// A channel that is declared in full: nothing about it is taken for granted.
+fn channel<'a>(log: &'a ImportedRun, name: &str, dimension: Dimension) -> Result<&'a Channel, MethodError> {
+    let of_axes = if name == "angle" {
+        "the pivot; positive where the body moves towards +y"
+    } else {
+        "the rig on the body along +y"
+    };
+    let channel = log.log.channels.get(name).filter(|c| c.meaning.unit == dimension.to_string()).ok_or_else(|| {
+        let there: Vec<&str> = log.log.channels.keys().map(String::as_str).collect();
+        let there = if there.is_empty() { "nothing beside the time".to_owned() } else { there.join(", ") };
+        MethodError::input(
+            &log.log.path,
+            format!("a run needs the channel {name} ({}), and has {there}", dimension.describe()),
+        )
+    })?;
+    let mapping = log.sidecar.iter().flat_map(|s| s.columns.values()).find(|column| column.name == name);
+    let undeclared = mapping.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |m| m.undeclared.clone());
+    if undeclared.is_empty() {
+        return Ok(channel);
+    }
+    let place = mapping.map_or_else(|| log.log.path.display().to_string(), |m| m.place.to_string());
+    Err(MethodError::Undeclared {
+        place,
+        what: format!(
+            "{name} states no {}; added mass is wrong by its size where one is guessed: write {{ name = \"{name}\", unit = \"…\", sign = 1, frame = \"body\", \
+             clock = \"log\" }}, sign being that of {of_axes}",
+            undeclared.join(", no ")
+        ),
+    })
+}

@@ -1,0 +1,203 @@
+//! Forced oscillation on its twin: Table 4 of the USR paper, H1LT and H2LT at 0.476 m, drag of the circulation tank (f4 of Table 9).
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+
+use froude_fit::budget::Uncertain;
+use froude_hydro::swing::{Medium, Pivot};
+use froude_hydro::{Body as Geometry, CrossTerm, DragModel, Link};
+use froude_identify::law::ForceLaw;
+use froude_records::campaign::Identify;
+use froude_rig::oscillation::{OscillationRig, OscillationSensor, OscillationTrace, Swing};
+use froude_tank::oscillation::{Body, Drag, OscillationFit, OscillationRun, Setup, fit, motions};
+
+const RADIUS_M: f64 = 0.476;
+const LINK_VOLUME_M3: f64 = 1.2723e-3;
+const DENSITY: f64 = 1025.0;
+const C_A: f64 = 1.277;
+/// Net buoyancy, N, and mass, kg, of H1LT and H2LT.
+const BUOYANCY_N: [f64; 2] = [3.0, 3.0];
+const MASS_KG: [f64; 2] = [1.63, 2.75];
+/// C_d^I, C_d^II, C_dHT^I, C_dHT^II of Table 9.
+const DRAG: [f64; 4] = [0.0, 1.4272, 0.1769, 1.1770];
+
+fn geometry() -> Geometry {
+    let link = Link { major_semi_axis_m: 0.0588, minor_semi_axis_m: 0.0394, half_length_m: 0.09 };
+    Geometry { link, head_side_area_m2: 0.011, tail_side_area_m2: 0.008 }
+}
+
+fn f4() -> Drag {
+    Drag::new(ForceLaw::drag(DragModel::from_name("f4").unwrap(), geometry(), CrossTerm::AsPrinted)).unwrap()
+}
+
+/// Drag across a chain of k links, N.
+fn drag_n(k: f64) -> impl Fn([f64; 2]) -> f64 {
+    move |[_, v]| {
+        let q = v * v.abs();
+        let link = 0.5 * DENSITY * 2.0 * 0.0588 * 2.0 * 0.09;
+        let ends = 0.5 * DENSITY * 0.019;
+        -(k * link * (DRAG[0] * v + DRAG[1] * q) + ends * (DRAG[2] * v + DRAG[3] * q))
+    }
+}
+
+fn setup() -> Setup {
+    let body = |k: usize| Body {
+        name: format!("H{}LT", k + 1),
+        n_links: Some((k + 1) as f64),
+        reference_volume_m3: (k + 1) as f64 * LINK_VOLUME_M3,
+        mass_kg: Uncertain::new(MASS_KG[k], 0.005),
+        buoyancy_n: Some(Uncertain::new(BUOYANCY_N[k], 0.02)),
+    };
+    let radius = Uncertain::new(RADIUS_M, 0.001);
+    Setup { delay_s: Some(Uncertain::new(0.0, 0.005)), ..Setup::new(radius, DENSITY, vec![body(0), body(1)]) }
+}
+
+struct Logged {
+    id: String,
+    body: usize,
+    medium: Medium,
+    trace: OscillationTrace,
+}
+
+/// The runs of Table 4: two configurations, three amplitudes, three frequencies.
+fn table_4(pivot: Pivot, sensor: OscillationSensor, periods: f64, seed: u64) -> Vec<Logged> {
+    let mut out = Vec::new();
+    for body in 0..2 {
+        for amplitude in [10.0_f64, 15.0, 20.0] {
+            for omega in [60.0_f64, 70.0, 80.0] {
+                let k = (body + 1) as f64;
+                let rig = OscillationRig {
+                    pivot,
+                    radius_m: RADIUS_M,
+                    mass_kg: MASS_KG[body],
+                    added_kg: C_A * DENSITY * LINK_VOLUME_M3 * k,
+                    buoyancy_n: if pivot == Pivot::Stream { BUOYANCY_N[body] } else { 0.0 },
+                    servo_rad_s: 30.0,
+                    servo_damping: 0.6,
+                };
+                let swing = Swing {
+                    medium: Medium::Water,
+                    amplitude_rad: amplitude.to_radians(),
+                    omega_rad_s: omega.to_radians(),
+                    flow_m_s: 0.2,
+                    still_s: 1.0,
+                    periods,
+                };
+                let seed = seed * 1000 + out.len() as u64;
+                out.push(Logged {
+                    id: format!("H{}LT {amplitude} deg {omega} deg/s", body + 1),
+                    body,
+                    medium: Medium::Water,
+                    trace: rig.swing(swing, sensor, &drag_n(k), seed),
+                });
+            }
+        }
+    }
+    out
+}
+
+fn runs(logged: &[Logged]) -> Vec<OscillationRun<'_>> {
+    fn run(l: &Logged) -> OscillationRun<'_> {
+        let Logged { id, body, medium, trace } = l;
+        OscillationRun {
+            id,
+            body: *body,
+            medium: *medium,
+            flow_m_s: 0.2,
+            time_s: &trace.time_s,
+            angle_rad: &trace.angle_rad,
+            force_n: &trace.force_n,
+        }
+    }
+    logged.iter().map(run).collect()
+}
+
+fn fitted(logged: &[Logged], setup: &Setup, drag: &Drag) -> OscillationFit {
+    let runs = runs(logged);
+    fit(&runs, &motions(&runs, setup).unwrap(), setup, drag, &Identify::default()).unwrap()
+}
+
+fn value(fit: &OscillationFit, name: &str) -> f64 {
+    fit.unknown(name).unwrap().value.unwrap()
+}
+
+/// What the harmonics leave of the start-up decays with the servo, 18 rad/s: e^{−18·4.5} after one period.
+#[test]
+fn without_noise_the_truth_comes_out_over_whole_and_broken_periods() {
+    for periods in [6.3, 7.0, 8.7] {
+        let logged =
+            table_4(Pivot::Stream, OscillationSensor { delay_s: 0.013, ..OscillationSensor::exact() }, periods, 1);
+        let setup = Setup { delay_s: None, ..setup() };
+        let setup =
+            Setup { bodies: setup.bodies.iter().map(|b| Body { buoyancy_n: None, ..b.clone() }).collect(), ..setup };
+        let fit = fitted(&logged, &setup, &f4());
+        assert!((value(&fit, "C_A") / C_A - 1.0).abs() < 1e-6, "{} periods: {}", periods, value(&fit, "C_A"));
+        assert!((value(&fit, "delay") - 0.013).abs() < 1e-7, "{}", value(&fit, "delay"));
+        for (name, truth) in ["C_d_I", "C_d_II", "C_dHT_I", "C_dHT_II"].into_iter().zip(DRAG) {
+            assert!((value(&fit, name) - truth).abs() < 1e-4, "{name}: {}", value(&fit, name));
+        }
+        assert!((value(&fit, "B_buoyancy_H1LT") - 3.0).abs() < 1e-5);
+    }
+}
+
+/// Mass declared to 10 %, three runs in air at 15 deg beside those in water: m and the delay come from them, C_A follows.
+#[test]
+fn runs_in_air_determine_mass_and_delay() {
+    let sensor = OscillationSensor { delay_s: 0.013, ..OscillationSensor::exact() };
+    let mut logged = table_4(Pivot::Stream, sensor, 7.0, 1);
+    for body in 0..2 {
+        for omega in [60.0_f64, 80.0] {
+            let rig = OscillationRig {
+                pivot: Pivot::Stream,
+                radius_m: RADIUS_M,
+                mass_kg: MASS_KG[body],
+                added_kg: 9.0,
+                buoyancy_n: 9.0,
+                servo_rad_s: 30.0,
+                servo_damping: 0.6,
+            };
+            let swing = Swing {
+                medium: Medium::Air,
+                amplitude_rad: 0.26,
+                omega_rad_s: omega.to_radians(),
+                flow_m_s: 0.0,
+                still_s: 1.0,
+                periods: 7.0,
+            };
+            let trace = rig.swing(swing, sensor, &|_| 9.0, 5);
+            logged.push(Logged { id: format!("air {body} {omega}"), body, medium: Medium::Air, trace });
+        }
+    }
+    let mut setup = Setup { delay_s: None, ..setup() };
+    for body in &mut setup.bodies {
+        body.mass_kg = Uncertain::new(1.1 * body.mass_kg.value, 0.1 * body.mass_kg.value);
+        body.buoyancy_n = None;
+    }
+    let fit = fitted(&logged, &setup, &f4());
+    assert!((value(&fit, "m_H1LT") / MASS_KG[0] - 1.0).abs() < 1e-6, "{}", value(&fit, "m_H1LT"));
+    assert!((value(&fit, "m_H2LT") / MASS_KG[1] - 1.0).abs() < 1e-6);
+    assert!((value(&fit, "C_A") / C_A - 1.0).abs() < 1e-6 && (value(&fit, "delay") - 0.013).abs() < 1e-7);
+    // The declared mass is no error of its own any more, and a prior that the runs overrule.
+    assert!(fit.errors.iter().any(|e| e.name == "mass of H1LT" && e.sensitivity.iter().all(|s| s.abs() < 1e-3)));
+}
+
+/// Turning the y axis round changes no coefficient: both angle and force change their sign.
+#[test]
+fn the_sign_of_the_axis_does_not_matter() {
+    let sensor = OscillationSensor { slow_noise_n: 0.02, ..OscillationSensor::exact() };
+    let logged = table_4(Pivot::Stream, sensor, 7.0, 3);
+    let here = fitted(&logged, &setup(), &f4());
+    let turned: Vec<Logged> = (logged.iter())
+        .map(|l| {
+            let mut trace = l.trace.clone();
+            trace.angle_rad.iter_mut().for_each(|x| *x = -*x);
+            trace.force_n.iter_mut().for_each(|x| *x = -*x);
+            Logged { id: l.id.clone(), body: l.body, medium: l.medium, trace }
+        })
+        .collect();
+    let there = fitted(&turned, &setup(), &f4());
+    for (a, b) in here.unknowns.iter().zip(&there.unknowns) {
+        let (x, y) = (a.value.unwrap(), b.value.unwrap());
+        assert!((x - y).abs() < 1e-9 * (1.0 + x.abs()), "{}: {x} {y}", a.name);
+        let (u, w) = (a.combined.unwrap().standard, b.combined.unwrap().standard);
+        assert!((u / w - 1.0).abs() < 1e-6, "{}", a.name);
+    }
+}

@@ -1,0 +1,28 @@
+//! What a campaign's plan takes and determines, before a day in the tank is paid for.
+
+use std::path::Path;
+
+use froude_identify::method::Prospect;
+use froude_identify::simulate::tables::SimulateError;
+use froude_records::campaign::read_campaign;
+
+use crate::{Error, method};
+
+/// Run matrix, time and intervals to expect of every source that plans runs.
+///
+/// # Errors
+///
+/// See [`Error`]: a campaign that plans no runs, or does not declare what they need.
+pub fn plan(path: &Path) -> Result<Vec<Prospect>, Error> {
+    let campaign = read_campaign(path)?;
+    let mut out = Vec::new();
+    for source in campaign.sources.iter().filter(|source| !source.oscillation_plan.is_empty()) {
+        for (method, _) in method::of(source, None)? {
+            out.extend(method.plan(&campaign, source).map_err(Error::Method)?);
+        }
+    }
+    if out.is_empty() {
+        return Err(SimulateError::NoPlan { path: campaign.path }.into());
+    }
+    Ok(out)
+}

@@ -1,0 +1,113 @@
+//! What a campaign's twins would measure, written where the campaign expects it: tables of sources that have one, logs of those that have runs.
+//!
+//! A campaign may come from anybody: only its own folder is written into, and a folder of runs is replaced only when nothing but the twin's own
+//! files lies in it.
+
+use std::path::{Component, Path, PathBuf};
+
+use froude_identify::method::MethodError;
+use froude_identify::simulate::tables::{self, SimulateError};
+use froude_records::RecordError;
+use froude_records::campaign::{Campaign, Input, Source, read_campaign};
+use froude_records::folder::UnfinishedFolder;
+
+use crate::{Error, method};
+
+/// What was written for one source.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Written {
+    /// Name of the source.
+    pub source: String,
+    /// The table, or the folder of the runs.
+    pub path: PathBuf,
+    /// Observations of the table, or runs.
+    pub count: usize,
+    /// Whether they are runs.
+    pub are_runs: bool,
+}
+
+/// Writes the tables and the logs of every source that plans some.
+///
+/// What exists is replaced only when `replace` is true.
+///
+/// # Errors
+///
+/// See [`Error`]: a campaign without plan or without `[simulate]`; places outside of the campaign's folder; a folder with other files in it.
+pub fn simulate(path: &Path, replace: bool) -> Result<Vec<Written>, Error> {
+    let campaign = read_campaign(path)?;
+    let mut folders = Vec::new();
+    for source in campaign.sources.iter().filter(|source| !source.oscillation_plan.is_empty()) {
+        let target = inside(&campaign, source)?;
+        let mut all = Vec::new();
+        for (method, _) in method::of(source, None)? {
+            all.extend(method.simulate(&campaign, source).map_err(Error::Method)?.unwrap_or_default());
+        }
+        if let Some(other) = first_other(target, |name| all.iter().any(|file| file.name == name))? {
+            let what =
+                format!("holds {}, which the twin did not write; name another folder in `runs`", other.display());
+            return Err(Error::Method(MethodError::input(target, what)));
+        }
+        if !replace && target.exists() && first_other(target, |_| false)?.is_some() {
+            return Err(SimulateError::Exists { path: target.to_owned() }.into());
+        }
+        let folder = UnfinishedFolder::beside(target)?;
+        for file in &all {
+            let place = folder.path().join(&file.name);
+            std::fs::write(&place, &file.content).map_err(|source| Error::Output { path: place.clone(), source })?;
+        }
+        let runs = all.iter().filter(|file| Path::new(&file.name).extension().is_some_and(|e| e == "csv")).count();
+        let written = Written { source: source.name.clone(), path: target.to_owned(), count: runs, are_runs: true };
+        folders.push((folder, written));
+    }
+    let has_tables = campaign.sources.iter().any(|source| !source.plan.is_empty());
+    let mut out = Vec::new();
+    if has_tables || folders.is_empty() {
+        let tables = tables::write(path, replace)?;
+        out.extend(tables.into_iter().map(|t| Written {
+            source: t.source,
+            path: t.path,
+            count: t.rows,
+            are_runs: false,
+        }));
+    }
+    for (folder, written) in folders {
+        folder.take_place()?;
+        out.push(written);
+    }
+    Ok(out)
+}
+
+/// The folder of a source's runs, where it lies below that of the campaign.
+fn inside<'a>(campaign: &Campaign, source: &'a Source) -> Result<&'a Path, Error> {
+    let Input::Runs { .. } = &source.input else {
+        let what = "a plan of runs needs `runs`, the folder that they go to".to_owned();
+        return Err(Error::Method(MethodError::Undeclared { place: source.place.to_string(), what }));
+    };
+    let path = source.input.path();
+    let own = campaign.path.parent().unwrap_or(Path::new(""));
+    let rest = path.strip_prefix(own).unwrap_or(path);
+    let is_below = rest.components().all(|c| matches!(c, Component::Normal(_) | Component::CurDir));
+    let real = |folder: &Path| if folder.as_os_str().is_empty() { Path::new(".") } else { folder }.canonicalize();
+    // A link on the way may lead anywhere; a folder that does not exist yet is made.
+    let there = path.ancestors().find(|p| p.exists()).unwrap_or(own);
+    let stays = matches!((real(own), real(there)), (Ok(own), Ok(there)) if there.starts_with(&own));
+    if is_below && stays && rest.components().any(|c| matches!(c, Component::Normal(_))) {
+        return Ok(path);
+    }
+    let problem = format!(
+        "is {:?}, which leads out of the campaign's folder; froude simulate writes below it only: name a folder there",
+        rest.display().to_string()
+    );
+    Err(RecordError::Value { place: source.place.clone(), key: "runs".to_owned(), problem }.into())
+}
+
+/// A file of a folder that `is_known` does not know; `None` where the folder is empty or not there.
+fn first_other(folder: &Path, is_known: impl Fn(&str) -> bool) -> Result<Option<PathBuf>, Error> {
+    if !folder.exists() {
+        return Ok(None);
+    }
+    let failed = |source| Error::Method(MethodError::Folder { path: folder.to_owned(), source });
+    let entries = std::fs::read_dir(folder).map_err(failed)?;
+    let names = entries.filter_map(Result::ok).map(|e| e.path());
+    Ok(names.into_iter().find(|p| p.file_name().is_none_or(|name| !is_known(&name.to_string_lossy()))))
+}
