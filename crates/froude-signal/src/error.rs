@@ -57,6 +57,13 @@ pub enum SignalError {
         expected: usize,
     },
 
+    /// Times that do not increase.
+    #[error("time {index} is not later than the one before it; sort the samples, or delete doubled ones")]
+    NotIncreasing {
+        /// Index from 0.
+        index: usize,
+    },
+
     /// A record in which no period is found.
     #[error(
         "no period is found in {length_s} s of the record (best guess {periods:.2} periods); record several periods, or take the part in which it oscillates"

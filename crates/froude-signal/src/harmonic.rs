@@ -56,19 +56,7 @@ impl Harmonics {
     /// [`SignalError::Length`], [`SignalError::NotFinite`], [`SignalError::OutOfRange`] for `order`, [`SignalError::TooShort`] for too few samples,
     /// [`SignalError::NoPeriod`] where the record has less than one period, or none is found.
     pub fn fit(time_s: &[f64], record: &[f64], order: usize, start_rad_s: Option<f64>) -> Result<Self, SignalError> {
-        in_range("harmonics", order, 1, MOST_HARMONICS)?;
-        if time_s.len() != record.len() {
-            return Err(SignalError::Length { what: "the record", found: record.len(), expected: time_s.len() });
-        }
-        all_finite(time_s)?;
-        all_finite(record)?;
-        let unknowns = 2 * order + 2;
-        if record.len() <= SAMPLES_PER_UNKNOWN * unknowns {
-            let needed = SAMPLES_PER_UNKNOWN * unknowns;
-            return Err(SignalError::TooShort { what: "the harmonic fit", needed, found: record.len() });
-        }
-        let (first, last) = (time_s[0], time_s[time_s.len() - 1]);
-        let (origin_s, length_s) = (0.5 * (first + last), last - first);
+        let (origin_s, length_s) = checked(time_s, record, order)?;
         let line = std::f64::consts::TAU / length_s;
         let mut omega = start_rad_s.unwrap_or_else(|| line * largest_line(record));
         let mut linear = Linear::solve(time_s, record, order, omega, origin_s, None)?;
@@ -86,19 +74,34 @@ impl Harmonics {
         if !(periods >= 0.9 && step.abs() <= CONVERGED * line) {
             return Err(SignalError::NoPeriod { length_s, periods });
         }
-        let dof = (record.len() - unknowns) as f64;
-        let variance = linear.squares / dof;
-        Ok(Self {
-            omega_rad_s: omega,
+        Ok(Self::of(&linear, 2 * order + 2, omega, origin_s, linear.squares, record.len()))
+    }
+
+    /// Fits a record with `order` harmonics of a frequency that is known.
+    ///
+    /// # Errors
+    ///
+    /// As [`Harmonics::fit`].
+    pub fn held(time_s: &[f64], record: &[f64], order: usize, omega_rad_s: f64) -> Result<Self, SignalError> {
+        let (origin_s, _) = checked(time_s, record, order)?;
+        let linear = Linear::solve(time_s, record, order, omega_rad_s, origin_s, None)?;
+        let unknowns = 2 * order + 1;
+        let squares = residual_squares(time_s, record, omega_rad_s, origin_s, linear.mean, &linear.terms);
+        Ok(Self::of(&linear, unknowns, omega_rad_s, origin_s, squares, record.len()))
+    }
+
+    fn of(linear: &Linear, unknowns: usize, omega_rad_s: f64, origin_s: f64, squares: f64, samples: usize) -> Self {
+        let variance = squares / (samples - unknowns) as f64;
+        let covariance = (0..unknowns).map(|i| (0..unknowns).map(|j| variance * linear.inverse[(i, j)]).collect());
+        Self {
+            omega_rad_s,
             origin_s,
             mean: linear.mean,
-            terms: linear.terms,
+            terms: linear.terms.clone(),
             residual_std: variance.sqrt(),
-            samples: record.len(),
-            covariance: (0..unknowns)
-                .map(|i| (0..unknowns).map(|j| variance * linear.inverse[(i, j)]).collect())
-                .collect(),
-        })
+            samples,
+            covariance: covariance.collect(),
+        }
     }
 
     /// Value and its first three derivatives at a time, in the record's unit over s⁰ … s³.
@@ -156,6 +159,22 @@ impl Harmonics {
     pub fn period_s(&self) -> f64 {
         std::f64::consts::TAU / self.omega_rad_s
     }
+}
+
+/// Middle and length of a record that can be fitted, s.
+fn checked(time_s: &[f64], record: &[f64], order: usize) -> Result<(f64, f64), SignalError> {
+    in_range("harmonics", order, 1, MOST_HARMONICS)?;
+    if time_s.len() != record.len() {
+        return Err(SignalError::Length { what: "the record", found: record.len(), expected: time_s.len() });
+    }
+    all_finite(time_s)?;
+    all_finite(record)?;
+    let needed = SAMPLES_PER_UNKNOWN * (2 * order + 2);
+    if record.len() <= needed {
+        return Err(SignalError::TooShort { what: "the harmonic fit", needed, found: record.len() });
+    }
+    let (first, last) = (time_s[0], time_s[time_s.len() - 1]);
+    Ok((0.5 * (first + last), last - first))
 }
 
 /// The linear problem at one frequency: mean, harmonics, and the step of ω.

@@ -17,18 +17,21 @@
 //! | [`exponential`]     | exact step of a linear system whose inputs stand still             | –                       |
 //! | [`two_mass`]        | two masses and a chain: rows of their accelerations, modes         | –                       |
 //! | [`harmonic`]        | mean, harmonics and their frequency, with uncertainty             | broken periods count    |
+//! | [`resample`]        | values between samples, at the times of another clock             | not-a-knot              |
+//! | [`clock`]           | offset, skew and gain of one channel against another              | –                       |
 //! | [`spectrum`]        | Welch spectra, frequency response, coherence                      | –                       |
 //!
 //! **Units.** A rate is in Hz, a time in s, the values are whatever they were (SI in [`two_mass`]).
 //! **Time.** Samples are equidistant; gaps and jitter are the caller's, reported before they come here.
 //!
-//! Not here: high-pass and band-pass filters, resampling by fractions, the Ljung–Box test
+//! Not here: high-pass and band-pass filters, the Ljung–Box test
 //! (`froude-fit::diagnostics`, where χ² is).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod blocks;
 pub mod butterworth;
 mod cascade;
+pub mod clock;
 mod convolve;
 pub mod decimate;
 pub mod differences;
@@ -37,6 +40,7 @@ pub mod exponential;
 pub mod gaussian;
 pub mod harmonic;
 mod pages;
+pub mod resample;
 pub mod savitzky_golay;
 pub mod spectrum;
 pub mod stream;

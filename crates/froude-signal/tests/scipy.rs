@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use froude_signal::harmonic::Harmonics;
+use froude_signal::resample::Spline;
 use froude_signal::savitzky_golay::Window;
 use froude_signal::{butterworth, decimate, differences, gaussian, savitzky_golay, spectrum, zero_phase};
 
@@ -48,6 +50,30 @@ fn sections_agree_with_the_polynomial_form_to_what_that_form_can_hold() {
     let g = golden();
     let f = butterworth::low_pass(4, 100.0, 1000.0).unwrap();
     same(&zero_phase::filter(&f, &g["record"]).unwrap(), &g["filtfilt_4"], 100.0 * RECURSIVE);
+}
+
+/// The tridiagonal system has a condition below 6; values below 2.
+#[test]
+fn values_between_samples_also_at_uneven_times_and_on_another_clock() {
+    let g = golden();
+    let times: Vec<f64> = (0..700).map(|i| f64::from(i) / 1000.0).collect();
+    let read = |time: &[f64], at: &[f64]| -> Vec<f64> {
+        let spline = Spline::through(time, &g["record"]).unwrap();
+        at.iter().map(|t| spline.at(*t).unwrap()).collect()
+    };
+    same(&read(&times, &g["late"]), &g["cubic_spline"], 1e-12);
+    same(&read(&g["uneven"], &times[3..697]), &g["cubic_spline_uneven"], 1e-12);
+}
+
+/// scipy's search stops where its steps are below 1e-15 of the parameters; the curvature leaves the square root of rounding times ten.
+#[test]
+fn harmonics_and_their_frequency() {
+    let g = golden();
+    let times: Vec<f64> = (0..700).map(|i| f64::from(i) / 1000.0).collect();
+    let fit = Harmonics::fit(&times, &g["record"], 2, None).unwrap();
+    let [[c1, s1], [c2, s2]] = [fit.terms[0], fit.terms[1]];
+    let ours = [fit.omega_rad_s / std::f64::consts::TAU, fit.mean, c1, s1, c2, s2];
+    same(&ours, &g["harmonics_2"], 1e-7);
 }
 
 /// Weights and sums of up to 1601 products below one.

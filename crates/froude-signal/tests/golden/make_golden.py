@@ -43,3 +43,21 @@ line("welch_y", pyy)
 line("response_real", (pxy / pxx).real)
 line("response_imag", (pxy / pxx).imag)
 line("coherence", coherence)
+from scipy import interpolate, optimize
+
+# Times of another clock: an offset, a skew of 7 ms/s, and some that lie unevenly.
+late = 0.0123 + (t[5:-20] - 0.35) * (1 + 0.007) + 0.35 + 2e-4 * np.sin(40 * t[5:-20])
+line("late", late)
+line("cubic_spline", interpolate.CubicSpline(t, x)(late))
+uneven = t + 3e-4 * np.sin(200 * t)
+line("uneven", uneven)
+line("cubic_spline_uneven", interpolate.CubicSpline(uneven, x)(t[3:-3]))
+
+
+def harmonics(p):
+    w = 2 * np.pi * p[0]
+    return p[1] + sum(p[2 * k] * np.cos(k * w * (t - 0.3495)) + p[2 * k + 1] * np.sin(k * w * (t - 0.3495)) for k in (1, 2)) - x
+
+
+found = optimize.least_squares(harmonics, [3, 0, 1, 0, 0, 0], xtol=1e-15, ftol=1e-15, gtol=1e-15)
+line("harmonics_2", found.x)

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, dynamic,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, clocks, dynamic,
 //! potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -10,6 +10,7 @@
 mod bodies;
 mod carriage;
 mod claims;
+mod clocks;
 // Its own example tells more of each row.
 #[allow(dead_code, clippy::unwrap_used)]
 #[path = "../../../froude-panel/examples/coverage/count.rs"]
@@ -80,6 +81,9 @@ fn main() -> ExitCode {
         }
         if wants("oscillation") {
             oscillation::all(claims, &root, if full { 2_000 } else { 30 })?;
+        }
+        if wants("clocks") {
+            clocks::all(claims, &shared)?;
         }
         if wants("dynamic") {
             dynamic::all(claims, &root, if full { 60 } else { 8 })?;
