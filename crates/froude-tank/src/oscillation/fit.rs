@@ -109,8 +109,6 @@ pub struct OscillationFit {
     pub effective: f64,
     /// Standard deviation of a residual, N.
     pub sigma_n: f64,
-    /// Corrected Akaike criterion at the effective number of samples.
-    pub aicc: Option<f64>,
     /// The delay that the motion was taken at, s.
     pub delay_s: f64,
 }
@@ -628,7 +626,6 @@ impl<'a> Joint<'a> {
             samples: self.samples,
             effective,
             sigma_n: (squares / self.samples as f64).sqrt(),
-            aicc: fit.aicc,
             delay_s: self.delay_s(&values(&fit)),
         })
     }

@@ -4,8 +4,10 @@ use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
 use froude_signal::spectrum::density;
 
-use super::fit::OscillationFit;
+use super::fit::{ADDED, OscillationFit};
+use super::forces::Drag;
 use super::motion::Motion;
+use super::record::criteria;
 use super::setup::{OscillationRun, Setup};
 
 /// Runs that are drawn; more would be a page of the same.
@@ -35,6 +37,65 @@ pub fn section(
         paragraphs: vec![paragraph],
         tables: vec![table(fit, runs, motions, setup), budget(fit)],
         charts: std::iter::once(forces(fit, runs, motions)).chain(spectrum(fit, runs, motions)).collect(),
+    }
+}
+
+/// The drag laws beside each other, which of them is recommended, and its coefficients.
+#[must_use]
+pub fn laws(fits: &[(Drag, OscillationFit)], chosen: usize) -> DocumentSection {
+    let best = &fits[chosen].1;
+    let rows = fits.iter().zip(criteria(fits)).map(|((drag, fit), criterion)| {
+        let added = fit.unknown(ADDED).and_then(|u| u.value.zip(u.combined));
+        vec![
+            fit.law.clone(),
+            drag.columns.len().to_string(),
+            criterion.map_or_else(|| "–".to_owned(), |x| number::fixed(x, 1)),
+            number::significant(fit.sigma_n, 3),
+            added.map_or_else(|| "–".to_owned(), |(value, c)| number::short_form(value, c.standard)),
+        ]
+    });
+    let beside = TextTable {
+        caption: "Drag laws beside each other.".to_owned(),
+        head: ["drag law", "drag coefficients", "AICc", "residual, rms [N]", "C_A [1]"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    };
+    let sentence = format!(
+        "Recommended is {}: of the laws whose AICc lies within 2 of the smallest, the one with the fewest coefficients. AICc counts effective observations, not samples.",
+        best.law
+    );
+    let is_choice = fits.len() > 1;
+    DocumentSection {
+        title: "Results".to_owned(),
+        paragraphs: is_choice.then_some(sentence).into_iter().collect(),
+        tables: is_choice.then_some(beside).into_iter().chain([coefficients(best)]).collect(),
+        charts: Vec::new(),
+    }
+}
+
+fn coefficients(fit: &OscillationFit) -> TextTable {
+    let rows = fit.unknowns.iter().map(|u| {
+        let known = u.value.zip(u.combined);
+        let value = match (known, u.value) {
+            (Some((value, c)), _) => number::short_form(value, c.standard),
+            (None, Some(value)) => number::plain(value, 5),
+            (None, None) => "not determined".to_owned(),
+        };
+        let of = |figure: &dyn Fn(f64, froude_fit::budget::Combined) -> String| {
+            known.map_or_else(|| "–".to_owned(), |(value, c)| figure(value, c))
+        };
+        vec![
+            u.name.clone(),
+            value,
+            u.unit.clone(),
+            of(&|value, c| number::interval(c.interval(value))),
+            of(&|_, c| number::significant(c.type_a, 2)),
+            of(&|_, c| number::significant(c.type_b, 2)),
+        ]
+    });
+    TextTable {
+        caption: format!("Coefficients with drag law {}; standard uncertainty in brackets.", fit.law),
+        head: ["coefficient", "value", "unit", "95 % interval", "type A", "type B"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
     }
 }
 

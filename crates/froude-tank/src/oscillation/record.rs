@@ -2,6 +2,7 @@
 
 use froude_fit::Status as Found;
 use froude_fit::faer::Mat;
+use froude_fit::select::aicc;
 use froude_hydro::similarity::keulegan_carpenter;
 use froude_hydro::swing::Medium;
 use froude_records::campaign::{Campaign, Source};
@@ -36,12 +37,28 @@ pub struct Context<'a> {
     pub motions: &'a [Motion],
 }
 
-/// The law with the fewest coefficients among those whose AICc, at the effective number of samples, lies within 2 of the smallest.
+/// AICc of every law, at one effective number of observations: that of the law which leaves the least. What a wrong law leaves repeats with the
+/// motion, and would count as correlation.
+///
+/// Its coefficients are those found and the zero of each run; `None` where the observations are too few.
+#[must_use]
+pub fn criteria(fits: &[(Drag, OscillationFit)]) -> Vec<Option<f64>> {
+    let best = fits.iter().map(|(_, fit)| fit).min_by(|a, b| a.sigma_n.total_cmp(&b.sigma_n));
+    let n = best.map_or(0, |fit| fit.effective.round() as usize);
+    let of = |(_, fit): &(Drag, OscillationFit)| {
+        let found = fit.unknowns.iter().filter(|u| u.value.is_some()).count() + fit.fitted.len();
+        aicc(n, n as f64 * fit.sigma_n.powi(2), found as f64).ok()
+    };
+    fits.iter().map(of).collect()
+}
+
+/// The law with the fewest coefficients among those whose criterion lies within 2 of the smallest.
 #[must_use]
 pub fn chosen(fits: &[(Drag, OscillationFit)]) -> usize {
-    let score = |i: usize| fits[i].1.aicc.unwrap_or(f64::INFINITY);
+    let criteria = criteria(fits);
+    let score = |i: usize| criteria[i].unwrap_or(f64::INFINITY);
     let least = (0..fits.len()).map(score).fold(f64::INFINITY, f64::min);
-    let near = |i: &usize| score(*i) <= least + ALIKE || fits.len() == 1;
+    let near = |i: &usize| score(*i) <= least + ALIKE;
     (0..fits.len()).filter(near).min_by_key(|&i| fits[i].0.columns.len()).unwrap_or(0)
 }
 
@@ -82,7 +99,7 @@ pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Op
         if laws == 1 {
             "the only drag law that was asked for".to_owned()
         } else {
-            "fewest coefficients of the drag laws whose AICc, at the effective number of samples, lies within 2 of the smallest".to_owned()
+            "fewest coefficients of the drag laws whose AICc, at the effective number of observations, lies within 2 of the smallest".to_owned()
         }
     });
     Estimate {

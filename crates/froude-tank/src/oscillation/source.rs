@@ -77,7 +77,8 @@ impl Method for ForcedOscillation {
             Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
         };
         let results = fits.iter().enumerate().map(estimate).collect();
-        Ok(Found { results, blocks, findings: distinct(findings), ..Found::default() })
+        let summary = (!fits.is_empty()).then(|| page::laws(&fits, chosen));
+        Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
     }
 
     fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
