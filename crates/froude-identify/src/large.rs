@@ -220,7 +220,7 @@ fn reduced(
     let mut files = vec![ReadFile::new(source.input.path().to_owned(), "table")];
     files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
-    let out = of_table(campaign, source, sample.clone(), laws);
+    let out = of_table(campaign, source, "table", sample.clone(), laws);
     Ok(Reduced { n_read: facts.n_read, scatter, validity, findings, files, ..out })
 }
 

@@ -45,8 +45,22 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
     let table = read_table(&path, source.sidecar.as_deref())?;
     let mut files = vec![ReadFile::new(path, "table")];
     files.extend(table.sidecar.clone().map(|path| ReadFile::new(path, "sidecar")));
+    reduce_table(campaign, source, &table, files)
+}
+
+/// Reduces a table in memory, made of `files`: of a file, or of the windows of raw runs.
+///
+/// # Errors
+///
+/// As [`reduce`].
+pub fn reduce_table(
+    campaign: &Campaign,
+    source: &Source,
+    table: &Table,
+    mut files: Vec<ReadFile>,
+) -> Result<Observations, IdentifyError> {
     let mut findings = Vec::new();
-    let data = observed(&table, campaign, source, &mut findings)?;
+    let data = observed(table, campaign, source, &mut findings)?;
     let n_read = data.rows;
     let mut keep = kept_rows(&data, source)?;
     findings.extend(left_out(keep.len(), n_read));
@@ -62,8 +76,8 @@ pub fn reduce(campaign: &Campaign, source: &Source) -> Result<Observations, Iden
     }
     // The findings about the observations concern those that are fitted.
     findings.extend(zero_drift(&data));
-    findings.extend(crate::lint::motion::motion_contradictions(&table, &keep, &data));
-    one_unit(&table, &data, &fitted_loads(campaign, source, &data))?;
+    findings.extend(crate::lint::motion::motion_contradictions(table, &keep, &data));
+    one_unit(table, &data, &fitted_loads(campaign, source, &data))?;
     let mut shared_errors = Vec::new();
     if let Some(tare) = &source.tare {
         let (errors, found) = tare::subtract(&mut data, tare)?;

@@ -34,7 +34,22 @@ pub fn identify_source(
     {
         return Ok(result);
     }
-    let mut result = fit(reduced(campaign, source)?, &campaign.identify, progress)?;
+    identify_observations(campaign, source, reduce(campaign, source)?, "table", progress)
+}
+
+/// The same of observations that a method called `method` has reduced to the rows of a table.
+///
+/// # Errors
+///
+/// See [`IdentifyError`].
+pub fn identify_observations(
+    campaign: &Campaign,
+    source: &Source,
+    observations: Observations,
+    method: &str,
+    progress: &dyn Fn(&str),
+) -> Result<SourceResult, IdentifyError> {
+    let mut result = fit(reduced(campaign, source, observations, method)?, &campaign.identify, progress)?;
     // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
     if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
         let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
@@ -44,8 +59,13 @@ pub fn identify_source(
 }
 
 /// The rows of a table with the laws that the campaign asks for.
-fn reduced(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyError> {
-    let Observations { data, n_read, mut findings, shared_errors, files } = reduce(campaign, source)?;
+fn reduced(
+    campaign: &Campaign,
+    source: &Source,
+    observations: Observations,
+    method: &str,
+) -> Result<Reduced, IdentifyError> {
+    let Observations { data, n_read, mut findings, shared_errors, files } = observations;
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     findings.extend(lint::observations(&data, campaign));
@@ -54,7 +74,7 @@ fn reduced(campaign: &Campaign, source: &Source) -> Result<Reduced, IdentifyErro
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
     let scatter = scatter(campaign, source, &data, &mut findings)?;
-    let out = of_table(campaign, source, data, laws);
+    let out = of_table(campaign, source, method, data, laws);
     Ok(Reduced { n_read, scatter, errors: shared_errors, validity, findings, files, ..out })
 }
 

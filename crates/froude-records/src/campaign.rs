@@ -16,6 +16,7 @@ use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::run::Declared;
+use crate::steady::SteadySpec;
 use crate::units::Dimension;
 
 pub use crate::body_axis::BodyAxis;
@@ -129,6 +130,8 @@ pub struct Source {
     pub decay: Option<DecaySpec>,
     /// What a motor swings, for forced oscillation.
     pub oscillation: Option<OscillationSpec>,
+    /// How its steady tows are reduced.
+    pub steady: Option<SteadySpec>,
     /// What is asked of its mesh.
     pub added_mass: Vec<GivenOption>,
     /// What is to be run.
@@ -542,7 +545,7 @@ impl Campaign {
         for source in &self.sources {
             let key = match source.input {
                 Input::Table(_) if !source.plan.is_empty() => continue,
-                Input::Runs { .. } if !source.oscillation_plan.is_empty() => continue,
+                Input::Runs { .. } if source.plans_runs() => continue,
                 Input::Table(_) => "table",
                 Input::Record { .. } => "record",
                 Input::Runs { .. } => "runs",
@@ -565,6 +568,12 @@ impl Campaign {
 }
 
 impl Source {
+    /// Whether it plans runs of its method, not rows of a table.
+    #[must_use]
+    pub fn plans_runs(&self) -> bool {
+        !self.oscillation_plan.is_empty() || (!self.plan.is_empty() && matches!(self.input, Input::Runs { .. }))
+    }
+
     /// A source of which nothing but its input is known.
     fn bare(name: String, input: Input) -> Self {
         Self {
@@ -583,6 +592,7 @@ impl Source {
             tare: None,
             decay: None,
             oscillation: None,
+            steady: None,
             oscillation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),

@@ -20,9 +20,10 @@ use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
-use crate::run::FORCED_OSCILLATION;
+use crate::run::{FORCED_OSCILLATION, STEADY};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
+use crate::steady::steady;
 use crate::table::known_dimension;
 use crate::units::Dimension;
 
@@ -131,7 +132,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 19] = [
+const SOURCE_KEYS: [&str; 20] = [
     "name",
     "kind",
     "table",
@@ -149,6 +150,7 @@ const SOURCE_KEYS: [&str; 19] = [
     "tare",
     "decay",
     "forced_oscillation",
+    "steady",
     "added_mass",
     "plan",
 ];
@@ -204,8 +206,14 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     // What belongs to the rows of a table would be passed over.
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
     // Runs of a tank method have laws, a budget and a plan of their own.
-    let of_tank = methods.iter().any(|method| method == FORCED_OSCILLATION);
-    let is_own = |key: &&str| of_tank && matches!(*key, "models" | "uncertainty" | "plan");
+    let is_method = |name: &str| methods.iter().any(|method| method == name);
+    let (oscillates, is_steady) = (is_method(FORCED_OSCILLATION), is_method(STEADY));
+    let is_own = |key: &&str| match *key {
+        "models" | "uncertainty" | "plan" => oscillates || is_steady,
+        // Each of its windows becomes a row.
+        "keep" | "group" | "tare" => is_steady,
+        _ => false,
+    };
     let of_table =
         of_tables.into_iter().filter(|key| !is_own(key)).find_map(|key| s.get(key).map(|value| (key, value)));
     if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
@@ -221,12 +229,15 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
-    if let (Some(value), false) = (s.get("forced_oscillation"), of_tank) {
-        let problem = "describes a forced oscillation, but that is no method of the source: write method = \"forced_oscillation\"";
-        return Err(s.wrong("forced_oscillation", value, problem));
+    for (method, is_asked) in [(FORCED_OSCILLATION, oscillates), (STEADY, is_steady)] {
+        if let (Some(value), false) = (s.get(method), is_asked) {
+            let problem =
+                format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
+            return Err(s.wrong(method, value, problem));
+        }
     }
     let blocks = s.sections("plan")?;
-    let (of_oscillation, of_speeds): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| of_tank);
+    let (of_oscillation, of_speeds): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| oscillates);
     Ok(Source {
         name,
         kind,
@@ -242,6 +253,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
+        steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
         plan: of_speeds.into_iter().map(plan_block).collect::<Result<_, _>>()?,
         oscillation_plan: of_oscillation.into_iter().map(oscillation_plan).collect::<Result<_, _>>()?,
         place: INPUTS
@@ -256,7 +268,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn why_no_rows(input: &Input) -> Option<&'static str> {
     match input {
         Input::Runs { .. } => Some(
-            "the budget of runs follows from the campaign that they were driven by (runs of method = \"forced_oscillation\" take models, uncertainty and plan)",
+            "the budget of runs follows from the campaign that they were driven by (runs of the methods forced_oscillation and steady take models, uncertainty and plan)",
         ),
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,

@@ -57,6 +57,7 @@ pub mod schema;
 mod section;
 mod section_values;
 pub mod sidecar;
+pub mod steady;
 pub mod table;
 mod table_file;
 pub mod text;

@@ -58,6 +58,7 @@ pub mod parameters;
 pub mod planar;
 pub mod plant;
 pub mod propagator;
+pub mod steady;
 pub mod twin;
 
 pub use catalogue::Catalogue;

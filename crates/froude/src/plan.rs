@@ -16,7 +16,7 @@ use crate::{Error, method};
 pub fn plan(path: &Path) -> Result<Vec<Prospect>, Error> {
     let campaign = read_campaign(path)?;
     let mut out = Vec::new();
-    for source in campaign.sources.iter().filter(|source| !source.oscillation_plan.is_empty()) {
+    for source in campaign.sources.iter().filter(|source| source.plans_runs()) {
         for (method, _) in method::of(source, None)? {
             out.extend(method.plan(&campaign, source).map_err(Error::Method)?);
         }

@@ -7,6 +7,7 @@ use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::Method;
 use froude_tank::decay::source::FreeDecay;
 use froude_tank::oscillation::source::ForcedOscillation;
+use froude_tank::steady::source::Steady;
 
 /// Names of the methods that read runs of a method.
 pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
@@ -14,5 +15,5 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-pub(crate) const METHODS: [&dyn Method; 7] =
-    [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay, &ForcedOscillation];
+pub(crate) const METHODS: [&dyn Method; 8] =
+    [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay, &ForcedOscillation, &Steady];

@@ -36,7 +36,7 @@ pub struct Written {
 pub fn simulate(path: &Path, replace: bool) -> Result<Vec<Written>, Error> {
     let campaign = read_campaign(path)?;
     let mut folders = Vec::new();
-    for source in campaign.sources.iter().filter(|source| !source.oscillation_plan.is_empty()) {
+    for source in campaign.sources.iter().filter(|source| source.plans_runs()) {
         let target = inside(&campaign, source)?;
         let mut all = Vec::new();
         for (method, _) in method::of(source, None)? {
@@ -59,7 +59,7 @@ pub fn simulate(path: &Path, replace: bool) -> Result<Vec<Written>, Error> {
         let written = Written { source: source.name.clone(), path: target.to_owned(), count: runs, are_runs: true };
         folders.push((folder, written));
     }
-    let has_tables = campaign.sources.iter().any(|source| !source.plan.is_empty());
+    let has_tables = campaign.sources.iter().any(|source| !source.plan.is_empty() && !source.plans_runs());
     let mut out = Vec::new();
     if has_tables || folders.is_empty() {
         let tables = tables::write(path, replace)?;

@@ -86,8 +86,12 @@ pub struct Written {
 /// See [`SimulateError`]: a campaign without plan or without `[simulate]`; a table outside of the campaign's folder, of two sources, or of no format.
 pub fn write(campaign: &Path, replace: bool) -> Result<Vec<Written>, SimulateError> {
     let campaign = read_campaign(campaign)?;
-    let planned: Vec<(usize, &Source)> =
-        campaign.sources.iter().enumerate().filter(|(_, source)| !source.plan.is_empty()).collect();
+    let planned: Vec<(usize, &Source)> = campaign
+        .sources
+        .iter()
+        .enumerate()
+        .filter(|(_, source)| !source.plan.is_empty() && !source.plans_runs())
+        .collect();
     if planned.is_empty() {
         return Err(SimulateError::NoPlan { path: campaign.path });
     }

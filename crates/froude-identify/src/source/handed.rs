@@ -12,8 +12,14 @@ use crate::regression::Scatter;
 use crate::seam::Reduced;
 
 /// Observations of a table, with what the campaign states of them.
-pub(crate) fn of_table(campaign: &Campaign, source: &Source, data: Dataset, laws: Vec<ForceLaw>) -> Reduced {
-    let mut out = Reduced::new(&source.name, source.kind, "table", data, laws);
+pub(crate) fn of_table(
+    campaign: &Campaign,
+    source: &Source,
+    method: &str,
+    data: Dataset,
+    laws: Vec<ForceLaw>,
+) -> Reduced {
+    let mut out = Reduced::new(&source.name, source.kind, method, data, laws);
     // Nobody but the campaign knows the point that moments are about.
     let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
     out.stated.point = ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() };

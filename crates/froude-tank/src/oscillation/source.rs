@@ -1,25 +1,22 @@
 //! Forced oscillation as a source of a campaign: a folder of logs, one run each, with a sidecar that states what it is.
 
-use std::path::Path;
-
 use froude_fit::budget::Uncertain;
 use froude_hydro::fluid::Water;
 use froude_hydro::swing::Medium;
 use froude_identify::answer::Made;
 use froude_identify::dataset::Dataset;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
-use froude_identify::runs::{logs_in, recorded_in, refuse_others};
-use froude_identify::source::{ReadFile, laws};
+use froude_identify::source::laws;
 use froude_records::campaign::{Campaign, Source};
-use froude_records::finding::{Finding, Severity};
 use froude_records::oscillation::OscillationSpec;
-use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role, import_run};
+use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
 
 use super::forces::{Drag, LOAD};
 use super::setup::{Body, Cycles, OscillationRun, Setup};
 use super::{findings, fit, motions, page, plan, record, simulate};
+use crate::logs::{self, Logs, distinct};
 
 /// The joint fit in time.
 pub struct ForcedOscillation;
@@ -56,7 +53,8 @@ impl Method for ForcedOscillation {
     ) -> Result<Found, MethodError> {
         let spec = declared(source)?;
         progress("reading the runs");
-        let Logs { runs: logs, files, mut findings } = read(source.input.path())?;
+        let Logs { runs: logs, files, mut findings } =
+            logs::read(source.input.path(), FORCED_OSCILLATION, &[Role::Test, Role::DryAir], "time, angle and force")?;
         let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
         let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the angles");
@@ -88,17 +86,6 @@ impl Method for ForcedOscillation {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
-}
-
-/// What several fits state alike is reported once.
-fn distinct(findings: Vec<Finding>) -> Vec<Finding> {
-    let mut out: Vec<Finding> = Vec::new();
-    for finding in findings {
-        if !out.contains(&finding) {
-            out.push(finding);
-        }
-    }
-    out
 }
 
 /// Configurations of the runs, in order of first appearance.
@@ -247,72 +234,12 @@ pub fn drags(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Vec<
     laws.into_iter().map(|law| Drag::new(law).map_err(MethodError::refused)).collect()
 }
 
-struct Logs {
-    runs: Vec<ImportedRun>,
-    files: Vec<ReadFile>,
-    findings: Vec<Finding>,
-}
-
-/// Every log of a folder that is a test, or its motion in air.
-fn read(folder: &Path) -> Result<Logs, MethodError> {
-    if folder.is_file() {
-        return Err(MethodError::input(
-            folder,
-            "`runs` is a folder with one log per run; put the logs that are meant into a folder of their own",
-        ));
-    }
-    let paths = logs_in(folder)?;
-    if paths.is_empty() {
-        refuse_others(folder, FORCED_OSCILLATION, &recorded_in(folder)?)?;
-        let what = "no runs: put one log per run there, as CSV or Parquet with time, angle and force, each with a sidecar (.toml)";
-        return Err(MethodError::input(folder, what));
-    }
-    let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
-    for path in paths {
-        let log = import_run(&path, None)?;
-        let meta = &log.log.meta;
-        if meta.method != FORCED_OSCILLATION {
-            let found = if meta.method.is_empty() {
-                "states no method".to_owned()
-            } else {
-                format!("is a run of {}", meta.method)
-            };
-            let what = format!(
-                "{found}; write method = \"{FORCED_OSCILLATION}\", role = \"test\" and [mounted] configuration at the head of {}",
-                path.with_extension("toml").display()
-            );
-            return Err(MethodError::input(path, what));
-        }
-        out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
-        let role = meta.role;
-        if !matches!(role, Role::Test | Role::DryAir) {
-            let text =
-                format!("{}: a run of the role {} is not used by {FORCED_OSCILLATION}", path.display(), role.name());
-            out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
-            continue;
-        }
-        let sidecar = path.with_extension("toml");
-        out.files.push(ReadFile::new(path, role.name()));
-        if sidecar.exists() {
-            out.files.push(ReadFile::new(sidecar, "sidecar"));
-        }
-        out.runs.push(log);
-    }
-    Ok(out)
-}
-
 /// A log as a run: its angle and its force, and the stream that it was done in.
 fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<OscillationRun<'a>, MethodError> {
     let meta = &log.log.meta;
     let medium = if meta.role == Role::DryAir { Medium::Air } else { Medium::Water };
-    let flow_m_s = match meta.conditions.get("flow") {
-        Some(flow) if flow.unit == Dimension::SPEED.to_string() => flow.value,
-        Some(flow) => {
-            return Err(MethodError::input(
-                &log.log.path,
-                format!("[conditions] flow is in {}, and is a speed", flow.unit),
-            ));
-        }
+    let flow_m_s = match logs::condition(log, "flow", Dimension::SPEED)? {
+        Some(flow) => flow,
         None if medium == Medium::Air => 0.0,
         None => {
             let what = "the speed of the stream is not declared; write [conditions] flow = \"0.2 m/s\" in its sidecar (\"0 m/s\" in water at rest)";
@@ -331,33 +258,11 @@ fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<OscillationRun<'a>, Me
     })
 }
 
-/// A channel that is declared in full: nothing about it is taken for granted.
 fn channel<'a>(log: &'a ImportedRun, name: &str, dimension: Dimension) -> Result<&'a Channel, MethodError> {
-    let of_axes = if name == "angle" {
+    let along = if name == "angle" {
         "the pivot; positive where the body moves towards +y"
     } else {
         "the rig on the body along +y"
     };
-    let channel = log.log.channels.get(name).filter(|c| c.meaning.unit == dimension.to_string()).ok_or_else(|| {
-        let there: Vec<&str> = log.log.channels.keys().map(String::as_str).collect();
-        let there = if there.is_empty() { "nothing beside the time".to_owned() } else { there.join(", ") };
-        MethodError::input(
-            &log.log.path,
-            format!("a run needs the channel {name} ({}), and has {there}", dimension.describe()),
-        )
-    })?;
-    let mapping = log.sidecar.iter().flat_map(|s| s.columns.values()).find(|column| column.name == name);
-    let undeclared = mapping.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |m| m.undeclared.clone());
-    if undeclared.is_empty() {
-        return Ok(channel);
-    }
-    let place = mapping.map_or_else(|| log.log.path.display().to_string(), |m| m.place.to_string());
-    Err(MethodError::Undeclared {
-        place,
-        what: format!(
-            "{name} states no {}; added mass is wrong by its size where one is guessed: write {{ name = \"{name}\", unit = \"…\", sign = 1, frame = \"body\", \
-             clock = \"log\" }}, sign being that of {of_axes}",
-            undeclared.join(", no ")
-        ),
-    })
+    logs::channel(log, name, dimension, "added mass is wrong by its size where one is guessed", along)
 }

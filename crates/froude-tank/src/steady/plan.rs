@@ -1,0 +1,278 @@
+//! The plan of steady tows: run matrix, time, travel, and the intervals to expect.
+//!
+//! Each planned run is towed without noise on the twin and reduced; the lengths of its window and its parts at rest, the noise of the sensors and its
+//! correlation give the variance of its mean. With X the regressors of a load at the truth and S the variances of its rows,
+//!
+//! C = (XᵀX)⁻¹ Xᵀ S X (XᵀX)⁻¹ + Σ_e (XᵀX)⁻¹ Xᵀ J_e s_e² J_eᵀ X (XᵀX)⁻¹
+//!
+//! over the declared errors e that all runs share; what each run has for itself goes into S.
+//!
+//! **Source.** As [`crate::oscillation::forecast`].
+
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::faer::Mat;
+use froude_fit::faer::prelude::*;
+use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
+use froude_records::number;
+use froude_records::page::{DocumentSection, TextTable};
+
+use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
+use super::window::window;
+
+/// What a taper over a window costs in independent samples ([`froude_fit::series`]).
+const TAPER_COST: f64 = 0.6875 / 0.5625;
+/// Step of differences by speed and angle, as part of the standard uncertainty.
+const STEP: f64 = 1e-3;
+
+/// A coefficient with the interval to expect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Its name.
+    pub name: String,
+    /// SI unit text.
+    pub unit: String,
+    /// The truth.
+    pub value: f64,
+    /// Standard uncertainty and interval.
+    pub combined: Combined,
+    /// The largest error behind it, and its standard uncertainty.
+    pub mostly: (String, f64),
+}
+
+/// Lengths of the steady window and of a part at rest, s, of each planned run.
+fn windows(plan: &Plan, source: &Source) -> Result<Vec<[f64; 2]>, MethodError> {
+    let spec = source.steady.unwrap_or_default();
+    let parts_s = |run: &Simulated| {
+        let run = run.view();
+        window(run.id, run.time_s, run.motion, &spec)
+            .map(|w| [w.steady.len(), w.before.len()].map(|n| n as f64 / spec.tow.rate_hz))
+    };
+    let exact = simulated(plan, source, &[], &[], 0);
+    exact.iter().map(parts_s).collect::<Result<_, _>>().map_err(MethodError::refused)
+}
+
+/// The intervals to expect of the coefficients of the planned law.
+///
+/// # Errors
+///
+/// Runs without a window, coefficients that the plan does not determine.
+pub fn expected(plan: &Plan, source: &Source, sensors: &[SensorSpec]) -> Result<Vec<Expected>, MethodError> {
+    let (windows_s, budget) = (windows(plan, source)?, &source.uncertainty);
+    let step_s = 1.0 / source.steady.unwrap_or_default().tow.rate_hz;
+    let n = plan.data.rows;
+    let p = plan.law.coefficients.len();
+    let x = plan.law.regressors(&plan.data, &plan.values)?;
+    let truth = plan.law.predict(&plan.data, &plan.values)?;
+    let mut out: Vec<Option<Expected>> = vec![None; p];
+    for (r, response) in plan.law.responses.iter().enumerate() {
+        let own: Vec<usize> = (0..p).filter(|&j| (0..n).any(|i| x[(r * n + i, j)] != 0.0)).collect();
+        let design = Mat::from_fn(n, own.len(), |i, j| x[(r * n + i, own[j])]);
+        let gram = design.transpose() * &design;
+        let undetermined = || MethodError::Undeclared {
+            place: String::new(),
+            what: format!(
+                "the planned runs do not tell the coefficients of {response} apart in {}: plan more speeds, angles or configurations, or another law",
+                plan.law.name
+            ),
+        };
+        let scale: Vec<f64> = (0..own.len()).map(|j| gram[(j, j)].sqrt()).collect();
+        let scaled = Mat::from_fn(own.len(), own.len(), |i, j| gram[(i, j)] / (scale[i] * scale[j]));
+        let least = scaled.self_adjoint_eigenvalues(froude_fit::faer::Side::Lower).map_err(|_| undetermined())?;
+        if least.first().is_none_or(|e| *e < 1e-12) {
+            return Err(undetermined());
+        }
+        let solve = scaled.llt(froude_fit::faer::Side::Lower).map_err(|_| undetermined())?;
+        let inverse = solve.solve(Mat::<f64>::identity(own.len(), own.len()));
+        let inverse = Mat::from_fn(own.len(), own.len(), |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+        let mut variances: Vec<f64> = (0..n).map(|i| variance(sensors, response, windows_s[i], step_s)).collect();
+        let mut parts = Vec::new();
+        for entry in budget {
+            let column = direction(plan, entry, r, &truth);
+            let Some(column) = column else { continue };
+            if entry.shared == Shared::Campaign {
+                let e = Mat::from_fn(n, 1, |i, _| column[i]);
+                let moved = &inverse * (design.transpose() * e);
+                let covariance = Mat::from_fn(own.len(), own.len(), |i, j| moved[(i, 0)] * moved[(j, 0)]);
+                let name = entry.name.clone().unwrap_or_else(|| entry.quantity.clone());
+                parts.push(part(&name, Kind::B, covariance, entry.dof.unwrap_or(f64::INFINITY)));
+            } else {
+                variances.iter_mut().zip(&column).for_each(|(v, c)| *v += c * c);
+            }
+        }
+        let weighed = Mat::from_fn(n, own.len(), |i, j| variances[i] * design[(i, j)]);
+        let scatter = &inverse * (design.transpose() * weighed) * &inverse;
+        parts.insert(0, part("scatter", Kind::A, scatter, (n as f64 - own.len() as f64).max(1.0)));
+        for (at, &j) in own.iter().enumerate() {
+            let combined = combine(&parts, at, OUTSIDE_95);
+            let largest = parts.iter().max_by(|a, b| a.standard(at).total_cmp(&b.standard(at)));
+            let mostly = largest.map_or_else(Default::default, |part| (part.name.clone(), part.standard(at)));
+            let coefficient = &plan.law.coefficients[j];
+            out[j] = Some(Expected {
+                name: coefficient.name.clone(),
+                unit: coefficient.unit.clone(),
+                value: plan.values[j],
+                combined,
+                mostly,
+            });
+        }
+    }
+    Ok(out.into_iter().flatten().collect())
+}
+
+fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
+    let p = covariance.nrows();
+    Part {
+        name: name.to_owned(),
+        shared: "campaign",
+        kind,
+        covariance,
+        dof: vec![dof; p],
+        shape: Shape::Normal,
+        in_scatter: false,
+        origin: None,
+    }
+}
+
+/// Variance of the observation of a load: of its mean over the window and of the line between the parts at rest at its middle.
+fn variance(sensors: &[SensorSpec], load: &str, [window_s, still_s]: [f64; 2], step_s: f64) -> f64 {
+    let Some(sensor) = sensors.iter().find(|s| s.quantity == load) else { return 0.0 };
+    let keep = sensor.correlation_s.map_or(0.0, |time| (-step_s / time).exp());
+    // Samples lie so far apart as if they were independent.
+    let apart_s = step_s * (1.0 + keep) / (1.0 - keep);
+    let resolution = sensor.resolution.unwrap_or(0.0).powi(2) / 12.0 * step_s / window_s;
+    let noise = sensor.noise.unwrap_or(0.0).powi(2) * apart_s * TAPER_COST;
+    noise / window_s + 0.5 * noise / still_s + resolution
+}
+
+/// What an error of one standard uncertainty does to a load, in each row; `None` where it does nothing to it.
+fn direction(plan: &Plan, entry: &BudgetEntry, r: usize, truth: &[f64]) -> Option<Vec<f64>> {
+    let n = plan.data.rows;
+    let own = &truth[r * n..(r + 1) * n];
+    if entry.quantity == plan.law.responses[r] {
+        return Some(own.iter().map(|f| if entry.relative { entry.standard * f } else { entry.standard }).collect());
+    }
+    if entry.quantity == "density" {
+        let part = |i: usize| {
+            let rho = plan.data.values("density").map_or(f64::NAN, |d| d[i]);
+            if entry.relative { entry.standard } else { entry.standard / rho }
+        };
+        // Loads of the water are proportional to it.
+        return Some((0..n).map(|i| -part(i) * own[i]).collect());
+    }
+    let is_speed = entry.quantity == "speed";
+    if !is_speed && entry.quantity != "angle" {
+        return None;
+    }
+    let value = |name: &str, i: usize| plan.data.values(name).map_or(0.0, |v| v[i]);
+    let one = |i: usize| {
+        let (speed, angle) = (value("speed", i), value("angle", i));
+        let at = if is_speed { speed } else { angle };
+        let standard = if entry.relative { entry.standard * at.abs() } else { entry.standard };
+        let load = |by: f64| {
+            let (u, a) = if is_speed { (speed + by, angle) } else { (speed, angle + by) };
+            loads_at(plan, i, u, a)[r]
+        };
+        let h = STEP * standard;
+        // What is fitted is taken at q + e, what was there was made by q.
+        if h > 0.0 { -(load(h) - load(-h)) / (2.0 * STEP) } else { 0.0 }
+    };
+    Some((0..n).map(one).collect())
+}
+
+/// What the plan of a source takes and determines.
+///
+/// # Errors
+///
+/// What the campaign does not declare, runs without a window, coefficients that the plan does not determine.
+pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
+    let spec = source.steady.unwrap_or_default();
+    let plan = plan_of(campaign, source)?;
+    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let windows_s = windows(&plan, source)?;
+    let expected = expected(&plan, source, sensors)?;
+    let speed = |i: usize| plan.data.values("speed").map_or(0.0, |v| v[i].abs());
+    let duration = |i: usize| 2.0 * (spec.tow.still_s + speed(i) / spec.tow.acceleration_m_s2) + spec.tow.steady_s;
+    let travel = |i: usize| speed(i).powi(2) / spec.tow.acceleration_m_s2 + speed(i) * spec.tow.steady_s;
+    let rows = (0..plan.data.rows).map(|i| {
+        vec![
+            format!("{:03}", i + 1),
+            plan.data.configuration[i].clone(),
+            number::significant(speed(i), 3),
+            number::plain(plan.data.values("angle").map_or(0.0, |a| a[i].to_degrees()), 4),
+            number::fixed(duration(i), 1),
+            number::fixed(travel(i), 2),
+            number::fixed(windows_s[i][0], 1),
+            number::fixed(windows_s[i][0] * speed(i), 2),
+        ]
+    });
+    let matrix = TextTable {
+        caption: "Run matrix.".to_owned(),
+        head: [
+            "run",
+            "configuration",
+            "speed [m/s]",
+            "angle [deg]",
+            "duration [s]",
+            "travel [m]",
+            "steady window [s]",
+            "steady distance [m]",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    };
+    let coefficients = TextTable {
+        caption: format!(
+            "Intervals to expect, with the law {} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it.",
+            plan.law.name
+        ),
+        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
+        rows: expected.iter().map(row).collect(),
+    };
+    let duration_s: f64 = (0..plan.data.rows).map(duration).sum();
+    let longest_m = (0..plan.data.rows).map(travel).fold(0.0, f64::max);
+    let steady_m: f64 = (0..plan.data.rows).map(|i| windows_s[i][0] * speed(i)).sum();
+    let paragraph = format!(
+        "{} of {:.1} min in all on the log, waits between them and the way back not counted; {:.1} m of steady distance; the longest needs {:.2} m of travel. The intervals are those of the \
+         linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared; bounds are not counted.",
+        froude_records::text::counted(plan.data.rows, "run", "runs"),
+        duration_s / 60.0,
+        steady_m,
+        longest_m
+    );
+    Ok(Prospect {
+        source: source.name.clone(),
+        runs: plan.data.rows,
+        duration_s,
+        expected: expected
+            .iter()
+            .map(|e| ExpectedCoefficient {
+                model: plan.law.name.clone(),
+                name: e.name.clone(),
+                unit: e.unit.clone(),
+                value: e.value,
+                standard_uncertainty: e.combined.standard,
+                half_width_95: e.combined.arms[1],
+            })
+            .collect(),
+        section: DocumentSection {
+            title: format!("Plan of {}", source.name),
+            paragraphs: vec![paragraph],
+            tables: vec![matrix, coefficients],
+            charts: Vec::new(),
+        },
+    })
+}
+
+fn row(e: &Expected) -> Vec<String> {
+    let half = e.combined.arms[1];
+    vec![
+        e.name.clone(),
+        e.unit.clone(),
+        number::significant(e.value, 4),
+        number::significant(half, 2),
+        if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) },
+        format!("{} ({})", e.mostly.0, number::significant(e.mostly.1, 2)),
+    ]
+}

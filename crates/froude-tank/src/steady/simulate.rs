@@ -1,0 +1,209 @@
+//! The twin of a campaign's steady tows: the logs and sidecars that it would give for chosen true coefficients.
+//!
+//! What `[[source.uncertainty]]` declares is drawn about what is stated: gains of loads and speed and errors of the angle, once for the campaign or once
+//! for each run as the entry says. Each run has zeros of its own.
+
+use std::cell::RefCell;
+
+use froude_identify::dataset::Dataset;
+use froude_identify::law::ForceLaw;
+use froude_identify::method::{Export, MethodError};
+use froude_identify::simulate::{planned, truth};
+use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
+use froude_records::run::STEADY;
+use froude_records::units::Dimension;
+use froude_rig::steady::{Reading, TowTrace, tow};
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+use super::point::Run;
+use super::window::Motion;
+
+/// Standard deviation of the zero of a run, N or N m.
+const ZERO: f64 = 0.2;
+
+/// A run with its log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulated {
+    /// Its name.
+    pub id: String,
+    /// What is mounted.
+    pub configuration: String,
+    /// The angle as it is stated, rad.
+    pub angle_rad: f64,
+    /// Names of the loads.
+    pub loads: Vec<String>,
+    /// What was logged.
+    pub trace: TowTrace,
+}
+
+impl Simulated {
+    /// The log as the reduction takes it.
+    #[must_use]
+    pub fn view(&self) -> Run<'_> {
+        let loads = self.loads.iter().zip(&self.trace.loads_n);
+        Run {
+            id: &self.id,
+            configuration: &self.configuration,
+            angle_rad: self.angle_rad,
+            time_s: &self.trace.time_s,
+            motion: Motion::Speed(&self.trace.speed_m_s),
+            loads: loads.map(|(name, values)| (name.as_str(), values.as_slice())).collect(),
+            zero: None,
+        }
+    }
+}
+
+/// The run matrix and the truth of a source.
+pub struct Plan {
+    /// Settings, a row per run.
+    pub data: Dataset,
+    /// The true law.
+    pub law: ForceLaw,
+    /// Its coefficients.
+    pub values: Vec<f64>,
+}
+
+/// Reads the plan of a source with its truth.
+///
+/// # Errors
+///
+/// A campaign without water or without truth.
+pub fn plan_of(campaign: &Campaign, source: &Source) -> Result<Plan, MethodError> {
+    let mut own = campaign.clone();
+    own.sources = vec![source.clone()];
+    let data = planned(&own, source)?;
+    let (law, values) = truth(&own, &data)?;
+    Ok(Plan { data, law, values })
+}
+
+/// Loads of the law in one row of settings at another speed and angle, N.
+pub(super) fn loads_at(plan: &Plan, row: usize, speed_m_s: f64, angle_rad: f64) -> Vec<f64> {
+    let mut at = plan.data.subset(&[row]);
+    at.put("speed", vec![speed_m_s], Dimension::SPEED);
+    at.put("angle", vec![angle_rad], Dimension::ONE);
+    at.velocity_from_speed_and_angle();
+    let names = &plan.law.responses;
+    plan.law.predict(&at, &plan.values).unwrap_or_else(|_| vec![f64::NAN; names.len()])
+}
+
+/// The logs of all planned runs; the same seed gives the same logs.
+#[must_use]
+pub fn simulated(
+    plan: &Plan,
+    source: &Source,
+    sensors: &[SensorSpec],
+    budget: &[BudgetEntry],
+    seed: u64,
+) -> Vec<Simulated> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut draw = || -> f64 { rng.sample(StandardNormal) };
+    let spec = source.steady.unwrap_or_default();
+    let value = |name: &str, row: usize| plan.data.values(name).map_or(0.0, |v| v[row]);
+    // One error of the campaign for each entry; those of runs are drawn as they come.
+    let common: Vec<f64> = budget.iter().map(|_| draw()).collect();
+    let mut out = Vec::new();
+    for row in 0..plan.data.rows {
+        let mut gains = vec![1.0; 1 + plan.law.responses.len()];
+        let mut angle_off = 0.0;
+        for (entry, common) in budget.iter().zip(&common) {
+            let z = if entry.shared == Shared::Campaign { *common } else { draw() };
+            let at = if entry.quantity == "speed" {
+                Some(0)
+            } else {
+                plan.law.responses.iter().position(|r| *r == entry.quantity).map(|r| 1 + r)
+            };
+            if let (Some(k), true) = (at, entry.relative) {
+                gains[k] *= 1.0 + entry.standard * z;
+            } else if entry.quantity == "angle" && !entry.relative {
+                angle_off += entry.standard * z;
+            }
+        }
+        let reading = |k: usize, name: &str, zero: f64| {
+            let sensor = sensors.iter().find(|s| s.quantity == name);
+            let noise = sensor.and_then(|s| s.noise).unwrap_or(0.0);
+            Reading {
+                noise,
+                correlation_s: sensor.and_then(|s| s.correlation_s),
+                step: sensor.and_then(|s| s.resolution).unwrap_or(0.0),
+                zero: zero + sensor.and_then(|s| s.bias).unwrap_or(0.0),
+                drift_per_s: 0.0,
+                gain: gains[k],
+            }
+        };
+        let mut readings = vec![reading(0, "speed", 0.0)];
+        for (l, name) in plan.law.responses.iter().enumerate() {
+            readings.push(reading(1 + l, name, ZERO * draw()));
+        }
+        let (speed, angle) = (value("speed", row), value("angle", row));
+        let last: RefCell<Option<(f64, Vec<f64>)>> = RefCell::new(None);
+        let loads = |speed: f64| {
+            if let Some((at, loads)) = last.borrow().as_ref().filter(|(at, _)| *at == speed) {
+                debug_assert!(*at == speed);
+                return loads.clone();
+            }
+            let loads = loads_at(plan, row, speed, angle + angle_off);
+            *last.borrow_mut() = Some((speed, loads.clone()));
+            loads
+        };
+        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(row as u64 + 1);
+        out.push(Simulated {
+            id: format!("{:03}", row + 1),
+            configuration: plan.data.configuration[row].clone(),
+            angle_rad: angle,
+            loads: plan.law.responses.clone(),
+            trace: tow(spec.tow, speed, &readings, &loads, seed),
+        });
+    }
+    out
+}
+
+/// The files of all planned runs of a source: a log and its sidecar each.
+///
+/// # Errors
+///
+/// What the campaign does not declare.
+pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
+    let plan = plan_of(campaign, source)?;
+    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let mut out = Vec::new();
+    for run in simulated(&plan, source, sensors, &source.uncertainty, seed) {
+        out.push(Export { name: format!("{}.csv", run.id), content: log(&run).into_bytes() });
+        out.push(Export { name: format!("{}.toml", run.id), content: sidecar(&run).into_bytes() });
+    }
+    Ok(out)
+}
+
+fn log(run: &Simulated) -> String {
+    let mut out = format!("time,speed,{}\n", run.loads.join(","));
+    for (i, t) in run.trace.time_s.iter().enumerate() {
+        out += &format!("{t:.6},{:.7}", run.trace.speed_m_s[i]);
+        for load in &run.trace.loads_n {
+            out += &format!(",{:.6}", load[i]);
+        }
+        out.push('\n');
+    }
+    out
+}
+
+fn sidecar(run: &Simulated) -> String {
+    let mounted = if run.configuration.is_empty() {
+        String::new()
+    } else {
+        format!("\n[mounted]\nconfiguration = {:?}\n", run.configuration)
+    };
+    let mut out = format!(
+        "# A run of the twin.\nschema = 1\nmethod = \"{STEADY}\"\nrole = \"test\"\n{mounted}\n[conditions]\nangle = \"{} deg\"\n\n[columns]\n\
+         time  = {{ name = \"time\", unit = \"s\" }}\n\
+         speed = {{ name = \"speed\", unit = \"m/s\", sign = 1, frame = \"body\", clock = \"log\" }}\n",
+        (run.angle_rad.to_degrees() * 1e9).round() / 1e9
+    );
+    for load in &run.loads {
+        let unit = if load.starts_with('m') { "N m" } else { "N" };
+        out += &format!(
+            "{load}   = {{ name = \"{load}\", unit = \"{unit}\", sign = 1, frame = \"body\", clock = \"log\" }}\n"
+        );
+    }
+    out
+}

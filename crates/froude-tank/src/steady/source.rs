@@ -1,0 +1,315 @@
+//! Steady tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
+
+use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::reduce::reduce_table;
+use froude_identify::source::identify_observations;
+use froude_identify::uncertainty::SharedError;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::finding::{Finding, Severity};
+use froude_records::run::{ImportedRun, Role, STEADY};
+use froude_records::steady::SteadySpec;
+use froude_records::text::counted;
+use froude_records::units::Dimension;
+
+use super::error::SteadyError;
+use super::point::{Point, Run, Zero, point};
+use super::row::{Row, table};
+use super::tare::{self, Tare};
+use super::window::Motion;
+use super::{page, plan, simulate};
+use crate::logs::{self, Logs};
+
+/// Windows of raw runs as observations.
+pub struct Steady;
+
+/// Loads that a log may have, and their dimension.
+const LOADS: [(&str, Dimension); 6] = [
+    ("f_x", Dimension::FORCE),
+    ("f_y", Dimension::FORCE),
+    ("f_z", Dimension::FORCE),
+    ("m_x", Dimension::MOMENT),
+    ("m_y", Dimension::MOMENT),
+    ("m_z", Dimension::MOMENT),
+];
+/// A drift of the zero this many of its standard uncertainties is none of chance.
+const DRIFTS: f64 = 4.0;
+
+impl Method for Steady {
+    fn names(&self) -> &'static [&'static str] {
+        &[STEADY]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "steady windows of raw tows, or of a body held in a stream, each an observation"
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const {
+            &[
+                Need::of(&["test"], &[]),
+                Need { is_optional: true, is_observed: false, ..Need::of(&["tare"], &[]) },
+                Need { is_optional: true, is_observed: false, ..Need::of(&["still"], &[]) },
+            ]
+        }
+    }
+
+    fn runs(&self) -> &'static str {
+        STEADY
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let spec = source.steady.unwrap_or_default();
+        progress("reading the runs");
+        let Logs { runs: logs, files, mut findings } = logs::read(
+            source.input.path(),
+            STEADY,
+            &[Role::Test, Role::Tare, Role::Still],
+            "time, speed or position, and loads",
+        )?;
+        progress("looking for steady windows");
+        let reduced = reduce(source, &logs, &spec)?;
+        findings.extend(reduced.findings);
+        let table = table(source.input.path(), &reduced.rows);
+        let mut observations = reduce_table(campaign, source, &table, files)?;
+        if !reduced.errors.is_empty() && observations.data.rows != reduced.rows.len() {
+            return Err(MethodError::Undeclared {
+                place: source.place.to_string(),
+                what: "`keep` and runs of the role tare do not go together: leave the logs that are not meant out of the folder".to_owned(),
+            });
+        }
+        observations.shared_errors.extend(reduced.errors);
+        let mut result = identify_observations(campaign, source, observations, STEADY, &|model| {
+            progress(&format!("fitting {model}"));
+        })?;
+        findings.append(&mut result.findings);
+        let blocks = vec![page::section(&logs, &reduced.rows, &spec)];
+        Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
+    }
+
+    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        simulate::files(campaign, source).map(Some)
+    }
+
+    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        plan::prospect(campaign, source).map(Some)
+    }
+}
+
+/// Observations of a folder.
+struct Reduced {
+    rows: Vec<Row>,
+    errors: Vec<SharedError>,
+    findings: Vec<Finding>,
+}
+
+/// Every test as an observation; one that gives none is left out and said, unless none is left.
+fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Reduced, MethodError> {
+    let mut findings = Vec::new();
+    let stills = stills(logs)?;
+    let (mut rows, mut tares) = (Vec::new(), Vec::new());
+    let mut first: Option<SteadyError> = None;
+    for log in logs.iter().filter(|log| log.log.meta.role != Role::Still) {
+        let mut run = run(log)?;
+        let angle_rad = run.angle_rad;
+        let found = match zero(log, &run, &stills, spec)? {
+            Some(Err(error)) => Err(error),
+            zero => {
+                run.zero = zero.and_then(Result::ok);
+                point(&run, spec)
+            }
+        };
+        match found {
+            Ok(point) => {
+                findings.extend(of_point(&log.log.meta.id, &point));
+                if log.log.meta.role == Role::Tare {
+                    tares.push(Tare { angle_rad, point });
+                } else {
+                    rows.push(Row {
+                        run: log.log.meta.id.clone(),
+                        configuration: log.log.meta.configuration.clone(),
+                        angle_rad,
+                        temperature_k: logs::condition(log, "temperature", Dimension::TEMPERATURE)?,
+                        point,
+                    });
+                }
+            }
+            Err(error) => {
+                findings.push(Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}")));
+                first.get_or_insert(error);
+            }
+        }
+    }
+    if rows.is_empty() {
+        return Err(first.map_or_else(
+            || {
+                MethodError::input(
+                    source.input.path(),
+                    "no run of the role test: what is fitted has role = \"test\" in its sidecar",
+                )
+            },
+            MethodError::refused,
+        ));
+    }
+    let mut errors = Vec::new();
+    if !tares.is_empty() {
+        errors = tare::subtract(&mut rows, &tares, &source.name).map_err(MethodError::refused)?;
+        let text = format!(
+            "{} subtracted at the same speed and angle; what is uncertain about their mean is shared by all observations there",
+            counted(tares.len(), "run without the body is", "runs without the body are")
+        );
+        findings.push(Finding::new(Severity::Note, "tare-subtracted", text));
+    }
+    Ok(Reduced { rows, errors, findings })
+}
+
+/// What one observation shows.
+fn of_point(run: &str, point: &Point) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for load in &point.loads {
+        let unit = if load.name.starts_with('m') { "N m" } else { "N" };
+        if load.read.has_trend() {
+            out.push(Finding::new(
+                Severity::Warning,
+                "load-not-steady",
+                format!(
+                    "run {run:?}: {} changes by {:.3e} ± {:.1e} {unit} over its window: the water has not settled, or the zero drifts; settle longer, or wait longer before \
+                     the run",
+                    load.name, load.read.trend, load.read.trend_standard
+                ),
+            ));
+        }
+        if let Some([drift, standard]) = load.drift.filter(|[d, s]| d.abs() > DRIFTS * s) {
+            out.push(Finding::new(
+                Severity::Note,
+                "zero-drift",
+                format!(
+                    "run {run:?}: the zero of {} moves by {drift:.3e} ± {standard:.1e} {unit} from before to after the tow; the straight line between them is subtracted",
+                    load.name
+                ),
+            ));
+        }
+    }
+    out
+}
+
+/// A log as a run; nothing about it is taken for granted.
+fn run(log: &ImportedRun) -> Result<Run<'_>, MethodError> {
+    let why = "drag is wrong by its size or its sign where one is guessed";
+    let channel = |name: &str, dimension, along: &str| {
+        logs::channel(log, name, dimension, why, along).map(|c| c.values.as_slice())
+    };
+    let has = |name: &str| log.log.channels.contains_key(name);
+    let motion = if has("speed") {
+        Motion::Speed(channel("speed", Dimension::SPEED, "the body's way through the water")?)
+    } else if has("position") || has("y/position") {
+        let name = if has("position") { "position" } else { "y/position" };
+        Motion::Position(channel(name, Dimension::LENGTH, "the body's way through the water")?)
+    } else {
+        let stream = logs::condition(log, "speed", Dimension::SPEED)?.ok_or_else(|| {
+            MethodError::input(
+                &log.log.path,
+                "no channel speed or position says how it moves; of a body held in a stream write [conditions] speed = \"0.2 m/s\" in its sidecar",
+            )
+        })?;
+        Motion::Stream(stream)
+    };
+    let mut loads = Vec::new();
+    for (name, dimension) in LOADS.iter().filter(|(name, _)| has(name)) {
+        loads.push((*name, channel(name, *dimension, "the water on the body, along its axes")?));
+    }
+    if loads.is_empty() {
+        let there: Vec<&str> = log.log.channels.keys().map(String::as_str).collect();
+        let what = format!("a run needs a load (f_x, f_y, …, of the water on the body), and has {}", there.join(", "));
+        return Err(MethodError::input(&log.log.path, what));
+    }
+    for (name, _) in &loads {
+        let frame = log.log.channels[*name].meaning.frame;
+        if frame != froude_records::run::Frame::Body {
+            let what = format!(
+                "{name} is along the axes of {:?}; loads are taken along those of the body: mount the cell with the body, or turn its readings, and write frame = \"body\"",
+                frame.name()
+            );
+            return Err(MethodError::input(&log.log.path, what));
+        }
+    }
+    Ok(Run {
+        id: &log.log.meta.id,
+        configuration: &log.log.meta.configuration,
+        angle_rad: logs::condition(log, "angle", Dimension::ONE)?.unwrap_or(0.0),
+        time_s: &log.log.time_s,
+        motion,
+        loads,
+        zero: None,
+    })
+}
+
+/// A still run: when it was, and its mean loads.
+struct Still {
+    at_s: f64,
+    loads: Vec<(String, Zero)>,
+}
+
+fn stills(logs: &[ImportedRun]) -> Result<Vec<Still>, MethodError> {
+    let mut out = Vec::new();
+    for log in logs.iter().filter(|log| log.log.meta.role == Role::Still) {
+        let at_s = logs::condition(log, "at", Dimension::TIME)?.ok_or_else(|| {
+            MethodError::input(
+                &log.log.path,
+                "a still run states when it was: write [conditions] at = \"0 s\" in its sidecar, counted from the same moment as those of the tests",
+            )
+        })?;
+        let step_s = log.steps.median_s;
+        let of = |name: &str| {
+            let mean = log.log.channels.get(name).map(|c| froude_fit::series::mean(&c.values, step_s));
+            mean.map(|m| (name.to_owned(), Zero { value: m.value, standard: m.standard }))
+        };
+        out.push(Still { at_s, loads: LOADS.iter().filter_map(|(name, _)| of(name)).collect() });
+    }
+    out.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    Ok(out)
+}
+
+/// The zero of a run from the still runs before and after it; `None` where there is none, or nothing says when it was.
+fn zero(
+    log: &ImportedRun,
+    run: &Run<'_>,
+    stills: &[Still],
+    spec: &SteadySpec,
+) -> Result<Option<Result<Vec<Zero>, SteadyError>>, MethodError> {
+    let Some(at_s) = logs::condition(log, "at", Dimension::TIME)?.filter(|_| !stills.is_empty()) else {
+        return Ok(None);
+    };
+    let before = stills.iter().rfind(|still| still.at_s <= at_s);
+    let after = stills.iter().find(|still| still.at_s > at_s);
+    let away_s = [before, after].iter().flatten().map(|s| (s.at_s - at_s).abs()).fold(f64::INFINITY, f64::min);
+    let drift_n = spec.drift.map_or(0.0, |drift| drift.rate_n_s * away_s);
+    if let Some(drift) = spec.drift.filter(|drift| drift_n > drift.most_n) {
+        let run = run.id.to_owned();
+        return Ok(Some(Err(SteadyError::OldZero { run, away_s, drift_n, most_n: drift.most_n })));
+    }
+    let of = |still: &Still, name: &str| still.loads.iter().find(|(n, _)| n == name).map(|(_, zero)| *zero);
+    let one = |name: &str| -> Option<Zero> {
+        // What drifts between, evenly in ± that.
+        let unknown = drift_n / 3.0_f64.sqrt();
+        match (before, after) {
+            (Some(a), Some(b)) => {
+                let part = (at_s - a.at_s) / (b.at_s - a.at_s);
+                let (x, y) = (of(a, name)?, of(b, name)?);
+                let standard = ((1.0 - part) * x.standard).hypot(part * y.standard);
+                Some(Zero { value: x.value + part * (y.value - x.value), standard })
+            }
+            (Some(only), None) | (None, Some(only)) => {
+                let zero = of(only, name)?;
+                Some(Zero { standard: zero.standard.hypot(unknown), ..zero })
+            }
+            (None, None) => None,
+        }
+    };
+    Ok(run.loads.iter().map(|(name, _)| one(name)).collect::<Option<Vec<Zero>>>().map(Ok))
+}

@@ -1,0 +1,116 @@
+//! Steady tows on their twin, from raw series to intervals, as the example campaign declares them.
+
+use std::error::Error;
+use std::path::Path;
+
+use froude::fit::coverage::{Count, z_limit};
+use froude::identify::reduce::reduce_table;
+use froude::identify::source::identify_observations;
+use froude::methods::tank::steady::plan::{Expected, expected};
+use froude::methods::tank::steady::row::{Row, table};
+use froude::methods::tank::steady::simulate::{Plan, plan_of, simulated};
+use froude::methods::tank::steady::{SteadyError, point};
+use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
+use froude::records::estimate::Estimate;
+use rayon::prelude::*;
+
+use crate::claims::{Claims, Verdict};
+
+const SECTION: &str = "Steady tows: raw series by their twin";
+
+pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn Error>> {
+    let campaign = read_campaign(&root.join("examples/mamba-steady/campaign.toml"))?;
+    let source = Source { models: vec!["f4".to_owned()], model_places: Vec::new(), ..campaign.sources[0].clone() };
+    let plan = plan_of(&campaign, &source)?;
+    let sensors = campaign.simulate.as_ref().map_or(&[] as &[_], |s| s.sensors.as_slice());
+    for (words, factor) in [("0.02 N", 1.0), ("0.2 N", 10.0)] {
+        let louder = |s: &SensorSpec| SensorSpec {
+            noise: s.noise.map(|n| if s.quantity == "speed" { n } else { factor * n }),
+            ..s.clone()
+        };
+        let sensors: Vec<SensorSpec> = sensors.iter().map(louder).collect();
+        let forecast = expected(&plan, &source, &sensors)?;
+        let fits: Vec<Estimate> = (0..seeds)
+            .into_par_iter()
+            .filter_map(|seed| one(&campaign, &source, &plan, &sensors, seed as u64).ok())
+            .collect();
+        judge(claims, &plan, &forecast, &fits, (words, factor == 1.0, seeds));
+    }
+    Ok(())
+}
+
+/// One campaign: logs, windows, rows, fit.
+fn one(
+    campaign: &Campaign,
+    source: &Source,
+    plan: &Plan,
+    sensors: &[SensorSpec],
+    seed: u64,
+) -> Result<Estimate, Box<dyn Error + Send + Sync>> {
+    let spec = source.steady.unwrap_or_default();
+    let logged = simulated(plan, source, sensors, &source.uncertainty, 1 + seed);
+    let rows = logged.iter().map(|run| {
+        Ok(Row {
+            run: run.id.clone(),
+            configuration: run.configuration.clone(),
+            angle_rad: run.angle_rad,
+            temperature_k: None,
+            point: point(&run.view(), &spec)?,
+        })
+    });
+    let rows: Vec<Row> = rows.collect::<Result<_, SteadyError>>()?;
+    let observations = reduce_table(campaign, source, &table(source.input.path(), &rows), Vec::new())?;
+    let mut result = identify_observations(campaign, source, observations, "steady", &|_| {})?;
+    Ok(result.estimates.remove(0))
+}
+
+fn judge(
+    claims: &mut Claims,
+    plan: &Plan,
+    forecast: &[Expected],
+    fits: &[Estimate],
+    (words, is_judged, seeds): (&str, bool, usize),
+) {
+    let of = |fit: &Estimate, name: &str| fit.coefficients.get(name).and_then(|c| Some((c.value?, c.interval_95?)));
+    let mut counts = vec![Count::default(); forecast.len()];
+    let mut squares = vec![0.0; forecast.len()];
+    for fit in fits {
+        for (j, e) in forecast.iter().enumerate() {
+            let truth = plan.law.position(&e.name).map_or(f64::NAN, |k| plan.values[k]);
+            let found = of(fit, &e.name);
+            counts[j].add(found.is_some_and(|(_, [low, high])| (low..=high).contains(&truth)));
+            squares[j] += found.map_or(f64::NAN, |(value, _)| (value - truth).powi(2));
+        }
+    }
+    let limit = z_limit(0.01, counts.len());
+    let z = |j: usize| counts[j].z_score(0.95);
+    let each: Vec<String> = (forecast.iter().enumerate())
+        .map(|(j, e)| format!("{} {:.2} % (z {:+.2})", e.name, 100.0 * counts[j].rate(), z(j)))
+        .collect();
+    let verdict = |holds: bool| match (is_judged, holds) {
+        (true, true) => Verdict::Pass,
+        (true, false) => Verdict::Miss,
+        (false, _) => Verdict::Measured,
+    };
+    let holds = fits.len() == seeds && (0..counts.len()).all(|j| z(j).abs() <= limit);
+    claims.add(
+        SECTION,
+        &format!("intervals at {words} of correlated noise, {seeds} campaigns of 56 tows: cover"),
+        &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
+        each.join(", "),
+        verdict(holds),
+    );
+    let ratios: Vec<f64> =
+        (0..forecast.len()).map(|j| (squares[j] / fits.len() as f64).sqrt() / forecast[j].combined.standard).collect();
+    // The root mean square of as many errors scatters by 1/√(2n).
+    let allowance = 3.0 / (2.0 * seeds as f64).sqrt();
+    let each: Vec<String> = forecast.iter().zip(&ratios).map(|(e, r)| format!("{} {r:.3}", e.name)).collect();
+    let holds = ratios.iter().all(|r| (0.9 - allowance..=1.1 + allowance).contains(r));
+    claims.add(
+        SECTION,
+        &format!("error of the seeds over the plan's forecast at {words}"),
+        &format!("0.9 to 1.1 (± {allowance:.2} for {seeds} seeds)"),
+        each.join(", "),
+        verdict(holds),
+    );
+}
