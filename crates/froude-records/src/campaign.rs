@@ -18,6 +18,7 @@ use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::run::Declared;
 use crate::steady::SteadySpec;
 use crate::units::Dimension;
+use crate::weight_tow::{WeightPlan, WeightTowSpec};
 
 pub use crate::body_axis::BodyAxis;
 pub use crate::campaign_file::{parse_campaign, read_campaign};
@@ -132,12 +133,16 @@ pub struct Source {
     pub oscillation: Option<OscillationSpec>,
     /// How its steady tows are reduced.
     pub steady: Option<SteadySpec>,
+    /// Its wagon, weight and camera.
+    pub weight_tow: Option<WeightTowSpec>,
     /// What is asked of its mesh.
     pub added_mass: Vec<GivenOption>,
     /// What is to be run.
     pub plan: Vec<PlanBlock>,
     /// What is to be run of a forced oscillation.
     pub oscillation_plan: Vec<OscillationPlan>,
+    /// What is to be run with weights.
+    pub weight_plan: Vec<WeightPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
 }
@@ -571,7 +576,8 @@ impl Source {
     /// Whether it plans runs of its method, not rows of a table.
     #[must_use]
     pub fn plans_runs(&self) -> bool {
-        !self.oscillation_plan.is_empty() || (!self.plan.is_empty() && matches!(self.input, Input::Runs { .. }))
+        let is_runs = matches!(self.input, Input::Runs { .. });
+        is_runs && !(self.plan.is_empty() && self.oscillation_plan.is_empty() && self.weight_plan.is_empty())
     }
 
     /// A source of which nothing but its input is known.
@@ -593,6 +599,8 @@ impl Source {
             decay: None,
             oscillation: None,
             steady: None,
+            weight_tow: None,
+            weight_plan: Vec::new(),
             oscillation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),

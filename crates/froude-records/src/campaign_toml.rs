@@ -20,12 +20,13 @@ use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
-use crate::run::{FORCED_OSCILLATION, STEADY};
+use crate::run::{FORCED_OSCILLATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::steady::steady;
 use crate::table::known_dimension;
 use crate::units::Dimension;
+use crate::weight_tow::{weight_plan, weight_tow};
 
 /// N/m.
 const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
@@ -132,7 +133,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 20] = [
+const SOURCE_KEYS: [&str; 21] = [
     "name",
     "kind",
     "table",
@@ -151,6 +152,7 @@ const SOURCE_KEYS: [&str; 20] = [
     "decay",
     "forced_oscillation",
     "steady",
+    "weight_tow",
     "added_mass",
     "plan",
 ];
@@ -207,11 +209,11 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
     // Runs of a tank method have laws, a budget and a plan of their own.
     let is_method = |name: &str| methods.iter().any(|method| method == name);
-    let (oscillates, is_steady) = (is_method(FORCED_OSCILLATION), is_method(STEADY));
+    let (oscillates, is_steady, is_pulled) = (is_method(FORCED_OSCILLATION), is_method(STEADY), is_method(WEIGHT_TOW));
     let is_own = |key: &&str| match *key {
-        "models" | "uncertainty" | "plan" => oscillates || is_steady,
+        "models" | "uncertainty" | "plan" => oscillates || is_steady || is_pulled,
         // Each of its windows becomes a row.
-        "keep" | "group" | "tare" => is_steady,
+        "keep" | "group" | "tare" => is_steady || is_pulled,
         _ => false,
     };
     let of_table =
@@ -229,7 +231,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
-    for (method, is_asked) in [(FORCED_OSCILLATION, oscillates), (STEADY, is_steady)] {
+    for (method, is_asked) in [(FORCED_OSCILLATION, oscillates), (STEADY, is_steady), (WEIGHT_TOW, is_pulled)] {
         if let (Some(value), false) = (s.get(method), is_asked) {
             let problem =
                 format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
@@ -237,7 +239,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         }
     }
     let blocks = s.sections("plan")?;
-    let (of_oscillation, of_speeds): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| oscillates);
+    let (of_oscillation, others): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| oscillates);
+    let (of_weights, of_speeds): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_pulled);
     Ok(Source {
         name,
         kind,
@@ -253,6 +256,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
+        weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
+        weight_plan: of_weights.into_iter().map(weight_plan).collect::<Result<_, _>>()?,
         steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
         plan: of_speeds.into_iter().map(plan_block).collect::<Result<_, _>>()?,
         oscillation_plan: of_oscillation.into_iter().map(oscillation_plan).collect::<Result<_, _>>()?,
@@ -268,7 +273,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn why_no_rows(input: &Input) -> Option<&'static str> {
     match input {
         Input::Runs { .. } => Some(
-            "the budget of runs follows from the campaign that they were driven by (runs of the methods forced_oscillation and steady take models, uncertainty and plan)",
+            "the budget of runs follows from the campaign that they were driven by (runs of the methods steady, weight_tow and forced_oscillation take models, uncertainty and plan)",
         ),
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,

@@ -63,6 +63,7 @@ mod table_file;
 pub mod text;
 mod unfinished;
 pub mod units;
+pub mod weight_tow;
 pub mod write;
 
 pub use error::{Place, Position, RecordError};

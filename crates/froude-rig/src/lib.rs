@@ -60,6 +60,7 @@ pub mod plant;
 pub mod propagator;
 pub mod steady;
 pub mod twin;
+pub mod weight_tow;
 
 pub use catalogue::Catalogue;
 pub use closed_loop::ClosedLoop;

@@ -8,6 +8,7 @@ use froude_identify::method::Method;
 use froude_tank::decay::source::FreeDecay;
 use froude_tank::oscillation::source::ForcedOscillation;
 use froude_tank::steady::source::Steady;
+use froude_tank::weight_tow::source::WeightTow;
 
 /// Names of the methods that read runs of a method.
 pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
@@ -15,5 +16,5 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-pub(crate) const METHODS: [&dyn Method; 8] =
-    [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay, &ForcedOscillation, &Steady];
+pub(crate) const METHODS: [&dyn Method; 9] =
+    [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay, &ForcedOscillation, &Steady, &WeightTow];

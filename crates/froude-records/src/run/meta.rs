@@ -65,6 +65,8 @@ pub const TOW: &str = "tow";
 pub const FORCED_OSCILLATION: &str = "forced_oscillation";
 /// The method of a body that is towed, or held in a stream, at constant speed.
 pub const STEADY: &str = "steady";
+/// The method of a wagon that a hanging weight pulls.
+pub const WEIGHT_TOW: &str = "weight_tow";
 /// The method of a body that is let go and swings out.
 pub const FREE_DECAY: &str = "free_decay";
 

@@ -52,23 +52,78 @@ fn windows(plan: &Plan, source: &Source) -> Result<Vec<[f64; 2]>, MethodError> {
     exact.iter().map(parts_s).collect::<Result<_, _>>().map_err(MethodError::refused)
 }
 
+/// An error that all runs share, in a plan: what it moves each load of each run by, in the order of the law's responses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlannedError {
+    /// Its name.
+    pub name: String,
+    /// Degrees of freedom of its standard uncertainty.
+    pub dof: f64,
+    /// By response, by run, N or N m.
+    pub moves: Vec<Vec<f64>>,
+}
+
 /// The intervals to expect of the coefficients of the planned law.
 ///
 /// # Errors
 ///
 /// Runs without a window, coefficients that the plan does not determine.
 pub fn expected(plan: &Plan, source: &Source, sensors: &[SensorSpec]) -> Result<Vec<Expected>, MethodError> {
-    let (windows_s, budget) = (windows(plan, source)?, &source.uncertainty);
+    let windows_s = windows(plan, source)?;
     let step_s = 1.0 / source.steady.unwrap_or_default().tow.rate_hz;
-    let n = plan.data.rows;
-    let p = plan.law.coefficients.len();
-    let x = plan.law.regressors(&plan.data, &plan.values)?;
+    let own = |r: usize, i: usize| variance(sensors, &plan.law.responses[r], windows_s[i], step_s);
+    let (errors, rows) = declared(plan, &source.uncertainty)?;
+    linearised(plan, &|r, i| own(r, i) + rows[r][i], &errors, false)
+}
+
+/// What a budget does to a plan: the errors that all runs share, and the variances that each run has for itself, by response.
+///
+/// # Errors
+///
+/// A law that cannot be evaluated.
+pub(crate) fn declared(plan: &Plan, budget: &[BudgetEntry]) -> Result<(Vec<PlannedError>, Vec<Vec<f64>>), MethodError> {
     let truth = plan.law.predict(&plan.data, &plan.values)?;
+    let n_r = plan.law.responses.len();
+    let mut rows = vec![vec![0.0; plan.data.rows]; n_r];
+    let mut errors = Vec::new();
+    for entry in budget {
+        let moves: Vec<Vec<f64>> =
+            (0..n_r).map(|r| direction(plan, entry, r, &truth).unwrap_or_else(|| vec![0.0; plan.data.rows])).collect();
+        if entry.shared == Shared::Campaign {
+            let name = entry.name.clone().unwrap_or_else(|| entry.quantity.clone());
+            errors.push(PlannedError { name, dof: entry.dof.unwrap_or(f64::INFINITY), moves });
+        } else {
+            for (row, moved) in rows.iter_mut().flatten().zip(moves.iter().flatten()) {
+                *row += moved * moved;
+            }
+        }
+    }
+    Ok((errors, rows))
+}
+
+/// Linear propagation at the truth; `variance` is that of a response in a run. Weighted by those variances where `is_weighted`, as a fit that knows
+/// them does.
+///
+/// # Errors
+///
+/// Coefficients that the plan does not determine.
+pub(crate) fn linearised(
+    plan: &Plan,
+    variance: &dyn Fn(usize, usize) -> f64,
+    errors: &[PlannedError],
+    is_weighted: bool,
+) -> Result<Vec<Expected>, MethodError> {
+    let (n, p) = (plan.data.rows, plan.law.coefficients.len());
+    let x = plan.law.regressors(&plan.data, &plan.values)?;
     let mut out: Vec<Option<Expected>> = vec![None; p];
     for (r, response) in plan.law.responses.iter().enumerate() {
         let own: Vec<usize> = (0..p).filter(|&j| (0..n).any(|i| x[(r * n + i, j)] != 0.0)).collect();
-        let design = Mat::from_fn(n, own.len(), |i, j| x[(r * n + i, own[j])]);
-        let gram = design.transpose() * &design;
+        let q = own.len();
+        let variances: Vec<f64> = (0..n).map(|i| variance(r, i)).collect();
+        let weight = |i: usize| if is_weighted && variances[i] > 0.0 { 1.0 / variances[i] } else { 1.0 };
+        let design = Mat::from_fn(n, q, |i, j| x[(r * n + i, own[j])]);
+        let weighed = Mat::from_fn(n, q, |i, j| weight(i) * design[(i, j)]);
+        let gram = design.transpose() * &weighed;
         let undetermined = || MethodError::Undeclared {
             place: String::new(),
             what: format!(
@@ -76,45 +131,31 @@ pub fn expected(plan: &Plan, source: &Source, sensors: &[SensorSpec]) -> Result<
                 plan.law.name
             ),
         };
-        let scale: Vec<f64> = (0..own.len()).map(|j| gram[(j, j)].sqrt()).collect();
-        let scaled = Mat::from_fn(own.len(), own.len(), |i, j| gram[(i, j)] / (scale[i] * scale[j]));
+        let scale: Vec<f64> = (0..q).map(|j| gram[(j, j)].sqrt()).collect();
+        let scaled = Mat::from_fn(q, q, |i, j| gram[(i, j)] / (scale[i] * scale[j]));
         let least = scaled.self_adjoint_eigenvalues(froude_fit::faer::Side::Lower).map_err(|_| undetermined())?;
         if least.first().is_none_or(|e| *e < 1e-12) {
             return Err(undetermined());
         }
         let solve = scaled.llt(froude_fit::faer::Side::Lower).map_err(|_| undetermined())?;
-        let inverse = solve.solve(Mat::<f64>::identity(own.len(), own.len()));
-        let inverse = Mat::from_fn(own.len(), own.len(), |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
-        let mut variances: Vec<f64> = (0..n).map(|i| variance(sensors, response, windows_s[i], step_s)).collect();
-        let mut parts = Vec::new();
-        for entry in budget {
-            let column = direction(plan, entry, r, &truth);
-            let Some(column) = column else { continue };
-            if entry.shared == Shared::Campaign {
-                let e = Mat::from_fn(n, 1, |i, _| column[i]);
-                let moved = &inverse * (design.transpose() * e);
-                let covariance = Mat::from_fn(own.len(), own.len(), |i, j| moved[(i, 0)] * moved[(j, 0)]);
-                let name = entry.name.clone().unwrap_or_else(|| entry.quantity.clone());
-                parts.push(part(&name, Kind::B, covariance, entry.dof.unwrap_or(f64::INFINITY)));
-            } else {
-                variances.iter_mut().zip(&column).for_each(|(v, c)| *v += c * c);
-            }
+        let inverse = solve.solve(Mat::<f64>::identity(q, q));
+        let inverse = Mat::from_fn(q, q, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+        let spread = Mat::from_fn(n, q, |i, j| variances[i] * weight(i) * design[(i, j)]);
+        let scatter = &inverse * (weighed.transpose() * spread) * &inverse;
+        let mut parts = vec![part("scatter", Kind::A, scatter, (n as f64 - q as f64).max(1.0))];
+        for error in errors {
+            let moves = Mat::from_fn(n, 1, |i, _| error.moves[r][i]);
+            let moved = &inverse * (weighed.transpose() * moves);
+            let covariance = Mat::from_fn(q, q, |i, j| moved[(i, 0)] * moved[(j, 0)]);
+            parts.push(part(&error.name, Kind::B, covariance, error.dof));
         }
-        let weighed = Mat::from_fn(n, own.len(), |i, j| variances[i] * design[(i, j)]);
-        let scatter = &inverse * (design.transpose() * weighed) * &inverse;
-        parts.insert(0, part("scatter", Kind::A, scatter, (n as f64 - own.len() as f64).max(1.0)));
         for (at, &j) in own.iter().enumerate() {
             let combined = combine(&parts, at, OUTSIDE_95);
             let largest = parts.iter().max_by(|a, b| a.standard(at).total_cmp(&b.standard(at)));
             let mostly = largest.map_or_else(Default::default, |part| (part.name.clone(), part.standard(at)));
             let coefficient = &plan.law.coefficients[j];
-            out[j] = Some(Expected {
-                name: coefficient.name.clone(),
-                unit: coefficient.unit.clone(),
-                value: plan.values[j],
-                combined,
-                mostly,
-            });
+            let (name, unit, value) = (coefficient.name.clone(), coefficient.unit.clone(), plan.values[j]);
+            out[j] = Some(Expected { name, unit, value, combined, mostly });
         }
     }
     Ok(out.into_iter().flatten().collect())
@@ -135,7 +176,7 @@ fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
 }
 
 /// Variance of the observation of a load: of its mean over the window and of the line between the parts at rest at its middle.
-fn variance(sensors: &[SensorSpec], load: &str, [window_s, still_s]: [f64; 2], step_s: f64) -> f64 {
+pub(crate) fn variance(sensors: &[SensorSpec], load: &str, [window_s, still_s]: [f64; 2], step_s: f64) -> f64 {
     let Some(sensor) = sensors.iter().find(|s| s.quantity == load) else { return 0.0 };
     let keep = sensor.correlation_s.map_or(0.0, |time| (-step_s / time).exp());
     // Samples lie so far apart as if they were independent.
@@ -222,14 +263,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         .to_vec(),
         rows: rows.collect(),
     };
-    let coefficients = TextTable {
-        caption: format!(
-            "Intervals to expect, with the law {} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it.",
-            plan.law.name
-        ),
-        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
-        rows: expected.iter().map(row).collect(),
-    };
+    let coefficients = coefficients(&plan, &expected);
     let duration_s: f64 = (0..plan.data.rows).map(duration).sum();
     let longest_m = (0..plan.data.rows).map(travel).fold(0.0, f64::max);
     let steady_m: f64 = (0..plan.data.rows).map(|i| windows_s[i][0] * speed(i)).sum();
@@ -245,17 +279,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         source: source.name.clone(),
         runs: plan.data.rows,
         duration_s,
-        expected: expected
-            .iter()
-            .map(|e| ExpectedCoefficient {
-                model: plan.law.name.clone(),
-                name: e.name.clone(),
-                unit: e.unit.clone(),
-                value: e.value,
-                standard_uncertainty: e.combined.standard,
-                half_width_95: e.combined.arms[1],
-            })
-            .collect(),
+        expected: of_law(&plan, &expected),
         section: DocumentSection {
             title: format!("Plan of {}", source.name),
             paragraphs: vec![paragraph],
@@ -263,6 +287,31 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
             charts: Vec::new(),
         },
     })
+}
+
+/// The intervals for a program.
+pub(crate) fn of_law(plan: &Plan, expected: &[Expected]) -> Vec<ExpectedCoefficient> {
+    let one = |e: &Expected| ExpectedCoefficient {
+        model: plan.law.name.clone(),
+        name: e.name.clone(),
+        unit: e.unit.clone(),
+        value: e.value,
+        standard_uncertainty: e.combined.standard,
+        half_width_95: e.combined.arms[1],
+    };
+    expected.iter().map(one).collect()
+}
+
+/// The intervals for a person.
+pub(crate) fn coefficients(plan: &Plan, expected: &[Expected]) -> TextTable {
+    TextTable {
+        caption: format!(
+            "Intervals to expect, with the law {} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it.",
+            plan.law.name
+        ),
+        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
+        rows: expected.iter().map(row).collect(),
+    }
 }
 
 fn row(e: &Expected) -> Vec<String> {

@@ -97,6 +97,11 @@ pub fn point(run: &Run<'_>, spec: &SteadySpec) -> Result<Point, SteadyError> {
         }
     }
     let window = window(run.id, run.time_s, run.motion, spec)?;
+    observed(run, window, spec)
+}
+
+/// The observation of a run whose parts are known.
+pub(crate) fn observed(run: &Run<'_>, window: Window, spec: &SteadySpec) -> Result<Point, SteadyError> {
     let loads = run.loads.iter().enumerate().map(|(l, (name, values))| load(run, &window, (l, name), values, spec));
     let loads = loads.collect::<Result<_, _>>()?;
     let speed_m_s = match run.motion {

@@ -79,7 +79,8 @@ pub fn plan_of(campaign: &Campaign, source: &Source) -> Result<Plan, MethodError
 }
 
 /// Loads of the law in one row of settings at another speed and angle, N.
-pub(super) fn loads_at(plan: &Plan, row: usize, speed_m_s: f64, angle_rad: f64) -> Vec<f64> {
+#[must_use]
+pub fn loads_at(plan: &Plan, row: usize, speed_m_s: f64, angle_rad: f64) -> Vec<f64> {
     let mut at = plan.data.subset(&[row]);
     at.put("speed", vec![speed_m_s], Dimension::SPEED);
     at.put("angle", vec![angle_rad], Dimension::ONE);

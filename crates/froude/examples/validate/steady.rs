@@ -34,7 +34,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             .into_par_iter()
             .filter_map(|seed| one(&campaign, &source, &plan, &sensors, seed as u64).ok())
             .collect();
-        judge(claims, &plan, &forecast, &fits, (words, factor == 1.0, seeds));
+        judge(claims, SECTION, &plan, &forecast, &fits, (words, "56 tows", factor == 1.0, seeds));
     }
     Ok(())
 }
@@ -64,12 +64,14 @@ fn one(
     Ok(result.estimates.remove(0))
 }
 
-fn judge(
+/// Coverage of the intervals, and the errors of the seeds beside the forecast.
+pub fn judge(
     claims: &mut Claims,
+    section: &'static str,
     plan: &Plan,
     forecast: &[Expected],
     fits: &[Estimate],
-    (words, is_judged, seeds): (&str, bool, usize),
+    (words, runs, is_judged, seeds): (&str, &str, bool, usize),
 ) {
     let of = |fit: &Estimate, name: &str| fit.coefficients.get(name).and_then(|c| Some((c.value?, c.interval_95?)));
     let mut counts = vec![Count::default(); forecast.len()];
@@ -94,8 +96,8 @@ fn judge(
     };
     let holds = fits.len() == seeds && (0..counts.len()).all(|j| z(j).abs() <= limit);
     claims.add(
-        SECTION,
-        &format!("intervals at {words} of correlated noise, {seeds} campaigns of 56 tows: cover"),
+        section,
+        &format!("intervals at {words} of correlated noise, {seeds} campaigns of {runs}: cover"),
         &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
         each.join(", "),
         verdict(holds),
@@ -107,7 +109,7 @@ fn judge(
     let each: Vec<String> = forecast.iter().zip(&ratios).map(|(e, r)| format!("{} {r:.3}", e.name)).collect();
     let holds = ratios.iter().all(|r| (0.9 - allowance..=1.1 + allowance).contains(r));
     claims.add(
-        SECTION,
+        section,
         &format!("error of the seeds over the plan's forecast at {words}"),
         &format!("0.9 to 1.1 (± {allowance:.2} for {seeds} seeds)"),
         each.join(", "),

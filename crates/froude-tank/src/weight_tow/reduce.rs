@@ -1,0 +1,228 @@
+//! The observation of a run, at the speed that it has in its window: by the balance where the moving mass is declared, by the cell where it is not.
+//!
+//! Along the rail, e = (cos θ, −sin θ) in the body's axes, the drag is that of the balance, D = F − m v̇; what the cell shows across the rail, L, is taken as
+//! it is: f = −D e + L e_⊥. The cell's own force along the rail has the inertia of body and water in it, 3 kg at a change of speed of 2 % over 0.2 m
+//! and 0.1 m/s some 3 mN, and is used only where no mass is declared and the run is shown to be steady.
+
+use froude_records::run::Declared;
+use froude_records::steady::SteadySpec;
+use froude_records::weight_tow::WeightTowSpec;
+use froude_rig::weight_tow::G_M_S2;
+
+use super::balance::{Balance, Pull, balance};
+use super::error::WeightTowError;
+use super::track::{Track, track};
+use crate::steady::point::{Load, Point, Run, observed};
+use crate::steady::window::{Motion, Window};
+
+/// One run: positions in metres, and loads of the water on the body along its axes; there may be none.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeightRun<'a> {
+    /// Its name.
+    pub id: &'a str,
+    /// What is mounted.
+    pub configuration: &'a str,
+    /// Angle of attack, rad.
+    pub angle_rad: f64,
+    /// W, N.
+    pub weight_n: f64,
+    /// Time, s.
+    pub time_s: &'a [f64],
+    /// Position along the rail, m.
+    pub position_m: &'a [f64],
+    /// `f_x` and `f_y`, N, by name.
+    pub loads: Vec<(&'a str, &'a [f64])>,
+}
+
+/// What a standard uncertainty of a declared number moves an observation by.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Moves {
+    /// Its speed, m/s.
+    pub speed_m_s: f64,
+    /// Its loads, N.
+    pub loads_n: Vec<f64>,
+}
+
+impl Moves {
+    fn none(loads: &[Load]) -> Self {
+        Self { speed_m_s: 0.0, loads_n: vec![0.0; loads.len()] }
+    }
+}
+
+/// A run as it was reduced.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reduced {
+    /// The observation.
+    pub point: Point,
+    /// Its track.
+    pub track: Track,
+    /// Its balance; `None` where no moving mass is declared.
+    pub balance: Option<Balance>,
+    /// Its drag along the rail, N, by the balance; what pulls where it is steady.
+    pub drag_n: f64,
+    /// Standard uncertainty of its drag along the rail by the acceleration, N.
+    pub drag_standard_n: f64,
+    /// What scale, moving mass, friction and the unknown law of the drag move, in this order.
+    pub moves: [Moves; 4],
+}
+
+/// What is declared, moved by a standard uncertainty to see what that does.
+#[derive(Debug, Clone, Copy, Default)]
+struct Moved {
+    scale: f64,
+    mass_kg: f64,
+    friction_n: f64,
+    share: f64,
+    near: Option<[f64; 4]>,
+}
+
+/// Names of the errors of [`Reduced::moves`].
+pub const ERRORS: [&str; 4] =
+    ["scale of the picture", "moving mass", "friction of the rig", "law of the drag in the balance"];
+
+/// Reduces a run; `noise_m` takes the place of the errors that its track shows, for a run that is only planned.
+///
+/// # Errors
+///
+/// [`WeightTowError`]: no motion, neither steady nor to be balanced, loads that give none.
+pub fn reduce(run: &WeightRun<'_>, spec: &WeightTowSpec, noise_m: Option<f64>) -> Result<Reduced, WeightTowError> {
+    let mut track = track(run.id, run.time_s, run.position_m, spec.window_m)?;
+    if let Some(noise_m) = noise_m {
+        track.change[1] = track.change_per_noise * noise_m;
+        (track.noise_m, track.standard_m_s) = (noise_m, track.per_noise * noise_m);
+    }
+    let own = Run {
+        id: run.id,
+        configuration: run.configuration,
+        angle_rad: run.angle_rad,
+        time_s: run.time_s,
+        motion: Motion::Position(run.position_m),
+        loads: run.loads.clone(),
+        zero: None,
+    };
+    let window = Window { steady: track.window.clone(), before: track.before.clone(), after: track.after.clone() };
+    let mut point = observed(&own, window, &SteadySpec::default())?;
+    point.speed_m_s = track.speed_m_s;
+    let force_n = run.weight_n - spec.friction_n.value;
+    let scale = spec.scale_m.map_or(0.0, |s| s.standard_uncertainty / s.value);
+    let [change, standard] = track.change;
+    let is_steady = spec.moving_mass_kg.is_none() && change.abs() + 2.0 * standard <= spec.tolerance;
+    if is_steady && !point.loads.is_empty() {
+        let mut moves: [Moves; 4] = std::array::from_fn(|_| Moves::none(&point.loads));
+        moves[0].speed_m_s = scale * track.speed_m_s;
+        return Ok(Reduced { point, track, balance: None, drag_n: force_n, drag_standard_n: 0.0, moves });
+    }
+    // Without a cell the balance of a steady run is that of its weight.
+    let mass = match spec.moving_mass_kg {
+        Some(mass) if !is_steady => mass,
+        _ if is_steady => Declared::exact(0.0),
+        _ => {
+            let (run, tolerance, window_m) = (run.id.to_owned(), spec.tolerance, spec.window_m);
+            return Err(WeightTowError::NotSteady { run, change, standard, tolerance, window_m });
+        }
+    };
+    if force_n <= 0.0 {
+        let (weight_n, friction_n) = (run.weight_n, spec.friction_n.value);
+        return Err(WeightTowError::NoPull { run: run.id.to_owned(), weight_n, friction_n });
+    }
+    let at = |moved: Moved| -> Result<(f64, Option<Balance>), WeightTowError> {
+        let force_n = (force_n - moved.friction_n).max(0.1 * force_n);
+        if is_steady {
+            return Ok((force_n, None));
+        }
+        let pull = Pull { force_n, mass_kg: mass.value + moved.mass_kg + run.weight_n / G_M_S2 };
+        let found = balanced(run, spec, &track, pull, &moved)?;
+        Ok((pull.force_n - pull.mass_kg * found.acceleration_m_s2, Some(found)))
+    };
+    let (drag_n, found) = at(Moved::default())?;
+    if drag_n <= 0.0 {
+        return Err(WeightTowError::NoTerminal {
+            run: run.id.to_owned(),
+            what: "faster than its weight could drive it",
+        });
+    }
+    along_the_rail(run, &mut point, drag_n)?;
+    let (sin, cos) = run.angle_rad.sin_cos();
+    let near = found.map(|b| b.solution);
+    let by = |speed_m_s: f64, moved: Moved, is_there: bool| -> Result<Moves, WeightTowError> {
+        let drag = if is_there { at(Moved { near, ..moved })?.0 - drag_n } else { 0.0 };
+        let loads = point.loads.iter().map(|l| if l.name == "f_x" { -drag * cos } else { drag * sin });
+        Ok(Moves { speed_m_s, loads_n: loads.collect() })
+    };
+    let [heavier, rubs] = [mass.standard_uncertainty, spec.friction_n.standard_uncertainty];
+    let moves = [
+        by(scale * track.speed_m_s, Moved { scale, ..Moved::default() }, scale > 0.0 && !is_steady)?,
+        by(0.0, Moved { mass_kg: heavier, ..Moved::default() }, heavier > 0.0)?,
+        by(0.0, Moved { friction_n: rubs, ..Moved::default() }, rubs > 0.0)?,
+        by(0.0, Moved { share: 1.0, ..Moved::default() }, !is_steady)?,
+    ];
+    let moving_kg = mass.value + run.weight_n / G_M_S2;
+    let drag_standard_n = moving_kg * found.map_or(0.0, |b| b.standard_m_s2);
+    Ok(Reduced { point, track, balance: found, drag_n, drag_standard_n, moves })
+}
+
+/// The balance of a run that still accelerates, where it has come far enough.
+fn balanced(
+    run: &WeightRun<'_>,
+    spec: &WeightTowSpec,
+    track: &Track,
+    pull: Pull,
+    moved: &Moved,
+) -> Result<Balance, WeightTowError> {
+    let larger = 1.0 + moved.scale;
+    let sense = (run.position_m[run.position_m.len() - 1] - run.position_m[0]).signum();
+    let positions: Vec<f64> = run.position_m[track.moving.clone()].iter().map(|x| larger * sense * x).collect();
+    let time_s = &run.time_s[track.moving.clone()];
+    let found = balance(
+        run.id,
+        time_s,
+        &positions,
+        (larger * track.speed_m_s, track.noise_m),
+        pull,
+        (moved.near, moved.share),
+    )?;
+    if moved.near.is_none() && track.speed_m_s < spec.reached * found.terminal_m_s {
+        return Err(WeightTowError::TooSlow {
+            run: run.id.to_owned(),
+            speed_m_s: track.speed_m_s,
+            terminal_m_s: found.terminal_m_s,
+            needed: spec.reached,
+        });
+    }
+    Ok(found)
+}
+
+/// Sets the force along the rail, leaving that across it; without a cell the body must lie along the rail.
+fn along_the_rail(run: &WeightRun<'_>, point: &mut Point, drag_n: f64) -> Result<(), WeightTowError> {
+    if point.loads.is_empty() {
+        point.loads.push(by_weight(run, drag_n)?);
+        return Ok(());
+    }
+    let (sin, cos) = run.angle_rad.sin_cos();
+    let value = |name: &str| point.loads.iter().find(|l| l.name == name).map_or(0.0, |l| l.value);
+    let across = value("f_x") * sin + value("f_y") * cos;
+    for load in &mut point.loads {
+        load.value = match load.name.as_str() {
+            "f_x" => -drag_n * cos + across * sin,
+            _ => drag_n * sin + across * cos,
+        };
+    }
+    Ok(())
+}
+
+/// Without a load cell the drag along the rail is what pulls; across it nothing is known, so that the body must lie along the rail.
+fn by_weight(run: &WeightRun<'_>, force_n: f64) -> Result<Load, WeightTowError> {
+    if run.angle_rad != 0.0 {
+        let what = "at an angle and without a load cell, so that what acts across the rail is unknown";
+        return Err(WeightTowError::NoTerminal { run: run.id.to_owned(), what });
+    }
+    let read = froude_fit::series::Mean {
+        value: -force_n,
+        standard: 0.0,
+        correlation_s: 0.0,
+        effective_n: 1.0,
+        trend: 0.0,
+        trend_standard: f64::INFINITY,
+    };
+    Ok(Load { name: "f_x".to_owned(), value: -force_n, standard: 0.0, read, zero: 0.0, drift: None })
+}

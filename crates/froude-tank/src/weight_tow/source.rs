@@ -1,0 +1,242 @@
+//! The weight-driven rig as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
+
+use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::reduce::reduce_table;
+use froude_identify::source::identify_observations;
+use froude_identify::uncertainty::SharedError;
+use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
+use froude_records::finding::{Finding, Severity};
+use froude_records::run::{ImportedRun, Role, WEIGHT_TOW};
+use froude_records::units::Dimension;
+use froude_records::weight_tow::WeightTowSpec;
+
+use super::error::WeightTowError;
+use super::reduce::{ERRORS, Reduced, WeightRun, reduce};
+use super::track::metres;
+use super::{page, plan, simulate};
+use crate::logs::{self, Logs};
+use crate::steady::row::{Row, table};
+
+/// The last part of the way of a wagon, each run an observation.
+pub struct WeightTow;
+
+const WHY: &str = "drag is wrong by its size or its sign where one is guessed";
+/// Residuals of the equation of motion this many times the errors of the track are none of the camera.
+const MISFIT: f64 = 3.0;
+
+impl Method for WeightTow {
+    fn names(&self) -> &'static [&'static str] {
+        &[WEIGHT_TOW]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "runs of a wagon that a hanging weight pulls, filmed: the speed at the end of the way, the drag by load cell or by the equation of motion"
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const { &[Need::of(&["test"], &[])] }
+    }
+
+    fn runs(&self) -> &'static str {
+        WEIGHT_TOW
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let spec = simulate::declared(source)?;
+        progress("reading the runs");
+        let Logs { runs: logs, files, mut findings } =
+            logs::read(source.input.path(), WEIGHT_TOW, &[Role::Test], "time, mark or position, and loads")?;
+        progress("reading the tracks");
+        let positions = logs.iter().map(|log| position(log, &spec)).collect::<Result<Vec<_>, _>>()?;
+        let (mut rows, mut reduced) = (Vec::new(), Vec::new());
+        let mut first: Option<WeightTowError> = None;
+        for (log, position_m) in logs.iter().zip(&positions) {
+            let run = run(log, position_m)?;
+            match reduce(&run, &spec, None) {
+                Ok(found) => {
+                    findings.extend(of_run(run.id, &found, run.weight_n - spec.friction_n.value));
+                    rows.push(Row {
+                        run: run.id.to_owned(),
+                        configuration: run.configuration.to_owned(),
+                        angle_rad: run.angle_rad,
+                        temperature_k: logs::condition(log, "temperature", Dimension::TEMPERATURE)?,
+                        point: found.point.clone(),
+                    });
+                    reduced.push(found);
+                }
+                Err(error) => {
+                    findings.push(Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}")));
+                    first.get_or_insert(error);
+                }
+            }
+        }
+        if rows.is_empty() {
+            return Err(first.map_or_else(
+                || {
+                    MethodError::input(
+                        source.input.path(),
+                        "no run of the role test: what is fitted has role = \"test\" in its sidecar",
+                    )
+                },
+                MethodError::refused,
+            ));
+        }
+        let own = with_track(source, &reduced);
+        let mut observations = reduce_table(campaign, &own, &table(source.input.path(), &rows), files)?;
+        let errors = shared(&reduced, &observations.data.loads());
+        if !errors.is_empty() && observations.data.rows != rows.len() {
+            return Err(MethodError::Undeclared {
+                place: source.place.to_string(),
+                what: "`keep` and errors that all runs share (scale, moving_mass, friction) do not go together: leave the logs that are not meant out of the folder"
+                    .to_owned(),
+            });
+        }
+        observations.shared_errors.extend(errors);
+        let mut result = identify_observations(campaign, &own, observations, WEIGHT_TOW, &|model| {
+            progress(&format!("fitting {model}"));
+        })?;
+        findings.append(&mut result.findings);
+        let blocks = vec![page::section(&rows, &reduced, &logs, &positions, &spec)];
+        Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
+    }
+
+    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        simulate::files(campaign, source).map(Some)
+    }
+
+    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        plan::prospect(campaign, source).map(Some)
+    }
+}
+
+/// The positions of a log, m: of its mark by scale and lens, or as they stand.
+fn position(log: &ImportedRun, spec: &WeightTowSpec) -> Result<Vec<f64>, MethodError> {
+    let along = "the wagon's way along the rail, either way";
+    if log.log.channels.contains_key("mark") {
+        let mark = logs::channel(log, "mark", Dimension::ONE, WHY, along)?;
+        let scale = spec.scale_m.ok_or_else(|| {
+            MethodError::input(
+                &log.log.path,
+                "its mark is in pixels, and nothing says how large one is: write scale = { value = \"1.2 mm\", standard = \"1 %\" } in [source.weight_tow]",
+            )
+        })?;
+        return Ok(metres(&mark.values, scale.value, spec.lens));
+    }
+    let name = if log.log.channels.contains_key("y/position") { "y/position" } else { "position" };
+    Ok(logs::channel(log, name, Dimension::LENGTH, WHY, along)?.values.clone())
+}
+
+/// A log as a run; nothing about it is taken for granted.
+fn run<'a>(log: &'a ImportedRun, position_m: &'a [f64]) -> Result<WeightRun<'a>, MethodError> {
+    let weight_n = logs::condition(log, "weight", Dimension::FORCE)?.ok_or_else(|| {
+        MethodError::input(
+            &log.log.path,
+            "the weight that pulls is not stated; write [conditions] weight = \"0.1 N\" in its sidecar",
+        )
+    })?;
+    let mut loads = Vec::new();
+    for name in ["f_x", "f_y"].into_iter().filter(|name| log.log.channels.contains_key(*name)) {
+        let channel = logs::channel(log, name, Dimension::FORCE, WHY, "the water on the body, along its axes")?;
+        loads.push((name, channel.values.as_slice()));
+    }
+    Ok(WeightRun {
+        id: &log.log.meta.id,
+        configuration: &log.log.meta.configuration,
+        angle_rad: logs::condition(log, "angle", Dimension::ONE)?.unwrap_or(0.0),
+        weight_n,
+        time_s: &log.log.time_s,
+        position_m,
+        loads,
+    })
+}
+
+/// What one run shows.
+fn of_run(run: &str, found: &Reduced, pull_n: f64) -> Vec<Finding> {
+    let mut out = Vec::new();
+    if let Some(balance) = &found.balance {
+        let [change, standard] = found.track.change;
+        out.extend((change > 2.0 * standard).then(|| {
+            Finding::new(
+                Severity::Note,
+                "not-steady",
+                format!(
+                    "run {run:?}: its speed changes by {:.1} ± {:.1} % over its window, at {:.0} % of its terminal speed: {:.2} of the {:.2} mN that pull are inertia",
+                    1e2 * change,
+                    1e2 * standard,
+                    1e2 * found.track.speed_m_s / balance.terminal_m_s,
+                    1e3 * (pull_n - found.drag_n),
+                    1e3 * pull_n
+                ),
+            )
+        }));
+        if balance.residual_m > MISFIT * found.track.noise_m {
+            out.push(Finding::new(
+                Severity::Warning,
+                "track-misfit",
+                format!(
+                    "run {run:?}: the equation of motion leaves {:.2} mm of the track, whose errors are {:.2} mm: look at weight, friction and moving_mass, at a string that \
+                     stretches, or a push at the start",
+                    1e3 * balance.residual_m,
+                    1e3 * found.track.noise_m
+                ),
+            ));
+        }
+    }
+    out
+}
+
+/// The source with the errors of its tracks in its budget: each run has one of its own.
+#[must_use]
+pub fn with_track(source: &Source, reduced: &[Reduced]) -> Source {
+    let square = |r: &Reduced| (r.track.standard_m_s / r.point.speed_m_s).powi(2);
+    let standard = (reduced.iter().map(square).sum::<f64>() / reduced.len() as f64).sqrt();
+    let mut own = source.clone();
+    own.uncertainty.push(BudgetEntry {
+        quantity: "speed".to_owned(),
+        standard,
+        relative: true,
+        shared: Shared::Sample,
+        dof: None,
+        name: Some("errors of the tracks".to_owned()),
+        dimension: Dimension::ONE,
+        place: source.place.clone(),
+    });
+    own
+}
+
+/// What all runs have in common: scale, moving mass, friction, and the law of the drag while it accelerates.
+///
+/// A speed that is wrong by δU moves a load against its law by −2 f δU/U, as quadratic drag does.
+#[must_use]
+pub fn shared(reduced: &[Reduced], loads: &[&str]) -> Vec<SharedError> {
+    let one = |(k, name): (usize, &&str)| -> Option<SharedError> {
+        let of_load = |load: &&str| {
+            let row = |r: &Reduced| {
+                let at = r.point.loads.iter().position(|l| l.name == *load);
+                let (value, moved) = at.map_or((0.0, 0.0), |l| (r.point.loads[l].value, r.moves[k].loads_n[l]));
+                vec![moved - 2.0 * value * r.moves[k].speed_m_s / r.point.speed_m_s]
+            };
+            ((*load).to_owned(), reduced.iter().map(row).collect::<Vec<_>>())
+        };
+        let directions: Vec<(String, Vec<Vec<f64>>)> = loads.iter().map(of_load).collect();
+        let is_there = directions.iter().any(|(_, rows)| rows.iter().any(|row| row[0] != 0.0));
+        is_there.then(|| SharedError {
+            name: (*name).to_owned(),
+            key: None,
+            quantity: (*name).to_owned(),
+            shared: "campaign",
+            directions,
+            covariance: vec![vec![1.0]],
+            dof: f64::INFINITY,
+            limits: None,
+            is_of_each_row: false,
+        })
+    };
+    ERRORS.iter().enumerate().filter_map(one).collect()
+}
