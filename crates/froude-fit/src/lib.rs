@@ -24,6 +24,7 @@
 //! | [`budget`]      | what each error does to the coefficients, intervals, jackknife       |
 //! | [`replicates`]  | scatter from replicates left out in turn, sums of such, a floor      |
 //! | [`series`]      | mean of a correlated series                                          |
+//! | [`serial`]      | scatter of few runs whose errors are correlated in time              |
 //! | [`long_run`]    | long-run covariance of scores (HAC), automatic lag                   |
 //! | [`factored`]    | one design, many responses                                           |
 //! | [`coverage`]    | whether an interval covers as often as it says                       |
@@ -67,6 +68,7 @@ pub mod replicates;
 mod report;
 pub mod robust;
 pub mod select;
+pub mod serial;
 pub mod series;
 mod shape;
 pub mod stream;

@@ -77,14 +77,15 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
     }
 }
 
-/// Degrees of freedom and σ of each load. Replicates hold more than the residuals of the rows: they have degrees of freedom, and no σ of a row.
+/// Degrees of freedom and σ of each load. Replicates hold more than the residuals of the rows, and rows that are correlated are worth fewer: they have degrees of
+/// freedom, and no σ of a row.
 fn scatter_by_load(
     model: &ModelFit,
     data: &Dataset,
     type_a: Option<&TypeA>,
 ) -> (IndexMap<String, Option<f64>>, IndexMap<String, Measured>) {
     let loads = &model.fit.components;
-    if let Scatter::Replicates { .. } = model.scatter {
+    if let Scatter::Replicates { .. } | Scatter::Serial = model.scatter {
         let fewest = type_a.and_then(|a| a.dof.iter().copied().flatten().reduce(f64::min));
         return (loads.iter().map(|c| (c.name.clone(), fewest)).collect(), IndexMap::new());
     }
@@ -213,8 +214,11 @@ fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) 
 /// The independent groups behind a scatter that counts them.
 fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
     match &model.scatter {
-        Scatter::Classical | Scatter::Hc3 => None,
-        Scatter::Cluster => data.group.as_ref().map(|_| Clusters { by: "group".to_owned(), n: data.clusters() }),
+        Scatter::Classical | Scatter::Hc3 | Scatter::Serial => None,
+        Scatter::Cluster => data.group.as_ref().map(|group| {
+            let by = if *group == data.run { "run" } else { "group" };
+            Clusters { by: by.to_owned(), n: data.clusters() }
+        }),
         Scatter::Replicates { sets, .. } => {
             sets.first().map(|set| Clusters { by: set.left_out.to_owned(), n: set.without.len() })
         }

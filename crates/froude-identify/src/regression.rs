@@ -59,7 +59,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         relative_residual(law, data, &coefficients, &job.newtons, &problem, &mut fitted)?;
     }
     findings.extend(contradicted_priors(law, data, settings, &problem, &options, &job.specs)?);
-    let uncertainty = Uncertainty::of(law, data, settings, &fitted, in_variables)?;
+    let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), in_variables)?;
     let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
     let numbers = coefficients.iter().copied().chain(of_fit).chain(uncertainty.variances());
     if let Some(number) = numbers.into_iter().find(|x| !x.is_finite()) {

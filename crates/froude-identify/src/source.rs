@@ -8,8 +8,10 @@ use froude_records::finding::{Finding, Severity};
 
 use crate::error::IdentifyError;
 use crate::large::{self, Limits};
+use crate::law::ForceLaw;
 use crate::reduce::{Observations, reduce};
-use crate::seam::{Reduced, fit};
+use crate::regression::Scatter;
+use crate::seam::{Choice, Reduced, fit};
 use crate::source::handed::{no_budget, of_table, scatter};
 use crate::{columns, diagnosis, lint, validity};
 
@@ -49,7 +51,39 @@ pub fn identify_observations(
     method: &str,
     progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
-    let mut result = fit(reduced(campaign, source, observations, method)?, &campaign.identify, progress)?;
+    let mut findings = Vec::new();
+    let laws = laws(campaign, source, &observations.data)?;
+    let scatter = scatter(campaign, source, &observations.data, &mut findings)?;
+    let observations = Observations { findings: [observations.findings, findings].concat(), ..observations };
+    identify_laws(campaign, source, observations, Asked { method, laws, scatter, choice: Choice::Selection }, progress)
+}
+
+/// What is asked of observations.
+#[derive(Debug, Clone)]
+pub struct Asked<'a> {
+    /// Name of the method that made them.
+    pub method: &'a str,
+    /// The laws that are fitted.
+    pub laws: Vec<ForceLaw>,
+    /// Where their scatter comes from.
+    pub scatter: Scatter,
+    /// Which of the laws is recommended.
+    pub choice: Choice,
+}
+
+/// The same with laws, scatter and choice that the method states.
+///
+/// # Errors
+///
+/// See [`IdentifyError`].
+pub fn identify_laws(
+    campaign: &Campaign,
+    source: &Source,
+    observations: Observations,
+    asked: Asked<'_>,
+    progress: &dyn Fn(&str),
+) -> Result<SourceResult, IdentifyError> {
+    let mut result = fit(reduced(campaign, source, observations, asked)?, &campaign.identify, progress)?;
     // What is wrong with one of many models belongs to that model; the report shows the recommended one's.
     if let Some(i) = result.recommendation.as_ref().map(|r| r.index) {
         let found = diagnosis::findings(&result.models[i], &result.data, campaign, &result.estimates[i].diagnostics);
@@ -58,24 +92,23 @@ pub fn identify_observations(
     Ok(result)
 }
 
-/// The rows of a table with the laws that the campaign asks for.
+/// The rows with the laws that are asked for.
 fn reduced(
     campaign: &Campaign,
     source: &Source,
     observations: Observations,
-    method: &str,
+    asked: Asked<'_>,
 ) -> Result<Reduced, IdentifyError> {
     let Observations { data, n_read, mut findings, shared_errors, files } = observations;
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     findings.extend(lint::observations(&data, campaign));
     findings.extend(no_budget(source, !shared_errors.is_empty()));
-    let laws = laws(campaign, source, &data)?;
+    let Asked { method, laws, scatter, choice } = asked;
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
-    let scatter = scatter(campaign, source, &data, &mut findings)?;
     let out = of_table(campaign, source, method, data, laws);
-    Ok(Reduced { n_read, scatter, errors: shared_errors, validity, findings, files, ..out })
+    Ok(Reduced { n_read, scatter, choice, errors: shared_errors, validity, findings, files, ..out })
 }
 
 /// A finding that a published source carries no data.

@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use froude_hydro::Link;
 use indexmap::IndexMap;
 
+use crate::accelerated_tow::{AcceleratedPlan, AcceleratedTowSpec};
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError};
@@ -135,6 +136,8 @@ pub struct Source {
     pub steady: Option<SteadySpec>,
     /// Its wagon, weight and camera.
     pub weight_tow: Option<WeightTowSpec>,
+    /// Its body that speeds up.
+    pub accelerated_tow: Option<AcceleratedTowSpec>,
     /// What is asked of its mesh.
     pub added_mass: Vec<GivenOption>,
     /// What is to be run.
@@ -143,6 +146,8 @@ pub struct Source {
     pub oscillation_plan: Vec<OscillationPlan>,
     /// What is to be run with weights.
     pub weight_plan: Vec<WeightPlan>,
+    /// What is to be run of accelerated tows.
+    pub accelerated_plan: Vec<AcceleratedPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
 }
@@ -577,7 +582,13 @@ impl Source {
     #[must_use]
     pub fn plans_runs(&self) -> bool {
         let is_runs = matches!(self.input, Input::Runs { .. });
-        is_runs && !(self.plan.is_empty() && self.oscillation_plan.is_empty() && self.weight_plan.is_empty())
+        let has_none = [
+            self.plan.is_empty(),
+            self.oscillation_plan.is_empty(),
+            self.weight_plan.is_empty(),
+            self.accelerated_plan.is_empty(),
+        ];
+        is_runs && has_none.contains(&false)
     }
 
     /// A source of which nothing but its input is known.
@@ -601,6 +612,8 @@ impl Source {
             steady: None,
             weight_tow: None,
             weight_plan: Vec::new(),
+            accelerated_tow: None,
+            accelerated_plan: Vec::new(),
             oscillation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),

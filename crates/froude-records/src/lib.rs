@@ -16,6 +16,7 @@
 //! | added mass (WAMIT `.1`, NetCDF, CSV) | [`added_mass_files`] |
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod accelerated_tow;
 mod added_mass_error;
 pub mod added_mass_files;
 pub mod added_mass_options;

@@ -141,7 +141,7 @@ pub(crate) fn oscillation(s: &Section<'_>) -> Result<OscillationSpec, RecordErro
 }
 
 /// One number for all, or a table with one for each configuration.
-fn by_configuration(
+pub(crate) fn by_configuration(
     s: &Section<'_>,
     key: &'static str,
     dimension: Dimension,

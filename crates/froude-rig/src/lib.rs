@@ -41,6 +41,7 @@
 //! Not here: drivers of the real carriage (yet), torque ripple, waves and wake, coupling of the two axes in [`twin`] ([`planar`] has it).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod accelerated_tow;
 pub mod amplifier;
 pub mod campaign;
 pub mod catalogue;

@@ -28,6 +28,8 @@ pub enum Scatter {
     Hc3,
     /// The residuals, correlated in the groups of the data.
     Cluster,
+    /// The residuals, correlated in time within each run, whose rows stand in even steps ([`fit::serial`]); for one load.
+    Serial,
     /// Replicates that the method left out in turn: all coefficients of the law, or none where nothing tells the scatter.
     Replicates {
         /// The line of the budget.
@@ -41,7 +43,7 @@ impl Scatter {
     /// What the residuals are asked for.
     pub(crate) const fn of_residuals(&self) -> fit::CovarianceKind {
         match self {
-            Self::Classical | Self::Replicates { .. } => fit::CovarianceKind::Classical,
+            Self::Classical | Self::Serial | Self::Replicates { .. } => fit::CovarianceKind::Classical,
             Self::Hc3 => fit::CovarianceKind::Hc3,
             Self::Cluster => fit::CovarianceKind::Cr3,
         }

@@ -2,11 +2,11 @@
 
 use faer::Mat;
 use froude_fit as fit;
-use froude_fit::budget::{Combined, OUTSIDE_95, Part, combine};
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
 use froude_fit::replicates;
 use froude_records::campaign::SourceKind;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, labels};
 use crate::eiv;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
@@ -32,7 +32,7 @@ impl Uncertainty {
         law: &ForceLaw,
         data: &Dataset,
         settings: Settings<'_>,
-        fitted: &fit::Fit,
+        (problem, fitted): (&fit::Problem, &fit::Fit),
         in_variables: bool,
     ) -> Result<Self, IdentifyError> {
         let p = fitted.coefficients.len();
@@ -54,9 +54,10 @@ impl Uncertainty {
             Scatter::Replicates { name, sets } => {
                 Some(replicates::together(name, sets).filter(|part| part.dof.len() == p))
             }
+            Scatter::Serial => Some(serial(data, problem, fitted)),
             Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,
         };
-        // Where replicates tell no scatter nothing does: the residuals of one of them are not asked.
+        // Where replicates, or rows in time, tell no scatter nothing does: the residuals as if they were independent are not asked.
         let is_known = |c: &fit::FitCoefficient| match &replicates {
             Some(part) => part.is_some() && c.value.is_some(),
             None => c.standard.is_some(),
@@ -83,6 +84,25 @@ impl Uncertainty {
     }
 }
 
+/// The scatter of rows that are correlated in time within each run; `None` where they are too few to tell.
+fn serial(data: &Dataset, problem: &fit::Problem, fitted: &fit::Fit) -> Option<Part> {
+    let at = step(fitted);
+    let (x, p) = (&problem.design, fitted.coefficients.len());
+    let left = |i: usize| problem.response[i] - (0..p).map(|j| x[(i, j)] * at[j]).sum::<f64>();
+    let residual: Vec<f64> = (0..problem.response.len()).map(left).collect();
+    let found = fit::serial::serial(x, &fitted.sensitivity, &residual, &labels(&data.run))?;
+    Some(Part {
+        name: format!("scatter of the rows in time, correlated by {:.2} from one to the next", found.correlation),
+        shared: "sample",
+        kind: Kind::A,
+        covariance: found.covariance,
+        dof: vec![found.dof; p],
+        shape: Shape::Normal,
+        in_scatter: false,
+        origin: None,
+    })
+}
+
 /// The sum of the budget's parts. A coefficient that was not estimated has no covariance, whatever the budget says.
 fn covariance(budget: &[Part], combined: &[Option<Combined>]) -> Mat<f64> {
     let p = combined.len();
@@ -106,6 +126,7 @@ fn residuals_in_words(data: &Dataset, settings: Settings<'_>) -> String {
         fit::CovarianceKind::Classical => "classical".to_owned(),
         fit::CovarianceKind::Hc3 => "HC3".to_owned(),
         fit::CovarianceKind::Cr3 if settings.identify.covariance.is_some() => format!("CR3, {} clusters", clusters()),
+        fit::CovarianceKind::Cr3 if data.group.as_ref() == Some(&data.run) => format!("CR3 by {} runs", clusters()),
         fit::CovarianceKind::Cr3 => format!("CR3 by {} configurations", clusters()),
     };
     if settings.kind == SourceKind::Cfd { format!("{kind}; residuals are model error, not noise") } else { kind }

@@ -67,6 +67,8 @@ pub const FORCED_OSCILLATION: &str = "forced_oscillation";
 pub const STEADY: &str = "steady";
 /// The method of a wagon that a hanging weight pulls.
 pub const WEIGHT_TOW: &str = "weight_tow";
+/// The method of a body that is towed up to speed and down again.
+pub const ACCELERATED_TOW: &str = "accelerated_tow";
 /// The method of a body that is let go and swings out.
 pub const FREE_DECAY: &str = "free_decay";
 

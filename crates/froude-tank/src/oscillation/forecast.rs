@@ -23,6 +23,7 @@ use super::forces::{Drag, LOAD};
 use super::setup::{OscillationRun, Setup};
 use super::simulate::{Planned, Truths, simulated};
 use super::{Motion, motions};
+use crate::noise::correlated;
 
 /// A coefficient with the interval to expect.
 #[derive(Debug, Clone, PartialEq)]
@@ -193,24 +194,8 @@ fn about_mean(mut column: Vec<f64>) -> Vec<f64> {
     column
 }
 
-/// Σ_j keep^|i−j| x_j, by one pass forward and one backward.
-fn correlated(x: &[f64], keep: f64) -> Vec<f64> {
-    let mut out = Vec::with_capacity(x.len());
-    let mut sum = 0.0;
-    for value in x {
-        sum = sum * keep + value;
-        out.push(sum);
-    }
-    sum = 0.0;
-    for (value, out) in x.iter().zip(&mut out).rev() {
-        *out += sum;
-        sum = (sum + value) * keep;
-    }
-    out
-}
-
 /// The inverse of a symmetric positive matrix, its diagonal scaled to one first; `None` where it has none.
-fn inverted(matrix: &Mat<f64>) -> Option<Mat<f64>> {
+pub(crate) fn inverted(matrix: &Mat<f64>) -> Option<Mat<f64>> {
     let p = matrix.nrows();
     let scale: Vec<f64> = (0..p).map(|i| matrix[(i, i)].sqrt()).collect();
     if scale.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
@@ -223,20 +208,4 @@ fn inverted(matrix: &Mat<f64>) -> Option<Mat<f64>> {
     }
     let inverse = scaled.llt(froude_fit::faer::Side::Lower).ok()?.solve(Mat::<f64>::identity(p, p));
     Some(Mat::from_fn(p, p, |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn two_passes_are_the_sum_over_all_samples() {
-        let x: Vec<f64> = (0..40).map(|i| f64::from(i * i % 13) - 6.0).collect();
-        let keep = 0.7_f64;
-        for (i, fast) in correlated(&x, keep).into_iter().enumerate() {
-            let slow: f64 = x.iter().enumerate().map(|(j, x)| keep.powi((i as i32 - j as i32).abs()) * x).sum();
-            // Forty terms of some ten, each rounded.
-            assert!((fast - slow).abs() < 1e-12, "{i}");
-        }
-    }
 }

@@ -1,7 +1,6 @@
 //! Forced oscillation as a source of a campaign: a folder of logs, one run each, with a sidecar that states what it is.
 
 use froude_fit::budget::Uncertain;
-use froude_hydro::fluid::Water;
 use froude_hydro::swing::Medium;
 use froude_identify::answer::Made;
 use froude_identify::dataset::Dataset;
@@ -17,6 +16,7 @@ use super::forces::{Drag, LOAD};
 use super::setup::{Body, Cycles, OscillationRun, Setup};
 use super::{findings, fit, motions, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
+use crate::reference;
 
 /// The joint fit in time.
 pub struct ForcedOscillation;
@@ -128,42 +128,21 @@ pub fn setup_of(
     configurations: &[String],
 ) -> Result<Setup, MethodError> {
     let missing = |what: String| MethodError::Undeclared { place: source.place.to_string(), what };
-    let spec_of_body = campaign.body.as_ref();
     let body = |name: &String| {
         let of = if name.is_empty() { String::new() } else { format!(" of {name}") };
-        let n_links = links_of_configuration(name).map(f64::from);
-        let per_link = spec_of_body.and_then(|b| b.link_volume_m3).zip(n_links).map(|(v, k)| v * k);
-        let volume = per_link
-            .or_else(|| spec_of_body.and_then(|b| b.volumes.get(name).copied()))
-            .or_else(|| spec_of_body.and_then(|b| b.volume_m3))
-            .ok_or_else(|| {
-                missing(format!(
-                    "C_A means nothing without the volume that it refers to, and none is declared{of}: write [body] volume = \"1.1e-3 m^3\", \
-                     volumes = {{ H1LT = \"…\" }}, or link_volume for HkLT (the volume per link)"
-                ))
-            })?;
+        let volume = reference::volume_m3(campaign, source, name)?;
         let mass = spec.mass_kg.of(name).ok_or_else(|| {
             missing(format!("no mass is declared{of}: write it in [source.forced_oscillation] mass, {name} = {{ value = \"1.63 kg\", standard = \"5 g\" }}"))
         })?;
         Ok(Body {
             name: name.clone(),
-            n_links,
+            n_links: links_of_configuration(name).map(f64::from),
             reference_volume_m3: volume,
             mass_kg: uncertain(mass),
             buoyancy_n: spec.buoyancy_n.of(name).map(uncertain),
         })
     };
-    let fluid = &campaign.fluid;
-    let density = match (fluid.density_kg_m3, fluid.temperature_degc) {
-        (Some(density), _) => density,
-        (None, Some(t)) => {
-            let water = Water::at(t, fluid.salinity_g_kg.unwrap_or(0.0));
-            water.map_err(|e| missing(format!("[fluid]: {e}")))?.density_kg_m3
-        }
-        (None, None) => {
-            return Err(missing("the added mass needs the water: write [fluid] density, or temperature".to_owned()));
-        }
-    };
+    let density = reference::density_kg_m3(campaign, source)?;
     let bodies = configurations.iter().map(body).collect::<Result<_, MethodError>>()?;
     let mut out = Setup {
         pivot: spec.pivot,

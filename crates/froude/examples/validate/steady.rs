@@ -34,7 +34,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             .into_par_iter()
             .filter_map(|seed| one(&campaign, &source, &plan, &sensors, seed as u64).ok())
             .collect();
-        judge(claims, SECTION, &plan, &forecast, &fits, (words, "56 tows", factor == 1.0, seeds));
+        judge(claims, SECTION, &forecast, &fits, (words, "56 tows", factor == 1.0, seeds));
     }
     Ok(())
 }
@@ -68,8 +68,20 @@ fn one(
 pub fn judge(
     claims: &mut Claims,
     section: &'static str,
-    plan: &Plan,
     forecast: &[Expected],
+    fits: &[Estimate],
+    (words, runs, is_judged, seeds): (&str, &str, bool, usize),
+) {
+    let expected: Vec<(&str, f64, f64)> =
+        forecast.iter().map(|e| (e.name.as_str(), e.value, e.combined.standard)).collect();
+    judged(claims, section, &expected, fits, (words, runs, is_judged, seeds));
+}
+
+/// The same of coefficients by name, truth and standard uncertainty to expect.
+pub fn judged(
+    claims: &mut Claims,
+    section: &'static str,
+    forecast: &[(&str, f64, f64)],
     fits: &[Estimate],
     (words, runs, is_judged, seeds): (&str, &str, bool, usize),
 ) {
@@ -77,9 +89,8 @@ pub fn judge(
     let mut counts = vec![Count::default(); forecast.len()];
     let mut squares = vec![0.0; forecast.len()];
     for fit in fits {
-        for (j, e) in forecast.iter().enumerate() {
-            let truth = plan.law.position(&e.name).map_or(f64::NAN, |k| plan.values[k]);
-            let found = of(fit, &e.name);
+        for (j, (name, truth, _)) in forecast.iter().enumerate() {
+            let (truth, found) = (*truth, of(fit, name));
             counts[j].add(found.is_some_and(|(_, [low, high])| (low..=high).contains(&truth)));
             squares[j] += found.map_or(f64::NAN, |(value, _)| (value - truth).powi(2));
         }
@@ -87,7 +98,7 @@ pub fn judge(
     let limit = z_limit(0.01, counts.len());
     let z = |j: usize| counts[j].z_score(0.95);
     let each: Vec<String> = (forecast.iter().enumerate())
-        .map(|(j, e)| format!("{} {:.2} % (z {:+.2})", e.name, 100.0 * counts[j].rate(), z(j)))
+        .map(|(j, e)| format!("{} {:.2} % (z {:+.2})", e.0, 100.0 * counts[j].rate(), z(j)))
         .collect();
     let verdict = |holds: bool| match (is_judged, holds) {
         (true, true) => Verdict::Pass,
@@ -103,10 +114,10 @@ pub fn judge(
         verdict(holds),
     );
     let ratios: Vec<f64> =
-        (0..forecast.len()).map(|j| (squares[j] / fits.len() as f64).sqrt() / forecast[j].combined.standard).collect();
+        (0..forecast.len()).map(|j| (squares[j] / fits.len() as f64).sqrt() / forecast[j].2).collect();
     // The root mean square of as many errors scatters by 1/√(2n).
     let allowance = 3.0 / (2.0 * seeds as f64).sqrt();
-    let each: Vec<String> = forecast.iter().zip(&ratios).map(|(e, r)| format!("{} {r:.3}", e.name)).collect();
+    let each: Vec<String> = forecast.iter().zip(&ratios).map(|(e, r)| format!("{} {r:.3}", e.0)).collect();
     let holds = ratios.iter().all(|r| (0.9 - allowance..=1.1 + allowance).contains(r));
     claims.add(
         section,

@@ -96,7 +96,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
         let sensors: Vec<SensorSpec> = case.sensors().iter().map(louder).collect();
         let forecast = case.forecast(&sensors)?;
         let fits = case.fits(&sensors, seeds);
-        judge(claims, SECTION, &case.weights.plan, &forecast, &fits, (words, "78 runs", factor == 1.0, seeds));
+        judge(claims, SECTION, &forecast, &fits, (words, "78 runs", factor == 1.0, seeds));
     }
     errors_of_speed(claims, root, seeds)
 }

@@ -1,0 +1,156 @@
+//! Accelerated tows at the verbs: plan, simulate and identify of the example campaign, few runs and many, and what is refused.
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn froude(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn json(output: &Output) -> serde_json::Value {
+    assert_eq!(output.status.code(), Some(0), "{}", said(output));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// The example with some text replaced.
+fn example(replaced: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut text = std::fs::read_to_string(root.join("examples/mamba-accelerated/campaign.toml")).unwrap();
+    for (from, to) in replaced {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    std::fs::write(folder.path().join("campaign.toml"), text).unwrap();
+    folder
+}
+
+fn simulated(replaced: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = example(replaced);
+    let output = froude(folder.path(), &["simulate", "campaign.toml"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    folder
+}
+
+fn refused(folder: &Path) -> String {
+    let output = froude(folder, &["identify", "campaign.toml"]);
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    said(&output)
+}
+
+/// Truth within half again of the interval, and the interval as wide as planned within `band`.
+fn is_as_planned(plan: &serde_json::Value, estimate: &serde_json::Value, band: std::ops::Range<f64>) {
+    for expected in plan[0]["expected"].as_array().unwrap() {
+        let name = expected["coefficient"].as_str().unwrap();
+        let interval = &estimate["coefficients"][name]["interval_95"];
+        let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());
+        let (truth, half) = (expected["value"].as_f64().unwrap(), 0.5 * (high - low));
+        // One campaign: an interval of 95 % may miss by a little.
+        assert!((truth - 0.5 * (low + high)).abs() < 1.5 * half, "{name}: {truth} not near [{low}, {high}]");
+        let ratio = half / expected["half_width_95"].as_f64().unwrap();
+        assert!(band.contains(&ratio), "{name}: {ratio}");
+    }
+}
+
+#[test]
+fn nine_runs_are_planned_simulated_and_identified() {
+    let folder = example(&[]);
+    let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
+    assert_eq!(plan[0]["runs"].as_u64(), Some(9));
+    let output = froude(folder.path(), &["simulate", "campaign.toml"]);
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "accelerated: 9 runs in runs");
+    let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let estimate = &record["estimates"][0];
+    assert_eq!(estimate["method"]["name"].as_str(), Some("accelerated_tow"));
+    assert_eq!(estimate["clusters"]["by"].as_str(), Some("run"));
+    assert_eq!(estimate["clusters"]["n"].as_u64(), Some(9));
+    let volume = estimate["refers_to"]["link_volume"]["value"].as_f64().unwrap();
+    // As declared.
+    assert!((volume - 1.2723e-3).abs() < 1e-12);
+    let formula = estimate["law"]["outputs"]["f_y"]["formula"].as_str().unwrap();
+    assert!(formula.ends_with("- C_Ay*density*volume*v_y_dot"), "{formula}");
+    // χ with 8 degrees of freedom has a standard deviation of a quarter.
+    is_as_planned(&plan, estimate, 0.4..1.9);
+    let errors: Vec<&String> = estimate["errors"].as_object().unwrap().keys().collect();
+    for shared in ["mass of H1LT", "delay", "gain of the force"] {
+        assert!(errors.iter().any(|key| key.contains(shared)), "{shared}: {errors:?}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("results/report.html")).unwrap();
+    for caption in ["Force and windows", "Fitted beside measured", "Spectrum of the residuals"] {
+        assert!(page.contains(caption), "{caption}");
+    }
+}
+
+const ONE: [(&str, &str); 2] = [
+    ("speed        = [\"0.1 m/s\", \"0.2 m/s\", \"0.3 m/s\"]", "speed        = \"0.3 m/s\""),
+    ("acceleration = [\"0.1 m/s^2\", \"0.2 m/s^2\", \"0.3 m/s^2\"]", "acceleration = \"0.1 m/s^2\""),
+];
+
+/// One run gives drag and added mass with their correlation; its mass is weighed by runs in air where none is declared.
+#[test]
+fn one_run_gives_drag_and_added_mass_together() {
+    let dry = (
+        "[simulate]\nseed",
+        "[[source.plan]]\nconfigurations = [\"H1LT\"]\nmedium = \"air\"\nspeed = \"0.3 m/s\"\nacceleration = \"0.3 m/s^2\"\nrepeats = 3\n\n[simulate]\nseed",
+    );
+    let folder = simulated(&[ONE[0], ONE[1], dry]);
+    let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
+    let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let estimate = &record["estimates"][0];
+    let names = estimate["type_a"]["names"].as_array().unwrap();
+    assert!(names.iter().any(|n| n == "C_Ay") && names.iter().any(|n| n == "D_y_II"), "{names:?}");
+    // One run of some twenty seconds: forty correlation times tell its scatter to a fifth or so.
+    is_as_planned(&plan, estimate, 0.4..2.0);
+    let errors: Vec<&String> = estimate["errors"].as_object().unwrap().keys().collect();
+    assert!(errors.iter().any(|key| key.contains("mass of H1LT by runs in air")), "{errors:?}");
+}
+
+#[test]
+fn what_is_not_declared_is_refused_with_what_to_write() {
+    let folder = simulated(&ONE);
+    let path = folder.path().join("campaign.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let with = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        std::fs::write(&path, text.replace(from, to)).unwrap();
+        refused(folder.path())
+    };
+    let error = with("mass   = {", "# mass   = {");
+    assert!(error.contains("the mass below the load cell is not known: write mass = { value"), "{error}");
+    let error = with("axis   = \"y\"", "# axis");
+    assert!(error.contains("state which axis of the body lies along the travel"), "{error}");
+    let error = with("link_volume = \"1.2723e-3 m^3\"", "");
+    assert!(error.contains("C_A means nothing without the volume that it refers to"), "{error}");
+    let error = with("models = [\"linear_quadratic\"]", "models = [\"power_law\"]");
+    assert!(error.contains("is not written as a formula of the load along y"), "{error}");
+    let error = with("standard = \"0.5 %\"", "standard = \"0.1 N\"");
+    assert!(error.contains("is a gain that all runs share: write it as a percentage"), "{error}");
+    let error = with("window = \"0.5 s\"", "window = \"0.05 s\"");
+    assert!(error.contains("a window of 0.05 s holds 5.0 samples, and 8 are needed"), "{error}");
+}
+
+#[test]
+fn a_channel_whose_sign_is_not_declared_and_a_cut_log_are_refused() {
+    let folder = simulated(&ONE);
+    let sidecar = folder.path().join("runs/001.toml");
+    let text = std::fs::read_to_string(&sidecar).unwrap();
+    let unsigned = text.replace("name = \"force\", unit = \"N\", sign = 1", "name = \"force\", unit = \"N\"");
+    std::fs::write(&sidecar, unsigned).unwrap();
+    let error = refused(folder.path());
+    assert!(error.contains("force states no sign; drag and added mass are wrong"), "{error}");
+    std::fs::write(&sidecar, text).unwrap();
+    // The log begins and ends while it moves.
+    let log = folder.path().join("runs/001.csv");
+    let rows = std::fs::read_to_string(&log).unwrap();
+    let mut lines: Vec<&str> = rows.lines().collect();
+    lines.drain(lines.len() - 700..);
+    lines.drain(1..600);
+    std::fs::write(&log, lines.join("\n") + "\n").unwrap();
+    let error = refused(folder.path());
+    assert!(error.contains("the zero of the cell is unknown: the body stands still for 0.00 s before"), "{error}");
+}

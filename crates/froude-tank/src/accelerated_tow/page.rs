@@ -1,0 +1,205 @@
+//! Accelerated tows on the page: each run as it was weighted, fitted beside measured, and what the residuals still hold.
+
+use std::f64::consts::TAU;
+
+use froude_identify::regression::ModelFit;
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
+use froude_records::run::ImportedRun;
+
+use super::law::names;
+use super::reduce::{Reduced, Setup};
+
+/// Runs that are drawn; more would be a page of the same.
+const DRAWN: usize = 4;
+
+/// What was done to the runs, and what the law `model` leaves of them.
+#[must_use]
+pub fn section(logs: &[ImportedRun], reduced: &Reduced, setup: &Setup, model: Option<&ModelFit>) -> DocumentSection {
+    let paragraph = format!(
+        "Motion and force are weighted by windows of {} s, a third of that apart; the acceleration is that of the windows' derivatives, so that it is as late and as smooth as the force. \
+         The zero of each run is the straight line between the means of its parts at rest. The load of the water is the mass below the cell times the acceleration, less the force.",
+        number::plain(setup.window_s, 4)
+    );
+    let mut charts = vec![signals(logs, reduced)];
+    if let Some(model) = model {
+        charts.push(fitted(reduced, model, setup));
+        charts.push(spectrum(reduced, model, setup));
+    }
+    DocumentSection {
+        title: "Runs and windows".to_owned(),
+        paragraphs: vec![paragraph],
+        tables: vec![runs(reduced, setup), masses(reduced, setup)],
+        charts,
+    }
+}
+
+fn runs(reduced: &Reduced, setup: &Setup) -> TextTable {
+    let rows = reduced.runs.iter().map(|(id, body, rows)| {
+        let largest = |of: &[f64]| of.iter().fold(0.0_f64, |m, x| if x.abs() > m.abs() { *x } else { m });
+        vec![
+            id.clone(),
+            setup.bodies[*body].name.clone(),
+            format!("{:.2} to {:.2}", rows.middle_s[0], rows.middle_s[rows.middle_s.len() - 1]),
+            rows.middle_s.len().to_string(),
+            number::significant(largest(&rows.speed_m_s), 3),
+            number::significant(largest(&rows.acceleration_m_s2), 3),
+            number::significant(rows.noise_m_s2, 2),
+            number::short_form(rows.zero_n[0], rows.zero_standard_n),
+            number::significant(rows.zero_n[1] - rows.zero_n[0], 2),
+        ]
+    });
+    TextTable {
+        caption: "Each run as it was weighted.".to_owned(),
+        head: [
+            "run",
+            "configuration",
+            "windows [s]",
+            "rows",
+            "largest speed [m/s]",
+            "largest acceleration [m/s²]",
+            "noise of the acceleration [m/s²]",
+            "zero [N]",
+            "drift of the zero [N]",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+fn masses(reduced: &Reduced, setup: &Setup) -> TextTable {
+    let rows = setup.bodies.iter().zip(&reduced.masses).map(|(body, mass)| {
+        vec![
+            body.name.clone(),
+            number::short_form(mass.value_kg, mass.standard_kg),
+            if mass.is_weighed { "by runs in air" } else { "declared" }.to_owned(),
+            number::plain(body.volume_m3, 5),
+        ]
+    });
+    TextTable {
+        caption: "Masses below the load cell, and the volumes that C_A refers to.".to_owned(),
+        head: ["configuration", "mass [kg]", "from", "reference volume [m³]"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+fn signals(logs: &[ImportedRun], reduced: &Reduced) -> Chart {
+    let panel = |(id, _, rows): &(String, usize, super::rows::Rows)| {
+        let log = &logs.iter().find(|log| log.log.meta.id == *id)?.log;
+        let force = &log.channels.get("force")?.values;
+        let line = |name: &str, [from, to]: [f64; 2], [a, b]: [f64; 2]| Series {
+            name: name.to_owned(),
+            mark: Mark::Line,
+            x: vec![from, to],
+            y: vec![a, b],
+            ..Series::default()
+        };
+        let (first, last) = (rows.middle_s[0], rows.middle_s[rows.middle_s.len() - 1]);
+        let mut series = vec![Series {
+            name: "as read".to_owned(),
+            mark: Mark::Points,
+            x: log.time_s.clone(),
+            y: force.clone(),
+            ..Series::default()
+        }];
+        series.push(line("zero over the windows used", [first, last], rows.zero_n));
+        for (k, rest) in rows.rest_s.iter().enumerate() {
+            series.extend(rest.map(|ends| line("at rest", ends, [rows.zero_n[k]; 2])));
+        }
+        Some(ChartPanel { y_label: format!("force of {id} [N]"), series, ..ChartPanel::default() })
+    };
+    let panels: Vec<ChartPanel> = reduced.runs.iter().take(DRAWN).filter_map(panel).collect();
+    Chart {
+        name: "signals".to_owned(),
+        title: "Force and windows".to_owned(),
+        caption: format!(
+            "Force of the rig on the body as it was read in {} of {} runs, its parts at rest, and the zero over the windows that are used.",
+            panels.len(),
+            reduced.runs.len()
+        ),
+        x_label: "time [s]".to_owned(),
+        panels,
+        ..Chart::default()
+    }
+}
+
+/// Fitted load of every row, N.
+fn predicted(reduced: &Reduced, model: &ModelFit) -> Vec<f64> {
+    model.law.predict(&reduced.data, model.law_coefficients()).unwrap_or_else(|_| vec![f64::NAN; reduced.data.rows])
+}
+
+fn fitted(reduced: &Reduced, model: &ModelFit, setup: &Setup) -> Chart {
+    let load = &names(&setup.axis)[0];
+    let (measured, law) = (reduced.data.values(load).unwrap_or_default(), predicted(reduced, model));
+    let mut from = 0;
+    let mut panels = Vec::new();
+    for (id, _, rows) in reduced.runs.iter().take(DRAWN) {
+        let own = from..from + rows.middle_s.len();
+        from = own.end;
+        let series = |name: &str, mark: Mark, of: &[f64]| Series {
+            name: name.to_owned(),
+            mark,
+            x: rows.middle_s.clone(),
+            y: of[own.clone()].to_vec(),
+            ..Series::default()
+        };
+        panels.push(ChartPanel {
+            y_label: format!("{load} of {id} [N]"),
+            series: vec![series("measured", Mark::Points, measured), series(&model.law.name, Mark::Line, &law)],
+            ..ChartPanel::default()
+        });
+    }
+    Chart {
+        name: "fitted".to_owned(),
+        title: "Fitted beside measured".to_owned(),
+        caption: format!(
+            "Load of the water in the windows of {} of {} runs, and that of the law.",
+            panels.len(),
+            reduced.runs.len()
+        ),
+        x_label: "time [s]".to_owned(),
+        panels,
+        ..Chart::default()
+    }
+}
+
+/// Mean periodogram of the residuals of the runs, as amplitude over the frequencies that the rows resolve.
+fn spectrum(reduced: &Reduced, model: &ModelFit, setup: &Setup) -> Chart {
+    let load = &names(&setup.axis)[0];
+    let (measured, law) = (reduced.data.values(load).unwrap_or_default(), predicted(reduced, model));
+    let step_s = setup.window_s / 3.0;
+    let shortest = reduced.runs.iter().map(|(_, _, rows)| rows.middle_s.len()).min().unwrap_or(0);
+    let frequencies: Vec<f64> = (1..=shortest / 2).map(|k| k as f64 / (shortest as f64 * step_s)).collect();
+    let mut power = vec![0.0; frequencies.len()];
+    let mut from = 0;
+    for (_, _, rows) in &reduced.runs {
+        let n = rows.middle_s.len();
+        let left: Vec<f64> = (from..from + n).map(|i| measured[i] - law[i]).collect();
+        from += n;
+        for (f, sum) in frequencies.iter().zip(&mut power) {
+            let (c, s) = left.iter().zip(&rows.middle_s).fold((0.0, 0.0), |(c, s), (r, t)| {
+                let (sin, cos) = (TAU * f * t).sin_cos();
+                (c + r * cos, s + r * sin)
+            });
+            *sum += (c * c + s * s) * 4.0 / (n as f64).powi(2) / reduced.runs.len() as f64;
+        }
+    }
+    let series = Series {
+        name: "residuals".to_owned(),
+        mark: Mark::Line,
+        x: frequencies,
+        y: power.into_iter().map(f64::sqrt).collect(),
+        ..Series::default()
+    };
+    Chart {
+        name: "residual-spectrum".to_owned(),
+        title: "Spectrum of the residuals".to_owned(),
+        caption: "Amplitude of what the law leaves, in the mean square of the runs. A line is a vibration of the rig; a rise towards low frequencies is noise that is correlated, or a law \
+                  that lacks a term."
+            .to_owned(),
+        x_label: "frequency [Hz]".to_owned(),
+        panels: vec![ChartPanel { y_label: format!("{load} [N]"), series: vec![series], y_scale: Scale::default() }],
+        ..Chart::default()
+    }
+}

@@ -1,0 +1,358 @@
+//! The plan of accelerated tows: run matrix, time, travel, and the intervals to expect.
+//!
+//! The planned runs are driven without noise on the twin and reduced. A coefficient is a sum over the samples of force and position, through the weights
+//! of the rows, the zeros and the regression, β = S y; the noise of the sensors with its correlation goes through that sum as it is, and the declared
+//! errors by the directions that the reduction states.
+//!
+//! **Source.** As [`crate::oscillation::forecast`].
+
+use froude_fit::FEWEST_CLUSTERS;
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::faer::Mat;
+use froude_fit::series::taper;
+use froude_identify::law::ForceLaw;
+use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
+use froude_records::campaign::{Campaign, SensorSpec, Source};
+use froude_records::number;
+use froude_records::page::{DocumentSection, TextTable};
+use froude_records::run::Declared;
+
+use super::law::names;
+use super::reduce::{Setup, reduce};
+use super::rows::{Rows, window};
+use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
+use super::source::{declared, no_mass, setup_of};
+use crate::noise::correlated;
+use crate::oscillation::forecast::inverted;
+
+/// A coefficient with the interval to expect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Its name.
+    pub name: String,
+    /// SI unit text.
+    pub unit: String,
+    /// The truth.
+    pub value: f64,
+    /// Standard uncertainty and interval.
+    pub combined: Combined,
+    /// The largest error behind it, and its standard uncertainty.
+    pub mostly: (String, f64),
+}
+
+/// What a plan will determine.
+#[derive(Debug, Clone)]
+pub struct Forecast {
+    /// The coefficients.
+    pub expected: Vec<Expected>,
+    /// Correlations of their combined errors.
+    pub correlation: Mat<f64>,
+}
+
+/// The intervals to expect of the fit of the true law to the planned runs.
+///
+/// # Errors
+///
+/// Runs that give no rows, a body without mass, coefficients that the plan does not determine.
+pub fn forecast(
+    planned: &[Planned],
+    setup: &Setup,
+    truth: &Truths,
+    sensors: &[SensorSpec],
+    source: &Source,
+) -> Result<Forecast, MethodError> {
+    let exact = exactly(setup);
+    let logs = simulated(planned, &exact, truth, &[], 0).ok_or_else(|| no_mass(source))?;
+    let mounted: Vec<_> = logs.iter().map(Simulated::view).collect();
+    let mut reduced = reduce(&mounted, setup).ok_or_else(|| no_mass(source))?;
+    if !reduced.left_out.is_empty() {
+        return Err(MethodError::refused(reduced.left_out.remove(0)));
+    }
+    let x = truth.law.regressors(&reduced.data, &truth.values)?;
+    let (n, p) = (x.nrows(), x.ncols());
+    let undetermined = || MethodError::Undeclared {
+        place: source.place.to_string(),
+        what: format!(
+            "the planned runs do not tell the coefficients of {} apart: plan a second speed, or a law with fewer terms",
+            truth.law.name
+        ),
+    };
+    let inverse = inverted(&(x.transpose() * &x)).ok_or_else(undetermined)?;
+    let sensitivity = &inverse * x.transpose();
+    let [force, position] = ["force", "position"].map(|name| sensors.iter().find(|s| s.quantity == name));
+    let noise = Noise { setup, truth, force, position };
+    let mut scatter = Mat::<f64>::zeros(p, p);
+    let mut from = 0;
+    let wet: Vec<&Simulated> = logs.iter().filter(|log| !log.planned.is_dry).collect();
+    for (log, (_, body, rows)) in wet.iter().zip(&reduced.runs) {
+        let own = from..from + rows.middle_s.len();
+        let s: Vec<Vec<f64>> = (0..p).map(|j| own.clone().map(|i| sensitivity[(j, i)]).collect()).collect();
+        scatter += noise.of_run(log, rows, &s, reduced.masses[*body].value_kg);
+        from = own.end;
+    }
+    let clusters = reduced.runs.len();
+    let dof = if clusters >= FEWEST_CLUSTERS { clusters as f64 - 1.0 } else { noise.dof(n, p) };
+    let mut parts = vec![part("scatter", Kind::A, scatter, dof)];
+    for (b, mass) in reduced.masses.iter().enumerate().filter(|(_, mass)| mass.is_weighed) {
+        let standard = noise.of_mass(&logs, b, mass.value_kg);
+        let load = |i: usize| {
+            if reduced.data.configuration[i] == setup.bodies[b].name {
+                reduced.data.values(&names(&setup.axis)[2]).map_or(0.0, |a| a[i])
+            } else {
+                0.0
+            }
+        };
+        let direction: Vec<f64> = (0..n).map(|i| standard * load(i)).collect();
+        parts.push(moved(&format!("mass of {} by runs in air", setup.bodies[b].name), &sensitivity, &direction, dof));
+    }
+    for error in reduced.errors.iter().filter(|e| e.quantity != "zero") {
+        let standard = error.covariance[0][0].sqrt();
+        let direction: Vec<f64> = error.directions[0].1.iter().map(|row| standard * row[0]).collect();
+        parts.push(moved(&error.name, &sensitivity, &direction, error.dof));
+    }
+    let expected = (0..p).map(|j| {
+        let largest = parts.iter().max_by(|a, b| a.standard(j).total_cmp(&b.standard(j)));
+        Expected {
+            name: truth.law.coefficients[j].name.clone(),
+            unit: truth.law.coefficients[j].unit.clone(),
+            value: truth.values[j],
+            combined: combine(&parts, j, OUTSIDE_95),
+            mostly: largest.map_or_else(Default::default, |part| (part.name.clone(), part.standard(j))),
+        }
+    });
+    let expected: Vec<Expected> = expected.collect();
+    let sum = |i: usize, j: usize| parts.iter().map(|part| part.covariance[(i, j)]).sum::<f64>();
+    let correlation = Mat::from_fn(p, p, |i, j| sum(i, j) / (sum(i, i) * sum(j, j)).sqrt());
+    Ok(Forecast { expected, correlation })
+}
+
+/// The noise of the sensors on its way to the coefficients.
+struct Noise<'a> {
+    setup: &'a Setup,
+    truth: &'a Truths,
+    force: Option<&'a SensorSpec>,
+    position: Option<&'a SensorSpec>,
+}
+
+impl Noise<'_> {
+    /// Covariance of the coefficients by the noise of one run; `s` has a row per coefficient and a column per row of the run.
+    fn of_run(&self, log: &Simulated, rows: &Rows, s: &[Vec<f64>], mass_kg: f64) -> Mat<f64> {
+        let (p, t) = (s.len(), &log.trace.time_s);
+        let samples = t.len();
+        let load = |v: f64, a: f64| {
+            if log.planned.is_dry { 0.0 } else { self.truth.load_n(self.setup, log.planned.body, v, a) }
+        };
+        let mut of_force = vec![vec![0.0; samples]; p];
+        let mut of_position = vec![vec![0.0; samples]; p];
+        let rests: Vec<std::ops::Range<usize>> = rows
+            .rest_s
+            .iter()
+            .flatten()
+            .map(|[from, to]| t.partition_point(|x| x < from)..t.partition_point(|x| x <= to))
+            .collect();
+        let middle = |r: &std::ops::Range<usize>| 0.5 * (t[r.start] + t[r.end - 1]);
+        for (i, at) in rows.middle_s.iter().enumerate() {
+            let w = window(t, *at, self.setup.window_s);
+            let late = window(t, at + self.setup.delay_s.value, self.setup.window_s);
+            let (v, a) = (rows.speed_m_s[i], rows.acceleration_m_s2[i]);
+            // Of m a − f(v, a): how it moves with the two.
+            let by_a = mass_kg - (load(v, a + 1e-3) - load(v, a - 1e-3)) / 2e-3;
+            let by_v = -(load(v + 1e-4, a) - load(v - 1e-4, a)) / 2e-4;
+            for j in 0..p {
+                for (k, weight) in late.value.iter().enumerate() {
+                    of_force[j][late.from + k] -= s[j][i] * weight;
+                }
+                for k in 0..w.value.len() {
+                    of_position[j][w.from + k] += s[j][i] * (by_a * w.bend[k] + by_v * w.slope[k]);
+                }
+                for (r, rest) in rests.iter().enumerate() {
+                    let part = match rests.as_slice() {
+                        [before, after] => {
+                            let second = (at - middle(before)) / (middle(after) - middle(before));
+                            if r == 0 { 1.0 - second } else { second }
+                        }
+                        _ => 1.0,
+                    };
+                    let all: f64 = taper(rest.len()).sum();
+                    for (k, weight) in taper(rest.len()).enumerate() {
+                        of_force[j][rest.start + k] += s[j][i] * part * weight / all;
+                    }
+                }
+            }
+        }
+        let rate_hz = log.planned.rate_hz;
+        covariance(&of_force, self.force, rate_hz) + covariance(&of_position, self.position, rate_hz)
+    }
+
+    /// Standard uncertainty of the mass of a body by its runs in air, kg.
+    fn of_mass(&self, logs: &[Simulated], body: usize, mass_kg: f64) -> f64 {
+        let dry = logs.iter().filter(|log| log.planned.is_dry && log.planned.body == body);
+        let dry: Vec<(&Simulated, Rows)> = dry
+            .filter_map(|log| {
+                let rows = super::rows::rows(&log.view().run, self.setup.window_s, self.setup.delay_s.value).ok()?;
+                Some((log, rows))
+            })
+            .collect();
+        let squares: f64 = dry.iter().flat_map(|(_, rows)| &rows.acceleration_m_s2).map(|a| a * a).sum();
+        let variance = dry.iter().map(|(log, rows)| {
+            let s = vec![rows.acceleration_m_s2.iter().map(|a| a / squares).collect::<Vec<f64>>()];
+            self.of_run(log, rows, &s, mass_kg)[(0, 0)]
+        });
+        variance.sum::<f64>().sqrt()
+    }
+
+    /// Degrees of freedom of few runs, as [`froude_fit::serial`] counts them.
+    fn dof(&self, n: usize, p: usize) -> f64 {
+        /// What windows that overlap leave of white noise from one to the next.
+        const OVERLAP: f64 = 0.35;
+        let time = self.force.and_then(|s| s.correlation_s).unwrap_or(0.0);
+        let rho = (-self.setup.window_s / 3.0 / time).exp().max(OVERLAP);
+        let n = n as f64;
+        let of_variance = (n * (1.0 - rho * rho) / (1.0 + rho * rho) - p as f64).max(1.0);
+        2.0 / (2.0 / of_variance + 4.0 / ((1.0 - rho * rho) * n))
+    }
+}
+
+/// σ² Σ_ij u_i c^|i−j| w_j, and what the step of the sensor adds as white noise.
+fn covariance(sums: &[Vec<f64>], sensor: Option<&SensorSpec>, rate_hz: f64) -> Mat<f64> {
+    let p = sums.len();
+    let Some(sensor) = sensor else { return Mat::zeros(p, p) };
+    let keep = sensor.correlation_s.map_or(0.0, |time| (-1.0 / (rate_hz * time)).exp());
+    let smoothed: Vec<Vec<f64>> = sums.iter().map(|u| correlated(u, keep)).collect();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let (noise, step) = (sensor.noise.unwrap_or(0.0).powi(2), sensor.resolution.unwrap_or(0.0).powi(2) / 12.0);
+    Mat::from_fn(p, p, |i, j| noise * dot(&sums[i], &smoothed[j]) + step * dot(&sums[i], &sums[j]))
+}
+
+fn moved(name: &str, sensitivity: &Mat<f64>, direction: &[f64], dof: f64) -> Part {
+    let p = sensitivity.nrows();
+    let by: Vec<f64> = (0..p).map(|j| (0..direction.len()).map(|i| sensitivity[(j, i)] * direction[i]).sum()).collect();
+    part(name, Kind::B, Mat::from_fn(p, p, |i, j| by[i] * by[j]), dof)
+}
+
+fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
+    let p = covariance.nrows();
+    Part {
+        name: name.to_owned(),
+        shared: "campaign",
+        kind,
+        covariance,
+        dof: vec![dof; p],
+        shape: Shape::Normal,
+        in_scatter: false,
+        origin: None,
+    }
+}
+
+/// Everything as declared, without errors: what the twin is driven with.
+fn exactly(setup: &Setup) -> Setup {
+    let exact = |d: Declared| Declared::exact(d.value);
+    let mut out = setup.clone();
+    out.delay_s = exact(setup.delay_s);
+    (out.force_relative, out.motion_relative) = (0.0, 0.0);
+    for body in &mut out.bodies {
+        body.mass_kg = body.mass_kg.map(exact);
+    }
+    out
+}
+
+/// What the plan of a source takes and determines.
+///
+/// # Errors
+///
+/// What the campaign does not declare, and what the plan does not determine.
+pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, MethodError> {
+    let setup = setup_of(campaign, source, declared(source)?, &configurations(source))?;
+    let truth = Truths::of(campaign, source, &setup)?;
+    let planned = planned(source, &setup);
+    let sensors = campaign.simulate.as_ref().map_or([].as_slice(), |s| s.sensors.as_slice());
+    let found = forecast(&planned, &setup, &truth, sensors, source)?;
+    let duration_s: f64 = planned.iter().map(|run| run.profile.duration_s()).sum();
+    let longest_m = planned.iter().map(|run| run.profile.travel_m()).fold(0.0, f64::max);
+    let steady_m: f64 = planned.iter().map(|run| run.profile.speed_m_s.abs() * run.profile.steady_s).sum();
+    let model = truth.law.name.clone();
+    let expected = found.expected.iter().map(|e| ExpectedCoefficient {
+        model: model.clone(),
+        name: e.name.clone(),
+        unit: e.unit.clone(),
+        value: e.value,
+        standard_uncertainty: e.combined.standard,
+        half_width_95: e.combined.arms[1],
+    });
+    Ok(Prospect {
+        source: source.name.clone(),
+        runs: planned.len(),
+        duration_s,
+        expected: expected.collect(),
+        section: DocumentSection {
+            title: format!("Plan of {}", source.name),
+            paragraphs: vec![format!(
+                "{} of {:.1} min in all on the log, waits between them and the way back not counted; {steady_m:.1} m of steady distance; the longest needs {longest_m:.2} m of travel. The \
+                 intervals are those of the linearised fit at the true coefficients of [simulate], with the noise of [[simulate.sensor]] and everything that is declared.",
+                froude_records::text::counted(planned.len(), "run", "runs"),
+                duration_s / 60.0
+            )],
+            tables: vec![matrix(&planned, &setup), coefficients(&truth.law, &found)],
+            charts: Vec::new(),
+        },
+    })
+}
+
+fn matrix(planned: &[Planned], setup: &Setup) -> TextTable {
+    let rows = planned.iter().map(|run| {
+        vec![
+            run.id.clone(),
+            setup.bodies[run.body].name.clone(),
+            if run.is_dry { "air" } else { "water" }.to_owned(),
+            number::significant(run.profile.speed_m_s, 3),
+            number::significant(run.profile.acceleration_m_s2, 3),
+            number::fixed(run.profile.duration_s(), 1),
+            number::fixed(run.profile.travel_m(), 2),
+            number::fixed(run.profile.speed_m_s.abs() * run.profile.steady_s, 2),
+        ]
+    });
+    TextTable {
+        caption: "Run matrix.".to_owned(),
+        head: [
+            "run",
+            "configuration",
+            "in",
+            "speed [m/s]",
+            "acceleration [m/s²]",
+            "duration [s]",
+            "travel [m]",
+            "steady distance [m]",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+fn coefficients(law: &ForceLaw, found: &Forecast) -> TextTable {
+    let row = |(j, e): (usize, &Expected)| {
+        let half = e.combined.arms[1];
+        let others = (0..found.expected.len()).filter(|k| *k != j);
+        let most = others.max_by(|a, b| found.correlation[(j, *a)].abs().total_cmp(&found.correlation[(j, *b)].abs()));
+        vec![
+            e.name.clone(),
+            e.unit.clone(),
+            number::significant(e.value, 4),
+            number::significant(half, 2),
+            if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) },
+            format!("{} ({})", e.mostly.0, number::significant(e.mostly.1, 2)),
+            most.map_or_else(String::new, |k| format!("{} ({:.2})", found.expected[k].name, found.correlation[(j, k)])),
+        ]
+    };
+    TextTable {
+        caption: format!(
+            "Intervals to expect, with the law {} of [simulate]: true value, half-width U at 95 %, the largest of the standard uncertainties behind it, and the coefficient that it is \
+             most correlated with.",
+            law.name
+        ),
+        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from", "correlated with"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: found.expected.iter().enumerate().map(row).collect(),
+    }
+}

@@ -1,0 +1,238 @@
+//! Runs to rows with everything that is declared: the mass below the cell, the delay of the force, and what their errors do.
+//!
+//! With the force f_m of the rig on the body, the load of the water is f = m a − f_m. An error of a declared number goes into the load of every row:
+//!
+//! | error of              | moves the load by                                   |
+//! |-----------------------|-----------------------------------------------------|
+//! | mass, 1 kg            | a                                                   |
+//! | delay, 1 s            | −ḟ_m                                                |
+//! | gain of the force     | −f_m                                                |
+//! | gain of the motion    | m a + μ a + D_I v + 2 D_II v|v|, as the fit sees it |
+//! | zero of a run, 1 N    | 1, in that run                                      |
+//!
+//! **Units.** SI. **Source.** JCGM 100:2008 (GUM), 5.2.
+
+use froude_fit::faer::Mat;
+use froude_fit::serial::serial;
+use froude_fit::{FEWEST_CLUSTERS, Options, Problem, fit};
+use froude_identify::dataset::Dataset;
+use froude_identify::uncertainty::SharedError;
+use froude_records::run::Declared;
+
+use super::error::AcceleratedError;
+use super::law::{Channels, data, names};
+use super::rows::{Rows, TowRun, rows};
+
+/// What is declared of body and rig.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setup {
+    /// `x` or `y`.
+    pub axis: String,
+    /// Length of the windows, s.
+    pub window_s: f64,
+    /// Delay of the force behind the motion, s.
+    pub delay_s: Declared,
+    /// ρ, kg/m³.
+    pub density_kg_m3: f64,
+    /// Gain error of the force, as part of it.
+    pub force_relative: f64,
+    /// Gain error of position and speed, as part of them.
+    pub motion_relative: f64,
+    /// The configurations.
+    pub bodies: Vec<Body>,
+}
+
+/// A configuration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Body {
+    /// Its name; empty where there is one without.
+    pub name: String,
+    /// V, m³.
+    pub volume_m3: f64,
+    /// m: all that moves below the cell, kg; `None` where runs in air show it.
+    pub mass_kg: Option<Declared>,
+}
+
+/// A run with what is mounted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mounted<'a> {
+    /// The log.
+    pub run: TowRun<'a>,
+    /// Which body of the setup.
+    pub body: usize,
+    /// Whether it is done in air.
+    pub is_dry: bool,
+}
+
+/// A mass as it is used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mass {
+    /// kg.
+    pub value_kg: f64,
+    /// Standard uncertainty, kg.
+    pub standard_kg: f64,
+    /// Degrees of freedom of that.
+    pub dof: f64,
+    /// Whether runs in air show it.
+    pub is_weighed: bool,
+}
+
+/// The rows of all runs.
+#[derive(Debug, Clone)]
+pub struct Reduced {
+    /// The wet runs, each with its rows.
+    pub runs: Vec<(String, usize, Rows)>,
+    /// Masses by body.
+    pub masses: Vec<Mass>,
+    /// The rows as a data set.
+    pub data: Dataset,
+    /// What declared errors do to them.
+    pub errors: Vec<SharedError>,
+    /// Runs that give no rows.
+    pub left_out: Vec<AcceleratedError>,
+    /// Whether whole runs tell the scatter.
+    pub is_by_run: bool,
+}
+
+/// Reduces all runs; one that gives no rows is left out. `None` where a body has neither a mass nor a run in air.
+#[must_use]
+pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
+    let (mut wet, mut dry, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+    for m in mounted {
+        match rows(&m.run, setup.window_s, setup.delay_s.value) {
+            Ok(found) if m.is_dry => dry.push((m.body, found)),
+            Ok(found) => wet.push((m.run.id.to_owned(), m.body, found)),
+            Err(error) => left_out.push(error),
+        }
+    }
+    let masses = (0..setup.bodies.len()).map(|b| mass(setup.bodies[b].mass_kg, &dry, b)).collect::<Option<Vec<_>>>()?;
+    let n_runs = wet.len();
+    let mut channels = Channels {
+        run: Vec::new(),
+        configuration: Vec::new(),
+        speed_m_s: Vec::new(),
+        acceleration_m_s2: Vec::new(),
+        load_n: Vec::new(),
+        volume_m3: Vec::new(),
+        density_kg_m3: setup.density_kg_m3,
+    };
+    let (mut of_run, mut of_body, mut square, mut force, mut slope) = (vec![], vec![], vec![], vec![], vec![]);
+    for (r, (id, b, found)) in wet.iter().enumerate() {
+        for i in 0..found.middle_s.len() {
+            channels.run.push(id.clone());
+            channels.configuration.push(setup.bodies[*b].name.clone());
+            channels.speed_m_s.push(found.speed_m_s[i]);
+            channels.acceleration_m_s2.push(found.acceleration_m_s2[i]);
+            channels.load_n.push(masses[*b].value_kg * found.acceleration_m_s2[i] - found.force_n[i]);
+            channels.volume_m3.push(setup.bodies[*b].volume_m3);
+            of_run.push(r);
+            of_body.push(*b);
+            square.push(found.square_m2_s2[i]);
+            force.push(found.force_n[i]);
+            slope.push(found.force_slope_n_s[i]);
+        }
+    }
+    let n = of_run.len();
+    let First { added_kg, linear, quadratic } = first_fit(&channels, &square, &of_body, setup.bodies.len());
+    // The law is asked at the weighted speed; what its square lacks of the weighted square is put to the load.
+    for i in 0..n {
+        let v = channels.speed_m_s[i];
+        channels.load_n[i] += quadratic * (square[i] - v * v.abs());
+    }
+    let load = names(&setup.axis)[0].clone();
+    let (v, a) = (channels.speed_m_s.clone(), channels.acceleration_m_s2.clone());
+    let mut errors = Vec::new();
+    let mut put = |name: &str, direction: Vec<f64>, standard: f64, dof: f64| {
+        if standard > 0.0 {
+            let mut error = SharedError::of_load(name, &load, &direction, standard, dof);
+            name.clone_into(&mut error.quantity);
+            errors.push(error);
+        }
+    };
+    for (b, mass) in masses.iter().enumerate() {
+        let own: Vec<f64> = (0..n).map(|i| if of_body[i] == b { a[i] } else { 0.0 }).collect();
+        let of = &setup.bodies[b].name;
+        let of = if of.is_empty() { String::new() } else { format!(" of {of}") };
+        let by = if mass.is_weighed { " by runs in air" } else { "" };
+        put(&format!("mass{of}{by}"), own, mass.standard_kg, mass.dof);
+    }
+    put("delay", slope.iter().map(|s| -s).collect(), setup.delay_s.standard_uncertainty, f64::INFINITY);
+    put("gain of the force", force.iter().map(|f| -f).collect(), setup.force_relative, f64::INFINITY);
+    let moved =
+        |i: usize| (masses[of_body[i]].value_kg + added_kg[i]) * a[i] + linear * v[i] + 2.0 * quadratic * square[i];
+    put("gain of the motion", (0..n).map(moved).collect(), setup.motion_relative, f64::INFINITY);
+    let is_by_run = n_runs >= FEWEST_CLUSTERS;
+    if !is_by_run && n > 0 {
+        errors.push(zeros(&load, &of_run, &wet));
+    }
+    let mut data = data(channels, &setup.axis);
+    data.group = is_by_run.then(|| data.run.clone());
+    Some(Reduced { runs: wet, masses, data, errors, left_out, is_by_run })
+}
+
+/// The zeros of few runs: one error each. Of five and more they are in the scatter of the runs.
+fn zeros(load: &str, of_run: &[usize], wet: &[(String, usize, Rows)]) -> SharedError {
+    let n = wet.len();
+    let row = |r: &usize| (0..n).map(|k| f64::from(u8::from(k == *r))).collect();
+    let square = |r: usize| wet[r].2.zero_standard_n.powi(2);
+    SharedError {
+        name: "zeros of the runs".to_owned(),
+        key: None,
+        quantity: "zero".to_owned(),
+        shared: "run",
+        directions: vec![(load.to_owned(), of_run.iter().map(row).collect())],
+        covariance: (0..n).map(|r| (0..n).map(|k| if r == k { square(r) } else { 0.0 }).collect()).collect(),
+        dof: wet.iter().map(|(_, _, rows)| rows.zero_dof).fold(f64::INFINITY, f64::min),
+        limits: None,
+        is_of_each_row: false,
+    }
+}
+
+/// What errors move depends on the coefficients, to first order: these of all rows together.
+struct First {
+    /// μ of the row's body, kg.
+    added_kg: Vec<f64>,
+    /// D_I, kg/s.
+    linear: f64,
+    /// D_II, kg/m.
+    quadratic: f64,
+}
+
+/// Plain least squares with a μ of each body and one drag.
+fn first_fit(channels: &Channels, square: &[f64], of_body: &[usize], bodies: usize) -> First {
+    let n = square.len();
+    let design = Mat::from_fn(n, bodies + 2, |i, j| match j {
+        0 => -channels.speed_m_s[i],
+        1 => -square[i],
+        _ if of_body[i] == j - 2 => -channels.acceleration_m_s2[i],
+        _ => 0.0,
+    });
+    let names = (0..bodies + 2).map(|j| format!("c{j}")).collect();
+    let found = fit(&Problem::single(design, channels.load_n.clone(), names), &Options::default());
+    let value = |j: usize| found.as_ref().ok().and_then(|f| f.coefficients[j].value).unwrap_or(0.0);
+    First { added_kg: of_body.iter().map(|b| value(2 + b)).collect(), linear: value(0), quadratic: value(1) }
+}
+
+/// The mass of a body: by its runs in air, f_m = m a, else as it is declared.
+fn mass(declared: Option<Declared>, dry: &[(usize, Rows)], body: usize) -> Option<Mass> {
+    let own: Vec<&Rows> = dry.iter().filter(|(b, _)| *b == body).map(|(_, rows)| rows).collect();
+    let weighed = || {
+        let run: Vec<usize> = own.iter().enumerate().flat_map(|(r, rows)| vec![r; rows.middle_s.len()]).collect();
+        let a: Vec<f64> = own.iter().flat_map(|rows| rows.acceleration_m_s2.iter().copied()).collect();
+        let f: Vec<f64> = own.iter().flat_map(|rows| rows.force_n.iter().copied()).collect();
+        let squares: f64 = a.iter().map(|a| a * a).sum();
+        let value_kg = a.iter().zip(&f).map(|(a, f)| a * f).sum::<f64>() / squares;
+        let residual: Vec<f64> = a.iter().zip(&f).map(|(a, f)| f - value_kg * a).collect();
+        let design = Mat::from_fn(a.len(), 1, |i, _| a[i]);
+        let sensitivity = Mat::from_fn(1, a.len(), |_, i| a[i] / squares);
+        let found = serial(&design, &sensitivity, &residual, &run)?;
+        Some(Mass { value_kg, standard_kg: found.covariance[(0, 0)].sqrt(), dof: found.dof, is_weighed: true })
+    };
+    let as_declared = |m: Declared| Mass {
+        value_kg: m.value,
+        standard_kg: m.standard_uncertainty,
+        dof: f64::INFINITY,
+        is_weighed: false,
+    };
+    if own.is_empty() { declared.map(as_declared) } else { weighed().or_else(|| declared.map(as_declared)) }
+}

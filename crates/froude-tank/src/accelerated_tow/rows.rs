@@ -1,0 +1,345 @@
+//! A run as rows: motion and force weighted over short windows, the acceleration without differentiation.
+//!
+//! With the window φ(t) = ⅔ (1 + cos 2πt/W)²/W on |t| ≤ W/2, which with its first two derivatives is zero at both ends, integration by parts gives
+//!
+//! ∫ φ a dt = −∫ φ′ v dt = ∫ φ″ x dt,
+//!
+//! so that m ∫ φ a dt = ∫ φ f dt holds exactly for whatever motion: speed, acceleration and force of a row are weighted alike, and no filter delays or
+//! flattens one against the other. Windows lie W/3 apart, so that their sum is constant.
+//!
+//! **Units.** SI.
+//!
+//! # Source
+//!
+//! Shinbrot (1957), Trans. ASME 79, 67 (modulating functions); the window is cos⁴ of Harris (1978), Proc. IEEE 66, 51.
+
+use std::f64::consts::TAU;
+
+use froude_fit::series::mean;
+
+use super::error::AcceleratedError;
+
+/// Fewest samples in a window.
+const FEWEST_SAMPLES: f64 = 8.0;
+/// Fewest rows of a run.
+const FEWEST_ROWS: usize = 6;
+/// A window moves where its speed or its acceleration exceeds this part of the largest.
+const MOVES: f64 = 0.02;
+/// A row's acceleration must exceed its noise this many times, in the mean square.
+const ABOVE_NOISE: f64 = 3.0;
+/// A cell that stands at its largest or smallest reading in this part of the moving samples is clipped.
+const CLIPPED: f64 = 0.05;
+
+/// How a run moves, as it was logged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Way<'a> {
+    /// Position along the axis, m.
+    Position(&'a [f64]),
+    /// Speed along it, m/s.
+    Speed(&'a [f64]),
+}
+
+/// One run: columns of one length, time increasing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TowRun<'a> {
+    /// Its name.
+    pub id: &'a str,
+    /// Time, s.
+    pub time_s: &'a [f64],
+    /// Its motion.
+    pub way: Way<'a>,
+    /// Force of the rig on the body along the axis, N.
+    pub force_n: &'a [f64],
+}
+
+/// The rows of one run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Rows {
+    /// Middles of the windows, s of the log.
+    pub middle_s: Vec<f64>,
+    /// Weighted speed, m/s.
+    pub speed_m_s: Vec<f64>,
+    /// Weighted v|v|, m²/s².
+    pub square_m2_s2: Vec<f64>,
+    /// Weighted acceleration, m/s².
+    pub acceleration_m_s2: Vec<f64>,
+    /// Weighted force, its zero taken off, N.
+    pub force_n: Vec<f64>,
+    /// Its slope in time, N/s.
+    pub force_slope_n_s: Vec<f64>,
+    /// The zero at the first and the last row, N.
+    pub zero_n: [f64; 2],
+    /// Standard uncertainty of that from the scatter at rest, N.
+    pub zero_standard_n: f64,
+    /// Degrees of freedom of that.
+    pub zero_dof: f64,
+    /// Root mean square of the acceleration at rest, m/s²: its noise.
+    pub noise_m_s2: f64,
+    /// Times at rest before and after, s of the log: what the zero is the mean of.
+    pub rest_s: [Option<[f64; 2]>; 2],
+}
+
+/// Weights of one window over the samples that it touches.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Window {
+    /// First sample.
+    pub from: usize,
+    /// φ, summing to one.
+    pub value: Vec<f64>,
+    /// −φ′, which gives slope 1 of a straight line of slope 1.
+    pub slope: Vec<f64>,
+    /// φ″, which gives 1 of t²/2.
+    pub bend: Vec<f64>,
+}
+
+/// The window about `middle_s`; what its samples lack of an integral is put right, so that straight lines and parabolas are exact.
+pub(crate) fn window(time_s: &[f64], middle_s: f64, window_s: f64) -> Window {
+    let (low, high) = (middle_s - 0.5 * window_s, middle_s + 0.5 * window_s);
+    let from = time_s.partition_point(|t| *t < low);
+    let end = time_s.partition_point(|t| *t <= high);
+    let at: Vec<f64> = time_s[from..end].iter().map(|t| t - middle_s).collect();
+    let omega = TAU / window_s;
+    let scaled = |raw: Vec<f64>, moment: i32, factorial: f64| {
+        let found: f64 = raw.iter().zip(&at).map(|(w, t)| w * t.powi(moment) / factorial).sum();
+        raw.into_iter().map(|w| w / found).collect::<Vec<f64>>()
+    };
+    let without = |mut raw: Vec<f64>, shape: &dyn Fn(f64) -> f64| {
+        let (moment, norm): (f64, f64) =
+            raw.iter().zip(&at).fold((0.0, 0.0), |(m, n), (w, t)| (m + w * shape(*t), n + shape(*t).powi(2)));
+        for (w, t) in raw.iter_mut().zip(&at) {
+            *w -= moment / norm * shape(*t);
+        }
+        raw
+    };
+    let value = scaled(at.iter().map(|t| (1.0 + (omega * t).cos()).powi(2)).collect(), 0, 1.0);
+    let slope = without(at.iter().map(|t| (1.0 + (omega * t).cos()) * (omega * t).sin()).collect(), &|_| 1.0);
+    // First the slope, then the mean: on even samples about the middle the two do not touch each other.
+    let shape = |t: &f64| -(omega * t).cos() - (2.0 * omega * t).cos();
+    let bend = without(without(at.iter().map(shape).collect(), &|t| t), &|_| 1.0);
+    Window { from, value, slope: scaled(slope, 1, 1.0), bend: scaled(bend, 2, 2.0) }
+}
+
+impl Window {
+    pub(crate) fn of(&self, weights: &[f64], series: &[f64]) -> f64 {
+        weights.iter().zip(&series[self.from..]).map(|(w, x)| w * x).sum()
+    }
+}
+
+/// Windows over a whole run, W/3 apart.
+pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Window)>, AcceleratedError> {
+    let (first, last) = (run.time_s[0], run.time_s[run.time_s.len() - 1]);
+    let step_s = (last - first) / (run.time_s.len() - 1) as f64;
+    if window_s / step_s < FEWEST_SAMPLES {
+        return Err(AcceleratedError::Window { run: run.id.to_owned(), window_s, found: window_s / step_s });
+    }
+    let count = ((last - first - window_s) / (window_s / 3.0)).floor();
+    let middles = (0..=count.max(-1.0) as i64).map(|i| first + window_s * (0.5 + i as f64 / 3.0));
+    // Where ticks are missing nothing is weighted: as many samples as its length has, but for one at either end.
+    let is_whole = |w: &Window| w.value.len() as f64 > window_s / step_s - 1.5;
+    Ok(middles.map(|t| (t, window(run.time_s, t, window_s))).filter(|(_, w)| is_whole(w)).collect())
+}
+
+/// The rows of a run; the force is taken `delay_s` later than the motion.
+///
+/// # Errors
+///
+/// [`AcceleratedError`]: no motion, no part at rest, a clipped cell, accelerations below their noise.
+pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, AcceleratedError> {
+    let too_few = |found| AcceleratedError::NoMotion { run: run.id.to_owned(), found, needed: FEWEST_ROWS, window_s };
+    if run.time_s.len() < 2 || run.force_n.len() != run.time_s.len() {
+        return Err(too_few(0));
+    }
+    let all = windows(run, window_s)?;
+    let speed_of = |w: &Window| match run.way {
+        Way::Position(x) => w.of(&w.slope, x),
+        Way::Speed(v) => w.of(&w.value, v),
+    };
+    let acceleration_of = |w: &Window| match run.way {
+        Way::Position(x) => w.of(&w.bend, x),
+        Way::Speed(v) => w.of(&w.slope, v),
+    };
+    let motion: Vec<[f64; 2]> = all.iter().map(|(_, w)| [speed_of(w), acceleration_of(w)]).collect();
+    let largest = |k: usize| motion.iter().fold(0.0_f64, |m, row| m.max(row[k].abs()));
+    let top = [largest(0), largest(1)];
+    let moves = |row: &[f64; 2]| row[0].abs() > MOVES * top[0];
+    let (Some(start), Some(end)) = (motion.iter().position(moves), motion.iter().rposition(moves)) else {
+        return Err(too_few(0));
+    };
+    // Windows before the first, and after the last, may hold the beginning and the end of the motion.
+    let (start, end) = (start.saturating_sub(2), (end + 2).min(all.len() - 1));
+    if end - start + 1 < FEWEST_ROWS {
+        return Err(too_few(end - start + 1));
+    }
+    let half = 0.5 * window_s;
+    let (begins_s, ends_s) = (all[start].0 - half, all[end].0 + half);
+    let zero = zero(run, begins_s, ends_s, window_s)?;
+    clipped(run, begins_s, ends_s)?;
+    let mut out = Rows { zero_standard_n: zero.standard_n, zero_dof: zero.dof, rest_s: zero.rest_s, ..Rows::default() };
+    for (i, (middle_s, w)) in all.iter().enumerate().take(end + 1).skip(start) {
+        let of_force = window(run.time_s, middle_s + delay_s, window_s);
+        if of_force.value.len() < w.value.len().saturating_sub(1) {
+            continue;
+        }
+        let square = |v: f64| v * v.abs();
+        out.middle_s.push(*middle_s);
+        out.speed_m_s.push(motion[i][0]);
+        out.acceleration_m_s2.push(motion[i][1]);
+        out.square_m2_s2.push(match run.way {
+            Way::Speed(v) => w.value.iter().zip(&v[w.from..]).map(|(w, v)| w * square(*v)).sum(),
+            // v² about its mean by the acceleration: the variance of φ is W² · ⅔ (1/8 − 15/16π²).
+            Way::Position(_) => {
+                square(motion[i][0]) + motion[i][0].signum() * (SPREAD * window_s * motion[i][1]).powi(2)
+            }
+        });
+        out.force_n.push(of_force.of(&of_force.value, run.force_n) - zero.at(*middle_s));
+        out.force_slope_n_s.push(of_force.of(&of_force.slope, run.force_n));
+    }
+    out.zero_n = [zero.at(begins_s), zero.at(ends_s)];
+    let at_rest: Vec<f64> =
+        all.iter().zip(&motion).filter(|((t, _), _)| zero.is_rest(*t, half)).map(|(_, row)| row[1]).collect();
+    out.noise_m_s2 = root_mean_square(&at_rest);
+    let rms = root_mean_square(&out.acceleration_m_s2);
+    if rms < ABOVE_NOISE * out.noise_m_s2 {
+        return Err(AcceleratedError::NoAcceleration { run: run.id.to_owned(), rms, noise: out.noise_m_s2 });
+    }
+    Ok(out)
+}
+
+/// Standard deviation of the window as part of its length, √(⅔ (1/8 − 15/16π²)).
+const SPREAD: f64 = 0.141_448_200_967;
+
+/// Root of the mean square; 0 of nothing.
+pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// The zero of a run as a straight line between the parts at rest.
+struct Zero {
+    ends: [(f64, f64); 2],
+    standard_n: f64,
+    dof: f64,
+    rest_s: [Option<[f64; 2]>; 2],
+}
+
+impl Zero {
+    fn at(&self, t: f64) -> f64 {
+        let [(from, a), (to, b)] = self.ends;
+        if to > from { a + (t - from) / (to - from) * (b - a) } else { a }
+    }
+
+    fn is_rest(&self, middle_s: f64, half: f64) -> bool {
+        self.rest_s.iter().flatten().any(|[from, to]| middle_s - half >= *from && middle_s + half <= *to)
+    }
+}
+
+fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Zero, AcceleratedError> {
+    let t = run.time_s;
+    let (first, last) = (t[0], t[t.len() - 1]);
+    let before = t.partition_point(|t| *t < begins_s);
+    let after = t.partition_point(|t| *t <= ends_s);
+    let step_s = (last - first) / (t.len() - 1) as f64;
+    // A single window of rest is as short as a row: two are the least that tells its scatter.
+    let is_enough = |rows: &std::ops::Range<usize>| rows.len() as f64 * step_s >= 2.0 * window_s;
+    let of = |rows: std::ops::Range<usize>| {
+        is_enough(&rows).then(|| (0.5 * (t[rows.start] + t[rows.end - 1]), mean(&run.force_n[rows], step_s)))
+    };
+    let rest = |rows: std::ops::Range<usize>| is_enough(&rows).then(|| [t[rows.start], t[rows.end - 1]]);
+    let rest_s = [rest(0..before), rest(after..t.len())];
+    let (ends, standard_n, independent) = match (of(0..before), of(after..t.len())) {
+        (Some((from, a)), Some((to, b))) => {
+            let both = 0.5 * a.standard.hypot(b.standard);
+            ([(from, a.value), (to, b.value)], both, a.effective_n + b.effective_n - 1.0)
+        }
+        (Some((at, only)), None) | (None, Some((at, only))) => ([(at, only.value); 2], only.standard, only.effective_n),
+        (None, None) => {
+            return Err(AcceleratedError::NoZero {
+                run: run.id.to_owned(),
+                before_s: begins_s - first,
+                after_s: last - ends_s,
+                needed_s: 2.0 * window_s,
+            });
+        }
+    };
+    Ok(Zero { ends, standard_n, dof: (independent - 1.0).max(1.0), rest_s })
+}
+
+/// A cell that stands at one reading where it moves, and not at rest: one whose noise is below its step repeats itself there too.
+fn clipped(run: &TowRun<'_>, begins_s: f64, ends_s: f64) -> Result<(), AcceleratedError> {
+    let (low, high) =
+        run.force_n.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+    let (from, to) = (run.time_s.partition_point(|t| *t < begins_s), run.time_s.partition_point(|t| *t <= ends_s));
+    let moving = &run.force_n[from..to];
+    let rest = run.force_n[..from].iter().chain(&run.force_n[to..]);
+    let part = |value: f64, of: &mut dyn Iterator<Item = &f64>| {
+        let (mut n, mut there) = (0_usize, 0_usize);
+        for x in of {
+            n += 1;
+            there += usize::from(*x == value);
+        }
+        there as f64 / n.max(1) as f64
+    };
+    for value in [low, high] {
+        let found = part(value, &mut moving.iter());
+        if found >= CLIPPED && low < high && part(value, &mut rest.clone()) == 0.0 {
+            return Err(AcceleratedError::Clipped { run: run.id.to_owned(), value, part: 1e2 * found });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(n: usize) -> Vec<f64> {
+        (0..n).map(|i| 0.01 * i as f64).collect()
+    }
+
+    /// Up to a parabola every window is exact, wherever it lies between the samples.
+    #[test]
+    fn weights_are_exact_for_parabolas() {
+        let t = times(200);
+        let x: Vec<f64> = t.iter().map(|t| 0.3 - 0.2 * t + 0.45 * t * t).collect();
+        let v: Vec<f64> = t.iter().map(|t| -0.2 + 0.9 * t).collect();
+        for middle in [0.5, 0.9, 1.3] {
+            let w = window(&t, middle, 0.4);
+            // Forty products of size one.
+            assert!((w.of(&w.value, &v) - (-0.2 + 0.9 * middle)).abs() < 1e-12);
+            assert!((w.of(&w.slope, &v) - 0.9).abs() < 1e-11);
+            assert!((w.of(&w.bend, &x) - 0.9).abs() < 1e-9);
+        }
+        let spread: f64 = window(&t, 1.0, 0.4).value.iter().zip(&t[80..]).map(|(w, t)| w * (t - 1.0).powi(2)).sum();
+        // A sum of forty samples in the place of an integral of a window that ends smoothly.
+        assert!((spread.sqrt() / 0.4 - SPREAD).abs() < 1e-6);
+    }
+
+    /// m ∫φa = ∫φf for a motion that is no polynomial, by position and by speed: weighted alike, nothing is lost.
+    #[test]
+    fn the_weighted_equation_holds_for_any_motion() {
+        let t = times(1200);
+        let bump = |t: f64| (-(t - 6.0).powi(2) / 0.5).exp();
+        let x: Vec<f64> = t.iter().map(|t| bump(*t)).collect();
+        let v: Vec<f64> = t.iter().map(|t| -4.0 * (t - 6.0) * bump(*t)).collect();
+        let f: Vec<f64> = t.iter().map(|t| 2.0 * (16.0 * (t - 6.0).powi(2) - 4.0) * bump(*t)).collect();
+        for way in [Way::Position(&x), Way::Speed(&v)] {
+            let run = TowRun { id: "a", time_s: &t, way, force_n: &f };
+            let rows = rows(&run, 0.4, 0.0).unwrap();
+            for (a, f) in rows.acceleration_m_s2.iter().zip(&rows.force_n) {
+                // Sums of forty samples in the place of integrals: the window's bend ends in zero with a slope, which costs h⁴ of its second derivative.
+                assert!((2.0 * a - f).abs() < 1e-3, "{a} {f}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_run_without_rest_and_one_that_does_not_move_are_refused() {
+        let t = times(400);
+        let moving: Vec<f64> = t.iter().map(|t| 0.3 + 0.1 * t).collect();
+        let run = TowRun { id: "a", time_s: &t, way: Way::Speed(&moving), force_n: &moving };
+        assert!(matches!(rows(&run, 0.4, 0.0), Err(AcceleratedError::NoZero { .. })));
+        let still = vec![0.0; 400];
+        let run = TowRun { way: Way::Speed(&still), ..run };
+        assert!(matches!(rows(&run, 0.4, 0.0), Err(AcceleratedError::NoMotion { found: 0, .. })));
+        assert!(matches!(rows(&run, 0.05, 0.0), Err(AcceleratedError::Window { .. })));
+    }
+}

@@ -1,0 +1,271 @@
+//! The twin of a campaign's accelerated tows: the logs and sidecars that it would give for chosen true coefficients.
+//!
+//! What is declared with an uncertainty is drawn once for the campaign, about what is declared: masses, delay, the gains of force and motion. Each run
+//! has a zero of its own.
+
+use froude_identify::law::ForceLaw;
+use froude_identify::method::{Export, MethodError};
+use froude_identify::simulate::truth;
+use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
+use froude_records::run::{ACCELERATED_TOW, Role};
+use froude_rig::accelerated_tow::{AcceleratedTrace, Profile, accelerated};
+use froude_rig::steady::Reading;
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+use super::law::{Channels, data, names, with_acceleration};
+use super::reduce::{Mounted, Setup};
+use super::rows::{TowRun, Way};
+use super::source::{declared, no_mass, setup_of};
+
+/// Standard deviation of the zero of a run, N.
+const ZERO_N: f64 = 0.2;
+
+/// One planned run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// Its name.
+    pub id: String,
+    /// Which body of the setup.
+    pub body: usize,
+    /// How it moves.
+    pub profile: Profile,
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Whether it is done in air.
+    pub is_dry: bool,
+}
+
+/// A run with its log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulated {
+    /// As it was planned.
+    pub planned: Planned,
+    /// What was logged.
+    pub trace: AcceleratedTrace,
+}
+
+impl Simulated {
+    /// The log as the reduction takes it.
+    #[must_use]
+    pub fn view(&self) -> Mounted<'_> {
+        let run = TowRun {
+            id: &self.planned.id,
+            time_s: &self.trace.time_s,
+            way: Way::Position(&self.trace.position_m),
+            force_n: &self.trace.force_n,
+        };
+        Mounted { run, body: self.planned.body, is_dry: self.planned.is_dry }
+    }
+}
+
+/// The planned configurations, in order of first appearance.
+#[must_use]
+pub fn configurations(source: &Source) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for name in source.accelerated_plan.iter().flat_map(|block| &block.configurations) {
+        if !out.contains(name) {
+            out.push(name.clone());
+        }
+    }
+    out
+}
+
+/// The run matrix of a source.
+#[must_use]
+pub fn planned(source: &Source, setup: &Setup) -> Vec<Planned> {
+    let mut out = Vec::new();
+    for block in &source.accelerated_plan {
+        for configuration in &block.configurations {
+            let body = setup.bodies.iter().position(|b| b.name == *configuration).unwrap_or(0);
+            for &speed_m_s in &block.speed_m_s {
+                for &acceleration_m_s2 in &block.acceleration_m_s2 {
+                    for _ in 0..block.repeats {
+                        let (steady_s, still_s) = (block.steady_s, block.still_s);
+                        out.push(Planned {
+                            id: format!("{:03}", out.len() + 1),
+                            body,
+                            profile: Profile { speed_m_s, acceleration_m_s2, steady_s, still_s },
+                            rate_hz: block.rate_hz,
+                            is_dry: block.in_air,
+                        });
+                    }
+                }
+            }
+        }
+    }
+    out
+}
+
+/// What is true on the twin.
+#[derive(Debug, Clone)]
+pub struct Truths {
+    /// The law with its term of the acceleration.
+    pub law: ForceLaw,
+    /// Its coefficients.
+    pub values: Vec<f64>,
+}
+
+impl Truths {
+    /// Of `[simulate]`: a drag law and its coefficients, and the added-mass coefficient of the axis beside them.
+    ///
+    /// # Errors
+    ///
+    /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
+    pub fn of(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Self, MethodError> {
+        let added = names(&setup.axis)[3].clone();
+        let undeclared = |what: String| MethodError::Undeclared { place: "[simulate]".to_owned(), what };
+        let mut own = campaign.clone();
+        own.sources = vec![source.clone()];
+        let Some(Truth::Coefficients { values, .. }) = own.simulate.as_mut().map(|s| &mut s.truth) else {
+            return Err(undeclared(format!(
+                "the twin of {ACCELERATED_TOW} needs seed, model, and the true coefficients of drag and {added} in [simulate.coefficients]"
+            )));
+        };
+        let value = values
+            .shift_remove(&added)
+            .ok_or_else(|| undeclared(format!("{added} is missing in [simulate.coefficients]; the truth needs it")))?;
+        let row = row_of(setup, 0, 0.1, 0.1);
+        let (drag, mut values) = truth(&own, &row)?;
+        let law = with_acceleration(&drag, &row, &setup.axis)?;
+        values.push(value);
+        let at = |name: &str| drag.position(name).or_else(|| (name == added).then_some(values.len() - 1));
+        let values = law.coefficients.iter().map(|c| at(&c.name).map_or(0.0, |j| values[j])).collect();
+        Ok(Self { law, values })
+    }
+
+    /// Load of the water on a body along the axis, N.
+    #[must_use]
+    pub fn load_n(&self, setup: &Setup, body: usize, speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
+        let row = row_of(setup, body, speed_m_s, acceleration_m_s2);
+        self.law.predict(&row, &self.values).map_or(f64::NAN, |f| f[0])
+    }
+}
+
+fn row_of(setup: &Setup, body: usize, speed_m_s: f64, acceleration_m_s2: f64) -> froude_identify::dataset::Dataset {
+    let of = &setup.bodies[body];
+    let channels = Channels {
+        run: vec![String::new()],
+        configuration: vec![of.name.clone()],
+        speed_m_s: vec![speed_m_s],
+        acceleration_m_s2: vec![acceleration_m_s2],
+        load_n: vec![0.0],
+        volume_m3: vec![of.volume_m3],
+        density_kg_m3: setup.density_kg_m3,
+    };
+    data(channels, &setup.axis)
+}
+
+/// Points of the drag, tabulated once for each body.
+const GRID: usize = 2000;
+
+/// Drag of a body between ± its largest speed, and the slope of the load over the acceleration.
+struct Table {
+    top_m_s: f64,
+    drag_n: Vec<f64>,
+    per_acceleration: f64,
+}
+
+impl Table {
+    fn of(truth: &Truths, setup: &Setup, body: usize, top_m_s: f64) -> Self {
+        let at = |g: usize| top_m_s * (2.0 * g as f64 / GRID as f64 - 1.0);
+        Self {
+            top_m_s,
+            drag_n: (0..=GRID).map(|g| truth.load_n(setup, body, at(g), 0.0)).collect(),
+            per_acceleration: truth.load_n(setup, body, 0.0, 1.0) - truth.load_n(setup, body, 0.0, 0.0),
+        }
+    }
+
+    fn load_n(&self, speed_m_s: f64, acceleration_m_s2: f64) -> f64 {
+        let place = (0.5 * GRID as f64 * (speed_m_s / self.top_m_s + 1.0)).clamp(0.0, GRID as f64 - 1e-9);
+        let (g, part) = (place as usize, place.fract());
+        (1.0 - part) * self.drag_n[g] + part * self.drag_n[g + 1] + self.per_acceleration * acceleration_m_s2
+    }
+}
+
+/// The logs of all planned runs; the same seed gives the same logs. `sensors` are `position` and `force`.
+#[must_use]
+pub fn simulated(
+    planned: &[Planned],
+    setup: &Setup,
+    truth: &Truths,
+    sensors: &[SensorSpec],
+    seed: u64,
+) -> Option<Vec<Simulated>> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut draw = |standard: f64| -> f64 {
+        let z: f64 = rng.sample(StandardNormal);
+        standard * z
+    };
+    let delay_s = setup.delay_s.value + draw(setup.delay_s.standard_uncertainty);
+    let [force, motion] = [setup.force_relative, setup.motion_relative].map(|part| 1.0 + draw(part));
+    let masses: Vec<f64> = (setup.bodies.iter())
+        .map(|body| body.mass_kg.map(|m| m.value + draw(m.standard_uncertainty)))
+        .collect::<Option<_>>()?;
+    let top = planned.iter().fold(0.0_f64, |m, run| m.max(run.profile.speed_m_s.abs()));
+    let tables: Vec<Table> = (0..setup.bodies.len()).map(|b| Table::of(truth, setup, b, 1.01 * top)).collect();
+    let reading = |name: &str, zero: f64, gain: f64| {
+        let sensor = sensors.iter().find(|s| s.quantity == name);
+        Reading {
+            noise: sensor.and_then(|s| s.noise).unwrap_or(0.0),
+            correlation_s: sensor.and_then(|s| s.correlation_s),
+            step: sensor.and_then(|s| s.resolution).unwrap_or(0.0),
+            zero: zero + sensor.and_then(|s| s.bias).unwrap_or(0.0),
+            drift_per_s: 0.0,
+            gain,
+        }
+    };
+    let mut out = Vec::new();
+    for (i, run) in planned.iter().enumerate() {
+        let readings = [reading("position", 0.0, motion), reading("force", draw(ZERO_N), force)];
+        let load = |v: f64, a: f64| if run.is_dry { 0.0 } else { tables[run.body].load_n(v, a) };
+        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);
+        let trace = accelerated(run.profile, run.rate_hz, masses[run.body], delay_s, readings, &load, seed);
+        out.push(Simulated { planned: run.clone(), trace });
+    }
+    Some(out)
+}
+
+/// The files of all planned runs of a source: a log and its sidecar each.
+///
+/// # Errors
+///
+/// What the campaign does not declare.
+pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
+    let spec = declared(source)?;
+    let setup = setup_of(campaign, source, spec, &configurations(source))?;
+    let truth = Truths::of(campaign, source, &setup)?;
+    let planned = planned(source, &setup);
+    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let mut out = Vec::new();
+    for run in simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source))? {
+        out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
+        out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run, &setup).into_bytes() });
+    }
+    Ok(out)
+}
+
+fn log(trace: &AcceleratedTrace) -> String {
+    let mut out = String::from("time,x,force\n");
+    for ((t, x), force) in trace.time_s.iter().zip(&trace.position_m).zip(&trace.force_n) {
+        out += &format!("{t:.6},{x:.8},{force:.6}\n");
+    }
+    out
+}
+
+fn sidecar(run: &Simulated, setup: &Setup) -> String {
+    let role = if run.planned.is_dry { Role::DryAir } else { Role::Test }.name();
+    let configuration = &setup.bodies[run.planned.body].name;
+    let mounted = if configuration.is_empty() {
+        String::new()
+    } else {
+        format!("\n[mounted]\nconfiguration = {configuration:?}\n")
+    };
+    format!(
+        "# A run of the twin.\nschema = 1\nmethod = \"{ACCELERATED_TOW}\"\nrole = \"{role}\"\n{mounted}\n[columns]\n\
+         time  = {{ name = \"time\", unit = \"s\" }}\n\
+         x     = {{ name = \"position\", unit = \"m\", sign = 1, frame = \"body\", clock = \"log\" }}\n\
+         force = {{ name = \"force\", unit = \"N\", sign = 1, frame = \"body\", clock = \"log\" }}   # of the rig on the body\n"
+    )
+}

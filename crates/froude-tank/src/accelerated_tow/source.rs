@@ -1,0 +1,275 @@
+//! Accelerated tows as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
+
+use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_identify::reduce::Observations;
+use froude_identify::regression::Scatter;
+use froude_identify::seam::Choice;
+use froude_identify::source::{Asked, identify_laws};
+use froude_records::accelerated_tow::AcceleratedTowSpec;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::finding::{Finding, Severity};
+use froude_records::run::{ACCELERATED_TOW, Declared, ImportedRun, Role};
+use froude_records::units::Dimension;
+
+use super::law::asked;
+use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
+use super::rows::{TowRun, Way, root_mean_square};
+use super::{page, plan, simulate};
+use crate::logs::{self, Logs};
+use crate::reference;
+
+/// Drag and added mass by weighted rows.
+pub struct AcceleratedTow;
+
+const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
+/// Noise of the acceleration lowers C_A by its part in the mean square; this part is reported.
+const ATTENUATED: f64 = 1e-3;
+/// Masses by runs in air and by declaration further apart than so many standard uncertainties are reported.
+const APART: f64 = 2.5;
+
+impl Method for AcceleratedTow {
+    fn names(&self) -> &'static [&'static str] {
+        &[ACCELERATED_TOW]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "drag and added mass of one axis, from a body that is towed up to speed and back to rest"
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const DRY: Need = Need { is_optional: true, is_observed: false, ..Need::of(&["dry_air"], &["force"]) };
+        const { &[Need::of(&["test"], &["force"]), DRY] }
+    }
+
+    fn runs(&self) -> &'static str {
+        ACCELERATED_TOW
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let spec = declared(source)?;
+        progress("reading the runs");
+        let Logs { runs: logs, files, mut findings } = logs::read(
+            source.input.path(),
+            ACCELERATED_TOW,
+            &[Role::Test, Role::DryAir],
+            "time, position or speed, and force",
+        )?;
+        let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        progress("weighting motion and force");
+        let mounted = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
+        let mut reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source))?;
+        if reduced.runs.is_empty() {
+            let first = (!reduced.left_out.is_empty()).then(|| reduced.left_out.remove(0));
+            let none = "no run of the role test: what is fitted has role = \"test\" in its sidecar";
+            return Err(first.map_or_else(|| MethodError::input(source.input.path(), none), MethodError::refused));
+        }
+        findings.extend(
+            reduced
+                .left_out
+                .iter()
+                .map(|error| Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}"))),
+        );
+        findings.extend(of_runs(&reduced, &setup, spec));
+        let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
+        let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial };
+        let choice = if reduced.is_by_run {
+            Choice::Selection
+        } else {
+            Choice::Method("the first law that was asked for: fewer than five runs do not tell laws apart".to_owned())
+        };
+        let observations = Observations {
+            data: reduced.data.clone(),
+            n_read: reduced.data.rows,
+            findings: Vec::new(),
+            shared_errors: reduced.errors.clone(),
+            files,
+        };
+        let own = without_rig(source);
+        let asked = Asked { method: ACCELERATED_TOW, laws, scatter, choice };
+        let mut result = identify_laws(campaign, &own, observations, asked, &|model| {
+            progress(&format!("fitting {model}"));
+        })?;
+        for estimate in &mut result.estimates {
+            refer(estimate, campaign, &setup);
+        }
+        findings.append(&mut result.findings);
+        let best = result.recommendation.as_ref().map_or(0, |r| r.index);
+        let blocks = vec![page::section(&logs, &reduced, &setup, result.models.get(best))];
+        Ok(Found { results: vec![result.into()], blocks, findings, ..Found::default() })
+    }
+
+    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        simulate::files(campaign, source).map(Some)
+    }
+
+    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        plan::prospect(campaign, source).map(Some)
+    }
+}
+
+/// What the record says of volumes and steps, beside the fit.
+fn refer(estimate: &mut froude_records::estimate::Estimate, campaign: &Campaign, setup: &Setup) {
+    let measured = |value: f64| froude_records::estimate::Measured { value, unit: "m^3".to_owned() };
+    if let Some(volume) = campaign.body.as_ref().and_then(|b| b.link_volume_m3) {
+        estimate.refers_to.insert("link_volume".to_owned(), measured(volume));
+    } else if let [only] = setup.bodies.as_slice() {
+        estimate.refers_to.insert("volume".to_owned(), measured(only.volume_m3));
+    }
+    estimate.method.words = format!(
+        "{}; motion and force weighted by cos⁴ windows of {} s, a third of that apart; acceleration by the windows' derivatives; force taken {} ms after the motion; zero of each run \
+         the straight line between its parts at rest",
+        estimate.method.words,
+        setup.window_s,
+        1e3 * setup.delay_s.value
+    );
+}
+
+/// `[source.accelerated_tow]`.
+///
+/// # Errors
+///
+/// It is not there.
+pub fn declared(source: &Source) -> Result<&AcceleratedTowSpec, MethodError> {
+    source.accelerated_tow.as_ref().ok_or_else(|| {
+        let what = "nothing is declared of the body that speeds up: write [source.accelerated_tow] with axis and mass";
+        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+    })
+}
+
+pub(super) fn no_mass(source: &Source) -> MethodError {
+    let what = "the mass below the load cell is not known: write mass = { value = \"1.63 kg\", standard = \"5 g\" } in [source.accelerated_tow], for each configuration where \
+                they differ, or log runs of each in air (role = \"dry_air\")";
+    MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+}
+
+fn configurations(logs: &[ImportedRun]) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    for log in logs {
+        if !out.contains(&log.log.meta.configuration) {
+            out.push(log.log.meta.configuration.clone());
+        }
+    }
+    out
+}
+
+/// Quantities of the budget that are the rig's, and no channel of the rows.
+const OF_RIG: [&str; 3] = ["force", "position", "speed"];
+
+/// The source without the errors that the rows have in them.
+pub fn without_rig(source: &Source) -> Source {
+    let mut own = source.clone();
+    own.uncertainty.retain(|entry| !OF_RIG.contains(&entry.quantity.as_str()));
+    own
+}
+
+/// Everything that the campaign declares, for the configurations that there are.
+///
+/// # Errors
+///
+/// What is missing, and what to write.
+pub fn setup_of(
+    campaign: &Campaign,
+    source: &Source,
+    spec: &AcceleratedTowSpec,
+    configurations: &[String],
+) -> Result<Setup, MethodError> {
+    let mut out = Setup {
+        axis: spec.axis.name().to_owned(),
+        window_s: spec.window_s,
+        delay_s: spec.delay_s.unwrap_or(Declared::exact(0.0)),
+        density_kg_m3: reference::density_kg_m3(campaign, source)?,
+        force_relative: 0.0,
+        motion_relative: 0.0,
+        bodies: Vec::new(),
+    };
+    for name in configurations {
+        out.bodies.push(Body {
+            name: name.clone(),
+            volume_m3: reference::volume_m3(campaign, source, name)?,
+            mass_kg: spec.mass_kg.of(name),
+        });
+    }
+    for entry in source.uncertainty.iter().filter(|entry| OF_RIG.contains(&entry.quantity.as_str())) {
+        if !entry.relative {
+            return Err(MethodError::Undeclared {
+                place: entry.place.to_string(),
+                what: format!(
+                    "the uncertainty of {} is a gain that all runs share: write it as a percentage (the zero of each run is taken off, and noise shows in the scatter)",
+                    entry.quantity
+                ),
+            });
+        }
+        let gain = if entry.quantity == "force" { &mut out.force_relative } else { &mut out.motion_relative };
+        *gain = entry.standard;
+    }
+    Ok(out)
+}
+
+/// A log as a run; nothing about it is taken for granted.
+fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<Mounted<'a>, MethodError> {
+    let channel = |name: &str, dimension, along: &str| {
+        logs::channel(log, name, dimension, WHY, along).map(|c| c.values.as_slice())
+    };
+    let axis = &setup.axis;
+    let way = format!("the body's way through the water along +{axis}");
+    let has = |name: &str| log.log.channels.contains_key(name);
+    let way = if has("speed") {
+        Way::Speed(channel("speed", Dimension::SPEED, &way)?)
+    } else {
+        let name = if has("y/position") { "y/position" } else { "position" };
+        Way::Position(channel(name, Dimension::LENGTH, &way)?)
+    };
+    let force_n = channel("force", Dimension::FORCE, &format!("the rig on the body along +{axis}"))?;
+    let meta = &log.log.meta;
+    Ok(Mounted {
+        run: TowRun { id: &meta.id, time_s: &log.log.time_s, way, force_n },
+        body: setup.bodies.iter().position(|b| b.name == meta.configuration).unwrap_or(0),
+        is_dry: meta.role == Role::DryAir,
+    })
+}
+
+/// What the runs show.
+fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for (id, _, rows) in &reduced.runs {
+        let part = (rows.noise_m_s2 / root_mean_square(&rows.acceleration_m_s2)).powi(2);
+        if part > ATTENUATED {
+            let text = format!(
+                "run {id:?}: the noise of its acceleration is {:.2} % of it in the mean square, by which C_A{} comes out too small; write a longer window than {} s in \
+                 [source.accelerated_tow], or a finer encoder",
+                1e2 * part,
+                setup.axis,
+                setup.window_s
+            );
+            out.push(Finding::new(Severity::Warning, "acceleration-noise", text));
+        }
+    }
+    for (body, mass) in setup.bodies.iter().zip(&reduced.masses) {
+        if let Some(stated) = body.mass_kg.filter(|_| mass.is_weighed) {
+            let apart = (mass.value_kg - stated.value) / mass.standard_kg.hypot(stated.standard_uncertainty);
+            if apart.abs() > APART {
+                let text = format!(
+                    "the mass of {} is {:.4} ± {:.4} kg by its runs in air and is declared as {:.4} ± {:.4} kg: one of them is wrong, or so is the gain of the force; the runs in air are used",
+                    if body.name.is_empty() { "the body" } else { &body.name },
+                    mass.value_kg,
+                    mass.standard_kg,
+                    stated.value,
+                    stated.standard_uncertainty
+                );
+                out.push(Finding::new(Severity::Warning, "mass-contradicted", text));
+            }
+        }
+    }
+    if spec.delay_s.is_none() {
+        let text = "no delay of the force behind the motion is declared, and none is taken: a filter of the cell that the encoder does not have moves drag into added mass; write \
+                    delay = { value = \"0 ms\", standard = \"2 ms\" } in [source.accelerated_tow]";
+        out.push(Finding::new(Severity::Note, "no-delay", text.to_owned()));
+    }
+    out
+}

@@ -1,0 +1,48 @@
+//! What coefficients refer to: the volume of a configuration and the density of the water.
+
+use froude_hydro::fluid::Water;
+use froude_identify::method::MethodError;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::table::links_of_configuration;
+
+/// V: the volume that an added-mass coefficient of a configuration refers to, m³.
+///
+/// # Errors
+///
+/// None is declared; the message states what to write.
+pub(crate) fn volume_m3(campaign: &Campaign, source: &Source, configuration: &str) -> Result<f64, MethodError> {
+    let of = if configuration.is_empty() { String::new() } else { format!(" of {configuration}") };
+    let body = campaign.body.as_ref();
+    let n_links = links_of_configuration(configuration).map(f64::from);
+    let per_link = body.and_then(|b| b.link_volume_m3).zip(n_links).map(|(v, k)| v * k);
+    per_link
+        .or_else(|| body.and_then(|b| b.volumes.get(configuration).copied()))
+        .or_else(|| body.and_then(|b| b.volume_m3))
+        .ok_or_else(|| MethodError::Undeclared {
+            place: source.place.to_string(),
+            what: format!(
+                "C_A means nothing without the volume that it refers to, and none is declared{of}: write [body] volume = \"1.1e-3 m^3\", \
+                 volumes = {{ H1LT = \"…\" }}, or link_volume for HkLT (the volume per link)"
+            ),
+        })
+}
+
+/// ρ of `[fluid]`, kg/m³.
+///
+/// # Errors
+///
+/// Neither density nor a temperature that water can have is declared.
+pub(crate) fn density_kg_m3(campaign: &Campaign, source: &Source) -> Result<f64, MethodError> {
+    let missing = |what: String| MethodError::Undeclared { place: source.place.to_string(), what };
+    let fluid = &campaign.fluid;
+    match (fluid.density_kg_m3, fluid.temperature_degc) {
+        (Some(density), _) => Ok(density),
+        (None, Some(t)) => {
+            let water = Water::at(t, fluid.salinity_g_kg.unwrap_or(0.0));
+            Ok(water.map_err(|e| missing(format!("[fluid]: {e}")))?.density_kg_m3)
+        }
+        (None, None) => {
+            Err(missing("the added mass needs the water: write [fluid] density, or temperature".to_owned()))
+        }
+    }
+}
