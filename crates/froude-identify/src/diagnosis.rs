@@ -65,8 +65,8 @@ pub fn diagnostics(model: &ModelFit, data: &Dataset, score: &Score) -> Result<Di
 
 /// p-value of lack of fit against the repeats of a setting, by component.
 fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f64> {
-    // Repeats of a setting are looked for among rows that are kept.
-    if data.sample.is_some() {
+    // Repeats of a setting are looked for among rows that are kept; rows of one run are none.
+    if data.sample.is_some() || model.is_in_time(data) {
         return indexmap::IndexMap::new();
     }
     let groups = lint::repeats::repeat_groups(data);
@@ -85,7 +85,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     let name = &model.law.name;
     let mut out = Vec::new();
     for (component, dw) in &d.durbin_watson {
-        let has_order = data.rows >= 8;
+        let has_order = data.rows >= 8 && !model.is_in_time(data);
         if *dw < SERIAL_BELOW && has_order {
             out.push(Finding::new(
                 Severity::Warning,

@@ -55,7 +55,13 @@ pub fn identify_observations(
     let laws = laws(campaign, source, &observations.data)?;
     let scatter = scatter(campaign, source, &observations.data, &mut findings)?;
     let observations = Observations { findings: [observations.findings, findings].concat(), ..observations };
-    identify_laws(campaign, source, observations, Asked { method, laws, scatter, choice: Choice::Selection }, progress)
+    identify_laws(
+        campaign,
+        source,
+        observations,
+        Asked { method, laws, scatter, choice: Choice::Selection, has_budget: false },
+        progress,
+    )
 }
 
 /// What is asked of observations.
@@ -69,6 +75,8 @@ pub struct Asked<'a> {
     pub scatter: Scatter,
     /// Which of the laws is recommended.
     pub choice: Choice,
+    /// Whether the method states errors of its instruments itself.
+    pub has_budget: bool,
 }
 
 /// The same with laws, scatter and choice that the method states.
@@ -103,8 +111,8 @@ fn reduced(
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     findings.extend(lint::observations(&data, campaign));
-    findings.extend(no_budget(source, !shared_errors.is_empty()));
-    let Asked { method, laws, scatter, choice } = asked;
+    let Asked { method, laws, scatter, choice, has_budget } = asked;
+    findings.extend(no_budget(source, !shared_errors.is_empty()).filter(|_| !has_budget));
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));
     let out = of_table(campaign, source, method, data, laws);

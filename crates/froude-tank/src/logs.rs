@@ -83,7 +83,11 @@ pub(crate) fn channel<'a>(
             format!("a run needs the channel {name} ({}), and has {there}", dimension.describe()),
         )
     })?;
-    let mapping = log.sidecar.iter().flat_map(|s| s.columns.values()).find(|column| column.name == name);
+    let mapping = log
+        .sidecar
+        .iter()
+        .flat_map(|s| s.columns.values())
+        .find(|column| column.name.trim_start_matches("y/") == name.trim_start_matches("y/"));
     let undeclared = mapping.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |m| m.undeclared.clone());
     if undeclared.is_empty() {
         return Ok(channel);

@@ -131,6 +131,10 @@ pub(crate) fn largest(values: &[f64]) -> f64 {
 pub(crate) fn force_along_motion(data: &Dataset) -> Vec<Finding> {
     let counted = |(load, motion): (&'static str, &'static str)| {
         let (f, v) = (data.values(load)?, data.values(motion)?);
+        // What slows down is pushed by the water that goes with it.
+        if data.values(&format!("{motion}_dot")).is_some_and(|a| a.iter().any(|a| *a != 0.0)) {
+            return None;
+        }
         let mut pushed = Pushed::default();
         pushed.count(data, (f, v), [largest(f), largest(v)]);
         Some((load, motion, pushed))

@@ -7,6 +7,7 @@ use froude_fit::replicates::Replicates;
 use froude_records::campaign::{BudgetEntry, Identify, SourceKind};
 use froude_records::finding::Finding;
 
+use crate::dataset::Dataset;
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::uncertainty::SharedError;
 
@@ -139,6 +140,16 @@ impl ModelFit {
     #[must_use]
     pub fn law_coefficients(&self) -> &[f64] {
         &self.coefficients[..self.law.coefficients.len()]
+    }
+
+    /// Whether its rows follow each other in time, and its scatter knows.
+    #[must_use]
+    pub fn is_in_time(&self, data: &Dataset) -> bool {
+        match self.scatter {
+            Scatter::Serial => true,
+            Scatter::Cluster => data.group.as_ref() == Some(&data.run) && data.rows >= 2 * data.clusters(),
+            Scatter::Classical | Scatter::Hc3 | Scatter::Replicates { .. } => false,
+        }
     }
 
     /// Standard uncertainty of the predicted response for one row of regressors.

@@ -78,11 +78,11 @@ impl Method for AcceleratedTow {
         findings.extend(of_runs(&reduced, &setup, spec));
         let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
         let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial };
-        let choice = if reduced.is_by_run {
-            Choice::Selection
-        } else {
-            Choice::Method("the first law that was asked for: fewer than five runs do not tell laws apart".to_owned())
-        };
+        if laws.len() > 1 {
+            let text = "several laws are compared as if the rows of a run were independent, so that a law with more terms wins too easily: trust it where its extra coefficients \
+                        are outside their intervals of zero";
+            findings.push(Finding::new(Severity::Warning, "laws-by-rows", text.to_owned()));
+        }
         let observations = Observations {
             data: reduced.data.clone(),
             n_read: reduced.data.rows,
@@ -91,7 +91,7 @@ impl Method for AcceleratedTow {
             files,
         };
         let own = without_rig(source);
-        let asked = Asked { method: ACCELERATED_TOW, laws, scatter, choice };
+        let asked = Asked { method: ACCELERATED_TOW, laws, scatter, choice: Choice::Selection, has_budget: true };
         let mut result = identify_laws(campaign, &own, observations, asked, &|model| {
             progress(&format!("fitting {model}"));
         })?;
@@ -162,6 +162,7 @@ fn configurations(logs: &[ImportedRun]) -> Vec<String> {
 const OF_RIG: [&str; 3] = ["force", "position", "speed"];
 
 /// The source without the errors that the rows have in them.
+#[must_use]
 pub fn without_rig(source: &Source) -> Source {
     let mut own = source.clone();
     own.uncertainty.retain(|entry| !OF_RIG.contains(&entry.quantity.as_str()));

@@ -64,7 +64,7 @@ impl Case {
             shared_errors: reduced.errors,
             files: Vec::new(),
         };
-        let asked = Asked { method: "accelerated_tow", laws, scatter, choice: Choice::Selection };
+        let asked = Asked { method: "accelerated_tow", laws, scatter, choice: Choice::Selection, has_budget: true };
         let mut result = identify_laws(&self.campaign, &without_rig(&self.source), observations, asked, &|_| {})?;
         Ok(result.estimates.remove(0))
     }
