@@ -4,7 +4,9 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod decay;
+pub mod joint;
 mod logs;
+pub mod motion;
 pub mod oscillation;
 pub mod steady;
 pub mod weight_tow;
