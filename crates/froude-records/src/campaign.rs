@@ -15,6 +15,7 @@ use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
+use crate::rotation::{RotationPlan, RotationSpec};
 use crate::run::Declared;
 use crate::steady::SteadySpec;
 use crate::units::Dimension;
@@ -131,6 +132,8 @@ pub struct Source {
     pub decay: Option<DecaySpec>,
     /// What a motor swings, for forced oscillation.
     pub oscillation: Option<OscillationSpec>,
+    /// What a motor turns about its own centre.
+    pub rotation: Option<RotationSpec>,
     /// How its steady tows are reduced.
     pub steady: Option<SteadySpec>,
     /// Its wagon, weight and camera.
@@ -141,6 +144,8 @@ pub struct Source {
     pub plan: Vec<PlanBlock>,
     /// What is to be run of a forced oscillation.
     pub oscillation_plan: Vec<OscillationPlan>,
+    /// What is to be run of a rotation.
+    pub rotation_plan: Vec<RotationPlan>,
     /// What is to be run with weights.
     pub weight_plan: Vec<WeightPlan>,
     /// Where it stands in the campaign.
@@ -577,7 +582,11 @@ impl Source {
     #[must_use]
     pub fn plans_runs(&self) -> bool {
         let is_runs = matches!(self.input, Input::Runs { .. });
-        is_runs && !(self.plan.is_empty() && self.oscillation_plan.is_empty() && self.weight_plan.is_empty())
+        let is_empty = self.plan.is_empty()
+            && self.oscillation_plan.is_empty()
+            && self.rotation_plan.is_empty()
+            && self.weight_plan.is_empty();
+        is_runs && !is_empty
     }
 
     /// A source of which nothing but its input is known.
@@ -598,10 +607,12 @@ impl Source {
             tare: None,
             decay: None,
             oscillation: None,
+            rotation: None,
             steady: None,
             weight_tow: None,
             weight_plan: Vec::new(),
             oscillation_plan: Vec::new(),
+            rotation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),
         }

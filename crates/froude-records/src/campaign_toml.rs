@@ -20,7 +20,8 @@ use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
-use crate::run::{FORCED_OSCILLATION, STEADY, WEIGHT_TOW};
+use crate::rotation::{rotation, rotation_plan};
+use crate::run::{FORCED_OSCILLATION, ROTATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::steady::steady;
@@ -133,7 +134,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 21] = [
+const SOURCE_KEYS: [&str; 22] = [
     "name",
     "kind",
     "table",
@@ -151,6 +152,7 @@ const SOURCE_KEYS: [&str; 21] = [
     "tare",
     "decay",
     "forced_oscillation",
+    "rotation",
     "steady",
     "weight_tow",
     "added_mass",
@@ -210,8 +212,10 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     // Runs of a tank method have laws, a budget and a plan of their own.
     let is_method = |name: &str| methods.iter().any(|method| method == name);
     let (oscillates, is_steady, is_pulled) = (is_method(FORCED_OSCILLATION), is_method(STEADY), is_method(WEIGHT_TOW));
+    let turns = is_method(ROTATION);
     let is_own = |key: &&str| match *key {
-        "models" | "uncertainty" | "plan" => oscillates || is_steady || is_pulled,
+        "uncertainty" | "plan" => oscillates || is_steady || is_pulled || turns,
+        "models" => oscillates || is_steady || is_pulled,
         // Each of its windows becomes a row.
         "keep" | "group" | "tare" => is_steady || is_pulled,
         _ => false,
@@ -231,7 +235,9 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
-    for (method, is_asked) in [(FORCED_OSCILLATION, oscillates), (STEADY, is_steady), (WEIGHT_TOW, is_pulled)] {
+    for (method, is_asked) in
+        [(FORCED_OSCILLATION, oscillates), (ROTATION, turns), (STEADY, is_steady), (WEIGHT_TOW, is_pulled)]
+    {
         if let (Some(value), false) = (s.get(method), is_asked) {
             let problem =
                 format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
@@ -240,6 +246,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     let blocks = s.sections("plan")?;
     let (of_oscillation, others): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| oscillates);
+    let (of_rotation, others): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| turns);
     let (of_weights, of_speeds): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_pulled);
     Ok(Source {
         name,
@@ -256,6 +263,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
+        rotation: s.section(ROTATION)?.map(|s| rotation(&s)).transpose()?,
+        rotation_plan: of_rotation.into_iter().map(rotation_plan).collect::<Result<_, _>>()?,
         weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
         weight_plan: of_weights.into_iter().map(weight_plan).collect::<Result<_, _>>()?,
         steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,

@@ -4,6 +4,7 @@ use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series, TextTable};
 use froude_signal::spectrum::density;
 
+use super::forecast::Forecast;
 use super::{Fitted, JointFit, Run};
 
 /// Runs that are drawn; more would be a page of the same.
@@ -136,4 +137,34 @@ pub(crate) fn spectrum(
             series: vec![series],
         }],
     })
+}
+
+/// A time as a person says it.
+pub(crate) fn minutes(seconds: f64) -> String {
+    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
+}
+
+/// The intervals to expect; `law` names it in the caption.
+pub(crate) fn expected(found: &Forecast, law: &str) -> TextTable {
+    let rows = found.expected.iter().map(|e| {
+        let half = e.combined.arms[1];
+        let relative = if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) };
+        let largest = (0..found.parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
+        vec![
+            e.name.clone(),
+            e.unit.clone(),
+            number::significant(e.value, 4),
+            number::significant(half, 2),
+            relative,
+            largest
+                .map_or_else(String::new, |k| format!("{} ({})", found.parts[k], number::significant(e.by_part[k], 2))),
+        ]
+    });
+    TextTable {
+        caption: format!(
+            "Intervals to expect{law}: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
+        ),
+        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
 }

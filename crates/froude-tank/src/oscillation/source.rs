@@ -1,7 +1,6 @@
 //! Forced oscillation as a source of a campaign: a folder of logs, one run each, with a sidecar that states what it is.
 
 use froude_fit::budget::Uncertain;
-use froude_hydro::fluid::Water;
 use froude_hydro::swing::Medium;
 use froude_identify::answer::Made;
 use froude_identify::dataset::Dataset;
@@ -16,6 +15,7 @@ use froude_records::units::Dimension;
 use super::forces::{Drag, LOAD};
 use super::setup::{Body, OscillationRun, Setup, motions};
 use super::{findings, fit, page, plan, record, simulate};
+use crate::fluid::density_kg_m3;
 use crate::logs::{self, Logs, distinct};
 use crate::motion::Cycles;
 
@@ -154,17 +154,9 @@ pub fn setup_of(
             buoyancy_n: spec.buoyancy_n.of(name).map(uncertain),
         })
     };
-    let fluid = &campaign.fluid;
-    let density = match (fluid.density_kg_m3, fluid.temperature_degc) {
-        (Some(density), _) => density,
-        (None, Some(t)) => {
-            let water = Water::at(t, fluid.salinity_g_kg.unwrap_or(0.0));
-            water.map_err(|e| missing(format!("[fluid]: {e}")))?.density_kg_m3
-        }
-        (None, None) => {
-            return Err(missing("the added mass needs the water: write [fluid] density, or temperature".to_owned()));
-        }
-    };
+    let density = density_kg_m3(&campaign.fluid).map_err(&missing)?;
+    let density = density
+        .ok_or_else(|| missing("the added mass needs the water: write [fluid] density, or temperature".to_owned()))?;
     let bodies = configurations.iter().map(body).collect::<Result<_, MethodError>>()?;
     let mut out = Setup {
         pivot: spec.pivot,
