@@ -282,7 +282,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn why_no_rows(input: &Input) -> Option<&'static str> {
     match input {
         Input::Runs { .. } => Some(
-            "the budget of runs follows from the campaign that they were driven by (runs of the methods steady, weight_tow and forced_oscillation take models, uncertainty and plan)",
+            "the budget of runs follows from the campaign that they were driven by (runs of the methods steady, weight_tow and forced_oscillation take models, uncertainty and plan, those of rotation uncertainty and plan)",
         ),
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,
