@@ -16,6 +16,7 @@ use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
+use crate::rotation::{RotationPlan, RotationSpec};
 use crate::run::Declared;
 use crate::steady::SteadySpec;
 use crate::units::Dimension;
@@ -132,6 +133,8 @@ pub struct Source {
     pub decay: Option<DecaySpec>,
     /// What a motor swings, for forced oscillation.
     pub oscillation: Option<OscillationSpec>,
+    /// What a motor turns about its own centre.
+    pub rotation: Option<RotationSpec>,
     /// How its steady tows are reduced.
     pub steady: Option<SteadySpec>,
     /// Its wagon, weight and camera.
@@ -144,6 +147,8 @@ pub struct Source {
     pub plan: Vec<PlanBlock>,
     /// What is to be run of a forced oscillation.
     pub oscillation_plan: Vec<OscillationPlan>,
+    /// What is to be run of a rotation.
+    pub rotation_plan: Vec<RotationPlan>,
     /// What is to be run with weights.
     pub weight_plan: Vec<WeightPlan>,
     /// What is to be run of accelerated tows.
@@ -585,6 +590,7 @@ impl Source {
         let has_none = [
             self.plan.is_empty(),
             self.oscillation_plan.is_empty(),
+            self.rotation_plan.is_empty(),
             self.weight_plan.is_empty(),
             self.accelerated_plan.is_empty(),
         ];
@@ -609,12 +615,14 @@ impl Source {
             tare: None,
             decay: None,
             oscillation: None,
+            rotation: None,
             steady: None,
             weight_tow: None,
             weight_plan: Vec::new(),
             accelerated_tow: None,
             accelerated_plan: Vec::new(),
             oscillation_plan: Vec::new(),
+            rotation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),
         }

@@ -21,7 +21,8 @@ use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
-use crate::run::{ACCELERATED_TOW, FORCED_OSCILLATION, STEADY, WEIGHT_TOW};
+use crate::rotation::{rotation, rotation_plan};
+use crate::run::{ACCELERATED_TOW, FORCED_OSCILLATION, ROTATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::steady::steady;
@@ -133,6 +134,16 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
     Ok(out)
 }
 
+/// Methods of the tank with a section of their own, and the keys that they have in common with tables.
+const TANK_METHODS: [(&str, &[&str]); 5] = [
+    (FORCED_OSCILLATION, &["models", "uncertainty", "plan"]),
+    (ROTATION, &["uncertainty", "plan"]),
+    // Each of its windows becomes a row.
+    (STEADY, &["models", "uncertainty", "plan", "keep", "group", "tare"]),
+    (WEIGHT_TOW, &["models", "uncertainty", "plan", "keep", "group", "tare"]),
+    (ACCELERATED_TOW, &["models", "uncertainty", "plan"]),
+];
+
 /// The keys of a source.
 const SOURCE_KEYS: &[&str] = &[
     "name",
@@ -152,6 +163,7 @@ const SOURCE_KEYS: &[&str] = &[
     "tare",
     "decay",
     "forced_oscillation",
+    "rotation",
     "steady",
     "weight_tow",
     "accelerated_tow",
@@ -209,16 +221,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     // What belongs to the rows of a table would be passed over.
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
-    // Runs of a tank method have laws, a budget and a plan of their own.
     let is_method = |name: &str| methods.iter().any(|method| method == name);
-    let (oscillates, is_steady, is_pulled) = (is_method(FORCED_OSCILLATION), is_method(STEADY), is_method(WEIGHT_TOW));
-    let speeds_up = is_method(ACCELERATED_TOW);
-    let is_own = |key: &&str| match *key {
-        "models" | "uncertainty" | "plan" => oscillates || is_steady || is_pulled || speeds_up,
-        // Each of its windows becomes a row.
-        "keep" | "group" | "tare" => is_steady || is_pulled,
-        _ => false,
-    };
+    let is_own = |key: &&str| TANK_METHODS.iter().any(|(name, own)| is_method(name) && own.contains(key));
     let of_table =
         of_tables.into_iter().filter(|key| !is_own(key)).find_map(|key| s.get(key).map(|value| (key, value)));
     if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
@@ -234,19 +238,17 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
-    for (method, is_asked) in
-        [(FORCED_OSCILLATION, oscillates), (STEADY, is_steady), (WEIGHT_TOW, is_pulled), (ACCELERATED_TOW, speeds_up)]
-    {
-        if let (Some(value), false) = (s.get(method), is_asked) {
+    for (method, _) in TANK_METHODS {
+        if let (Some(value), false) = (s.get(method), is_method(method)) {
             let problem =
                 format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
             return Err(s.wrong(method, value, problem));
         }
     }
     let blocks = s.sections("plan")?;
-    let (of_oscillation, others): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| oscillates);
-    let (of_weights, others): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_pulled);
-    let (of_accelerations, of_speeds): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| speeds_up);
+    // The blocks of a plan are of the first method that has a form of its own.
+    let planned = [FORCED_OSCILLATION, ROTATION, WEIGHT_TOW, ACCELERATED_TOW].into_iter().find(|name| is_method(name));
+    let blocks_of = |name: Option<&str>| if planned == name { blocks.as_slice() } else { &[] };
     Ok(Source {
         name,
         kind,
@@ -262,13 +264,15 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
+        rotation: s.section(ROTATION)?.map(|s| rotation(&s)).transpose()?,
+        rotation_plan: blocks_of(Some(ROTATION)).iter().map(rotation_plan).collect::<Result<_, _>>()?,
         weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
-        weight_plan: of_weights.into_iter().map(weight_plan).collect::<Result<_, _>>()?,
+        weight_plan: blocks_of(Some(WEIGHT_TOW)).iter().map(weight_plan).collect::<Result<_, _>>()?,
         accelerated_tow: s.section(ACCELERATED_TOW)?.map(|s| accelerated_tow(&s)).transpose()?,
-        accelerated_plan: of_accelerations.into_iter().map(accelerated_plan).collect::<Result<_, _>>()?,
+        accelerated_plan: blocks_of(Some(ACCELERATED_TOW)).iter().map(accelerated_plan).collect::<Result<_, _>>()?,
         steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
-        plan: of_speeds.into_iter().map(plan_block).collect::<Result<_, _>>()?,
-        oscillation_plan: of_oscillation.into_iter().map(oscillation_plan).collect::<Result<_, _>>()?,
+        plan: blocks_of(None).iter().map(plan_block).collect::<Result<_, _>>()?,
+        oscillation_plan: blocks_of(Some(FORCED_OSCILLATION)).iter().map(oscillation_plan).collect::<Result<_, _>>()?,
         place: INPUTS
             .into_iter()
             .find_map(|key| s.get(key))
@@ -281,7 +285,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn why_no_rows(input: &Input) -> Option<&'static str> {
     match input {
         Input::Runs { .. } => Some(
-            "the budget of runs follows from the campaign that they were driven by (runs of the tank methods steady, weight_tow, accelerated_tow and forced_oscillation take models, uncertainty and plan)",
+            "the budget of runs follows from the campaign that they were driven by (runs of the tank methods have a budget and a plan of their own, and steady, weight_tow, accelerated_tow and forced_oscillation take models)",
         ),
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,

@@ -52,6 +52,7 @@ pub mod parquet_table;
 pub mod plausible;
 mod raw_column;
 pub mod read;
+pub mod rotation;
 pub mod run;
 pub mod scale;
 pub mod schema;

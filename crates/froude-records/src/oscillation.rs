@@ -32,9 +32,9 @@ use crate::section_values::{at_most, count, one_of, series};
 use crate::units::Dimension;
 
 /// Most runs that one block of a plan makes.
-const MOST_RUNS: usize = 10_000;
+pub(crate) const MOST_RUNS: usize = 10_000;
 /// Most periods of a run.
-const MOST_PERIODS: u64 = 100_000;
+pub(crate) const MOST_PERIODS: u64 = 100_000;
 
 /// A number that each configuration has, or all have alike.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -121,23 +121,27 @@ pub(crate) fn oscillation(s: &Section<'_>) -> Result<OscillationSpec, RecordErro
             "write mass = { value = \"1.63 kg\", standard = \"5 g\" }: all that moves below the load cell; by configuration where there are several",
         ));
     }
-    let cycles = s.section("cycles")?;
-    let number = |key: &'static str| -> Result<Option<usize>, RecordError> {
-        let Some(cycles) = &cycles else { return Ok(None) };
-        cycles.only(&["skip", "used", "fewest"])?;
-        Ok(cycles.integer(key)?.map(|n| n as usize))
-    };
+    let (skip, used, fewest) = cycles(s)?;
     Ok(OscillationSpec {
         pivot,
         radius_m,
         mass_kg,
         buoyancy_n: by_configuration(s, "buoyancy", Dimension::FORCE)?.unwrap_or_default(),
         delay_s: declared(s, "delay", Dimension::TIME)?,
-        skip: number("skip")?.unwrap_or(1),
-        used: number("used")?,
-        fewest: number("fewest")?.unwrap_or(5),
+        skip,
+        used,
+        fewest,
         harmonics: count(s, "harmonics", 20)?.unwrap_or(3),
     })
+}
+
+/// `cycles`: whole ones left out, used (`None` for all), and fewest.
+pub(crate) fn cycles(s: &Section<'_>) -> Result<(usize, Option<usize>, usize), RecordError> {
+    let Some(cycles) = s.section("cycles")? else { return Ok((1, None, 5)) };
+    cycles.only(&["skip", "used", "fewest"])?;
+    let number =
+        |key: &'static str| -> Result<Option<usize>, RecordError> { Ok(cycles.integer(key)?.map(|n| n as usize)) };
+    Ok((number("skip")?.unwrap_or(1), number("used")?, number("fewest")?.unwrap_or(5)))
 }
 
 /// One number for all, or a table with one for each configuration.
@@ -196,7 +200,7 @@ pub(crate) fn oscillation_plan(s: &Section<'_>) -> Result<OscillationPlan, Recor
 }
 
 /// Frequencies as angular ones: a number of Hz counts periods, any other unit of the kind counts radians.
-fn angular<'a>(s: &Section<'a>, value: &'a Spanned<DeValue<'a>>) -> Result<Vec<f64>, RecordError> {
+pub(crate) fn angular<'a>(s: &Section<'a>, value: &'a Spanned<DeValue<'a>>) -> Result<Vec<f64>, RecordError> {
     let is_hertz = |v: &Spanned<DeValue<'_>>| v.get_ref().as_str().is_some_and(|text| text.trim_end().ends_with("Hz"));
     let bare = |v: &Spanned<DeValue<'_>>| {
         v.get_ref().as_str().is_some_and(|text| text.contains("1/s") || text.contains("s^-1"))

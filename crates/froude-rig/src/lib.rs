@@ -15,6 +15,7 @@
 //! | [`planar`] | motion in the plane with rotation |
 //! | [`decay`] | a body on springs, let go |
 //! | [`oscillation`] | a body on a rod that a servo swings |
+//! | [`rotation`] | a body that a motor turns to and fro about its own centre |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock; all chance comes from one seed.
 //!
@@ -59,7 +60,9 @@ pub mod parameters;
 pub mod planar;
 pub mod plant;
 pub mod propagator;
+pub mod rotation;
 pub mod steady;
+mod swung;
 pub mod twin;
 pub mod weight_tow;
 

@@ -1,6 +1,6 @@
 //! Forced oscillation: a body on a rod that a servo swings in a stream. The twin of that rig.
 //!
-//! The servo follows α sin ωt from rest as a second-order system, overshoot and start-up included. The load cell between rod and body shows
+//! The servo follows α sin ωt from rest as a second-order system, overshoot and start-up included (`swung`). The load cell between rod and body shows
 //! f_m = m a − f_A − f_D − B sin φ (in air m a + m g sin φ), late by a delay, with its zero, drift, white and slow noise and its resolution.
 //!
 //! **Setting.** Rigid rod, even stream; the angle sensor is the common clock. **Units.** SI; angles in radians.
@@ -9,21 +9,13 @@
 //! | ----------------------- | --------------------------- | --------------------------- |
 //! | body, water, servo      | [`OscillationRig`]          | USR eq. 16–20               |
 //! | clock, noise, steps     | [`OscillationSensor`]       | –                           |
-//! | one run                 | [`OscillationRig::swing`]   | Hairer et al. (1993), II.1  |
+//! | one run                 | [`OscillationRig::swing`]   | –                           |
 //!
 //! Not here: rods that bend, waves in the tank, a servo that saturates.
 
-use core::f64::consts::TAU;
-
 use froude_hydro::swing::{Kinematics, Medium, Pivot};
-use rand::{RngExt, SeedableRng};
-use rand_distr::StandardNormal;
-use rand_pcg::Pcg64Mcg;
 
-use crate::noise::OrnsteinUhlenbeck;
-
-/// Longest step of the servo, as part of its own radian: (0.05)⁵/120 = 3e-9 of the angle in a step.
-const STEP_RAD: f64 = 0.05;
+use crate::swung::{Angle, Asked, Reading, log};
 
 /// Body, rod and servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -116,9 +108,6 @@ pub struct OscillationTrace {
     pub force_n: Vec<f64>,
 }
 
-/// Angle, its rate and second derivative, rad over s.
-type Angle = [f64; 3];
-
 impl OscillationRig {
     /// One run as it is logged; `drag_n` gives the force of the water's drag across the body at a velocity (v_x, v_y) through it, N.
     ///
@@ -131,29 +120,27 @@ impl OscillationRig {
         drag_n: &dyn Fn([f64; 2]) -> f64,
         seed: u64,
     ) -> OscillationTrace {
-        let mut rng = Pcg64Mcg::seed_from_u64(seed);
-        let step_s = 1.0 / sensor.rate_hz;
-        let mut slow = OrnsteinUhlenbeck::new(sensor.slow_noise_n, sensor.correlation_s, step_s, &mut rng);
-        let samples = libm::round((swing.still_s + swing.periods * TAU / swing.omega_rad_s) * sensor.rate_hz) as usize;
-        let stepped = |x: f64, step: f64| if step > 0.0 { libm::round(x / step) * step } else { x };
-        let mut out = OscillationTrace::default();
-        // The angle at the time of the stamp and at that of the force lie a fixed delay apart: two servos, one late.
-        let (mut now, mut then) = (Servo::new(self, swing), Servo::new(self, swing));
-        for i in 0..samples {
-            let t = i as f64 * step_s;
-            let [angle, ..] = now.at(t);
-            let moved = then.at(t - sensor.delay_s);
-            let z: [f64; 2] = core::array::from_fn(|_| rng.sample(StandardNormal));
-            let force = self.force_n(moved, swing, drag_n)
-                + sensor.zero_n
-                + sensor.drift_n_s * t
-                + sensor.force_noise_n * z[1]
-                + slow.step(&mut rng);
-            out.time_s.push(t);
-            out.angle_rad.push(stepped(angle + sensor.angle_noise_rad * z[0], sensor.angle_step_rad));
-            out.force_n.push(stepped(force, sensor.force_step_n));
-        }
-        out
+        let asked = Asked {
+            amplitude_rad: swing.amplitude_rad,
+            omega_rad_s: swing.omega_rad_s,
+            still_s: swing.still_s,
+            periods: swing.periods,
+            servo: (self.servo_rad_s, self.servo_damping),
+        };
+        let reading = Reading {
+            rate_hz: sensor.rate_hz,
+            angle_noise_rad: sensor.angle_noise_rad,
+            angle_step_rad: sensor.angle_step_rad,
+            load_noise: sensor.force_noise_n,
+            slow_noise: sensor.slow_noise_n,
+            correlation_s: sensor.correlation_s,
+            load_step: sensor.force_step_n,
+            zero: sensor.zero_n,
+            drift_per_s: sensor.drift_n_s,
+            delay_s: sensor.delay_s,
+        };
+        let [time_s, angle_rad, force_n] = log(asked, reading, &|angle| self.force_n(angle, swing, drag_n), seed);
+        OscillationTrace { time_s, angle_rad, force_n }
     }
 
     /// Force of the rig on the body along +y, N.
@@ -169,53 +156,10 @@ impl OscillationRig {
     }
 }
 
-/// The servo, stepped forward in time.
-struct Servo {
-    natural: f64,
-    damping: f64,
-    swing: Swing,
-    time_s: f64,
-    state: [f64; 2],
-}
-
-impl Servo {
-    fn new(rig: &OscillationRig, swing: Swing) -> Self {
-        let (natural, damping) = (rig.servo_rad_s, rig.servo_damping);
-        Self { natural, damping, swing, time_s: f64::NEG_INFINITY, state: [0.0; 2] }
-    }
-
-    fn second(&self, t: f64, [angle, rate]: [f64; 2]) -> f64 {
-        let asked = self.swing.amplitude_rad * libm::sin(self.swing.omega_rad_s * (t - self.swing.still_s));
-        self.natural * self.natural * (asked - angle) - 2.0 * self.damping * self.natural * rate
-    }
-
-    /// The angle at a time; times increase from call to call. At rest until the motion begins.
-    fn at(&mut self, time_s: f64) -> Angle {
-        let begins = self.swing.still_s;
-        if time_s <= begins {
-            return [0.0; 3];
-        }
-        let from = self.time_s.max(begins);
-        let steps = libm::ceil((time_s - from) * self.natural / STEP_RAD).clamp(1.0, 1e6) as u32;
-        let h = (time_s - from) / f64::from(steps);
-        for i in 0..steps {
-            let t = from + f64::from(i) * h;
-            let along = |s: [f64; 2], d: [f64; 2], h: f64| [s[0] + h * d[0], s[1] + h * d[1]];
-            let slope = |t: f64, s: [f64; 2]| [s[1], self.second(t, s)];
-            let s = self.state;
-            let k1 = slope(t, s);
-            let k2 = slope(t + 0.5 * h, along(s, k1, 0.5 * h));
-            let k3 = slope(t + 0.5 * h, along(s, k2, 0.5 * h));
-            let k4 = slope(t + h, along(s, k3, h));
-            self.state = [0, 1].map(|j| s[j] + h / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]));
-        }
-        self.time_s = time_s;
-        [self.state[0], self.state[1], self.second(time_s, self.state)]
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::TAU;
+
     use super::*;
 
     const RIG: OscillationRig = OscillationRig {

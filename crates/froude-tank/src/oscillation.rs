@@ -15,7 +15,7 @@
 //! | module        | what                                                        | source                                |
 //! |---------------|-------------------------------------------------------------|---------------------------------------|
 //! | [`setup`]     | runs, and what is declared                                  | USR, Table 4                          |
-//! | [`motion`]    | harmonics of the angle, cycles                              | IEEE Std 1057                         |
+//! | [`crate::motion`] | harmonics of the angle, cycles                              | IEEE Std 1057                         |
 //! | [`froude_hydro::swing`] | velocity and acceleration of the body through the water | USR eq. 5 and 19 (consistent form) |
 //! | [`forces`]    | the regressors of the equation above                        | USR eq. 16, 17 and 20                 |
 //! | [`mod@fit`]   | coefficients, their scatter, what declared errors do        | Bell & McCaffrey 2002, GUM            |
@@ -34,7 +34,6 @@ pub mod findings;
 pub mod fit;
 pub mod forces;
 pub mod forecast;
-pub mod motion;
 pub mod page;
 pub mod plan;
 pub mod record;
@@ -42,9 +41,9 @@ pub mod setup;
 pub mod simulate;
 pub mod source;
 
+pub use crate::motion::{Cycles, Motion};
 pub use error::OscillationError;
 pub use fit::{OscillationFit, fit};
 pub use forces::Drag;
 pub use froude_hydro::swing::{Medium, Pivot};
-pub use motion::{Motion, motions};
-pub use setup::{Body, Cycles, OscillationRun, Setup};
+pub use setup::{Body, OscillationRun, Setup, motions};

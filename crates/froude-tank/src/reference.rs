@@ -1,9 +1,10 @@
 //! What coefficients refer to: the volume of a configuration and the density of the water.
 
-use froude_hydro::fluid::Water;
 use froude_identify::method::MethodError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::table::links_of_configuration;
+
+use crate::fluid;
 
 /// V: the volume that an added-mass coefficient of a configuration refers to, m³.
 ///
@@ -34,15 +35,6 @@ pub(crate) fn volume_m3(campaign: &Campaign, source: &Source, configuration: &st
 /// Neither density nor a temperature that water can have is declared.
 pub(crate) fn density_kg_m3(campaign: &Campaign, source: &Source) -> Result<f64, MethodError> {
     let missing = |what: String| MethodError::Undeclared { place: source.place.to_string(), what };
-    let fluid = &campaign.fluid;
-    match (fluid.density_kg_m3, fluid.temperature_degc) {
-        (Some(density), _) => Ok(density),
-        (None, Some(t)) => {
-            let water = Water::at(t, fluid.salinity_g_kg.unwrap_or(0.0));
-            Ok(water.map_err(|e| missing(format!("[fluid]: {e}")))?.density_kg_m3)
-        }
-        (None, None) => {
-            Err(missing("the added mass needs the water: write [fluid] density, or temperature".to_owned()))
-        }
-    }
+    let density = fluid::density_kg_m3(&campaign.fluid).map_err(missing)?;
+    density.ok_or_else(|| missing("the added mass needs the water: write [fluid] density, or temperature".to_owned()))
 }

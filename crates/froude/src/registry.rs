@@ -8,6 +8,7 @@ use froude_identify::method::Method;
 use froude_tank::accelerated_tow::source::AcceleratedTow;
 use froude_tank::decay::source::FreeDecay;
 use froude_tank::oscillation::source::ForcedOscillation;
+use froude_tank::rotation::source::Rotation;
 use froude_tank::steady::source::Steady;
 use froude_tank::weight_tow::source::WeightTow;
 
@@ -17,7 +18,7 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-pub(crate) const METHODS: [&dyn Method; 10] = [
+pub(crate) const METHODS: [&dyn Method; 11] = [
     &Carriage,
     &Servo,
     &KnownWeights,
@@ -25,6 +26,7 @@ pub(crate) const METHODS: [&dyn Method; 10] = [
     &Resonance,
     &FreeDecay,
     &ForcedOscillation,
+    &Rotation,
     &Steady,
     &WeightTow,
     &AcceleratedTow,

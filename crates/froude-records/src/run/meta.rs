@@ -63,6 +63,8 @@ impl RunMeta {
 pub const TOW: &str = "tow";
 /// The method of a body that a motor swings.
 pub const FORCED_OSCILLATION: &str = "forced_oscillation";
+/// The method of a body that a motor turns to and fro about its own centre.
+pub const ROTATION: &str = "rotation";
 /// The method of a body that is towed, or held in a stream, at constant speed.
 pub const STEADY: &str = "steady";
 /// The method of a wagon that a hanging weight pulls.

@@ -23,7 +23,7 @@ use super::rows::{Rows, window};
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
 use crate::noise::correlated;
-use crate::oscillation::forecast::inverted;
+use crate::joint::forecast::inverted;
 
 /// A coefficient with the interval to expect.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,8 +1,9 @@
 //! Why a forced oscillation gives no coefficients.
 
-use froude_fit::FitError;
 use froude_identify::IdentifyError;
-use froude_signal::SignalError;
+
+use crate::joint::JointError;
+use crate::motion::MotionError;
 
 /// Why a forced oscillation gives no coefficients; each message states what to do.
 #[derive(Debug, thiserror::Error)]
@@ -11,19 +12,6 @@ pub enum OscillationError {
     /// Nothing was given.
     #[error("no run in water was given; a forced oscillation needs at least one")]
     NoRuns,
-
-    /// Columns of a run differ in length.
-    #[error("run {run:?}: {column} has {found} samples where time has {expected}")]
-    Length {
-        /// The run.
-        run: String,
-        /// The column.
-        column: &'static str,
-        /// Its samples.
-        found: usize,
-        /// Samples of time.
-        expected: usize,
-    },
 
     /// A declared number that cannot be.
     #[error("{what} is {value}; it must be {must}")]
@@ -36,53 +24,9 @@ pub enum OscillationError {
         must: &'static str,
     },
 
-    /// The angle has no harmonics, or is no record.
-    #[error("run {run:?}: the angle cannot be fitted by harmonics: {source}")]
-    Angle {
-        /// The run.
-        run: String,
-        /// Why.
-        #[source]
-        source: SignalError,
-    },
-
-    /// Too few whole cycles.
-    #[error(
-        "run {run:?} has {found} whole cycles of {period_s:.2} s after {skipped} of start-up; {fewest} are needed: record longer, or lower \
-         cycles.fewest and read the intervals with care"
-    )]
-    TooFewCycles {
-        /// The run.
-        run: String,
-        /// Whole cycles.
-        found: usize,
-        /// Their length.
-        period_s: f64,
-        /// Cycles left out.
-        skipped: usize,
-        /// Needed.
-        fewest: usize,
-    },
-
-    /// The sensor was at the end of its range.
-    #[error(
-        "run {run:?}: {channel} stays at {value} {unit} for {samples} samples from {from_s:.2} s on, longer than a smooth motion does: it is clipped; \
-         repeat the run with a larger range, or a smaller amplitude"
-    )]
-    Clipped {
-        /// The run.
-        run: String,
-        /// The channel.
-        channel: &'static str,
-        /// Where it stays.
-        value: f64,
-        /// Unit of that.
-        unit: &'static str,
-        /// Samples in a row.
-        samples: usize,
-        /// Time of the first.
-        from_s: f64,
-    },
+    /// A run whose motion cannot be used.
+    #[error(transparent)]
+    Motion(#[from] MotionError),
 
     /// A law that this method cannot use.
     #[error("model {model} {why}")]
@@ -98,23 +42,6 @@ pub enum OscillationError {
     Identify(#[from] IdentifyError),
 
     /// The fit refused.
-    #[error("the joint fit of {model}: {source}")]
-    Fit {
-        /// The drag law.
-        model: String,
-        /// Why.
-        #[source]
-        source: FitError,
-    },
-
-    /// The delay runs away.
-    #[error(
-        "the delay of the force does not converge (last value {delay_s:.3} s, period {period_s:.2} s): check that angle and force are of one clock and of the right sign, or declare the delay"
-    )]
-    Delay {
-        /// The last one.
-        delay_s: f64,
-        /// The shortest period.
-        period_s: f64,
-    },
+    #[error(transparent)]
+    Joint(#[from] JointError),
 }

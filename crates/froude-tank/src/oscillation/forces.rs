@@ -13,8 +13,8 @@ use froude_identify::law::{ForceLaw, Kind};
 use froude_records::units::Dimension;
 
 use super::error::OscillationError;
-use super::motion::Motion;
 use super::setup::{OscillationRun, Setup};
+use crate::motion::Motion;
 
 /// The load that the cell shows.
 pub const LOAD: &str = "f_y";
@@ -86,7 +86,7 @@ impl Values {
 }
 
 /// Factors of mass, added mass, drag coefficients and buoyancy in the force on the cell, a number for each sample.
-pub(super) struct Terms {
+pub(super) struct Factors {
     /// Per mass, N/kg.
     pub mass: Vec<f64>,
     /// ρ V v̇_y, N.
@@ -97,7 +97,7 @@ pub(super) struct Terms {
     pub buoyancy: Vec<f64>,
 }
 
-impl Terms {
+impl Factors {
     /// At the samples `rows` of a run, the motion taken `delay_s` earlier than they are stamped.
     pub(super) fn of(
         run: &OscillationRun<'_>,
@@ -145,15 +145,5 @@ impl Terms {
             drag: drag.columns.iter().map(column).collect(),
             buoyancy: each(&|k| -k.upward),
         })
-    }
-
-    /// The force on the cell, N, without its zero.
-    pub(super) fn force(&self, mass_kg: f64, added: f64, drag: &[f64], buoyancy_n: f64) -> Vec<f64> {
-        (0..self.mass.len())
-            .map(|i| {
-                let resisted: f64 = self.drag.iter().zip(drag).map(|(x, c)| x[i] * c).sum();
-                mass_kg * self.mass[i] + added * self.added[i] + resisted + buoyancy_n * self.buoyancy[i]
-            })
-            .collect()
     }
 }

@@ -1,19 +1,17 @@
 //! A forced oscillation on the page: runs, force as measured and as fitted, spectrum of what is left, budget.
 
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
-use froude_signal::spectrum::density;
+use froude_records::page::{DocumentSection, TextTable};
 
 use super::fit::{ADDED, OscillationFit};
 use super::forces::Drag;
-use super::motion::Motion;
 use super::record::criteria;
 use super::setup::{OscillationRun, Setup};
+use crate::joint::{Run, page};
+use crate::motion::Motion;
 
-/// Runs that are drawn; more would be a page of the same.
-const DRAWN: usize = 6;
-/// Segments that a run is cut into for its spectrum, at least.
-const SEGMENTS: usize = 4;
+/// The load, and its unit.
+const FORCE: (&str, &str) = ("Force", "N");
 
 /// The section of the recommended law.
 #[must_use]
@@ -32,11 +30,16 @@ pub fn section(
         setup.harmonics,
         setup.pivot.words()
     );
+    let views: Vec<Run<'_>> =
+        runs.iter().zip(motions).map(|(run, motion)| Run { id: run.id, load: run.force_n, motion }).collect();
+    let times_s: Vec<&[f64]> = runs.iter().map(|run| run.time_s).collect();
     DocumentSection {
         title: "Runs and fit".to_owned(),
         paragraphs: vec![paragraph],
-        tables: vec![table(fit, runs, motions, setup), budget(fit)],
-        charts: std::iter::once(forces(fit, runs, motions)).chain(spectrum(fit, runs, motions)).collect(),
+        tables: vec![table(fit, runs, motions, setup), page::budget(fit)],
+        charts: std::iter::once(page::loads(fit, &views, &times_s, FORCE))
+            .chain(page::spectrum(fit, &views, &times_s, FORCE))
+            .collect(),
     }
 }
 
@@ -50,7 +53,7 @@ pub fn laws(fits: &[(Drag, OscillationFit)], chosen: usize) -> DocumentSection {
             fit.law.clone(),
             drag.columns.len().to_string(),
             criterion.map_or_else(|| "–".to_owned(), |x| number::fixed(x, 1)),
-            number::significant(fit.sigma_n, 3),
+            number::significant(fit.sigma, 3),
             added.map_or_else(|| "–".to_owned(), |(value, c)| number::short_form(value, c.standard)),
         ]
     });
@@ -67,35 +70,12 @@ pub fn laws(fits: &[(Drag, OscillationFit)], chosen: usize) -> DocumentSection {
     DocumentSection {
         title: "Results".to_owned(),
         paragraphs: is_choice.then_some(sentence).into_iter().collect(),
-        tables: is_choice.then_some(beside).into_iter().chain([coefficients(best)]).collect(),
+        tables: is_choice
+            .then_some(beside)
+            .into_iter()
+            .chain([page::coefficients(best, &format!(" with drag law {}", best.law))])
+            .collect(),
         charts: Vec::new(),
-    }
-}
-
-fn coefficients(fit: &OscillationFit) -> TextTable {
-    let rows = fit.unknowns.iter().map(|u| {
-        let known = u.value.zip(u.combined);
-        let value = match (known, u.value) {
-            (Some((value, c)), _) => number::short_form(value, c.standard),
-            (None, Some(value)) => number::plain(value, 5),
-            (None, None) => "not determined".to_owned(),
-        };
-        let of = |figure: &dyn Fn(f64, froude_fit::budget::Combined) -> String| {
-            known.map_or_else(|| "–".to_owned(), |(value, c)| figure(value, c))
-        };
-        vec![
-            u.name.clone(),
-            value,
-            u.unit.clone(),
-            of(&|value, c| number::interval(c.interval(value))),
-            of(&|_, c| number::significant(c.type_a, 2)),
-            of(&|_, c| number::significant(c.type_b, 2)),
-        ]
-    });
-    TextTable {
-        caption: format!("Coefficients with drag law {}; standard uncertainty in brackets.", fit.law),
-        head: ["coefficient", "value", "unit", "95 % interval", "type A", "type B"].map(str::to_owned).to_vec(),
-        rows: rows.collect(),
     }
 }
 
@@ -109,8 +89,8 @@ fn table(fit: &OscillationFit, runs: &[OscillationRun<'_>], motions: &[Motion], 
             number::plain(motion.angle.period_s(), 4),
             number::plain(motion.periods(run.time_s), 3),
             number::significant(motion.angle.residual_std.to_degrees(), 2),
-            number::plain(fitted.zero_n, 3),
-            number::significant(fitted.residual_rms_n, 2),
+            number::plain(fitted.zero, 3),
+            number::significant(fitted.residual_rms, 2),
             fitted.correlation.map_or_else(|| "–".to_owned(), |tau| number::significant(tau, 2)),
         ]
     });
@@ -132,91 +112,4 @@ fn table(fit: &OscillationFit, runs: &[OscillationRun<'_>], motions: &[Motion], 
         .to_vec(),
         rows: rows.collect(),
     }
-}
-
-/// What costs what: standard uncertainties by error and coefficient.
-fn budget(fit: &OscillationFit) -> TextTable {
-    let head = std::iter::once("error (type)".to_owned())
-        .chain(fit.unknowns.iter().map(|u| format!("{} [{}]", u.name, u.unit)));
-    let mut rows: Vec<Vec<String>> = fit
-        .parts
-        .iter()
-        .map(|part| {
-            let each = (0..fit.unknowns.len()).map(|j| number::significant(part.standard(j), 2));
-            std::iter::once(format!("{} ({})", part.name, part.kind)).chain(each).collect()
-        })
-        .collect();
-    let combined =
-        fit.unknowns.iter().map(|u| u.combined.map_or_else(|| "–".to_owned(), |c| number::significant(c.standard, 2)));
-    rows.push(std::iter::once("combined".to_owned()).chain(combined).collect());
-    TextTable { caption: "Standard uncertainties, by error.".to_owned(), head: head.collect(), rows }
-}
-
-fn forces(fit: &OscillationFit, runs: &[OscillationRun<'_>], motions: &[Motion]) -> Chart {
-    let panel = |((run, motion), fitted): ((&OscillationRun<'_>, &Motion), &super::fit::Fitted)| {
-        let used = motion.samples();
-        let series = |name: &str, mark: Mark, x: &[f64], y: &[f64]| Series {
-            name: name.to_owned(),
-            mark,
-            x: x.to_vec(),
-            y: y.to_vec(),
-            ..Series::default()
-        };
-        ChartPanel {
-            y_label: format!("{} [N]", run.id),
-            series: vec![
-                series("measured", Mark::Points, run.time_s, run.force_n),
-                series("fitted, where used", Mark::Line, &run.time_s[used], &fitted.force_n),
-            ],
-            ..ChartPanel::default()
-        }
-    };
-    let panels: Vec<ChartPanel> = runs.iter().zip(motions).zip(&fit.fitted).take(DRAWN).map(panel).collect();
-    let of = if panels.len() < runs.len() { format!("the first {} of ", panels.len()) } else { String::new() };
-    Chart {
-        name: "forces".to_owned(),
-        title: "Force and fit".to_owned(),
-        caption: format!("Force of the rig on the body in {of}the runs, as measured, and the fit where it was used."),
-        x_label: "time [s]".to_owned(),
-        panels,
-        ..Chart::default()
-    }
-}
-
-/// The spectrum of what the fit leaves, mean over the runs of one length of segment.
-fn spectrum(fit: &OscillationFit, runs: &[OscillationRun<'_>], motions: &[Motion]) -> Option<Chart> {
-    let shortest = motions.iter().map(|m| m.samples().len()).min()?;
-    let segment = (shortest / SEGMENTS).checked_ilog2().map(|bits| 1_usize << bits).filter(|n| *n >= 16)?;
-    let mut sum: Vec<f64> = Vec::new();
-    let mut frequency = Vec::new();
-    for ((run, motion), fitted) in runs.iter().zip(motions).zip(&fit.fitted) {
-        let used = motion.samples();
-        let rate_hz = (used.len() - 1) as f64 / (run.time_s[used.end - 1] - run.time_s[used.start]);
-        let left: Vec<f64> = run.force_n[used].iter().zip(&fitted.force_n).map(|(y, f)| y - f).collect();
-        let (f, p) = density(&left, rate_hz, segment).ok()?;
-        if sum.is_empty() {
-            (frequency, sum) = (f, p);
-        } else {
-            sum.iter_mut().zip(&p).for_each(|(a, b)| *a += b);
-        }
-    }
-    let n = runs.len() as f64;
-    // The mean was taken off: the first line says nothing.
-    let series = Series {
-        name: "residual".to_owned(),
-        mark: Mark::Line,
-        x: frequency[1..].to_vec(),
-        y: sum[1..].iter().map(|p| p / n).collect(),
-        ..Series::default()
-    };
-    Some(Chart {
-        name: "residual-spectrum".to_owned(),
-        title: "Spectrum of the residuals".to_owned(),
-        caption: "Power density of measured less fitted force, mean over the runs. A line at a multiple of the driven frequency is a term that the law lacks; a rise towards low frequencies is \
-                  slow noise, which the scatter between clusters counts."
-            .to_owned(),
-        x_label: "frequency [Hz]".to_owned(),
-        x_scale: Scale::Logarithmic,
-        panels: vec![ChartPanel { y_label: "power density [N²/Hz]".to_owned(), y_scale: Scale::Logarithmic, series: vec![series] }],
-    })
 }

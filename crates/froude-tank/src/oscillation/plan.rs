@@ -9,10 +9,11 @@ use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
 
 use super::forces::Drag;
-use super::forecast::{Forecast, forecast};
+use super::forecast::forecast;
 use super::setup::Setup;
 use super::simulate::{Planned, Truths, configurations, planned};
 use super::source::{declared, setup_of};
+use crate::joint::page::{expected as expected_table, minutes};
 
 /// What the plan of a source takes and determines.
 ///
@@ -37,8 +38,13 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         standard_uncertainty: e.combined.standard,
         half_width_95: e.combined.arms[1],
     });
-    let (expected, tables) =
-        (expected.collect(), vec![runs(&planned, &found.cycles, &setup, campaign), coefficients(&law, &found)]);
+    let (expected, tables) = (
+        expected.collect(),
+        vec![
+            runs(&planned, &found.cycles, &setup, campaign),
+            expected_table(&found, &format!(", with the drag law {law} of [simulate]")),
+        ],
+    );
     let duration_s = planned.iter().map(duration_s).sum();
     let section = DocumentSection {
         title: format!("Plan of {}", source.name),
@@ -56,10 +62,6 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
 
 fn duration_s(run: &Planned) -> f64 {
     run.swing.still_s + run.swing.periods * TAU / run.swing.omega_rad_s
-}
-
-fn minutes(seconds: f64) -> String {
-    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
 }
 
 fn runs(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campaign) -> TextTable {
@@ -99,30 +101,6 @@ fn runs(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campaig
         ]
         .map(str::to_owned)
         .to_vec(),
-        rows: rows.collect(),
-    }
-}
-
-fn coefficients(law: &str, found: &Forecast) -> TextTable {
-    let rows = found.expected.iter().map(|e| {
-        let half = e.combined.arms[1];
-        let relative = if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) };
-        let largest = (0..found.parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
-        vec![
-            e.name.clone(),
-            e.unit.clone(),
-            number::significant(e.value, 4),
-            number::significant(half, 2),
-            relative,
-            largest
-                .map_or_else(String::new, |k| format!("{} ({})", found.parts[k], number::significant(e.by_part[k], 2))),
-        ]
-    });
-    TextTable {
-        caption: format!(
-            "Intervals to expect, with the drag law {law} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
-        ),
-        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
         rows: rows.collect(),
     }
 }

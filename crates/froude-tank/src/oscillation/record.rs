@@ -1,14 +1,11 @@
 //! A forced oscillation as an estimate, and which of several drag laws is recommended.
 
-use froude_fit::Status as Found;
-use froude_fit::faer::Mat;
 use froude_fit::select::aicc;
 use froude_hydro::similarity::keulegan_carpenter;
 use froude_hydro::swing::Medium;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::estimate::{
-    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output, Range,
-    ReferencePoint, SharedError, Signs, Status, TypeA,
+    Clusters, Diagnostics, Estimate, Frame, Interval, Law, Measured, MethodUsed, Output, Range, ReferencePoint, Signs,
 };
 use froude_records::number;
 use froude_records::run::FORCED_OSCILLATION;
@@ -16,8 +13,9 @@ use indexmap::IndexMap;
 
 use super::fit::{ADDED, BUOYANCY, DELAY, OscillationFit};
 use super::forces::{Drag, LOAD};
-use super::motion::Motion;
 use super::setup::{OscillationRun, Setup};
+use crate::joint::record;
+use crate::motion::Motion;
 
 /// Laws whose criterion lies within this of the smallest are not told apart.
 const ALIKE: f64 = 2.0;
@@ -43,11 +41,11 @@ pub struct Context<'a> {
 /// Its coefficients are those found and the zero of each run; `None` where the observations are too few.
 #[must_use]
 pub fn criteria(fits: &[(Drag, OscillationFit)]) -> Vec<Option<f64>> {
-    let best = fits.iter().map(|(_, fit)| fit).min_by(|a, b| a.sigma_n.total_cmp(&b.sigma_n));
+    let best = fits.iter().map(|(_, fit)| fit).min_by(|a, b| a.sigma.total_cmp(&b.sigma));
     let n = best.map_or(0, |fit| fit.effective.round() as usize);
     let of = |(_, fit): &(Drag, OscillationFit)| {
         let found = fit.unknowns.iter().filter(|u| u.value.is_some()).count() + fit.fitted.len();
-        aicc(n, n as f64 * fit.sigma_n.powi(2), found as f64).ok()
+        aicc(n, n as f64 * fit.sigma.powi(2), found as f64).ok()
     };
     fits.iter().map(of).collect()
 }
@@ -66,25 +64,7 @@ pub fn chosen(fits: &[(Drag, OscillationFit)]) -> usize {
 #[must_use]
 pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Option<usize>) -> Estimate {
     let Context { campaign, source, setup, runs, motions } = *context;
-    let names: Vec<String> = fit.unknowns.iter().map(|u| u.name.clone()).collect();
-    let n = names.len();
-    let rows = |m: &Mat<f64>| (0..n).map(|i| (0..n).map(|j| m[(i, j)]).collect()).collect();
     let scatter = &fit.parts[0];
-    let coefficients = fit.unknowns.iter().map(|u| {
-        let coefficient = Coefficient {
-            label: None,
-            value: u.value,
-            unit: u.unit.clone(),
-            status: status(u.status),
-            nuisance: u.name == DELAY || u.name.starts_with(BUOYANCY),
-            standard_uncertainty: u.combined.map(|c| c.standard),
-            type_a: u.combined.map(|c| c.type_a),
-            type_b: u.combined.map(|c| c.type_b),
-            interval_95: u.value.zip(u.combined).map(|(value, c)| c.interval(value)),
-            effective_dof: u.combined.map(|c| c.dof).filter(|d| d.is_finite()),
-        };
-        (u.name.clone(), coefficient)
-    });
     let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
     let body = campaign.body.as_ref();
     let mut refers_to = IndexMap::from([("density".to_owned(), measured(setup.density_kg_m3.value, "kg/m^3"))]);
@@ -118,33 +98,16 @@ pub fn estimate(fit: &OscillationFit, drag: &Drag, context: &Context<'_>, of: Op
         clusters: Some(Clusters { by: fit.by.to_owned(), n: fit.clusters }),
         dof: IndexMap::from([(LOAD.to_owned(), scatter.dof.first().copied().filter(|d| d.is_finite()))]),
         sigma: IndexMap::new(),
-        coefficients: coefficients.collect(),
+        coefficients: record::coefficients(fit, &|name| name == DELAY || name.starts_with(BUOYANCY)),
         derived: IndexMap::new(),
-        type_a: Some(TypeA {
-            names,
-            matrix: rows(&scatter.covariance),
-            dof: scatter.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
-            kind: format!("CR3, {} {}s", fit.clusters, fit.by),
-        }),
-        errors: errors(fit, campaign),
+        type_a: Some(record::type_a(fit)),
+        errors: record::errors(fit, campaign),
         interval: Interval::default(),
         undetermined: Vec::new(),
         validity: validity(wet(), setup, campaign),
-        diagnostics: Diagnostics { notes: notes(fit), ..Diagnostics::default() },
+        diagnostics: Diagnostics { notes: record::notes(fit, "N"), ..Diagnostics::default() },
         recommended: of.is_some(),
         reason,
-    }
-}
-
-fn status(found: Found) -> Status {
-    match found {
-        Found::Free => Status::Free,
-        Found::AtBound => Status::AtBound,
-        Found::Fixed => Status::Fixed,
-        Found::Excluded => Status::Excluded,
-        Found::Prior => Status::Prior,
-        Found::Undetermined => Status::Undetermined,
-        Found::BoundContradicted => Status::BoundContradicted,
     }
 }
 
@@ -193,24 +156,6 @@ fn unit_of(channel: &str) -> &'static str {
     }
 }
 
-/// Declared errors by key: sources of the campaign that declare them alike have them in common.
-fn errors(fit: &OscillationFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
-    let one = |error: &super::fit::DeclaredError| {
-        let key = format!("{}/{} {:e}", campaign.key, error.name, error.standard);
-        let shared = SharedError {
-            name: error.name.clone(),
-            quantity: error.name.clone(),
-            kind: ErrorKind::B,
-            covariance: vec![vec![error.standard * error.standard]],
-            dof: Some(error.dof).filter(|d| d.is_finite()),
-            limits: None,
-            sensitivity: error.sensitivity.iter().map(|s| vec![*s]).collect(),
-        };
-        (key, shared)
-    };
-    fit.errors.iter().map(one).collect()
-}
-
 /// Where the coefficients are supported: speeds, amplitudes, periods, and the numbers of oscillation.
 fn validity<'a>(
     runs: impl Iterator<Item = (&'a OscillationRun<'a>, &'a Motion)>,
@@ -242,21 +187,4 @@ fn validity<'a>(
         (name.to_owned(), Range { low, high, unit: unit.to_owned() })
     };
     ranges.into_iter().map(range).collect()
-}
-
-/// The budget of each coefficient, in sentences, and what the samples are worth.
-fn notes(fit: &OscillationFit) -> Vec<String> {
-    let mut out = vec![format!(
-        "{} samples are worth {} (residuals correlated over {} samples); residual {} N",
-        number::count(fit.samples),
-        number::count(fit.effective.round() as usize),
-        number::significant(fit.samples as f64 / fit.effective, 2),
-        number::significant(fit.sigma_n, 2)
-    )];
-    out.extend(fit.parts.iter().filter(|part| (0..fit.unknowns.len()).any(|j| part.standard(j) > 0.0)).map(|part| {
-        let each =
-            fit.unknowns.iter().enumerate().map(|(j, u)| format!("{} {:.2e} {}", u.name, part.standard(j), u.unit));
-        format!("{} (type {}): {}", part.name, part.kind, each.collect::<Vec<_>>().join(", "))
-    }));
-    out
 }

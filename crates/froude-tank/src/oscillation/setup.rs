@@ -4,6 +4,7 @@ use froude_fit::budget::Uncertain;
 use froude_hydro::swing::{Medium, Pivot};
 
 use super::error::OscillationError;
+use crate::motion::{Cycles, Logged, Motion, motion};
 
 /// One run: columns of one length, time increasing.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,23 +38,6 @@ pub struct Body {
     pub mass_kg: Uncertain,
     /// B: buoyancy less weight, N, as far as it is known beforehand.
     pub buoyancy_n: Option<Uncertain>,
-}
-
-/// Which cycles of a run are used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Cycles {
-    /// Whole cycles left out after the motion has begun.
-    pub skip: usize,
-    /// Whole cycles used after those; `None` for all, and the broken one at the end.
-    pub used: Option<usize>,
-    /// Fewest whole cycles.
-    pub fewest: usize,
-}
-
-impl Default for Cycles {
-    fn default() -> Self {
-        Self { skip: 1, used: None, fewest: 5 }
-    }
 }
 
 /// What is declared about rig and water.
@@ -128,4 +112,18 @@ impl Setup {
         }
         Ok(())
     }
+}
+
+/// The motion of every run.
+///
+/// # Errors
+///
+/// [`OscillationError::Motion`] of the first run that has one.
+pub fn motions(runs: &[OscillationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, OscillationError> {
+    let logged = |run: &OscillationRun<'_>| {
+        let OscillationRun { id, time_s, angle_rad, force_n, .. } = *run;
+        let of = Logged { id, time_s, angle_rad, load: ("force", "N", force_n) };
+        Ok(motion(&of, setup.cycles, setup.harmonics)?)
+    };
+    runs.iter().map(logged).collect()
 }

@@ -13,9 +13,10 @@ use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
 
 use super::forces::{Drag, LOAD};
-use super::setup::{Body, Cycles, OscillationRun, Setup};
-use super::{findings, fit, motions, page, plan, record, simulate};
+use super::setup::{Body, OscillationRun, Setup, motions};
+use super::{findings, fit, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
+use crate::motion::Cycles;
 use crate::reference;
 
 /// The joint fit in time.

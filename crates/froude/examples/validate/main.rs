@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, steady, weights, accelerated, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, steady, weights, accelerated, clocks,
 //! dynamic, potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -27,6 +27,7 @@ mod oscillation;
 mod potential;
 mod potential_laws;
 mod rm2;
+mod rotation;
 mod snake;
 mod steady;
 mod sweeps;
@@ -84,6 +85,9 @@ fn main() -> ExitCode {
         }
         if wants("oscillation") {
             oscillation::all(claims, &root, if full { 2_000 } else { 30 })?;
+        }
+        if wants("rotation") {
+            rotation::all(claims, &root, if full { 2_000 } else { 40 })?;
         }
         if wants("steady") {
             steady::all(claims, &root, if full { 20_000 } else { 60 })?;

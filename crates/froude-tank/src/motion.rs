@@ -2,10 +2,8 @@
 
 use std::ops::Range;
 
+use froude_signal::SignalError;
 use froude_signal::harmonic::Harmonics;
-
-use super::error::OscillationError;
-use super::setup::{OscillationRun, Setup};
 
 /// The motion has begun where the angle is this part of its size away from its middle.
 const BEGUN: f64 = 0.1;
@@ -19,6 +17,102 @@ const SIZE: f64 = 0.9;
 const CLIPPED: f64 = 3.0;
 /// … from so many samples on.
 const FEWEST_CLIPPED: usize = 5;
+
+/// Which cycles of a run are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cycles {
+    /// Whole cycles left out after the motion has begun.
+    pub skip: usize,
+    /// Whole cycles used after those; `None` for all, and the broken one at the end.
+    pub used: Option<usize>,
+    /// Fewest whole cycles.
+    pub fewest: usize,
+}
+
+impl Default for Cycles {
+    fn default() -> Self {
+        Self { skip: 1, used: None, fewest: 5 }
+    }
+}
+
+/// Why the motion of a run cannot be used; each message states what to do.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MotionError {
+    /// Columns of a run differ in length.
+    #[error("run {run:?}: {column} has {found} samples where time has {expected}")]
+    Length {
+        /// The run.
+        run: String,
+        /// The column.
+        column: &'static str,
+        /// Its samples.
+        found: usize,
+        /// Samples of time.
+        expected: usize,
+    },
+
+    /// The angle has no harmonics, or is no record.
+    #[error("run {run:?}: the angle cannot be fitted by harmonics: {source}")]
+    Angle {
+        /// The run.
+        run: String,
+        /// Why.
+        #[source]
+        source: SignalError,
+    },
+
+    /// Too few whole cycles.
+    #[error(
+        "run {run:?} has {found} whole cycles of {period_s:.2} s after {skipped} of start-up; {fewest} are needed: record longer, or lower \
+         cycles.fewest and read the intervals with care"
+    )]
+    TooFewCycles {
+        /// The run.
+        run: String,
+        /// Whole cycles.
+        found: usize,
+        /// Their length.
+        period_s: f64,
+        /// Cycles left out.
+        skipped: usize,
+        /// Needed.
+        fewest: usize,
+    },
+
+    /// The sensor was at the end of its range.
+    #[error(
+        "run {run:?}: {channel} stays at {value} {unit} for {samples} samples from {from_s:.2} s on, longer than a smooth motion does: it is clipped; \
+         repeat the run with a larger range, or a smaller amplitude"
+    )]
+    Clipped {
+        /// The run.
+        run: String,
+        /// The channel.
+        channel: &'static str,
+        /// Where it stays.
+        value: f64,
+        /// Unit of that.
+        unit: &'static str,
+        /// Samples in a row.
+        samples: usize,
+        /// Time of the first.
+        from_s: f64,
+    },
+}
+
+/// Angle and load of a run, as they were logged.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Logged<'a> {
+    /// Name of the run, for messages.
+    pub id: &'a str,
+    /// Time, s.
+    pub time_s: &'a [f64],
+    /// The angle, rad.
+    pub angle_rad: &'a [f64],
+    /// What the cell shows: its channel, its unit, its values.
+    pub load: (&'static str, &'static str, &'a [f64]),
+}
 
 /// A run as it is used.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,50 +142,44 @@ impl Motion {
     }
 }
 
-/// The motion of every run.
+/// The motion of a run, by so many harmonics of its angle.
 ///
 /// # Errors
 ///
-/// [`OscillationError::Length`], [`OscillationError::Clipped`], [`OscillationError::Angle`], [`OscillationError::TooFewCycles`] of the first run that
-/// has one.
-pub fn motions(runs: &[OscillationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, OscillationError> {
-    runs.iter().map(|run| motion(run, setup)).collect()
-}
-
-fn motion(run: &OscillationRun<'_>, setup: &Setup) -> Result<Motion, OscillationError> {
+/// [`MotionError`].
+pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Result<Motion, MotionError> {
+    let (load, load_unit, loads) = run.load;
     let n = run.time_s.len();
-    for (column, found) in [("angle", run.angle_rad.len()), ("force", run.force_n.len())] {
+    for (column, found) in [("angle", run.angle_rad.len()), (load, loads.len())] {
         if found != n {
-            return Err(OscillationError::Length { run: run.id.to_owned(), column, found, expected: n });
+            return Err(MotionError::Length { run: run.id.to_owned(), column, found, expected: n });
         }
     }
-    let refused = |source| OscillationError::Angle { run: run.id.to_owned(), source };
+    let refused = |source| MotionError::Angle { run: run.id.to_owned(), source };
     let rough = Harmonics::fit(run.time_s, run.angle_rad, 1, None).map_err(refused)?;
     let period_s = rough.period_s();
-    for (channel, values, unit) in [("angle", run.angle_rad, "rad"), ("force", run.force_n, "N")] {
+    for (channel, values, unit) in [("angle", run.angle_rad, "rad"), (load, loads, load_unit)] {
         clipped(run, channel, values, unit, period_s)?;
     }
     let (first, end) = moving(run, rough.mean, period_s);
-    let start_s = run.time_s[first] + setup.cycles.skip as f64 * period_s;
+    let start_s = run.time_s[first] + asked.skip as f64 * period_s;
     let at = |time_s: f64| run.time_s.partition_point(|t| *t < time_s).min(end);
     let step_s = (run.time_s[n - 1] - run.time_s[0]) / (n - 1) as f64;
     let end_s = run.time_s[end - 1] + step_s;
     // A sample's worth may be missing at the end of a record that was cut to whole cycles.
     let there = (((end_s - start_s) + step_s) / period_s).max(0.0).floor() as usize;
-    let whole = setup.cycles.used.map_or(there, |used| used.min(there));
-    if whole < setup.cycles.fewest.max(1) {
-        let (found, skipped, fewest) = (whole, setup.cycles.skip, setup.cycles.fewest.max(1));
-        return Err(OscillationError::TooFewCycles { run: run.id.to_owned(), found, period_s, skipped, fewest });
+    let whole = asked.used.map_or(there, |used| used.min(there));
+    if whole < asked.fewest.max(1) {
+        let (found, skipped, fewest) = (whole, asked.skip, asked.fewest.max(1));
+        return Err(MotionError::TooFewCycles { run: run.id.to_owned(), found, period_s, skipped, fewest });
     }
-    let last =
-        if setup.cycles.used.is_some_and(|used| used <= there) { at(start_s + whole as f64 * period_s) } else { end };
+    let last = if asked.used.is_some_and(|used| used <= there) { at(start_s + whole as f64 * period_s) } else { end };
     let begins = |cycle: usize| at(start_s + cycle as f64 * period_s);
     let cycles: Vec<Range<usize>> =
         (0..whole).map(|c| begins(c)..if c + 1 == whole { last } else { begins(c + 1) }).collect();
     let used = cycles[0].start..last;
-    let angle =
-        Harmonics::fit(&run.time_s[used.clone()], &run.angle_rad[used], setup.harmonics, Some(rough.omega_rad_s))
-            .map_err(refused)?;
+    let angle = Harmonics::fit(&run.time_s[used.clone()], &run.angle_rad[used], harmonics, Some(rough.omega_rad_s))
+        .map_err(refused)?;
     let half_range = |rows: &Range<usize>| {
         let (low, high) = (run.angle_rad[rows.clone()].iter())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
@@ -101,7 +189,7 @@ fn motion(run: &OscillationRun<'_>, setup: &Setup) -> Result<Motion, Oscillation
 }
 
 /// From where to where a run oscillates, as samples.
-fn moving(run: &OscillationRun<'_>, middle: f64, period_s: f64) -> (usize, usize) {
+fn moving(run: &Logged<'_>, middle: f64, period_s: f64) -> (usize, usize) {
     let mut away: Vec<f64> = run.angle_rad.iter().map(|x| (x - middle).abs()).collect();
     let first = |part: f64, away: &[f64], size: f64| away.iter().position(|x| *x > part * size).unwrap_or(0);
     let place = ((SIZE * away.len() as f64) as usize).min(away.len() - 1);
@@ -121,12 +209,12 @@ fn moving(run: &OscillationRun<'_>, middle: f64, period_s: f64) -> (usize, usize
 ///
 /// About its peak a sine of amplitude A stays within one step q for (1/π)√(2q/A) of its period.
 fn clipped(
-    run: &OscillationRun<'_>,
+    run: &Logged<'_>,
     channel: &'static str,
     values: &[f64],
     unit: &'static str,
     period_s: f64,
-) -> Result<(), OscillationError> {
+) -> Result<(), MotionError> {
     let (low, high) =
         values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
     let step = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
@@ -146,7 +234,7 @@ fn clipped(
         }
         if longest >= FEWEST_CLIPPED && longest as f64 > CLIPPED * smooth.max(1.0) {
             let from_s = run.time_s[at];
-            return Err(OscillationError::Clipped {
+            return Err(MotionError::Clipped {
                 run: run.id.to_owned(),
                 channel,
                 value,

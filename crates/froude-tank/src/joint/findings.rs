@@ -1,0 +1,148 @@
+//! What is doubtful about a joint fit, whichever the equation, with the numbers that support it.
+
+use froude_fit::Status;
+use froude_fit::budget::Uncertain;
+use froude_records::finding::{Finding, Severity};
+use froude_records::number;
+use froude_records::text::counted;
+
+use super::{Fitted, JointFit, Run};
+use crate::motion::{Cycles, Motion};
+
+/// Amplitudes of the cycles used differ by no more than this part of their mean.
+const STEADY: f64 = 0.02;
+/// A period within this part of a whole number is whole.
+const WHOLE: f64 = 0.02;
+/// Declared and found differ by more than chance beyond this many standard deviations of their difference.
+const CONTRADICTS: f64 = 3.0;
+/// Of five independent cycles a fifth of the variance repeats; more than this is a misfit.
+const REPEATED: f64 = 0.6;
+
+pub(crate) fn warning(code: &str, message: String) -> Finding {
+    Finding::new(Severity::Warning, code, message)
+}
+
+/// A motion that is not the same from cycle to cycle, or not of the harmonics that it was fitted by.
+pub(crate) fn of_motion(id: &str, motion: &Motion, cycles: Cycles, harmonics: usize) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let mean = motion.amplitudes_rad.iter().sum::<f64>() / motion.amplitudes_rad.len() as f64;
+    let off = |a: &f64| (a / mean - 1.0).abs();
+    let worst = (0..motion.amplitudes_rad.len())
+        .max_by(|&a, &b| off(&motion.amplitudes_rad[a]).total_cmp(&off(&motion.amplitudes_rad[b])));
+    if let Some(cycle) = worst.filter(|&c| off(&motion.amplitudes_rad[c]) > STEADY) {
+        out.push(warning(
+            "cycles-not-alike",
+            format!(
+                "run {:?}: cycle {} swings {:.2} deg where the mean is {:.2} deg; leave out more cycles of start-up (cycles.skip), or look at the servo",
+                id,
+                cycle + 1 + cycles.skip,
+                motion.amplitudes_rad[cycle].to_degrees(),
+                mean.to_degrees()
+            ),
+        ));
+    }
+    let highest = (1..=harmonics).map(|k| motion.angle.amplitude(k)).fold(0.0, f64::max);
+    if motion.angle.residual_std > 0.02 * highest {
+        out.push(warning(
+            "angle-not-periodic",
+            format!(
+                "run {:?}: {} harmonics leave {:.3} deg of the angle, {:.1} % of its amplitude; velocity and acceleration are those of the harmonics alone: take more of \
+                 them, or a steadier part",
+                id,
+                harmonics,
+                motion.angle.residual_std.to_degrees(),
+                1e2 * motion.angle.residual_std / highest
+            ),
+        ));
+    }
+    out
+}
+
+/// Whether all of these runs are used over whole periods.
+pub(crate) fn are_whole(mut periods: impl Iterator<Item = f64>) -> bool {
+    periods.all(|p| (p - p.round()).abs() < WHOLE)
+}
+
+/// Part of the residuals' variance that repeats from cycle to cycle; `None` for fewer than two whole cycles. Of independent cycles it is one over
+/// their number.
+fn repeated(run: &Run<'_>, fitted: &Fitted) -> Option<f64> {
+    let motion = run.motion;
+    let (first, n) = (motion.samples().start, motion.cycles.len());
+    let length = motion.cycles.iter().map(ExactSizeIterator::len).min().filter(|_| n >= 2)?;
+    let left = |cycle: usize, i: usize| {
+        let row = motion.cycles[cycle].start + i;
+        run.load[row] - fitted.load[row - first]
+    };
+    let (mut common, mut all) = (0.0, 0.0);
+    for i in 0..length {
+        let mean = (0..n).map(|c| left(c, i)).sum::<f64>() / n as f64;
+        common += mean * mean;
+        all += (0..n).map(|c| left(c, i).powi(2)).sum::<f64>() / n as f64;
+    }
+    (all > 0.0).then(|| common / all)
+}
+
+/// Residuals that repeat from cycle to cycle; `unit` is that of the load, `means` what it can be.
+pub(crate) fn misfit(fit: &JointFit, runs: &[Run<'_>], unit: &str, means: &str) -> Option<Finding> {
+    let parts: Vec<f64> = runs.iter().zip(&fit.fitted).filter_map(|(run, fitted)| repeated(run, fitted)).collect();
+    let part = parts.iter().sum::<f64>() / parts.len() as f64;
+    (part > REPEATED).then(|| {
+        warning(
+            "misfit-repeats",
+            format!(
+                "{}: {:.0} % of the residuals' variance ({} {unit} rms) repeats from cycle to cycle: it is no noise, but {means}; the intervals count it as far as runs differ in it",
+                fit.law,
+                1e2 * part,
+                number::significant(fit.sigma, 2)
+            ),
+        )
+    })
+}
+
+/// Coefficients that the runs do not determine; `why` says what to do.
+pub(crate) fn undetermined(fit: &JointFit, why: &str) -> Option<Finding> {
+    let lost: Vec<&str> =
+        fit.unknowns.iter().filter(|u| u.status == Status::Undetermined).map(|u| u.name.as_str()).collect();
+    (!lost.is_empty()).then(|| {
+        let text = format!("{}: {} cannot be told apart by these runs. {why}", fit.law, lost.join(", "));
+        Finding::new(Severity::Error, "undetermined", text)
+    })
+}
+
+/// Numbers that are declared and that the runs move by more than chance: name, value and standard uncertainty of each.
+pub(crate) fn contradicted(fit: &JointFit, declared: &[(String, Uncertain)], check: &str) -> Vec<Finding> {
+    let one = |(name, known): &(String, Uncertain)| {
+        let unknown = fit.unknown(name)?;
+        let (found, combined) = unknown.value.zip(unknown.combined)?;
+        // The posterior lies between the two: its variance is smaller than that of the declared one by that of its shift.
+        let shift = (known.standard * known.standard - combined.standard * combined.standard).max(0.0).sqrt();
+        (shift > 0.0 && (found - known.value).abs() > CONTRADICTS * shift).then(|| {
+            warning(
+                "declared-contradicted",
+                format!(
+                    "{}: {name} is declared as {} ± {} {unit} (standard uncertainty) and the runs move it to {} {unit}; check the declaration, and {check}",
+                    fit.law,
+                    number::plain(known.value, 4),
+                    number::significant(known.standard, 2),
+                    number::plain(found, 4),
+                    unit = unknown.unit
+                ),
+            )
+        })
+    };
+    declared.iter().filter_map(one).collect()
+}
+
+/// Too few runs to see what changes from one to the next.
+pub(crate) fn few_runs(fit: &JointFit) -> Option<Finding> {
+    (fit.by == "cycle").then(|| {
+        warning(
+            "few-runs",
+            format!(
+                "{}: what changes from run to run is not included in the intervals, which are from {}; five runs show it",
+                fit.law,
+                counted(fit.clusters, "cycle", "cycles")
+            ),
+        )
+    })
+}

@@ -1,0 +1,167 @@
+//! The interval to expect of each coefficient, before a day in the tank is paid for.
+//!
+//! The planned runs are swung without noise on the twin; the joint fit is linearised at the truth; the noise of the sensors, its correlation and all
+//! that is declared go through it: with N = XᵀX/s², s² = σ²τ as the fit weighs the observations, and P what is known beforehand,
+//!
+//! C = (N + P)⁻¹ [Xᵀ Ω X/s⁴ + P + …] (N + P)⁻¹,  Ω_ij = σ² e^{−|t_i − t_j|/τ_c}.
+//!
+//! **Units.** Those of the coefficients.
+//!
+//! # Source
+//!
+//! Fisher information of a linear model with correlated noise, JCGM 100:2008 (GUM), 5.2.
+
+use froude_fit::FEWEST_CLUSTERS;
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, combine};
+use froude_fit::faer::Mat;
+use froude_fit::faer::prelude::*;
+use froude_records::campaign::SensorSpec;
+
+use super::conclude::part;
+use super::solve::Columns;
+use super::{Equation, Problem};
+use crate::noise::correlated;
+
+/// A coefficient with the interval to expect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expected {
+    /// Its name.
+    pub name: String,
+    /// SI unit text.
+    pub unit: String,
+    /// The truth that it was computed at.
+    pub value: f64,
+    /// Standard uncertainty and interval.
+    pub combined: Combined,
+    /// Each error's part in the standard uncertainty, in the order of [`Forecast::parts`].
+    pub by_part: Vec<f64>,
+}
+
+/// What a plan will determine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    /// The coefficients.
+    pub expected: Vec<Expected>,
+    /// Names of the errors.
+    pub parts: Vec<String>,
+    /// Covariance of the coefficients from all errors together.
+    pub covariance: Mat<f64>,
+    /// Whole cycles used of each run.
+    pub cycles: Vec<usize>,
+}
+
+impl Forecast {
+    /// Correlation of two coefficients; `None` where one of them is known.
+    #[must_use]
+    pub fn correlation(&self, a: &str, b: &str) -> Option<f64> {
+        let at = |name: &str| self.expected.iter().position(|e| e.name == name);
+        let (i, j) = (at(a)?, at(b)?);
+        let norm = (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt();
+        (norm > 0.0).then(|| self.covariance[(i, j)] / norm)
+    }
+}
+
+/// Forecasts the fit of runs without noise at the truth `beta`, sampled at `rates_hz`; `None` where they do not tell the coefficients apart.
+pub(crate) fn forecast<E: Equation>(
+    problem: &Problem<'_, E>,
+    beta: &[f64],
+    rates_hz: &[f64],
+    load: Option<&SensorSpec>,
+) -> Result<Option<Forecast>, E::Error> {
+    let sigma = load.and_then(|s| s.noise).unwrap_or(0.0);
+    let correlation_s = load.and_then(|s| s.correlation_s);
+    let (held, excluded) = (problem.held(), problem.excluded());
+    let is_free = |j: &usize| !excluded.contains(j) && held.iter().all(|(k, _)| k != j);
+    let free: Vec<usize> = (0..problem.names.len()).filter(is_free).collect();
+    let (p, q) = (free.len(), problem.inputs.len());
+    let (mut gram, mut noise, mut errors) = (Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, q));
+    let mut tau = 1.0_f64;
+    for (r, run) in problem.runs.iter().enumerate() {
+        let Columns { regressors, errors: moved, .. } = problem.columns(r, run.motion.samples(), beta, true)?;
+        let regressors: Vec<Vec<f64>> = free.iter().map(|&j| about_mean(regressors[j].clone())).collect();
+        let keep = correlation_s.map_or(0.0, |time| (-1.0 / (rates_hz[r] * time)).exp());
+        tau = tau.max((1.0 + keep) / (1.0 - keep));
+        let smoothed: Vec<Vec<f64>> = regressors.iter().map(|x| correlated(x, keep)).collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        for i in 0..p {
+            for j in 0..p {
+                gram[(i, j)] += dot(&regressors[i], &regressors[j]);
+                noise[(i, j)] += sigma * sigma * dot(&regressors[i], &smoothed[j]);
+            }
+            for (k, column) in moved.iter().enumerate() {
+                errors[(i, k)] += dot(&regressors[i], column);
+            }
+        }
+    }
+    // As the fit weighs them; without noise nothing is left to weigh against what is declared.
+    let variance = (sigma * sigma * tau).max(f64::MIN_POSITIVE);
+    let mut priors = problem.known();
+    for (_, prior) in &mut priors {
+        // What is held is no prior any more, so that each stands among the free.
+        prior.index = free.iter().position(|j| *j == prior.index).unwrap_or(0);
+    }
+    let mut whole = Mat::from_fn(p, p, |i, j| gram[(i, j)] / variance);
+    for (_, prior) in &priors {
+        whole[(prior.index, prior.index)] += prior.standard.powi(-2);
+    }
+    let Some(inverse) = inverted(&whole) else { return Ok(None) };
+    let clusters = if problem.runs.len() >= FEWEST_CLUSTERS { problem.runs.len() } else { problem.cycles() };
+    // Back among all unknowns: what is held has no uncertainty.
+    let n = problem.names.len();
+    let place = |j: usize| free.iter().position(|k| *k == j);
+    let spread =
+        |small: Mat<f64>| Mat::from_fn(n, n, |i, j| place(i).zip(place(j)).map_or(0.0, |(i, j)| small[(i, j)]));
+    let scatter = &inverse * Mat::from_fn(p, p, |i, j| noise[(i, j)] / (variance * variance)) * &inverse;
+    let mut parts = vec![part("scatter", Kind::A, spread(scatter), clusters as f64 - 1.0)];
+    for (name, prior) in &priors {
+        let by = |i: usize| inverse[(i, prior.index)] / prior.standard;
+        parts.push(part(name, Kind::B, spread(Mat::from_fn(p, p, |i, j| by(i) * by(j))), f64::INFINITY));
+    }
+    let moved = &inverse * Mat::from_fn(p, q, |i, k| errors[(i, k)] / variance);
+    for (k, input) in problem.inputs.iter().enumerate() {
+        let covariance = Mat::from_fn(p, p, |i, j| moved[(i, k)] * moved[(j, k)]);
+        parts.push(part(&input.name, Kind::B, spread(covariance), input.declared.dof));
+    }
+    let expected = problem.names.iter().enumerate().map(|(j, (name, unit))| Expected {
+        name: name.clone(),
+        unit: unit.clone(),
+        value: beta[j],
+        combined: combine(&parts, j, OUTSIDE_95),
+        by_part: parts.iter().map(|part| part.standard(j)).collect(),
+    });
+    Ok(Some(Forecast {
+        expected: expected.collect(),
+        covariance: total(&parts, n),
+        parts: parts.iter().map(|part| part.name.clone()).collect(),
+        cycles: problem.runs.iter().map(|run| run.motion.whole).collect(),
+    }))
+}
+
+/// Covariance of the coefficients from all parts.
+pub(crate) fn total(parts: &[Part], n: usize) -> Mat<f64> {
+    Mat::from_fn(n, n, |i, j| parts.iter().map(|part| part.covariance[(i, j)]).sum())
+}
+
+fn about_mean(mut column: Vec<f64>) -> Vec<f64> {
+    let mean = column.iter().sum::<f64>() / column.len() as f64;
+    for x in &mut column {
+        *x -= mean;
+    }
+    column
+}
+
+/// The inverse of a symmetric positive matrix, its diagonal scaled to one first; `None` where it has none.
+pub(crate) fn inverted(matrix: &Mat<f64>) -> Option<Mat<f64>> {
+    let p = matrix.nrows();
+    let scale: Vec<f64> = (0..p).map(|i| matrix[(i, i)].sqrt()).collect();
+    if scale.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+        return None;
+    }
+    let scaled = Mat::from_fn(p, p, |i, j| matrix[(i, j)] / (scale[i] * scale[j]));
+    let least = scaled.self_adjoint_eigenvalues(froude_fit::faer::Side::Lower).ok()?.first().copied()?;
+    if least < 1e-12 {
+        return None;
+    }
+    let inverse = scaled.llt(froude_fit::faer::Side::Lower).ok()?.solve(Mat::<f64>::identity(p, p));
+    Some(Mat::from_fn(p, p, |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
+}

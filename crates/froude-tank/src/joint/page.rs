@@ -1,0 +1,170 @@
+//! The parts of a page that follow from a joint fit alone: coefficients, budget, load as measured and as fitted, spectrum of what is left.
+
+use froude_records::number;
+use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series, TextTable};
+use froude_signal::spectrum::density;
+
+use super::forecast::Forecast;
+use super::{Fitted, JointFit, Run};
+
+/// Runs that are drawn; more would be a page of the same.
+const DRAWN: usize = 6;
+/// Segments that a run is cut into for its spectrum, at least.
+const SEGMENTS: usize = 4;
+
+/// The coefficients with their intervals; `law` names it in the caption.
+pub(crate) fn coefficients(fit: &JointFit, law: &str) -> TextTable {
+    let rows = fit.unknowns.iter().map(|u| {
+        let known = u.value.zip(u.combined);
+        let value = match (known, u.value) {
+            (Some((value, c)), _) => number::short_form(value, c.standard),
+            (None, Some(value)) => number::plain(value, 5),
+            (None, None) => "not determined".to_owned(),
+        };
+        let of = |figure: &dyn Fn(f64, froude_fit::budget::Combined) -> String| {
+            known.map_or_else(|| "–".to_owned(), |(value, c)| figure(value, c))
+        };
+        vec![
+            u.name.clone(),
+            value,
+            u.unit.clone(),
+            of(&|value, c| number::interval(c.interval(value))),
+            of(&|_, c| number::significant(c.type_a, 2)),
+            of(&|_, c| number::significant(c.type_b, 2)),
+        ]
+    });
+    TextTable {
+        caption: format!("Coefficients{law}; standard uncertainty in brackets."),
+        head: ["coefficient", "value", "unit", "95 % interval", "type A", "type B"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
+}
+
+/// What costs what: standard uncertainties by error and coefficient.
+pub(crate) fn budget(fit: &JointFit) -> TextTable {
+    let head = std::iter::once("error (type)".to_owned())
+        .chain(fit.unknowns.iter().map(|u| format!("{} [{}]", u.name, u.unit)));
+    let mut rows: Vec<Vec<String>> = fit
+        .parts
+        .iter()
+        .map(|part| {
+            let each = (0..fit.unknowns.len()).map(|j| number::significant(part.standard(j), 2));
+            std::iter::once(format!("{} ({})", part.name, part.kind)).chain(each).collect()
+        })
+        .collect();
+    let combined =
+        fit.unknowns.iter().map(|u| u.combined.map_or_else(|| "–".to_owned(), |c| number::significant(c.standard, 2)));
+    rows.push(std::iter::once("combined".to_owned()).chain(combined).collect());
+    TextTable { caption: "Standard uncertainties, by error.".to_owned(), head: head.collect(), rows }
+}
+
+/// The load in time: its name and unit, as measured and as fitted.
+pub(crate) fn loads(fit: &JointFit, runs: &[Run<'_>], times_s: &[&[f64]], (name, unit): (&str, &str)) -> Chart {
+    let panel = |((run, time_s), fitted): ((&Run<'_>, &&[f64]), &Fitted)| {
+        let used = run.motion.samples();
+        let series = |name: &str, mark: Mark, x: &[f64], y: &[f64]| Series {
+            name: name.to_owned(),
+            mark,
+            x: x.to_vec(),
+            y: y.to_vec(),
+            ..Series::default()
+        };
+        ChartPanel {
+            y_label: format!("{} [{unit}]", run.id),
+            series: vec![
+                series("measured", Mark::Points, time_s, run.load),
+                series("fitted, where used", Mark::Line, &time_s[used], &fitted.load),
+            ],
+            ..ChartPanel::default()
+        }
+    };
+    let panels: Vec<ChartPanel> = runs.iter().zip(times_s).zip(&fit.fitted).take(DRAWN).map(panel).collect();
+    let of = if panels.len() < runs.len() { format!("the first {} of ", panels.len()) } else { String::new() };
+    Chart {
+        name: format!("{}s", name.to_lowercase()),
+        title: format!("{name} and fit"),
+        caption: format!("{name} of the rig on the body in {of}the runs, as measured, and the fit where it was used."),
+        x_label: "time [s]".to_owned(),
+        panels,
+        ..Chart::default()
+    }
+}
+
+/// The spectrum of what the fit leaves, mean over the runs of one length of segment.
+pub(crate) fn spectrum(
+    fit: &JointFit,
+    runs: &[Run<'_>],
+    times_s: &[&[f64]],
+    (name, unit): (&str, &str),
+) -> Option<Chart> {
+    let shortest = runs.iter().map(|run| run.motion.samples().len()).min()?;
+    let segment = (shortest / SEGMENTS).checked_ilog2().map(|bits| 1_usize << bits).filter(|n| *n >= 16)?;
+    let mut sum: Vec<f64> = Vec::new();
+    let mut frequency = Vec::new();
+    for ((run, time_s), fitted) in runs.iter().zip(times_s).zip(&fit.fitted) {
+        let used = run.motion.samples();
+        let rate_hz = (used.len() - 1) as f64 / (time_s[used.end - 1] - time_s[used.start]);
+        let left: Vec<f64> = run.load[used].iter().zip(&fitted.load).map(|(y, f)| y - f).collect();
+        let (f, p) = density(&left, rate_hz, segment).ok()?;
+        if sum.is_empty() {
+            (frequency, sum) = (f, p);
+        } else {
+            sum.iter_mut().zip(&p).for_each(|(a, b)| *a += b);
+        }
+    }
+    let n = runs.len() as f64;
+    // The mean was taken off: the first line says nothing.
+    let series = Series {
+        name: "residual".to_owned(),
+        mark: Mark::Line,
+        x: frequency[1..].to_vec(),
+        y: sum[1..].iter().map(|p| p / n).collect(),
+        ..Series::default()
+    };
+    Some(Chart {
+        name: "residual-spectrum".to_owned(),
+        title: "Spectrum of the residuals".to_owned(),
+        caption: format!(
+            "Power density of measured less fitted {}, mean over the runs. A line at a multiple of the driven frequency is a term that the law lacks; a rise towards low frequencies is \
+                  slow noise, which the scatter between clusters counts.",
+            name.to_lowercase()
+        ),
+        x_label: "frequency [Hz]".to_owned(),
+        x_scale: Scale::Logarithmic,
+        panels: vec![ChartPanel {
+            y_label: format!("power density [({unit})²/Hz]"),
+            y_scale: Scale::Logarithmic,
+            series: vec![series],
+        }],
+    })
+}
+
+/// A time as a person says it.
+pub(crate) fn minutes(seconds: f64) -> String {
+    if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
+}
+
+/// The intervals to expect; `law` names it in the caption.
+pub(crate) fn expected(found: &Forecast, law: &str) -> TextTable {
+    let rows = found.expected.iter().map(|e| {
+        let half = e.combined.arms[1];
+        let relative = if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) };
+        let largest = (0..found.parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
+        vec![
+            e.name.clone(),
+            e.unit.clone(),
+            number::significant(e.value, 4),
+            number::significant(half, 2),
+            relative,
+            largest
+                .map_or_else(String::new, |k| format!("{} ({})", found.parts[k], number::significant(e.by_part[k], 2))),
+        ]
+    });
+    TextTable {
+        caption: format!(
+            "Intervals to expect{law}: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
+        ),
+        head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+    }
+}

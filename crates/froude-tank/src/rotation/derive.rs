@@ -1,0 +1,300 @@
+//! What the λs of a link mean: coefficients by the strip integrals, and the law behind λ₃.
+//!
+//! | derived                | formula                      | law                                                                    |
+//! |------------------------|------------------------------|------------------------------------------------------------------------|
+//! | C_A                    | 3 λ₁ / (2ρπ a² l³)           | added mass of the strips, turning (our derivation)                     |
+//! | C_M \[1/m²\]           | 12 λ₁ / (ρπ (a²−b²)² l³)     | USR eq. 8 as printed, which gives kg m⁴                                |
+//! | C_f from λ₂            | 6 λ₂ / (ρπ (a+b) l³ v_ref)   | friction along the strips, USR eq. 8                                   |
+//! | C_f from λ₃            | 8 λ₃ / (ρπ (a+b) l⁴)         | the same                                                               |
+//! | C_D from λ₃            | 2 λ₃ / (ρ a l⁴)              | drag across the strips (our derivation)                                |
+//!
+//! with v_ref = 1 m/s, which the published linear coefficients carry. C_M is the number that makes the printed formula give the λ₁ that was measured; as the
+//! formula lacks a length squared, C_M has the unit 1/m² and is no coefficient of added mass.
+//!
+//! **The law behind λ₃.** Were it friction, as in USR eq. 8, one C_f would explain λ₂ and λ₃: E_n = d/U(d), d their difference and U(d) its 95 % half-width,
+//! covariance of λ₂ and λ₃ included. |E_n| ≤ 1 says that it may be; beyond that with C_f from λ₃ the larger, λ₃ is drag across the body.
+//!
+//! **Units.** SI. **Range.** One elliptic link turning about its own centre; strips know no ends: added mass by them is too large, by tens of per cent for a
+//! body as short as its strips are tall.
+//!
+//! # Source
+//!
+//! USR eq. 8; ISO 13528:2022, 9.7 (E_n).
+
+use std::f64::consts::PI;
+
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, combine};
+
+use super::fit::{LAMBDAS, RotationFit};
+use super::setup::Setup;
+use crate::joint::conclude::part;
+
+/// v_ref, m/s.
+const V_REF_M_S: f64 = 1.0;
+
+/// A number that follows from the λs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Derived {
+    /// Its name.
+    pub name: &'static str,
+    /// How, in the names of the record.
+    pub formula: &'static str,
+    /// SI unit text.
+    pub unit: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Its uncertainty.
+    pub combined: Combined,
+}
+
+/// Names of what is derived.
+pub const C_A: &str = "C_A";
+/// C_M of the printed formula, 1/m².
+pub const C_M: &str = "C_M_as_printed";
+/// C_f from λ₂.
+pub const C_F_2: &str = "C_f_from_lambda_2";
+/// C_f from λ₃.
+pub const C_F_3: &str = "C_f_from_lambda_3";
+/// The first less the second.
+pub const C_F_DIFFERENCE: &str = "C_f_difference";
+/// C_D from λ₃.
+pub const C_D_3: &str = "C_D_from_lambda_3";
+
+/// Everything that follows from the λs; empty where link or density are not declared, without what the runs do not determine.
+#[must_use]
+pub fn derived(fit: &RotationFit, setup: &Setup) -> Vec<Derived> {
+    let (Some(link), Some(density)) = (setup.link, setup.density_kg_m3) else { return Vec::new() };
+    let (a, b, l, rho) = (link.major_semi_axis_m, link.minor_semi_axis_m, link.half_length_m, density.value);
+    let (l3, l4) = (l.powi(3), l.powi(4));
+    let added = 3.0 / (2.0 * rho * PI * a * a * l3);
+    let printed = 12.0 / (rho * PI * (a * a - b * b).powi(2) * l3);
+    let [friction_2, friction_3] = [6.0 / (rho * PI * (a + b) * l3 * V_REF_M_S), 8.0 / (rho * PI * (a + b) * l4)];
+    let across = 2.0 / (rho * a * l4);
+    let all: [(&str, &str, &str, [f64; 3]); 6] = [
+        (C_A, "3*lambda_1/(2*density*pi*a^2*l^3)", "1", [added, 0.0, 0.0]),
+        (C_M, "12*lambda_1/(density*pi*(a^2-b^2)^2*l^3)", "1/m^2", [printed, 0.0, 0.0]),
+        (C_F_2, "6*lambda_2/(density*pi*(a+b)*l^3*v_ref)", "1", [0.0, friction_2, 0.0]),
+        (C_F_3, "8*lambda_3/(density*pi*(a+b)*l^4)", "1", [0.0, 0.0, friction_3]),
+        (C_F_DIFFERENCE, "C_f_from_lambda_2-C_f_from_lambda_3", "1", [0.0, friction_2, -friction_3]),
+        (C_D_3, "2*lambda_3/(density*a*l^4)", "1", [0.0, 0.0, across]),
+    ];
+    // A round section has no C_M: its printed inertia is zero.
+    let all = all.into_iter().filter(|(.., factors)| factors.iter().all(|f| f.is_finite()));
+    all.filter_map(|(name, formula, unit, factors)| {
+        let mut value = 0.0;
+        let mut gradient = vec![0.0; fit.unknowns.len()];
+        for (lambda, factor) in LAMBDAS.iter().zip(factors).filter(|(_, factor)| *factor != 0.0) {
+            let j = fit.position(lambda)?;
+            value += factor * fit.unknowns[j].value?;
+            gradient[j] = factor;
+        }
+        let mut parts: Vec<Part> = fit.parts.iter().map(|p| along(p, &gradient)).collect();
+        // ρ stands below the line of all of them.
+        parts.push(Part::of_one(
+            "density".to_owned(),
+            "campaign",
+            Kind::B,
+            (value * density.relative()).abs(),
+            density.dof,
+        ));
+        Some(Derived { name, formula, unit, value, combined: combine(&parts, 0, OUTSIDE_95) })
+    })
+    .collect()
+}
+
+/// A line of the budget for one sum of coefficients.
+fn along(of: &Part, gradient: &[f64]) -> Part {
+    let n = gradient.len();
+    let variance: f64 =
+        (0..n).map(|i| (0..n).map(|j| gradient[i] * of.covariance[(i, j)] * gradient[j]).sum::<f64>()).sum();
+    let dof = of.dof.first().copied().unwrap_or(f64::INFINITY);
+    part(&of.name, of.kind, froude_fit::faer::Mat::from_fn(1, 1, |_, _| variance.max(0.0)), dof)
+}
+
+/// What λ₃ is of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawBehind {
+    /// C_f from λ₂, and its 95 % half-width.
+    pub from_lambda_2: [f64; 2],
+    /// C_f from λ₃.
+    pub from_lambda_3: [f64; 2],
+    /// C_D from λ₃.
+    pub c_d: [f64; 2],
+    /// E_n of the first two.
+    pub e_n: f64,
+    /// The verdict.
+    pub law: Law,
+}
+
+/// A law that λ₃ may come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// λ₃ is not told from zero.
+    Nothing,
+    /// One C_f explains λ₂ and λ₃.
+    FrictionOrCrossFlow,
+    /// λ₃ is larger than friction makes it.
+    CrossFlow,
+    /// λ₂ is larger than friction makes it.
+    MoreThanFriction,
+}
+
+/// The law behind λ₃; `None` where λ₂ or λ₃ has no uncertainty, or nothing is declared of the link.
+#[must_use]
+pub fn law_behind(derived: &[Derived]) -> Option<LawBehind> {
+    let of = |name: &str| derived.iter().find(|d| d.name == name).map(|d| [d.value, d.combined.arms[1]]);
+    let (from_lambda_2, from_lambda_3, c_d) = (of(C_F_2)?, of(C_F_3)?, of(C_D_3)?);
+    let [difference, half_width] = of(C_F_DIFFERENCE)?;
+    let is_open = [from_lambda_2, from_lambda_3].iter().all(|[_, half]| *half > 0.0) && half_width > 0.0;
+    let e_n = difference / half_width;
+    let law = if from_lambda_3[0].abs() <= from_lambda_3[1] {
+        Law::Nothing
+    } else if e_n.abs() <= 1.0 {
+        Law::FrictionOrCrossFlow
+    } else if e_n < 0.0 {
+        Law::CrossFlow
+    } else {
+        Law::MoreThanFriction
+    };
+    is_open.then_some(LawBehind { from_lambda_2, from_lambda_3, c_d, e_n, law })
+}
+
+impl LawBehind {
+    /// In a sentence.
+    #[must_use]
+    pub fn words(&self) -> String {
+        use froude_records::number::significant;
+        let with = |[value, half]: [f64; 2]| format!("{} ± {}", significant(value, 3), significant(half, 2));
+        let both = format!(
+            "C_f is {} by lambda_2 and {} by lambda_3 (E_n = {:.2}, their covariance counted)",
+            with(self.from_lambda_2),
+            with(self.from_lambda_3),
+            self.e_n
+        );
+        let across = with(self.c_d);
+        match self.law {
+            Law::Nothing => format!(
+                "lambda_3 is not told from zero, so that no law can be named behind it: {both}; larger amplitudes or faster motion show it"
+            ),
+            Law::FrictionOrCrossFlow => format!(
+                "one friction coefficient may explain lambda_2 and lambda_3: {both}; drag across the body would need C_D = {across}. The interval is what decides: narrow it before friction is believed"
+            ),
+            Law::CrossFlow => format!(
+                "friction alone cannot explain lambda_3: {both}. It is drag across the body, with C_D = {across}; use lambda_3 = density*C_D*a*l^4/2, not the friction integral"
+            ),
+            Law::MoreThanFriction => format!(
+                "friction alone cannot explain lambda_2: {both}. Something else is linear in the rate: a bearing or seal above the body (subtract a tare), or the drag of slow motion"
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use froude_hydro::Link;
+    use froude_hydro::link_parameters::{LinkCoefficients, LinkParameters, YawDrag, YawInertia};
+
+    use super::*;
+    use crate::joint::{JointFit, Unknown};
+
+    const MAMBA: Link = Link { major_semi_axis_m: 0.0588, minor_semi_axis_m: 0.0394, half_length_m: 0.09 };
+    /// Of the f2 model in the circulation tank: C_f^II and C_d^II (USR, Table 9).
+    const TANK: LinkCoefficients = LinkCoefficients { c_f: 0.0544, c_d: 1.8601, c_a: 1.277, c_m: 1.0 };
+
+    fn parameters(inertia: YawInertia, drag: YawDrag) -> [f64; 3] {
+        let p = LinkParameters::of(&MAMBA, 1025.0, &TANK, inertia, drag).unwrap();
+        [p.lambda_1_kg_m2, p.lambda_2_kg_m, p.lambda_3_kg_m2]
+    }
+
+    /// A fit with these λs, 1 % standard uncertainty each, λ₂ and λ₃ correlated by `correlation`.
+    fn made(lambdas: [f64; 3], correlation: f64) -> RotationFit {
+        let covariance = froude_fit::faer::Mat::from_fn(3, 3, |i, j| {
+            let of = |k: usize| 0.01 * lambdas[k];
+            let r = if i == j {
+                1.0
+            } else if i + j == 3 {
+                correlation
+            } else {
+                0.0
+            };
+            r * of(i) * of(j)
+        });
+        let parts = vec![part("scatter", Kind::A, covariance, f64::INFINITY)];
+        let unknown = |j: usize| Unknown {
+            name: LAMBDAS[j].to_owned(),
+            unit: String::new(),
+            value: Some(lambdas[j]),
+            status: froude_fit::Status::Free,
+            combined: Some(combine(&parts, j, OUTSIDE_95)),
+        };
+        JointFit {
+            law: String::new(),
+            unknowns: (0..3).map(unknown).collect(),
+            errors: Vec::new(),
+            fitted: Vec::new(),
+            by: "run",
+            clusters: 9,
+            samples: 0,
+            effective: 0.0,
+            sigma: 0.0,
+            delay_s: 0.0,
+            parts,
+        }
+    }
+
+    fn setup() -> Setup {
+        let density = froude_fit::budget::Uncertain::new(1025.0, 0.0);
+        Setup { density_kg_m3: Some(density), link: Some(MAMBA), ..Setup::new(None) }
+    }
+
+    fn value(all: &[Derived], name: &str) -> f64 {
+        all.iter().find(|d| d.name == name).unwrap().value
+    }
+
+    /// The coefficients that made the λs come back, whichever law made them.
+    #[test]
+    fn the_derived_are_the_inverse_of_the_strip_integrals() {
+        let strip = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip);
+        let all = derived(&made(strip, 0.0), &setup());
+        for (name, expected) in [(C_A, 1.277), (C_F_2, 0.0544), (C_F_3, 0.0544), (C_F_DIFFERENCE, 0.0)] {
+            assert!((value(&all, name) - expected).abs() < 1e-12, "{name}: {}", value(&all, name));
+        }
+        let printed = parameters(YawInertia::AsPrinted, YawDrag::CrossFlow);
+        let all = derived(&made(printed, 0.0), &setup());
+        for (name, expected) in [(C_M, 1.0), (C_D_3, 1.8601)] {
+            assert!((value(&all, name) - expected).abs() < 1e-12, "{name}: {}", value(&all, name));
+        }
+        assert_eq!(all.iter().find(|d| d.name == C_M).unwrap().unit, "1/m^2");
+    }
+
+    /// Computed beforehand: 1.41e-4 by friction, 3.68e-3 by cross-flow, 26 times apart (half a unit of the last digit).
+    #[test]
+    fn the_laws_of_the_mamba_link_are_26_times_apart() {
+        let friction = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip)[2];
+        let across = parameters(YawInertia::StripTheory, YawDrag::CrossFlow)[2];
+        assert!((friction - 1.41e-4).abs() < 0.5e-6, "{friction}");
+        assert!((across - 3.68e-3).abs() < 0.5e-5, "{across}");
+        assert!((across / friction - 26.0).abs() < 0.5, "{}", across / friction);
+        // λ₂ by friction with λ₃ across the body is what friction cannot explain.
+        let lambdas = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip);
+        let mixed = law_behind(&derived(&made([lambdas[0], lambdas[1], across], -0.9), &setup())).unwrap();
+        assert_eq!(mixed.law, Law::CrossFlow);
+        assert!(mixed.words().contains("friction alone cannot explain lambda_3"), "{}", mixed.words());
+        let same = law_behind(&derived(&made(lambdas, -0.9), &setup())).unwrap();
+        assert_eq!(same.law, Law::FrictionOrCrossFlow);
+        let seal = law_behind(&derived(&made([lambdas[0], 3.0 * lambdas[1], lambdas[2]], -0.9), &setup())).unwrap();
+        assert_eq!(seal.law, Law::MoreThanFriction);
+    }
+
+    /// U² = 1.96² (u₂² + u₃² − 2 r u₂ u₃): a negative correlation widens the difference.
+    #[test]
+    fn the_test_counts_the_covariance_of_both() {
+        let lambdas = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip);
+        for r in [-0.9, 0.0, 0.9] {
+            let all = derived(&made(lambdas, r), &setup());
+            let half = all.iter().find(|d| d.name == C_F_DIFFERENCE).unwrap().combined.arms[1];
+            let expected = 1.959_964 * 0.01 * 0.0544 * (2.0 - 2.0 * r).sqrt();
+            assert!((half / expected - 1.0).abs() < 1e-5, "{r}: {half} {expected}");
+        }
+    }
+}

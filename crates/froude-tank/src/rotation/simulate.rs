@@ -1,0 +1,259 @@
+//! The twin of a campaign's rotation: the logs and sidecars that it would give for chosen true coefficients.
+//!
+//! What is declared with an uncertainty is drawn once for the campaign, about what is declared: inertias, restoring moment, delay, the gains of angle and torque.
+//! Inertia, restoring moment and delay are what `[simulate.coefficients]` states, where it does. Each run has a zero of its own.
+
+use froude_fit::budget::Uncertain;
+use froude_identify::method::{Export, MethodError};
+use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
+use froude_records::run::{ROTATION, Role};
+use froude_rig::rotation::{Lambdas, Mounted, RotationRig, RotationSensor, RotationTrace, Turn};
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES};
+use super::setup::{RotationRun, Setup};
+use super::source::{declared, setup_of};
+use crate::joint::DELAY;
+
+/// Natural frequency of the twin's servo, rad/s, and its damping ratio: a joint module that overshoots a little.
+const SERVO: (f64, f64) = (30.0, 0.6);
+/// Standard deviation of the zero of a run, N m.
+const ZERO_N_M: f64 = 0.02;
+
+/// One planned run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// Its name.
+    pub id: String,
+    /// How it turns.
+    pub turn: Turn,
+    /// Samples a second.
+    pub rate_hz: f64,
+}
+
+/// A run with its log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulated {
+    /// As it was planned.
+    pub planned: Planned,
+    /// What was logged.
+    pub trace: RotationTrace,
+}
+
+impl Simulated {
+    /// The log as the reduction takes it.
+    #[must_use]
+    pub fn view(&self) -> RotationRun<'_> {
+        RotationRun {
+            id: &self.planned.id,
+            mounted: self.planned.turn.mounted,
+            time_s: &self.trace.time_s,
+            angle_rad: &self.trace.angle_rad,
+            torque_n_m: &self.trace.torque_n_m,
+        }
+    }
+}
+
+/// What is mounted in runs of a role.
+#[must_use]
+pub fn mounted(role: Role) -> Mounted {
+    match role {
+        Role::DryAir => Mounted::BodyInAir,
+        Role::Tare => Mounted::Shaft,
+        _ => Mounted::Body,
+    }
+}
+
+fn role(mounted: Mounted) -> Role {
+    match mounted {
+        Mounted::Body => Role::Test,
+        Mounted::BodyInAir => Role::DryAir,
+        Mounted::Shaft => Role::Tare,
+    }
+}
+
+/// The run matrix of a source.
+#[must_use]
+pub fn planned(source: &Source) -> Vec<Planned> {
+    let mut out = Vec::new();
+    for block in &source.rotation_plan {
+        for &amplitude_rad in &block.amplitude_rad {
+            for &omega_rad_s in &block.omega_rad_s {
+                for _ in 0..block.repeats {
+                    let turn = Turn {
+                        mounted: mounted(block.role),
+                        amplitude_rad,
+                        omega_rad_s,
+                        still_s: block.still_s,
+                        periods: block.periods,
+                    };
+                    out.push(Planned { id: format!("{:03}", out.len() + 1), turn, rate_hz: block.rate_hz });
+                }
+            }
+        }
+    }
+    out
+}
+
+/// What is true on the twin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Truths {
+    /// λ₁, λ₂, λ₃ of the body.
+    pub lambdas: Lambdas,
+    /// Those of the shaft.
+    pub shaft: Lambdas,
+    /// J that is stated, kg m².
+    pub inertia_kg_m2: Option<f64>,
+    /// K in water that is stated, N m.
+    pub restoring_n_m: Option<f64>,
+    /// K in air, N m.
+    pub restoring_in_air_n_m: f64,
+    /// The delay that is stated, s.
+    pub delay_s: Option<f64>,
+}
+
+impl Truths {
+    /// Of `[simulate]`.
+    ///
+    /// # Errors
+    ///
+    /// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
+    pub fn of(campaign: &Campaign, source: &Source, setup: &Setup) -> Result<Self, MethodError> {
+        let undeclared = |place: String, what: String| MethodError::Undeclared { place, what };
+        let place = campaign.path.display().to_string();
+        let values = match campaign.simulate.as_ref().map(|s| &s.truth) {
+            Some(Truth::Coefficients { model, values }) if model == ROTATION => values,
+            Some(_) => {
+                let what = format!(
+                    "the twin of {ROTATION} takes its truth from [simulate] model = \"{ROTATION}\" and [simulate.coefficients]: {}",
+                    LAMBDAS.join(", ")
+                );
+                return Err(undeclared(place, what));
+            }
+            None => {
+                let what = format!("a twin needs [simulate]: seed, model = \"{ROTATION}\", and the true coefficients");
+                return Err(undeclared(place, what));
+            }
+        };
+        let known = [LAMBDAS.as_slice(), &TARES, &[INERTIA, RESTORING, RESTORING_IN_AIR, DELAY]].concat();
+        if let Some(other) = values.keys().find(|name| !known.contains(&name.as_str())) {
+            let what = format!("{other} is none that a rotation has; it has {}", known.join(", "));
+            return Err(undeclared("[simulate.coefficients]".to_owned(), what));
+        }
+        let need = |name: &str| {
+            let what = || format!("{name} is missing; the truth needs it");
+            values.get(name).copied().ok_or_else(|| undeclared("[simulate.coefficients]".to_owned(), what()))
+        };
+        let plans = |role: Role| source.rotation_plan.iter().any(|block| block.role == role);
+        let three = |names: [&str; 3]| -> Result<Lambdas, MethodError> {
+            Ok([need(names[0])?, need(names[1])?, need(names[2])?])
+        };
+        let is_level = setup.restoring_n_m.is_some();
+        if setup.inertia_kg_m2.is_none() {
+            need(INERTIA)?;
+        }
+        Ok(Self {
+            lambdas: three(LAMBDAS)?,
+            shaft: if plans(Role::Tare) || values.contains_key(TARES[0]) { three(TARES)? } else { [0.0; 3] },
+            inertia_kg_m2: values.get(INERTIA).copied(),
+            restoring_n_m: values.get(RESTORING).copied(),
+            restoring_in_air_n_m: if is_level && plans(Role::DryAir) { need(RESTORING_IN_AIR)? } else { 0.0 },
+            delay_s: values.get(DELAY).copied(),
+        })
+    }
+}
+
+/// The logs of all planned runs; the same seed gives the same logs.
+///
+/// `sensors` are those of `[[simulate.sensor]]`: `angle` and `torque`.
+#[must_use]
+pub fn simulated(
+    planned: &[Planned],
+    setup: &Setup,
+    truth: &Truths,
+    sensors: &[SensorSpec],
+    seed: u64,
+) -> Vec<Simulated> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut draw = |standard: f64| -> f64 {
+        let z: f64 = rng.sample(StandardNormal);
+        standard * z
+    };
+    let mut about = |stated: Option<f64>, known: Option<Uncertain>| {
+        let drawn = known.map_or(0.0, |k| k.value + draw(k.standard));
+        stated.unwrap_or(drawn)
+    };
+    let rig = RotationRig {
+        inertia_kg_m2: about(truth.inertia_kg_m2, setup.inertia_kg_m2),
+        shaft_inertia_kg_m2: about(None, setup.tare_inertia_kg_m2),
+        lambdas: truth.lambdas,
+        shaft: truth.shaft,
+        restoring_n_m: about(truth.restoring_n_m, setup.restoring_n_m),
+        restoring_in_air_n_m: truth.restoring_in_air_n_m,
+        servo_rad_s: SERVO.0,
+        servo_damping: SERVO.1,
+    };
+    let delay_s = about(truth.delay_s, setup.delay_s);
+    let [angle_gain, torque_gain] = [setup.angle_relative, setup.torque_relative].map(|part| 1.0 + draw(part));
+    let zeros: Vec<f64> = planned.iter().map(|_| draw(ZERO_N_M)).collect();
+    let of = |name: &str| sensors.iter().find(|s| s.quantity == name);
+    let (on_angle, on_torque) = (of("angle"), of("torque"));
+    let noise = |s: Option<&SensorSpec>| s.and_then(|s| s.noise).unwrap_or(0.0);
+    let step = |s: Option<&SensorSpec>| s.and_then(|s| s.resolution).unwrap_or(0.0);
+    let slow = on_torque.and_then(|s| s.correlation_s);
+    let one = |(i, run): (usize, &Planned)| {
+        let sensor = RotationSensor {
+            rate_hz: run.rate_hz,
+            angle_noise_rad: noise(on_angle),
+            angle_step_rad: step(on_angle),
+            torque_noise_n_m: if slow.is_some() { 0.0 } else { noise(on_torque) },
+            slow_noise_n_m: if slow.is_some() { noise(on_torque) } else { 0.0 },
+            correlation_s: slow.unwrap_or(1.0),
+            torque_step_n_m: step(on_torque),
+            zero_n_m: zeros[i] + on_torque.and_then(|s| s.bias).unwrap_or(0.0),
+            delay_s,
+        };
+        let mut trace = rig.turn(run.turn, sensor, seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1));
+        trace.angle_rad.iter_mut().for_each(|x| *x *= angle_gain);
+        trace.torque_n_m.iter_mut().for_each(|x| *x *= torque_gain);
+        Simulated { planned: run.clone(), trace }
+    };
+    planned.iter().enumerate().map(one).collect()
+}
+
+/// The files of all planned runs of a source: a log and its sidecar each.
+///
+/// # Errors
+///
+/// What the campaign does not declare.
+pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
+    let setup = setup_of(campaign, source, declared(source)?)?;
+    let truth = Truths::of(campaign, source, &setup)?;
+    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let mut out = Vec::new();
+    for run in simulated(&planned(source), &setup, &truth, sensors, seed) {
+        out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
+        out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run).into_bytes() });
+    }
+    Ok(out)
+}
+
+fn log(trace: &RotationTrace) -> String {
+    let mut out = String::from("time,theta,torque\n");
+    for ((t, angle), torque) in trace.time_s.iter().zip(&trace.angle_rad).zip(&trace.torque_n_m) {
+        out += &format!("{t:.6},{angle:.8},{torque:.8}\n");
+    }
+    out
+}
+
+fn sidecar(run: &Simulated) -> String {
+    format!(
+        "# A run of the twin.\nschema = 1\nmethod = \"{ROTATION}\"\nrole = \"{}\"\n\n[columns]\n\
+         time   = {{ name = \"time\", unit = \"s\" }}\n\
+         theta  = {{ name = \"angle\", unit = \"rad\", sign = 1, frame = \"sensor\", clock = \"log\" }}   # positive about the body's z axis\n\
+         torque = {{ name = \"torque\", unit = \"N m\", sign = 1, frame = \"body\", clock = \"log\" }}    # of the rig on the body, about the same axis\n",
+        role(run.planned.turn.mounted).name()
+    )
+}

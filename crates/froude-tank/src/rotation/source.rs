@@ -1,0 +1,198 @@
+//! Rotation as a source of a campaign: a folder of logs, one run each, with a sidecar that states what it is.
+
+use froude_fit::budget::Uncertain;
+use froude_identify::answer::Made;
+use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_records::campaign::{Campaign, Source};
+use froude_records::rotation::RotationSpec;
+use froude_records::run::{Channel, Declared, ImportedRun, ROTATION, Role};
+use froude_records::units::Dimension;
+
+use super::derive::derived;
+use super::setup::{RotationRun, Setup, motions};
+use super::simulate::mounted;
+use super::{findings, fit, page, plan, record, simulate};
+use crate::fluid::density_kg_m3;
+use crate::logs::{self, Logs, distinct};
+use crate::motion::Cycles;
+
+/// The joint fit in time.
+pub struct Rotation;
+
+const WORDS: &str = "added inertia and damping of a body about its own axis, fitted in time to runs in which a motor turns it to and fro";
+
+impl Method for Rotation {
+    fn names(&self) -> &'static [&'static str] {
+        &[ROTATION]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        WORDS
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const CHANNELS: &[&str] = &["angle", "torque"];
+        const DRY: Need = Need { is_optional: true, ..Need::of(&["dry_air"], CHANNELS) };
+        const TARE: Need = Need { is_optional: true, ..Need::of(&["tare"], CHANNELS) };
+        const { &[Need::of(&["test"], CHANNELS), DRY, TARE] }
+    }
+
+    fn runs(&self) -> &'static str {
+        ROTATION
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let spec = declared(source)?;
+        progress("reading the runs");
+        let roles = [Role::Test, Role::DryAir, Role::Tare];
+        let Logs { runs: logs, files, mut findings } =
+            logs::read(source.input.path(), ROTATION, &roles, "time, angle and torque")?;
+        one_body(&logs)?;
+        let setup = setup_of(campaign, source, spec)?;
+        let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
+        progress("fitting the angles");
+        let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
+        progress("fitting the torques");
+        let fit = fit(&runs, &motions, &setup, &campaign.identify).map_err(MethodError::refused)?;
+        let derived = derived(&fit, &setup);
+        findings.extend(findings::of_runs(&runs, &motions, &setup));
+        findings.extend(findings::of_fit(&fit, &derived, &runs, &motions, &setup));
+        let context =
+            record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions, derived: &derived };
+        let estimate = record::estimate(&fit, &context);
+        let made = Made { name: estimate.id.clone(), estimate, files };
+        Ok(Found {
+            results: vec![made.into()],
+            summary: Some(page::results(&fit, &derived)),
+            blocks: vec![page::section(&fit, &runs, &motions, &setup)],
+            findings: distinct(findings),
+            ..Found::default()
+        })
+    }
+
+    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        simulate::files(campaign, source).map(Some)
+    }
+
+    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        plan::prospect(campaign, source).map(Some)
+    }
+}
+
+/// Runs of one body: λs of two are no numbers of one.
+fn one_body(logs: &[ImportedRun]) -> Result<(), MethodError> {
+    let name = |log: &ImportedRun| log.log.meta.configuration.clone();
+    let of_body = || logs.iter().filter(|log| log.log.meta.role != Role::Tare);
+    let Some(first) = of_body().next() else { return Ok(()) };
+    match of_body().find(|log| name(log) != name(first)) {
+        None => Ok(()),
+        Some(other) => {
+            let what = format!(
+                "is of the configuration {:?} where {} is of {:?}; the coefficients are of one body: give each a folder and a [[source]] of its own",
+                name(other),
+                first.log.meta.id,
+                name(first)
+            );
+            Err(MethodError::input(&other.log.path, what))
+        }
+    }
+}
+
+fn uncertain(declared: Declared) -> Uncertain {
+    Uncertain::new(declared.value, declared.standard_uncertainty)
+}
+
+/// `[source.rotation]`.
+///
+/// # Errors
+///
+/// It is not there.
+pub fn declared(source: &Source) -> Result<&RotationSpec, MethodError> {
+    source.rotation.as_ref().ok_or_else(|| {
+        let what = "nothing is declared of the body that turns: write [source.rotation] with axis and inertia";
+        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+    })
+}
+
+/// Everything that the campaign declares.
+///
+/// # Errors
+///
+/// A budget entry of a quantity that this method does not have, or that is no part of it.
+pub fn setup_of(campaign: &Campaign, source: &Source, spec: &RotationSpec) -> Result<Setup, MethodError> {
+    let density = density_kg_m3(&campaign.fluid)
+        .map_err(|what| MethodError::Undeclared { place: source.place.to_string(), what })?;
+    let mut out = Setup {
+        axis: spec.axis,
+        inertia_kg_m2: spec.inertia_kg_m2.map(uncertain),
+        tare_inertia_kg_m2: spec.tare_inertia_kg_m2.map(uncertain),
+        restoring_n_m: spec.restoring_n_m.map(uncertain),
+        delay_s: spec.delay_s.map(uncertain),
+        angle_relative: 0.0,
+        torque_relative: 0.0,
+        cycles: Cycles { skip: spec.skip, used: spec.used, fewest: spec.fewest },
+        harmonics: spec.harmonics,
+        density_kg_m3: density.map(|value| Uncertain::new(value, 0.0)),
+        link: campaign.body.as_ref().and_then(|b| b.link),
+    };
+    for entry in &source.uncertainty {
+        let refuse = |what: String| Err(MethodError::Undeclared { place: entry.place.to_string(), what });
+        let part = match entry.quantity.as_str() {
+            "density" => {
+                if let Some(density) = &mut out.density_kg_m3 {
+                    density.standard = if entry.relative { entry.standard * density.value } else { entry.standard };
+                }
+                continue;
+            }
+            "angle" => &mut out.angle_relative,
+            "torque" => &mut out.torque_relative,
+            other => {
+                return refuse(format!(
+                    "quantity = {other:?} is none that a rotation has: it has torque, angle and density; inertia, restoring moment and delay take their standard \
+                     uncertainties in [source.rotation]"
+                ));
+            }
+        };
+        if !entry.relative {
+            return refuse(format!(
+                "the uncertainty of {} is a gain that all runs share: write it as a percentage (the zero of each run is fitted, and noise shows in the \
+                 scatter)",
+                entry.quantity
+            ));
+        }
+        *part = entry.standard;
+    }
+    Ok(out)
+}
+
+/// A log as a run: its angle and its torque.
+fn run(log: &ImportedRun) -> Result<RotationRun<'_>, MethodError> {
+    if let Some(flow) = logs::condition(log, "flow", Dimension::SPEED)?.filter(|flow| *flow != 0.0) {
+        let what = format!(
+            "was done in a stream of {flow} m/s, which turns on the body with a moment of its own; these coefficients are of water at rest: repeat it there"
+        );
+        return Err(MethodError::input(&log.log.path, what));
+    }
+    Ok(RotationRun {
+        id: &log.log.meta.id,
+        mounted: mounted(log.log.meta.role),
+        time_s: &log.log.time_s,
+        angle_rad: &channel(log, "angle", Dimension::ANGLE)?.values,
+        torque_n_m: &channel(log, "torque", Dimension::MOMENT)?.values,
+    })
+}
+
+fn channel<'a>(log: &'a ImportedRun, name: &str, dimension: Dimension) -> Result<&'a Channel, MethodError> {
+    let along = if name == "angle" {
+        "the body about the axis of rotation"
+    } else {
+        "the rig on the body, about the same axis"
+    };
+    logs::channel(log, name, dimension, "added inertia is wrong by its size where one is guessed", along)
+}
