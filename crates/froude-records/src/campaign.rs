@@ -14,6 +14,7 @@ use indexmap::IndexMap;
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError};
+use crate::excited_response::{ExcitedPlan, ExcitedSpec};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::run::Declared;
 use crate::steady::SteadySpec;
@@ -133,6 +134,8 @@ pub struct Source {
     pub oscillation: Option<OscillationSpec>,
     /// How its steady tows are reduced.
     pub steady: Option<SteadySpec>,
+    /// What waves excite, held and free.
+    pub excited: Option<ExcitedSpec>,
     /// Its wagon, weight and camera.
     pub weight_tow: Option<WeightTowSpec>,
     /// What is asked of its mesh.
@@ -143,6 +146,8 @@ pub struct Source {
     pub oscillation_plan: Vec<OscillationPlan>,
     /// What is to be run with weights.
     pub weight_plan: Vec<WeightPlan>,
+    /// What is to be run in waves.
+    pub excited_plan: Vec<ExcitedPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
 }
@@ -577,7 +582,11 @@ impl Source {
     #[must_use]
     pub fn plans_runs(&self) -> bool {
         let is_runs = matches!(self.input, Input::Runs { .. });
-        is_runs && !(self.plan.is_empty() && self.oscillation_plan.is_empty() && self.weight_plan.is_empty())
+        let has_plan = !self.plan.is_empty()
+            || !self.oscillation_plan.is_empty()
+            || !self.weight_plan.is_empty()
+            || !self.excited_plan.is_empty();
+        is_runs && has_plan
     }
 
     /// A source of which nothing but its input is known.
@@ -599,6 +608,8 @@ impl Source {
             decay: None,
             oscillation: None,
             steady: None,
+            excited: None,
+            excited_plan: Vec::new(),
             weight_tow: None,
             weight_plan: Vec::new(),
             oscillation_plan: Vec::new(),

@@ -16,11 +16,12 @@ use crate::campaign::{
 };
 use crate::carriage_toml::{INERTIA, carriage, positive_constant};
 use crate::error::RecordError;
+use crate::excited_response::{excited, excited_plan};
 use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
-use crate::run::{FORCED_OSCILLATION, STEADY, WEIGHT_TOW};
+use crate::run::{EXCITED_RESPONSE, FORCED_OSCILLATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::steady::steady;
@@ -133,7 +134,7 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// The keys of a source.
-const SOURCE_KEYS: [&str; 21] = [
+const SOURCE_KEYS: [&str; 22] = [
     "name",
     "kind",
     "table",
@@ -153,6 +154,7 @@ const SOURCE_KEYS: [&str; 21] = [
     "forced_oscillation",
     "steady",
     "weight_tow",
+    EXCITED_RESPONSE,
     "added_mass",
     "plan",
 ];
@@ -210,7 +212,9 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     // Runs of a tank method have laws, a budget and a plan of their own.
     let is_method = |name: &str| methods.iter().any(|method| method == name);
     let (oscillates, is_steady, is_pulled) = (is_method(FORCED_OSCILLATION), is_method(STEADY), is_method(WEIGHT_TOW));
+    let is_excited = is_method(EXCITED_RESPONSE);
     let is_own = |key: &&str| match *key {
+        "uncertainty" | "plan" if is_excited => true,
         "models" | "uncertainty" | "plan" => oscillates || is_steady || is_pulled,
         // Each of its windows becomes a row.
         "keep" | "group" | "tare" => is_steady || is_pulled,
@@ -231,7 +235,9 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
     }
-    for (method, is_asked) in [(FORCED_OSCILLATION, oscillates), (STEADY, is_steady), (WEIGHT_TOW, is_pulled)] {
+    for (method, is_asked) in
+        [(FORCED_OSCILLATION, oscillates), (STEADY, is_steady), (WEIGHT_TOW, is_pulled), (EXCITED_RESPONSE, is_excited)]
+    {
         if let (Some(value), false) = (s.get(method), is_asked) {
             let problem =
                 format!("describes runs of {method}, but that is no method of the source: write method = {method:?}");
@@ -240,7 +246,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     let blocks = s.sections("plan")?;
     let (of_oscillation, others): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| oscillates);
-    let (of_weights, of_speeds): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_pulled);
+    let (of_weights, others): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_pulled);
+    let (of_waves, of_speeds): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_excited);
     Ok(Source {
         name,
         kind,
@@ -258,6 +265,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
         weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
         weight_plan: of_weights.into_iter().map(weight_plan).collect::<Result<_, _>>()?,
+        excited: s.section(EXCITED_RESPONSE)?.map(|s| excited(&s)).transpose()?,
+        excited_plan: of_waves.into_iter().map(excited_plan).collect::<Result<_, _>>()?,
         steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
         plan: of_speeds.into_iter().map(plan_block).collect::<Result<_, _>>()?,
         oscillation_plan: of_oscillation.into_iter().map(oscillation_plan).collect::<Result<_, _>>()?,
@@ -273,7 +282,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn why_no_rows(input: &Input) -> Option<&'static str> {
     match input {
         Input::Runs { .. } => Some(
-            "the budget of runs follows from the campaign that they were driven by (runs of the methods steady, weight_tow and forced_oscillation take models, uncertainty and plan)",
+            "the budget of runs follows from the campaign that they were driven by (runs of the methods steady, weight_tow and forced_oscillation take models, uncertainty and plan, those of excited_response uncertainty and plan)",
         ),
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,

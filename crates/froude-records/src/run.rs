@@ -58,8 +58,8 @@ pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, is_servo_log, r
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{
-    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, FORCED_OSCILLATION, FREE_DECAY,
-    Mounted, Role, RunMeta, RunStatus, STEADY, TOW, WEIGHT_TOW,
+    Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, EXCITED_RESPONSE,
+    FORCED_OSCILLATION, FREE_DECAY, Mounted, Role, RunMeta, RunStatus, STEADY, TOW, WEIGHT_TOW,
 };
 pub use reader::{Block, RunReader, read_run};
 pub use recorder::{Packing, Recorder};

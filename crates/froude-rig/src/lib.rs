@@ -15,6 +15,7 @@
 //! | [`planar`] | motion in the plane with rotation |
 //! | [`decay`] | a body on springs, let go |
 //! | [`oscillation`] | a body on a rod that a servo swings |
+//! | [`excited_response`] | a section in waves, held and free |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock; all chance comes from one seed.
 //!
@@ -49,6 +50,7 @@ pub mod decay;
 pub mod defaults;
 pub mod drive;
 pub mod encoder;
+pub mod excited_response;
 pub mod force_sensor;
 pub mod injection;
 pub mod load;
