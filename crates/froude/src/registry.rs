@@ -6,6 +6,7 @@ use froude_carriage::source::Carriage;
 use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::Method;
 use froude_tank::decay::source::FreeDecay;
+use froude_tank::excited_response::source::ExcitedResponse;
 use froude_tank::oscillation::source::ForcedOscillation;
 use froude_tank::steady::source::Steady;
 use froude_tank::weight_tow::source::WeightTow;
@@ -16,5 +17,15 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-pub(crate) const METHODS: [&dyn Method; 9] =
-    [&Carriage, &Servo, &KnownWeights, &Tuning, &Resonance, &FreeDecay, &ForcedOscillation, &Steady, &WeightTow];
+pub(crate) const METHODS: [&dyn Method; 10] = [
+    &Carriage,
+    &Servo,
+    &KnownWeights,
+    &Tuning,
+    &Resonance,
+    &FreeDecay,
+    &ForcedOscillation,
+    &Steady,
+    &WeightTow,
+    &ExcitedResponse,
+];
