@@ -98,7 +98,8 @@ fn a_position_serves_as_well_as_an_acceleration() {
     assert!(matches!(fit(&both, &setup), Err(ExcitedError::Mixed { .. })));
 }
 
-/// The table of sensitivities against what a changed declaration or signal does; differences of 1e-3, whose squares are 1e-6 of the coefficients.
+/// The table of sensitivities against what a changed declaration or signal does; differences of 1e-4 leave 2e-4 of the slope for the gains, and ωδ/2 = 3e-4 for the delay.
+/// Twins and fits are the same on both sides, so that their own errors drop out.
 #[test]
 fn what_is_declared_errs_as_the_table_says() {
     let [held, free] = exact(rig(1.21, 70.0));
@@ -110,7 +111,7 @@ fn what_is_declared_errs_as_the_table_says() {
         ..setup(window)
     };
     let at = fitted([&held, &free], &all).unwrap();
-    let step = 1e-3;
+    let step = 1e-4;
     let times = |trace: &WaveTrace| WaveTrace {
         signal: trace.signal.iter().map(|x| x * (1.0 + step)).collect(),
         ..trace.clone()
@@ -131,7 +132,7 @@ fn what_is_declared_errs_as_the_table_says() {
         for j in 0..2 {
             let found = (other.as_ref().unwrap().values[j] - at.values[j]) / step;
             let scale = error.sensitivity.iter().fold(1.0_f64, |m, s| m.max(s.abs()));
-            assert!((found - error.sensitivity[j]).abs() < 6e-3 * scale, "{name} {j}: {found} {:?}", error.sensitivity);
+            assert!((found - error.sensitivity[j]).abs() < 1e-3 * scale, "{name} {j}: {found} {:?}", error.sensitivity);
         }
     }
 }
@@ -236,10 +237,10 @@ fn a_camera_with_a_skew_is_reported_and_not_repaired() {
     assert!(of(&even, "camera-clock").is_empty() && of(&even, "camera-not-alignable").is_empty());
 }
 
-/// Over seeds the errors are those that the plan forecasts, and the stated ones on average: 200 of them, whose root mean square scatters by 5 %.
+/// Over seeds the errors are those that the plan forecasts, and the stated ones on average: 100 of them, whose root mean square scatters by 7 %.
 #[test]
 fn the_plan_forecasts_the_scatter_of_the_seeds() {
-    let rig = rig(0.8, 30.0);
+    let rig = WaveRig { rate_hz: 100.0, ..rig(0.8, 30.0) };
     let run = |is_held: bool| Planned { id: format!("{is_held}"), is_held, period_s: 0.8, rig };
     let planned = [run(true), run(false)];
     let window = [18.0, 28.0];
@@ -255,7 +256,7 @@ fn the_plan_forecasts_the_scatter_of_the_seeds() {
     let sensors =
         [sensor("f_z", 0.3, Some(0.5)), sensor("acceleration", 0.02, Some(0.5)), sensor("reference", 5e-5, None)];
     let expected = forecast(&planned, &setup, window, &sensors).unwrap().remove(0);
-    let seeds = 200;
+    let seeds = 100;
     let (mut squares, mut stated) = ([0.0; 2], [0.0; 2]);
     for seed in 0..seeds {
         let logs = simulated(&planned, &setup, &sensors, seed);
@@ -269,8 +270,8 @@ fn the_plan_forecasts_the_scatter_of_the_seeds() {
     for j in 0..2 {
         let forecast = expected.combined[j].standard;
         let ratio = squares[j].sqrt() / forecast;
-        // 0.9 to 1.1, and three deviations of 200 seeds.
-        assert!((0.75..1.25).contains(&ratio), "{j}: {ratio}");
+        // 0.9 to 1.1, and three deviations of 100 seeds.
+        assert!((0.69..1.31).contains(&ratio), "{j}: {ratio}");
         let ratio = stated[j].sqrt() / forecast;
         // The lines beside the wave's see 1.03 of the power of noise correlated over 0.5 s.
         assert!((0.9..1.15).contains(&ratio), "{j}: {ratio}");
