@@ -15,6 +15,7 @@ use crate::accelerated_tow::{AcceleratedPlan, AcceleratedTowSpec};
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
 use crate::error::{Place, RecordError};
+use crate::excited_response::{ExcitedPlan, ExcitedSpec};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::rotation::{RotationPlan, RotationSpec};
 use crate::run::Declared;
@@ -137,6 +138,8 @@ pub struct Source {
     pub rotation: Option<RotationSpec>,
     /// How its steady tows are reduced.
     pub steady: Option<SteadySpec>,
+    /// What waves excite, held and free.
+    pub excited: Option<ExcitedSpec>,
     /// Its wagon, weight and camera.
     pub weight_tow: Option<WeightTowSpec>,
     /// Its body that speeds up.
@@ -153,6 +156,8 @@ pub struct Source {
     pub weight_plan: Vec<WeightPlan>,
     /// What is to be run of accelerated tows.
     pub accelerated_plan: Vec<AcceleratedPlan>,
+    /// What is to be run in waves.
+    pub excited_plan: Vec<ExcitedPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
 }
@@ -591,6 +596,7 @@ impl Source {
             self.plan.is_empty(),
             self.oscillation_plan.is_empty(),
             self.rotation_plan.is_empty(),
+            self.excited_plan.is_empty(),
             self.weight_plan.is_empty(),
             self.accelerated_plan.is_empty(),
         ];
@@ -617,6 +623,8 @@ impl Source {
             oscillation: None,
             rotation: None,
             steady: None,
+            excited: None,
+            excited_plan: Vec::new(),
             weight_tow: None,
             weight_plan: Vec::new(),
             accelerated_tow: None,

@@ -17,12 +17,13 @@ use crate::campaign::{
 };
 use crate::carriage_toml::{INERTIA, carriage, positive_constant};
 use crate::error::RecordError;
+use crate::excited_response::{excited, excited_plan};
 use crate::hash::short_key;
 use crate::keep::parse_keep;
 use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
 use crate::rotation::{rotation, rotation_plan};
-use crate::run::{ACCELERATED_TOW, FORCED_OSCILLATION, ROTATION, STEADY, WEIGHT_TOW};
+use crate::run::{ACCELERATED_TOW, EXCITED_RESPONSE, FORCED_OSCILLATION, ROTATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::steady::steady;
@@ -135,9 +136,10 @@ fn tank(s: &Section<'_>) -> Result<Tank, RecordError> {
 }
 
 /// Methods of the tank with a section of their own, and the keys that they have in common with tables.
-const TANK_METHODS: [(&str, &[&str]); 5] = [
+const TANK_METHODS: [(&str, &[&str]); 6] = [
     (FORCED_OSCILLATION, &["models", "uncertainty", "plan"]),
     (ROTATION, &["uncertainty", "plan"]),
+    (EXCITED_RESPONSE, &["uncertainty", "plan"]),
     // Each of its windows becomes a row.
     (STEADY, &["models", "uncertainty", "plan", "keep", "group", "tare"]),
     (WEIGHT_TOW, &["models", "uncertainty", "plan", "keep", "group", "tare"]),
@@ -167,6 +169,7 @@ const SOURCE_KEYS: &[&str] = &[
     "steady",
     "weight_tow",
     "accelerated_tow",
+    EXCITED_RESPONSE,
     "added_mass",
     "plan",
 ];
@@ -247,7 +250,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     let blocks = s.sections("plan")?;
     // The blocks of a plan are of the first method that has a form of its own.
-    let planned = [FORCED_OSCILLATION, ROTATION, WEIGHT_TOW, ACCELERATED_TOW].into_iter().find(|name| is_method(name));
+    let of_its_own = [FORCED_OSCILLATION, ROTATION, EXCITED_RESPONSE, WEIGHT_TOW, ACCELERATED_TOW];
+    let planned = of_its_own.into_iter().find(|name| is_method(name));
     let blocks_of = |name: Option<&str>| if planned == name { blocks.as_slice() } else { &[] };
     Ok(Source {
         name,
@@ -266,6 +270,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
         rotation: s.section(ROTATION)?.map(|s| rotation(&s)).transpose()?,
         rotation_plan: blocks_of(Some(ROTATION)).iter().map(rotation_plan).collect::<Result<_, _>>()?,
+        excited: s.section(EXCITED_RESPONSE)?.map(|s| excited(&s)).transpose()?,
+        excited_plan: blocks_of(Some(EXCITED_RESPONSE)).iter().map(excited_plan).collect::<Result<_, _>>()?,
         weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
         weight_plan: blocks_of(Some(WEIGHT_TOW)).iter().map(weight_plan).collect::<Result<_, _>>()?,
         accelerated_tow: s.section(ACCELERATED_TOW)?.map(|s| accelerated_tow(&s)).transpose()?,

@@ -34,6 +34,7 @@ pub mod comparison;
 pub mod csv_table;
 mod error;
 pub mod estimate;
+pub mod excited_response;
 pub mod fast_csv;
 pub mod finding;
 pub mod folder;

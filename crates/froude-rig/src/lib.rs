@@ -16,6 +16,7 @@
 //! | [`decay`] | a body on springs, let go |
 //! | [`oscillation`] | a body on a rod that a servo swings |
 //! | [`rotation`] | a body that a motor turns to and fro about its own centre |
+//! | [`excited_response`] | a section in waves, held and free |
 //!
 //! The twin runs the same `froude_control::Controller` as the carriage. It reads no clock; all chance comes from one seed.
 //!
@@ -51,6 +52,7 @@ pub mod decay;
 pub mod defaults;
 pub mod drive;
 pub mod encoder;
+pub mod excited_response;
 pub mod force_sensor;
 pub mod injection;
 pub mod load;

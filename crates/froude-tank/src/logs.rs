@@ -45,7 +45,8 @@ pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) 
                 format!("is a run of {}", meta.method)
             };
             let what = format!(
-                "{found}; write method = \"{method}\", role = \"test\" and [mounted] configuration at the head of {}",
+                "{found}; write method = \"{method}\", role = \"{}\" and [mounted] configuration at the head of {}",
+                roles.first().map_or("test", |role| role.name()),
                 path.with_extension("toml").display()
             );
             return Err(MethodError::input(path, what));

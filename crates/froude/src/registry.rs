@@ -7,6 +7,7 @@ use froude_carriage::tuning::source::{Resonance, Tuning};
 use froude_identify::method::Method;
 use froude_tank::accelerated_tow::source::AcceleratedTow;
 use froude_tank::decay::source::FreeDecay;
+use froude_tank::excited_response::source::ExcitedResponse;
 use froude_tank::oscillation::source::ForcedOscillation;
 use froude_tank::rotation::source::Rotation;
 use froude_tank::steady::source::Steady;
@@ -18,7 +19,7 @@ pub(crate) fn readers(runs: &str) -> Vec<&'static str> {
 }
 
 /// All methods that read runs.
-pub(crate) const METHODS: [&dyn Method; 11] = [
+pub(crate) const METHODS: [&dyn Method; 12] = [
     &Carriage,
     &Servo,
     &KnownWeights,
@@ -30,4 +31,5 @@ pub(crate) const METHODS: [&dyn Method; 11] = [
     &Steady,
     &WeightTow,
     &AcceleratedTow,
+    &ExcitedResponse,
 ];

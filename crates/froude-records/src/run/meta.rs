@@ -65,6 +65,8 @@ pub const TOW: &str = "tow";
 pub const FORCED_OSCILLATION: &str = "forced_oscillation";
 /// The method of a body that a motor turns to and fro about its own centre.
 pub const ROTATION: &str = "rotation";
+/// The method of a body in waves, held in one run and free in the other.
+pub const EXCITED_RESPONSE: &str = "excited_response";
 /// The method of a body that is towed, or held in a stream, at constant speed.
 pub const STEADY: &str = "steady";
 /// The method of a wagon that a hanging weight pulls.
@@ -140,11 +142,15 @@ pub enum Role {
     Test,
     /// The motion of a test with the body on, in air.
     DryAir,
+    /// The body held fast in waves: what they exert on it.
+    Held,
+    /// The body free to move in waves.
+    Free,
 }
 
 impl Role {
     /// Each of them.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::WarmUp,
         Self::Still,
         Self::Jog,
@@ -159,8 +165,10 @@ impl Role {
         Self::Decay,
         Self::Test,
         Self::DryAir,
+        Self::Held,
+        Self::Free,
     ];
-    pub(crate) const NAMES: [&'static str; 14] = [
+    pub(crate) const NAMES: [&'static str; 16] = [
         "warm_up",
         "still",
         "jog",
@@ -175,6 +183,8 @@ impl Role {
         "decay",
         "test",
         "dry_air",
+        "held",
+        "free",
     ];
 
     /// As it stands in files.

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, steady, weights, accelerated, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, steady, weights, accelerated, excited, clocks,
 //! dynamic, potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -21,6 +21,7 @@ mod decay;
 mod dynamic;
 mod eiv;
 mod emps;
+mod excited;
 mod flexible;
 mod kvlcc2;
 mod oscillation;
@@ -97,6 +98,9 @@ fn main() -> ExitCode {
         }
         if wants("accelerated") {
             accelerated::all(claims, &root, if full { 20_000 } else { 40 })?;
+        }
+        if wants("excited") {
+            excited::all(claims, &root, &shared, if full { 2_000 } else { 40 })?;
         }
         if wants("clocks") {
             clocks::all(claims, &shared)?;

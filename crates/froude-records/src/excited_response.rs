@@ -1,0 +1,165 @@
+//! `[source.excited_response]`: a body in waves, held in one run and free in the other, and the runs that are planned of it.
+//!
+//! ```toml
+//! [source.excited_response]
+//! axis      = "heave"
+//! mass      = { value = "46.8 kg", standard = "0.1 kg" }     # all that moves
+//! restoring = { value = "2299.5 N/m", standard = "0.5 %" }   # C33: water plane and springs
+//! delay     = { value = "0 ms", standard = "1 ms" }          # of the force behind the motion, each as it stands against the wavemaker
+//! window    = { from = "14 s", to = "20.5 s" }               # after the wavemaker's start: the wave is there, its reflections are not
+//! harmonics = 3
+//!
+//! [[source.plan]]
+//! period = ["1.2 s", "0.8 s"]
+//! stroke = "9 mm"                                            # amplitude of the wavemaker
+//! force  = "12 N"                                            # amplitude of the exciting force on the held body
+//! held   = 1
+//! free   = 2
+//! ```
+
+use crate::campaign::Motion;
+use crate::error::RecordError;
+use crate::run::Declared;
+use crate::run::sidecar::declared;
+use crate::section::Section;
+use crate::section_values::{at_most, count, one_of, series};
+use crate::units::Dimension;
+
+/// N/m.
+const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
+/// Most runs that one block of a plan makes.
+const MOST_RUNS: usize = 10_000;
+/// Most harmonics of a fit.
+const MOST_HARMONICS: u64 = 20;
+
+/// What is declared of the body and of its runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExcitedSpec {
+    /// What the free body does.
+    pub axis: Motion,
+    /// All that moves, kg.
+    pub mass_kg: Declared,
+    /// C33, N/m.
+    pub restoring_n_m: Declared,
+    /// Delay of the force behind the motion, s.
+    pub delay_s: Declared,
+    /// From and to, s after the start of the wavemaker; `None` where nobody has said when reflections come back.
+    pub window_s: Option<[f64; 2]>,
+    /// Harmonics of every fit.
+    pub harmonics: usize,
+}
+
+/// One block of planned runs: at every period so many with the body held, and so many with it free.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExcitedPlan {
+    /// Periods of the wave, s.
+    pub period_s: Vec<f64>,
+    /// Amplitude of the wavemaker, m.
+    pub stroke_m: f64,
+    /// Amplitude of the exciting force on the held body, N.
+    pub force_n: f64,
+    /// Runs with the body held, at each period.
+    pub held: usize,
+    /// Runs with it free.
+    pub free: usize,
+    /// At rest on the log before the wavemaker starts, s.
+    pub still_s: f64,
+    /// The wavemaker comes to its full stroke in this time, s.
+    pub ramp_s: f64,
+    /// The wave reaches the body so long after the wavemaker's start, s.
+    pub travel_s: f64,
+    /// The wavemaker runs for so long, and so does the log from there, s.
+    pub lasts_s: f64,
+    /// Samples a second.
+    pub rate_hz: f64,
+}
+
+/// Reads `[source.excited_response]`.
+pub(crate) fn excited(s: &Section<'_>) -> Result<ExcitedSpec, RecordError> {
+    s.only(&["axis", "mass", "restoring", "delay", "window", "harmonics"])?;
+    let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
+        .ok_or_else(|| s.missing("axis", "state what the free body does: axis = \"heave\""))?;
+    if let (true, Some(value)) = (axis != Motion::Heave, s.get("axis")) {
+        let problem = "is not reduced from waves: only heave of a body that is symmetric fore and aft stands alone, whereas sway and roll (surge and pitch) are coupled by \
+                       added masses off the diagonal, which one equation does not hold; write axis = \"heave\"";
+        return Err(s.wrong("axis", value, problem));
+    }
+    let positive = |key: &'static str, dimension, like: &str| -> Result<Declared, RecordError> {
+        let found = declared(s, key, dimension)?.ok_or_else(|| s.missing(key, like))?;
+        match s.get(key) {
+            Some(value) if found.value <= 0.0 => Err(s.wrong(key, value, "must be larger than zero")),
+            _ => Ok(found),
+        }
+    };
+    let window = s.section("window")?.map(|w| -> Result<[f64; 2], RecordError> {
+        w.only(&["from", "to"])?;
+        let need = |key: &'static str, like: &str| -> Result<f64, RecordError> {
+            w.quantity(key, Dimension::TIME)?.ok_or_else(|| w.missing(key, like))
+        };
+        let from = need("from", "write from = \"14 s\", counted from the start of the wavemaker")?;
+        let to = need("to", "write to = \"20 s\", before the reflected wave is back at the body")?;
+        match w.get("to") {
+            Some(value) if !(from >= 0.0 && to > from) => Err(w.wrong(
+                "to",
+                value,
+                format!(
+                    "makes a window from {from} s to {to} s; it must begin at 0 s or later, and end after its beginning"
+                ),
+            )),
+            _ => Ok([from, to]),
+        }
+    });
+    Ok(ExcitedSpec {
+        axis,
+        mass_kg: positive(
+            "mass",
+            Dimension::MASS,
+            "write mass = { value = \"46.8 kg\", standard = \"0.1 kg\" }, all that moves",
+        )?,
+        restoring_n_m: positive(
+            "restoring",
+            STIFFNESS,
+            "write restoring = { value = \"2300 N/m\", standard = \"0.5 %\" }: C33 = rho g times the water plane, and springs",
+        )?,
+        delay_s: declared(s, "delay", Dimension::TIME)?.unwrap_or(Declared::exact(0.0)),
+        window_s: window.transpose()?,
+        harmonics: count(s, "harmonics", MOST_HARMONICS)?.unwrap_or(3),
+    })
+}
+
+/// Reads a `[[source.plan]]` of waves.
+pub(crate) fn excited_plan(s: &Section<'_>) -> Result<ExcitedPlan, RecordError> {
+    s.only(&["period", "stroke", "force", "held", "free", "still", "ramp", "travel", "lasts", "rate"])?;
+    let period =
+        s.get("period").ok_or_else(|| s.missing("period", "write \"1.2 s\", a list, or { start, stop, step }"))?;
+    let need = |key: &'static str, dimension, like: &str| -> Result<f64, RecordError> {
+        s.positive(key, dimension)?.ok_or_else(|| s.missing(key, like))
+    };
+    let runs = |key: &'static str| Ok::<_, RecordError>(count(s, key, MOST_RUNS as u64)?.unwrap_or(1));
+    let out = ExcitedPlan {
+        period_s: series(s, "period", period, Dimension::TIME)?,
+        stroke_m: need("stroke", Dimension::LENGTH, "write stroke = \"9 mm\", the amplitude of the wavemaker")?,
+        force_n: need(
+            "force",
+            Dimension::FORCE,
+            "write force = \"12 N\", the amplitude to expect of the exciting force on the held body",
+        )?,
+        held: runs("held")?,
+        free: runs("free")?,
+        still_s: s.quantity("still", Dimension::TIME)?.unwrap_or(2.0),
+        ramp_s: s.quantity("ramp", Dimension::TIME)?.unwrap_or(2.0),
+        travel_s: s.quantity("travel", Dimension::TIME)?.unwrap_or(5.0),
+        lasts_s: s.positive("lasts", Dimension::TIME)?.unwrap_or(25.0),
+        rate_hz: s.positive("rate", Dimension::ANGULAR_SPEED)?.unwrap_or(200.0),
+    };
+    if out.period_s.iter().any(|t| *t <= 0.0) {
+        return Err(s.wrong("period", period, "must be larger than zero"));
+    }
+    for (key, time_s) in [("still", out.still_s), ("ramp", out.ramp_s), ("travel", out.travel_s)] {
+        if let (true, Some(value)) = (time_s < 0.0, s.get(key)) {
+            return Err(s.wrong(key, value, "is negative; a time that passes is not"));
+        }
+    }
+    at_most(s, &[out.period_s.len(), out.held + out.free], MOST_RUNS)?;
+    Ok(out)
+}

@@ -1,0 +1,179 @@
+//! What the runs of one wave give, as an estimate: a law of that frequency alone, whose name says it, so that only estimates of one period are compared.
+
+use froude_records::campaign::{Campaign, Source};
+use froude_records::estimate::{
+    Clusters, Coefficient, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed,
+    NamedCorrelation, Output, Range, ReferencePoint, SharedError, Signs, Status, TypeA,
+};
+use froude_records::number;
+use froude_records::run::EXCITED_RESPONSE;
+use indexmap::IndexMap;
+
+use super::coefficients::{AtPeriod, NAMES, UNITS};
+use super::response::DOF;
+use super::setup::{Setup, WaveRun};
+
+/// What an estimate is made from beside its numbers.
+#[derive(Debug, Clone, Copy)]
+pub struct Context<'a> {
+    /// The campaign.
+    pub campaign: &'a Campaign,
+    /// The source.
+    pub source: &'a Source,
+    /// What is declared.
+    pub setup: &'a Setup,
+    /// The runs.
+    pub runs: &'a [WaveRun<'a>],
+}
+
+/// The period whose A33 is known best: a source recommends one estimate.
+#[must_use]
+pub fn narrowest(found: &[AtPeriod]) -> usize {
+    let width = |at: &AtPeriod| at.combined[0].standard;
+    (0..found.len()).min_by(|&a, &b| width(&found[a]).total_cmp(&width(&found[b]))).unwrap_or(0)
+}
+
+/// The estimate of one period.
+#[must_use]
+pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> Estimate {
+    let Context { campaign, source, setup, runs } = *context;
+    // Without a declared window B33 is not determined.
+    let stated = if at.is_declared { 2 } else { 1 };
+    let coefficient = |j: usize| {
+        let combined = at.combined[j];
+        let is_stated = j < stated;
+        let of = |x: f64| is_stated.then_some(x);
+        let coefficient = Coefficient {
+            label: None,
+            value: of(at.values[j]),
+            unit: UNITS[j].to_owned(),
+            status: if is_stated { Status::Free } else { Status::Undetermined },
+            nuisance: false,
+            standard_uncertainty: of(combined.standard),
+            type_a: of(combined.type_a),
+            type_b: of(combined.type_b),
+            interval_95: is_stated.then(|| combined.interval(at.values[j])),
+            effective_dof: of(combined.dof).filter(|d| d.is_finite()),
+        };
+        (NAMES[j].to_owned(), coefficient)
+    };
+    let scatter = || at.parts.iter().filter(|p| p.kind == froude_fit::budget::Kind::A);
+    let type_a = |i: usize, j: usize| scatter().map(|p| p.covariance[(i, j)]).sum::<f64>();
+    let dof = |j: usize| {
+        let entries: Vec<(f64, f64)> = scatter().map(|p| (p.covariance[(j, j)], p.dof[j])).collect();
+        Some(froude_fit::propagate::effective_dof(&entries)).filter(|d| d.is_finite())
+    };
+    let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
+    let refers_to = campaign.fluid.density_kg_m3.map(|value| ("density".to_owned(), measured(value, "kg/m^3")));
+    let words = campaign.body.as_ref().and_then(|b| b.reference_point.clone());
+    let errors = at.errors.iter().map(|e| {
+        let key = format!("{}/{} {:e}", campaign.key, e.name, e.standard);
+        let shared = SharedError {
+            name: e.name.to_owned(),
+            quantity: e.name.to_owned(),
+            kind: ErrorKind::B,
+            covariance: vec![vec![e.standard * e.standard]],
+            dof: Some(e.dof).filter(|d| d.is_finite()),
+            limits: None,
+            sensitivity: e.sensitivity[..stated].iter().map(|s| vec![*s]).collect(),
+        };
+        (key, shared)
+    });
+    let samples = at.used().map(|used| used.response.rows.len()).sum();
+    let period = format!("{:.3} s", at.period_s);
+    let largest_correlation = at.is_declared.then(|| NamedCorrelation {
+        first: NAMES[0].to_owned(),
+        second: NAMES[1].to_owned(),
+        value: at.correlation(),
+    });
+    Estimate {
+        id: format!("{}/{EXCITED_RESPONSE} at {period}", source.name),
+        source: source.name.clone(),
+        kind: source.kind.name().to_owned(),
+        method: MethodUsed { name: EXCITED_RESPONSE.to_owned(), version: 1, words: method_words(at, setup) },
+        frame: Frame::body(),
+        point: ReferencePoint { stated: words.is_some(), words: words.unwrap_or_default() },
+        signs: Signs::default(),
+        attitude: None,
+        law: Law {
+            name: format!("added_mass_damping at {period}"),
+            version: 1,
+            inputs: IndexMap::from([("v_z".to_owned(), "m/s".to_owned()), ("v_z_dot".to_owned(), "m/s^2".to_owned())]),
+            outputs: IndexMap::from([(
+                "f_z".to_owned(),
+                Output { unit: "N".to_owned(), formula: Some("-A33*v_z_dot - B33*v_z".to_owned()) },
+            )]),
+            constants: IndexMap::from([
+                ("omega".to_owned(), measured(at.omega_rad_s, "rad/s")),
+                ("mass".to_owned(), measured(setup.mass_kg.value, "kg")),
+                ("restoring".to_owned(), measured(setup.restoring_n_m.value, "N/m")),
+            ]),
+        },
+        refers_to: refers_to.into_iter().collect(),
+        data: Vec::new(),
+        n_observations: samples,
+        clusters: Some(Clusters { by: "run".to_owned(), n: at.used().count() }),
+        dof: IndexMap::from([("f_z".to_owned(), dof(0))]),
+        sigma: IndexMap::new(),
+        coefficients: [0, 1].map(coefficient).into_iter().collect(),
+        derived: IndexMap::new(),
+        type_a: Some(TypeA {
+            names: NAMES[..stated].iter().map(|name| (*name).to_owned()).collect(),
+            matrix: (0..stated).map(|i| (0..stated).map(|j| type_a(i, j)).collect()).collect(),
+            dof: (0..stated).map(dof).collect(),
+            kind: format!("power at {} lines beside the wave's frequency, and scatter of repeated runs", DOF / 2.0),
+        }),
+        errors: errors.collect(),
+        interval: Interval::default(),
+        undetermined: Vec::new(),
+        validity: validity(at, runs),
+        diagnostics: Diagnostics { largest_correlation, notes: notes(at, stated), ..Diagnostics::default() },
+        recommended: is_recommended,
+        reason: is_recommended
+            .then(|| "the period whose A33 is known best; each period has an estimate of its own".to_owned()),
+    }
+}
+
+fn method_words(at: &AtPeriod, setup: &Setup) -> String {
+    let declared = if at.is_declared {
+        "declared"
+    } else {
+        "not declared: where force and motion have come up and the wavemaker runs"
+    };
+    format!(
+        "from {:.2} s to {:.2} s after the wavemaker's start ({declared}), whole cycles; {} harmonics of the wavemaker's frequency; force over motion, each per stroke of its wavemaker; force taken {} \
+         ms before its stamp",
+        at.window_s[0],
+        at.window_s[1],
+        setup.harmonics,
+        number::plain(1e3 * setup.delay_s.value, 4)
+    )
+}
+
+fn validity(at: &AtPeriod, runs: &[WaveRun<'_>]) -> IndexMap<String, Range> {
+    let range = |low: f64, high: f64, unit: &str| Range { low, high, unit: unit.to_owned() };
+    let mut out = IndexMap::from([("period".to_owned(), range(at.period_s, at.period_s, "s"))]);
+    let w = at.omega_rad_s;
+    let amplitudes = at.free.iter().map(|used| {
+        let size = used.response.amplitude;
+        if runs[used.run].shows == super::setup::Shows::Acceleration { size / (w * w) } else { size }
+    });
+    let (low, high) = amplitudes.fold((f64::INFINITY, 0.0_f64), |(low, high), z| (low.min(z), high.max(z)));
+    out.insert("amplitude".to_owned(), range(low, high, "m"));
+    out.insert("speed".to_owned(), range(w * low, w * high, "m/s"));
+    out
+}
+
+/// The budget of each coefficient, in sentences.
+fn notes(at: &AtPeriod, stated: usize) -> Vec<String> {
+    let mut out: Vec<String> = (at.parts.iter().filter(|p| (0..stated).any(|j| p.standard(j) > 0.0)))
+        .map(|part| {
+            let each = (0..stated).map(|j| format!("{} {:.2e} {}", NAMES[j], part.standard(j), UNITS[j]));
+            format!("{} (type {}): {}", part.name, part.kind, each.collect::<Vec<_>>().join(", "))
+        })
+        .collect();
+    if !at.is_declared {
+        out.push("B33 only with the declared window before reflections".to_owned());
+    }
+    out
+}

@@ -1,0 +1,211 @@
+//! The twin of a campaign in waves: the logs and sidecars of held and free runs that it would give for chosen true coefficients.
+//!
+//! What is declared with an uncertainty is drawn once for the campaign, about what is declared: mass, restoring coefficient, delay, the gains of force and acceleration.
+
+use std::f64::consts::TAU;
+
+use froude_fit::budget::Uncertain;
+use froude_identify::method::{Export, MethodError};
+use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
+use froude_records::run::{EXCITED_RESPONSE, Role};
+use froude_rig::excited_response::{WaveReadings, WaveRig, WaveTrace};
+use froude_rig::steady::Reading;
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+use super::coefficients::NAMES;
+use super::setup::{Setup, Shows, WaveRun};
+use super::source::setup_of;
+
+/// Speed of the twin's waves for the phase between wavemaker and body: they have come in by so many turns and a part, whose size does not matter.
+const PHASE_RAD: f64 = -0.7;
+
+/// One planned run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// Its name.
+    pub id: String,
+    /// Whether the body is held.
+    pub is_held: bool,
+    /// Period of the wave, s.
+    pub period_s: f64,
+    /// Body, wave and wavemaker, with mass and restoring coefficient as they are declared.
+    pub rig: WaveRig,
+}
+
+/// A run with its log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Simulated {
+    /// As it was planned.
+    pub planned: Planned,
+    /// What was logged.
+    pub trace: WaveTrace,
+}
+
+impl Simulated {
+    /// The log as the reduction takes it.
+    #[must_use]
+    pub fn view(&self) -> WaveRun<'_> {
+        WaveRun {
+            id: &self.planned.id,
+            period_s: Some(self.planned.period_s),
+            time_s: &self.trace.time_s,
+            reference: &self.trace.reference_m,
+            shows: if self.planned.is_held { Shows::Force } else { Shows::Acceleration },
+            signal: (&self.trace.signal).into(),
+            camera_m: None,
+        }
+    }
+}
+
+/// The run matrix of a source, at true coefficients A33 and B33.
+#[must_use]
+pub fn planned(source: &Source, setup: &Setup, [added_kg, damping_n_s_m]: [f64; 2]) -> Vec<Planned> {
+    let mut out = Vec::new();
+    for block in &source.excited_plan {
+        for &period_s in &block.period_s {
+            let rig = WaveRig {
+                mass_kg: setup.mass_kg.value,
+                added_kg,
+                damping_n_s_m,
+                restoring_n_m: setup.restoring_n_m.value,
+                omega_rad_s: TAU / period_s,
+                stroke_m: block.stroke_m,
+                force_n: block.force_n,
+                phase_rad: PHASE_RAD,
+                still_s: block.still_s,
+                ramp_s: block.ramp_s,
+                travel_s: block.travel_s,
+                lasts_s: block.lasts_s,
+                rate_hz: block.rate_hz,
+                thrown_back: None,
+            };
+            for k in 0..block.held + block.free {
+                let is_held = k < block.held;
+                let role = if is_held { Role::Held } else { Role::Free }.name();
+                let id = format!("{:03}_{role}", out.len() + 1);
+                out.push(Planned { id, is_held, period_s, rig });
+            }
+        }
+    }
+    out
+}
+
+/// A33 and B33 of `[simulate.coefficients]`.
+///
+/// # Errors
+///
+/// No `[simulate]`, a record instead of coefficients, a coefficient that is not stated.
+pub fn truth(campaign: &Campaign) -> Result<[f64; 2], MethodError> {
+    let undeclared = |place: String, what: String| MethodError::Undeclared { place, what };
+    let place = || campaign.path.display().to_string();
+    let Some(simulate) = &campaign.simulate else {
+        return Err(undeclared(place(), "a twin needs [simulate]: seed, model, and the true coefficients".to_owned()));
+    };
+    let Truth::Coefficients { values, .. } = &simulate.truth else {
+        let what = format!(
+            "the twin of {EXCITED_RESPONSE} takes its truth, A33 and B33, from [simulate.coefficients]; a record is not enough"
+        );
+        return Err(undeclared(place(), what));
+    };
+    let need = |name: &str| {
+        let missing =
+            || undeclared("[simulate.coefficients]".to_owned(), format!("{name} is missing; the truth needs it"));
+        values.get(name).copied().ok_or_else(missing)
+    };
+    Ok([need(NAMES[0])?, need(NAMES[1])?])
+}
+
+/// How a channel of `[[simulate.sensor]]` is read.
+#[must_use]
+pub fn reading(sensors: &[SensorSpec], names: &[&str]) -> Reading {
+    let sensor = sensors.iter().find(|s| names.contains(&s.quantity.as_str()));
+    let of = |value: fn(&SensorSpec) -> Option<f64>| sensor.and_then(value).unwrap_or(0.0);
+    Reading {
+        noise: of(|s| s.noise),
+        correlation_s: sensor.and_then(|s| s.correlation_s),
+        step: of(|s| s.resolution),
+        zero: of(|s| s.bias),
+        drift_per_s: 0.0,
+        gain: 1.0,
+    }
+}
+
+/// Quantities of the sensors: wavemaker, force, acceleration.
+pub const SENSORS: [&[&str]; 3] = [&["reference"], &["f_z", "force"], &["acceleration"]];
+
+/// The logs of all planned runs; the same seed gives the same logs.
+#[must_use]
+pub fn simulated(planned: &[Planned], setup: &Setup, sensors: &[SensorSpec], seed: u64) -> Vec<Simulated> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut about = |u: Uncertain| -> f64 {
+        let z: f64 = rng.sample(StandardNormal);
+        u.value + u.standard * z
+    };
+    let (mass_kg, restoring_n_m) = (about(setup.mass_kg), about(setup.restoring_n_m));
+    let delay_s = about(setup.delay_s);
+    let [on_force, on_acceleration] =
+        [setup.force_relative, setup.acceleration_relative].map(|part| about(Uncertain::new(1.0, part)));
+    let [reference, force, acceleration] = SENSORS.map(|names| reading(sensors, names));
+    let one = |(i, run): (usize, &Planned)| {
+        let rig = WaveRig { mass_kg, restoring_n_m, ..run.rig };
+        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);
+        let trace = if run.is_held {
+            let signal = Reading { gain: on_force, ..force };
+            rig.held(WaveReadings { reference, signal, delay_s }, seed)
+        } else {
+            let signal = Reading { gain: on_acceleration, ..acceleration };
+            rig.free(WaveReadings { reference, signal, delay_s: 0.0 }, seed)
+        };
+        Simulated { planned: run.clone(), trace }
+    };
+    planned.iter().enumerate().map(one).collect()
+}
+
+/// The files of all planned runs of a source: a log and its sidecar each.
+///
+/// # Errors
+///
+/// What the campaign does not declare.
+pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, MethodError> {
+    let setup = setup_of(source)?;
+    let planned = planned(source, &setup, truth(campaign)?);
+    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let mut out = Vec::new();
+    for run in simulated(&planned, &setup, sensors, seed) {
+        out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run).into_bytes() });
+        out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run.planned).into_bytes() });
+    }
+    Ok(out)
+}
+
+fn log(run: &Simulated) -> String {
+    let signal = if run.planned.is_held { "fz" } else { "acc" };
+    let mut out = format!("t,wavemaker,{signal}\n");
+    for ((t, reference), signal) in run.trace.time_s.iter().zip(&run.trace.reference_m).zip(&run.trace.signal) {
+        out += &format!("{t:.6},{reference:.8},{signal:.7}\n");
+    }
+    out
+}
+
+fn sidecar(run: &Planned) -> String {
+    let (role, signal) = if run.is_held {
+        (
+            Role::Held,
+            "fz        = { name = \"f_z\", unit = \"N\", sign = 1, frame = \"body\", clock = \"log\" }           # of the water on the body, upwards",
+        )
+    } else {
+        (
+            Role::Free,
+            "acc       = { name = \"acceleration\", unit = \"m/s^2\", sign = 1, frame = \"body\", clock = \"log\" }   # upwards",
+        )
+    };
+    format!(
+        "# A run of the twin.\nschema = 1\nmethod = \"{EXCITED_RESPONSE}\"\nrole = \"{}\"\n\n[conditions]\nperiod = \"{} s\"\n\n[columns]\n\
+         t         = {{ name = \"time\", unit = \"s\" }}\n\
+         wavemaker = {{ name = \"reference\", unit = \"m\", sign = 1, frame = \"sensor\", clock = \"log\" }}\n{signal}\n",
+        role.name(),
+        run.period_s
+    )
+}

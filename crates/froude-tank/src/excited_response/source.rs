@@ -1,0 +1,187 @@
+//! Excited response as a source of a campaign: a folder of logs, one run each, with a sidecar that says whether the body is held or free.
+
+use std::borrow::Cow;
+
+use froude_fit::budget::Uncertain;
+use froude_identify::answer::Made;
+use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
+use froude_records::campaign::{Campaign, Source};
+use froude_records::excited_response::ExcitedSpec;
+use froude_records::run::{Channel, Declared, EXCITED_RESPONSE, ImportedRun, Role};
+use froude_records::units::Dimension;
+
+use super::setup::{Setup, Shows, WaveRun};
+use super::{findings, fit, page, plan, record, simulate};
+use crate::logs::{self, Logs, distinct};
+
+/// Force of the held body over the motion of the free one.
+pub struct ExcitedResponse;
+
+const WORDS: &str =
+    "added mass and damping of a section in waves, from the force on the held body and the motion of the free one";
+/// Channels: the wavemaker, the force on the held body, the camera's position of the free one.
+const REFERENCE: &str = "reference";
+const FORCE: &str = "f_z";
+const POSITION: &str = "heave";
+/// What the names of its accelerometers begin with.
+const ACCELERATION: &str = "acceleration";
+
+impl Method for ExcitedResponse {
+    fn names(&self) -> &'static [&'static str] {
+        &[EXCITED_RESPONSE]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        WORDS
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const { &[Need::of(&["held"], &[REFERENCE, FORCE]), Need::of(&["free"], &[REFERENCE])] }
+    }
+
+    fn runs(&self) -> &'static str {
+        EXCITED_RESPONSE
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        let setup = setup_of(source)?;
+        progress("reading the runs");
+        let channels = "time, wavemaker, and force or acceleration";
+        let Logs { runs: logs, files, findings: mut said } =
+            logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels)?;
+        let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
+        progress("fitting the waves");
+        let found = fit(&runs, &setup).map_err(MethodError::refused)?;
+        said.extend(findings::findings(&found, &runs, &setup));
+        let best = record::narrowest(&found);
+        let made = |(i, at)| {
+            let context = record::Context { campaign, source, setup: &setup, runs: &runs };
+            let estimate = record::estimate(at, &context, i == best);
+            Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
+        };
+        Ok(Found {
+            results: found.iter().enumerate().map(made).collect(),
+            summary: Some(page::coefficients(&found)),
+            blocks: vec![page::section(&found, &runs)],
+            findings: distinct(said),
+            ..Found::default()
+        })
+    }
+
+    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        simulate::files(campaign, source).map(Some)
+    }
+
+    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        plan::prospect(campaign, source).map(Some)
+    }
+}
+
+/// Everything that the source declares.
+///
+/// # Errors
+///
+/// No `[source.excited_response]`; a budget entry of a quantity that this method does not have.
+pub fn setup_of(source: &Source) -> Result<Setup, MethodError> {
+    let spec: &ExcitedSpec = source.excited.as_ref().ok_or_else(|| {
+        let what = "nothing is declared of the body in waves: write [source.excited_response] with axis = \"heave\", mass, restoring, and the window before reflections";
+        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+    })?;
+    let uncertain = |d: Declared| Uncertain::new(d.value, d.standard_uncertainty);
+    let mut out = Setup {
+        delay_s: uncertain(spec.delay_s),
+        window_s: spec.window_s,
+        harmonics: spec.harmonics,
+        ..Setup::new(uncertain(spec.mass_kg), uncertain(spec.restoring_n_m))
+    };
+    for entry in &source.uncertainty {
+        let refuse = |what: String| MethodError::Undeclared { place: entry.place.to_string(), what };
+        let gain = match entry.quantity.as_str() {
+            "force" | FORCE => &mut out.force_relative,
+            ACCELERATION => &mut out.acceleration_relative,
+            "position" | POSITION => &mut out.position_relative,
+            other => {
+                return Err(refuse(format!(
+                    "quantity = {other:?} is none that an excited response has: it has f_z, acceleration and heave; mass, restoring and delay take their standard uncertainties in \
+                     [source.excited_response]"
+                )));
+            }
+        };
+        if !entry.relative {
+            return Err(refuse(format!(
+                "the uncertainty of {} is a gain that all runs share: write it as a percentage (a zero drops out of the harmonics, and noise shows in the scatter)",
+                entry.quantity
+            )));
+        }
+        *gain = entry.standard;
+    }
+    Ok(out)
+}
+
+/// A log as a run: the wavemaker, and the force on the held body or the motion of the free one.
+fn run(log: &ImportedRun) -> Result<WaveRun<'_>, MethodError> {
+    let meta = &log.log.meta;
+    let period_s = logs::condition(log, "period", Dimension::TIME)?;
+    let reference = channel(log, REFERENCE, Dimension::LENGTH, "the wavemaker away from the beach")?;
+    let of = |shows, signal| WaveRun {
+        id: &meta.id,
+        period_s,
+        time_s: &log.log.time_s,
+        reference: &reference.values,
+        shows,
+        signal,
+        camera_m: None,
+    };
+    if meta.role == Role::Held {
+        let force =
+            channel(log, FORCE, Dimension::FORCE, "the water on the body along the axis that its motion counts along")?;
+        return Ok(of(Shows::Force, Cow::Borrowed(&force.values)));
+    }
+    let heave = "the motion along the axis that the force counts along";
+    let names: Vec<&String> = log.log.channels.keys().filter(|name| name.starts_with(ACCELERATION)).collect();
+    let has_position = log.log.channels.contains_key(POSITION);
+    let position = || channel(log, POSITION, Dimension::LENGTH, heave);
+    if names.is_empty() {
+        if !has_position {
+            let there: Vec<&str> = log.log.channels.keys().map(String::as_str).collect();
+            let what = format!(
+                "a run with the free body needs its motion: {ACCELERATION} (m/s²; of several, each named {ACCELERATION}_…, the mean is taken) or {POSITION} (m), and has {}",
+                there.join(", ")
+            );
+            return Err(MethodError::input(&log.log.path, what));
+        }
+        return Ok(of(Shows::Position, Cow::Borrowed(&position()?.values)));
+    }
+    let all =
+        names.iter().map(|name| channel(log, name, Dimension::ACCELERATION, heave)).collect::<Result<Vec<_>, _>>()?;
+    let signal = match all.as_slice() {
+        [only] => Cow::Borrowed(only.values.as_slice()),
+        all => {
+            let mean = |i: usize| all.iter().map(|channel| channel.values[i]).sum::<f64>() / all.len() as f64;
+            Cow::Owned((0..log.log.time_s.len()).map(mean).collect())
+        }
+    };
+    let camera = if has_position { Some(position()?.values.as_slice()) } else { None };
+    Ok(WaveRun { camera_m: camera, ..of(Shows::Acceleration, signal) })
+}
+
+fn channel<'a>(
+    log: &'a ImportedRun,
+    name: &str,
+    dimension: Dimension,
+    along: &str,
+) -> Result<&'a Channel, MethodError> {
+    logs::channel(
+        log,
+        name,
+        dimension,
+        "added mass and damping follow from the phase between force and motion, which a guess turns",
+        along,
+    )
+}

@@ -1,0 +1,50 @@
+//! The part of the runs to be used where nobody has declared one: force and motion have come up to their size, and the wavemaker still runs.
+//!
+//! It says nothing of reflections, so that it is good for A33 and not for B33.
+
+use froude_signal::harmonic::Harmonics;
+
+use super::error::ExcitedError;
+use super::response::FEWEST_CYCLES;
+use super::setup::WaveRun;
+use super::wave::Wave;
+
+/// Cycles of one fit.
+const CYCLES: f64 = 4.0;
+/// Signals have come up where they reach this part of their largest.
+const UP: f64 = 0.9;
+
+/// From and to, s after the wavemaker's start, for all runs of one wave.
+///
+/// # Errors
+///
+/// [`ExcitedError::NoWindow`], [`ExcitedError::Channel`].
+pub fn window(runs: &[(&WaveRun<'_>, &Wave)], harmonics: usize) -> Result<[f64; 2], ExcitedError> {
+    let (mut from_s, mut to_s, mut period_s) = (0.0_f64, f64::INFINITY, 0.0_f64);
+    for (run, wave) in runs {
+        from_s = from_s.max(up(run, wave, harmonics)?);
+        to_s = to_s.min(wave.runs_s);
+        period_s = period_s.max(wave.period_s());
+    }
+    if to_s - from_s < FEWEST_CYCLES as f64 * period_s {
+        return Err(ExcitedError::NoWindow { period_s, from_s, to_s });
+    }
+    Ok([from_s, to_s])
+}
+
+/// When the signal of a run has come up, s after the wavemaker's start.
+fn up(run: &WaveRun<'_>, wave: &Wave, harmonics: usize) -> Result<f64, ExcitedError> {
+    let period_s = wave.period_s();
+    let fits = (wave.runs_s / period_s - CYCLES).floor().max(0.0) as usize;
+    let amplitude = |k: usize| {
+        let at = |cycles: f64| run.time_s.partition_point(|t| *t < wave.start_s + (k as f64 + cycles) * period_s);
+        let rows = at(0.0)..at(CYCLES);
+        Harmonics::held(&run.time_s[rows.clone()], &run.signal[rows], harmonics, wave.omega_rad_s)
+            .map(|fit| fit.amplitude(1))
+            .map_err(|source| ExcitedError::Channel { run: run.id.to_owned(), channel: run.shows.name(), source })
+    };
+    let amplitudes = (0..fits).map(amplitude).collect::<Result<Vec<_>, _>>()?;
+    let largest = amplitudes.iter().copied().fold(0.0, f64::max);
+    let first = amplitudes.iter().position(|a| *a >= UP * largest).unwrap_or(0);
+    Ok(first as f64 * period_s)
+}
