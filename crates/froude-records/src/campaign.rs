@@ -13,9 +13,9 @@ use indexmap::IndexMap;
 
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
+use crate::decay::{DecayPlan, DecaySpec};
 use crate::error::{Place, RecordError};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
-use crate::run::Declared;
 use crate::steady::SteadySpec;
 use crate::units::Dimension;
 use crate::weight_tow::{WeightPlan, WeightTowSpec};
@@ -143,23 +143,10 @@ pub struct Source {
     pub oscillation_plan: Vec<OscillationPlan>,
     /// What is to be run with weights.
     pub weight_plan: Vec<WeightPlan>,
+    /// What is to be released.
+    pub decay_plan: Vec<DecayPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
-}
-
-/// A body that is displaced and let go.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DecaySpec {
-    /// What it does.
-    pub axis: Motion,
-    /// Dry inertia of all that moves, kg or kg m².
-    pub inertia: Declared,
-    /// Stiffness of springs or hydrostatics, N/m or N m/rad.
-    pub stiffness: Declared,
-    /// The time from which it is free, s of each log; from its first passage through rest where it is not declared.
-    pub free_from_s: Option<f64>,
-    /// Half cycles left out after that.
-    pub skip_half_cycles: usize,
 }
 
 /// A motion of a rigid body, in the order of a 6 × 6 matrix.
@@ -183,6 +170,12 @@ impl Motion {
     /// Each of them.
     pub const ALL: [Self; 6] = [Self::Surge, Self::Sway, Self::Heave, Self::Roll, Self::Pitch, Self::Yaw];
     pub(crate) const NAMES: [&'static str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
+
+    /// As written in a campaign.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
 
     /// Whether it turns the body.
     #[must_use]
@@ -329,13 +322,15 @@ impl Shared {
     }
 }
 
-/// A tare record that is subtracted from the loads.
+/// A tare record that is subtracted from the loads, or was.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Tare {
     /// The `estimate.json`.
     pub record: PathBuf,
     /// `source/model` in it.
     pub select: Option<String>,
+    /// Whether the table has it removed already: its uncertainty alone is restored.
+    pub is_removed: bool,
 }
 
 /// One block of the run matrix: every speed at every angle for every configuration.
@@ -577,7 +572,8 @@ impl Source {
     #[must_use]
     pub fn plans_runs(&self) -> bool {
         let is_runs = matches!(self.input, Input::Runs { .. });
-        is_runs && !(self.plan.is_empty() && self.oscillation_plan.is_empty() && self.weight_plan.is_empty())
+        let has_own = !(self.oscillation_plan.is_empty() && self.weight_plan.is_empty() && self.decay_plan.is_empty());
+        is_runs && (has_own || !self.plan.is_empty())
     }
 
     /// A source of which nothing but its input is known.
@@ -601,6 +597,7 @@ impl Source {
             steady: None,
             weight_tow: None,
             weight_plan: Vec::new(),
+            decay_plan: Vec::new(),
             oscillation_plan: Vec::new(),
             added_mass: Vec::new(),
             plan: Vec::new(),

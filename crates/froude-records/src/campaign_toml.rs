@@ -11,10 +11,11 @@ use crate::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
-    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, DecaySpec, Fluid, Identify, Input, Motion,
-    PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
+    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, PlanBlock, PriorSpec,
+    RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
 };
-use crate::carriage_toml::{INERTIA, carriage, positive_constant};
+use crate::carriage_toml::carriage;
+use crate::decay::{decay, decay_plan};
 use crate::error::RecordError;
 use crate::hash::short_key;
 use crate::keep::parse_keep;
@@ -27,9 +28,6 @@ use crate::steady::steady;
 use crate::table::known_dimension;
 use crate::units::Dimension;
 use crate::weight_tow::{weight_plan, weight_tow};
-
-/// N/m.
-const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
 
 /// Kinds of covariance that can be asked for.
 const COVARIANCES: [&str; 3] = ["classical", "HC3", "cluster"];
@@ -195,9 +193,13 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     let tare = s
         .section("tare")?
         .map(|t| -> Result<Tare, RecordError> {
-            t.only(&["record", "select"])?;
+            t.only(&["record", "select", "removed"])?;
             let record = t.text("record")?.ok_or_else(|| t.missing("record", "name the estimate.json of the tare"))?;
-            Ok(Tare { record: s.source.relative(record), select: t.text("select")?.map(str::to_owned) })
+            Ok(Tare {
+                record: s.source.relative(record),
+                select: t.text("select")?.map(str::to_owned),
+                is_removed: t.flag("removed")?.unwrap_or(false),
+            })
         })
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
@@ -210,7 +212,9 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     // Runs of a tank method have laws, a budget and a plan of their own.
     let is_method = |name: &str| methods.iter().any(|method| method == name);
     let (oscillates, is_steady, is_pulled) = (is_method(FORCED_OSCILLATION), is_method(STEADY), is_method(WEIGHT_TOW));
+    let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     let is_own = |key: &&str| match *key {
+        "plan" if is_decay => true,
         "models" | "uncertainty" | "plan" => oscillates || is_steady || is_pulled,
         // Each of its windows becomes a row.
         "keep" | "group" | "tare" => is_steady || is_pulled,
@@ -226,7 +230,6 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
             "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
         return Err(s.wrong("added_mass", value, problem));
     }
-    let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     if let (Some(value), false) = (s.get("decay"), is_decay) {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
@@ -240,6 +243,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     }
     let blocks = s.sections("plan")?;
     let (of_oscillation, others): (Vec<_>, Vec<_>) = blocks.iter().partition(|_| oscillates);
+    let (of_releases, others): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_decay);
     let (of_weights, of_speeds): (Vec<_>, Vec<_>) = others.into_iter().partition(|_| is_pulled);
     Ok(Source {
         name,
@@ -257,6 +261,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
         weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
+        decay_plan: of_releases.into_iter().map(decay_plan).collect::<Result<_, _>>()?,
         weight_plan: of_weights.into_iter().map(weight_plan).collect::<Result<_, _>>()?,
         steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
         plan: of_speeds.into_iter().map(plan_block).collect::<Result<_, _>>()?,
@@ -273,7 +278,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
 fn why_no_rows(input: &Input) -> Option<&'static str> {
     match input {
         Input::Runs { .. } => Some(
-            "the budget of runs follows from the campaign that they were driven by (runs of the methods steady, weight_tow and forced_oscillation take models, uncertainty and plan)",
+            "the budget of runs follows from the campaign that they were driven by (runs of the methods steady, weight_tow and forced_oscillation take models, uncertainty and plan, releases of a free decay a plan)",
         ),
         Input::Mesh(_) => Some("a mesh has none, and says its numerical uncertainty itself"),
         _ => None,
@@ -300,27 +305,6 @@ fn added_mass(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
         out.push(GivenOption { name: name.to_owned(), text, place });
     }
     Ok(out)
-}
-
-/// `[source.decay]`: what is displaced and let go.
-fn decay(s: &Section<'_>) -> Result<DecaySpec, RecordError> {
-    s.only(&["axis", "inertia", "stiffness", "free_from", "skip_half_cycles"])?;
-    let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
-        .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", for example"))?;
-    let (inertia, stiffness) =
-        if axis.is_rotation() { (INERTIA, Dimension::MOMENT) } else { (Dimension::MASS, STIFFNESS) };
-    let need = |key: &'static str, dimension, like: &str| {
-        positive_constant(s, key, dimension)?
-            .ok_or_else(|| s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}")))
-    };
-    let like = if axis.is_rotation() { ["0.4 kg m^2", "12 N m"] } else { ["12 kg", "180 N/m"] };
-    Ok(DecaySpec {
-        axis,
-        inertia: need("inertia", inertia, like[0])?,
-        stiffness: need("stiffness", stiffness, like[1])?,
-        free_from_s: s.quantity("free_from", Dimension::TIME)?,
-        skip_half_cycles: s.integer("skip_half_cycles")?.map_or(0, |n| n as usize),
-    })
 }
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {

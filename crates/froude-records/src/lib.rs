@@ -31,6 +31,7 @@ mod checksum;
 pub mod chunks;
 pub mod comparison;
 pub mod csv_table;
+pub mod decay;
 mod error;
 pub mod estimate;
 pub mod fast_csv;

@@ -171,7 +171,7 @@ fn true_values(joint: &Joint<'_>, setup: &Setup, truth: &Truths) -> Vec<f64> {
     out
 }
 
-fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
+pub(crate) fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
     let p = covariance.nrows();
     Part {
         name: name.to_owned(),
@@ -194,7 +194,7 @@ fn about_mean(mut column: Vec<f64>) -> Vec<f64> {
 }
 
 /// Σ_j keep^|i−j| x_j, by one pass forward and one backward.
-fn correlated(x: &[f64], keep: f64) -> Vec<f64> {
+pub(crate) fn correlated(x: &[f64], keep: f64) -> Vec<f64> {
     let mut out = Vec::with_capacity(x.len());
     let mut sum = 0.0;
     for value in x {
@@ -210,7 +210,7 @@ fn correlated(x: &[f64], keep: f64) -> Vec<f64> {
 }
 
 /// The inverse of a symmetric positive matrix, its diagonal scaled to one first; `None` where it has none.
-fn inverted(matrix: &Mat<f64>) -> Option<Mat<f64>> {
+pub(crate) fn inverted(matrix: &Mat<f64>) -> Option<Mat<f64>> {
     let p = matrix.nrows();
     let scale: Vec<f64> = (0..p).map(|i| matrix[(i, i)].sqrt()).collect();
     if scale.iter().any(|s| !(*s > 0.0 && s.is_finite())) {

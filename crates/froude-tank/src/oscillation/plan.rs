@@ -9,7 +9,7 @@ use froude_records::number;
 use froude_records::page::{DocumentSection, TextTable};
 
 use super::forces::Drag;
-use super::forecast::{Forecast, forecast};
+use super::forecast::{Expected, forecast};
 use super::setup::Setup;
 use super::simulate::{Planned, Truths, configurations, planned};
 use super::source::{declared, setup_of};
@@ -37,8 +37,10 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         standard_uncertainty: e.combined.standard,
         half_width_95: e.combined.arms[1],
     });
-    let (expected, tables) =
-        (expected.collect(), vec![runs(&planned, &found.cycles, &setup, campaign), coefficients(&law, &found)]);
+    let (expected, tables) = (
+        expected.collect(),
+        vec![runs(&planned, &found.cycles, &setup, campaign), coefficients(&law, &found.expected, &found.parts)],
+    );
     let duration_s = planned.iter().map(duration_s).sum();
     let section = DocumentSection {
         title: format!("Plan of {}", source.name),
@@ -58,7 +60,7 @@ fn duration_s(run: &Planned) -> f64 {
     run.swing.still_s + run.swing.periods * TAU / run.swing.omega_rad_s
 }
 
-fn minutes(seconds: f64) -> String {
+pub(crate) fn minutes(seconds: f64) -> String {
     if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
 }
 
@@ -103,24 +105,24 @@ fn runs(planned: &[Planned], cycles: &[usize], setup: &Setup, campaign: &Campaig
     }
 }
 
-fn coefficients(law: &str, found: &Forecast) -> TextTable {
-    let rows = found.expected.iter().map(|e| {
+/// The table of intervals to expect; `parts` are the errors that each interval is made of.
+pub(crate) fn coefficients(law: &str, expected: &[Expected], parts: &[String]) -> TextTable {
+    let rows = expected.iter().map(|e| {
         let half = e.combined.arms[1];
         let relative = if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) };
-        let largest = (0..found.parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
+        let largest = (0..parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
         vec![
             e.name.clone(),
             e.unit.clone(),
             number::significant(e.value, 4),
             number::significant(half, 2),
             relative,
-            largest
-                .map_or_else(String::new, |k| format!("{} ({})", found.parts[k], number::significant(e.by_part[k], 2))),
+            largest.map_or_else(String::new, |k| format!("{} ({})", parts[k], number::significant(e.by_part[k], 2))),
         ]
     });
     TextTable {
         caption: format!(
-            "Intervals to expect, with the drag law {law} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
+            "Intervals to expect, with the law {law} of [simulate]: true value, half-width U at 95 %, and the largest of the standard uncertainties behind it."
         ),
         head: ["coefficient", "unit", "value", "U", "U, relative", "mostly from"].map(str::to_owned).to_vec(),
         rows: rows.collect(),
