@@ -11,8 +11,16 @@ use froude::rig::decay::{DecayRig, DecaySensor, Release};
 use serde_json::Value;
 
 /// A heaving body on springs.
-const HEAVE: DecayRig =
-    DecayRig { inertia: 12.0, added: 8.0, linear: 4.0, quadratic: 40.0, stiffness: 180.0, coulomb: 0.0, rest: 0.31 };
+const HEAVE: DecayRig = DecayRig {
+    inertia: 12.0,
+    added: 8.0,
+    linear: 4.0,
+    quadratic: 40.0,
+    stiffness: 180.0,
+    is_pendulum: false,
+    coulomb: 0.0,
+    rest: 0.31,
+};
 
 const DECLARED: &str = "[source.decay]\naxis = \"heave\"\ninertia = { value = \"12 kg\", standard = \"0.5 %\" }\nstiffness = { value = \
                         \"180 N/m\", standard = \"0.3 %\" }\n";
@@ -20,7 +28,7 @@ const DECLARED: &str = "[source.decay]\naxis = \"heave\"\ninertia = { value = \"
 /// Releases as logs in a folder; what heads the position.
 fn releases(folder: &Path, rig: DecayRig, n: u64, head: &str) {
     std::fs::create_dir_all(folder).unwrap();
-    let sensor = DecaySensor { rate_hz: 50.0, noise: 0.2e-3, step: 0.1e-3, drift_per_s: 0.0 };
+    let sensor = DecaySensor { rate_hz: 50.0, noise: 0.2e-3, correlation_s: None, step: 0.1e-3, drift_per_s: 0.0 };
     for seed in 1..=n {
         let release = Release { displacement: 0.1 + 0.005 * seed as f64, held_s: 0.5, free_s: 14.0 };
         let trace = rig.release(sensor, release, seed);
@@ -134,8 +142,7 @@ fn friction_is_said_and_a_rotation_reads_an_angle() {
     let out = json(&["identify", text(&campaign(folder.path(), "\"decay_output_error\"", DECLARED)), "--json"]);
     assert!(!findings_of(&out, "coulomb-friction").is_empty(), "{}", out["findings"]);
 
-    let roll =
-        DecayRig { inertia: 0.4, added: 0.1, linear: 0.02, quadratic: 0.1, stiffness: 12.0, coulomb: 0.0, rest: 0.0 };
+    let roll = DecayRig { inertia: 0.4, added: 0.1, linear: 0.02, quadratic: 0.1, stiffness: 12.0, rest: 0.0, ..HEAVE };
     let folder = tempfile::tempdir().unwrap();
     let sensor_in_degrees = "angle [rad]";
     releases(&folder.path().join("releases"), roll, 5, sensor_in_degrees);
@@ -207,4 +214,99 @@ fn what_is_declared_wrongly_is_said() {
     assert!(said.len() == 1 && said[0].1.contains("the stiffness is declared without"), "{said:?}");
     let page = std::fs::read_to_string(folder.path().join("decay-results/report.html")).unwrap();
     assert!(page.contains("jackknife over 5 runs") && page.contains("dry inertia"), "the budget");
+}
+
+/// The example of the snake robot in a folder of its own, with some text replaced.
+fn mamba(folder: &Path, replaced: &[(&str, &str)]) -> std::path::PathBuf {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/mamba-decay/campaign.toml");
+    let mut campaign = std::fs::read_to_string(example).unwrap();
+    for (from, to) in replaced {
+        assert!(campaign.contains(from), "{from}");
+        campaign = campaign.replace(from, to);
+    }
+    let path = folder.join("campaign.toml");
+    std::fs::write(&path, campaign).unwrap();
+    path
+}
+
+/// Plan, twin and fit of one campaign: four peaks, and intervals as wide as was forecast.
+#[test]
+fn a_campaign_of_releases_is_planned_simulated_and_identified() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = mamba(folder.path(), &[]);
+    let plan = json(&["plan", text(&campaign), "--json"]);
+    assert_eq!((plan[0]["runs"].as_u64(), plan[0]["duration"]["value"].as_f64()), (Some(5), Some(105.0)));
+    let output = bench::froude(&["plan", text(&campaign)]);
+    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(shown.contains("5 releases have fewer peaks than the 5 that decay_envelope needs"), "{shown}");
+    let output = bench::froude(&["simulate", text(&campaign)]);
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "free decay: 5 runs in releases");
+    let record = json(&["identify", text(&campaign), "--json"]);
+    let estimate = &record["estimates"][0];
+    for expected in plan[0]["expected"].as_array().unwrap() {
+        let name = expected["coefficient"].as_str().unwrap();
+        let [low, high] = [0, 1].map(|k| number(&estimate["coefficients"][name]["interval_95"][k]));
+        let (truth, half) = (number(&expected["value"]), 0.5 * (high - low));
+        // One campaign: an interval of 95 % may miss by a little.
+        assert!((truth - 0.5 * (low + high)).abs() < 1.5 * half, "{name}: {truth} not near [{low}, {high}]");
+        // The scatter of five releases, with four degrees of freedom: between 0.35 and 1.7 of its mean in 99 of 100.
+        let ratio = half / number(&expected["half_width_95"]);
+        assert!((0.3..2.0).contains(&ratio), "{name}: {ratio}");
+    }
+    let errors: Vec<&str> =
+        estimate["errors"].as_object().unwrap().values().map(|e| e["name"].as_str().unwrap()).collect();
+    assert_eq!(errors, ["dry inertia", "buoyancy", "radius"]);
+    let doubts = record["findings"].as_array().unwrap();
+    assert!(doubts.is_empty(), "{doubts:?}");
+}
+
+/// Too few peaks, a plan of the wrong kind, a truth that is none: each with what was found and what to do.
+#[test]
+fn releases_that_show_too_little_are_refused_before_and_after() {
+    let folder = tempfile::tempdir().unwrap();
+    let envelope = ("\"decay_output_error\" ", "\"decay_envelope\" ");
+    let campaign = mamba(folder.path(), &[envelope]);
+    bench::froude(&["simulate", text(&campaign)]);
+    let said = refusal(&["identify", text(&campaign)]);
+    assert!(
+        said.contains(
+            "decay_envelope: run \"001\": 4 peaks further than 6.981e-3 rad from rest (8 times the noise of a sample), and decay_envelope needs 5; release \
+             from further out, record longer, skip fewer, or use decay_output_error, which needs 2"
+        ),
+        "{said}"
+    );
+    let ten_times = ("\"0.05 deg\"", "\"0.5 deg\"");
+    let said = refusal(&["plan", text(&mamba(folder.path(), &[ten_times]))]);
+    assert!(
+        said.contains(
+            "1 peak further than 6.981e-2 rad from rest (8 times the noise of a sample), and decay_output_error needs 2"
+        ),
+        "{said}"
+    );
+    let said =
+        refusal(&["plan", text(&mamba(folder.path(), &[("angle    = \"30 deg\"", "displacement = \"0.1 m\"")]))]);
+    assert!(said.contains("[[source.plan]] states displacement, but the axis is roll: write angle"), "{said}");
+    let said = refusal(&[
+        "plan",
+        text(&mamba(folder.path(), &[("A44     = \"0.3773 kg m^2\"", "A55     = \"0.3773 kg m^2\"")])),
+    ]);
+    assert!(said.contains("A44 is missing; the truth needs A44, D_rx_I, D_rx_II"), "{said}");
+    let said = refusal(&["simulate", text(&mamba(folder.path(), &[("\"added_mass_linear_quadratic\"", "\"f4\"")]))]);
+    assert!(said.contains("the truth of a free decay is model = \"added_mass_linear_quadratic\""), "{said}");
+    let twice = ("radius    = {", "stiffness = \"1.4 N m\"\nradius    = {");
+    let said = refusal(&["plan", text(&mamba(folder.path(), &[twice]))]);
+    assert!(said.contains("stands beside buoyancy: what drives the body back is one or the other"), "{said}");
+}
+
+/// Two bodies in one folder have two inertias.
+#[test]
+fn releases_of_two_bodies_need_two_sources() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = mamba(folder.path(), &[("repeats  = 5", "repeats  = 2")]);
+    bench::froude(&["simulate", text(&campaign)]);
+    let second = folder.path().join("releases/002.toml");
+    let sidecar = std::fs::read_to_string(&second).unwrap().replace("H1LT", "H2LT");
+    std::fs::write(&second, sidecar).unwrap();
+    let said = refusal(&["identify", text(&campaign)]);
+    assert!(said.contains("002.csv: is of \"H2LT\", and the log before it of \"H1LT\""), "{said}");
 }

@@ -256,3 +256,27 @@ fn a_clipped_run_is_left_out() {
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(text.contains("tank (3 observations)") && text.contains("the sensor is clipped"), "{text}");
 }
+
+/// In a narrow tank each run that blocks more than 5 % is named with its angle: H1LT of 0.040168 m² across and 0.0072782 m² ahead passes it in 1 m by 0.6 m where
+/// 0.040168 sin θ + 0.0072782 cos θ = 0.03, at 37.0 deg.
+#[test]
+fn runs_that_block_the_tank_are_said_one_by_one() {
+    let folder = example();
+    let campaign = folder.path().join("campaign.toml");
+    replace_in(&campaign, "configurations = [\"H1LT\", \"H2LT\"]", "configurations = [\"H1LT\"]");
+    replace_in(&campaign, "[[source]]", "[tank]\nwidth = \"1 m\"\ndepth = \"0.6 m\"\n\n[[source]]");
+    replace_in(&campaign, "models = [\"f2\", \"f4\"]", "models = [\"f6\"]");
+    let made = froude(folder.path(), &["simulate", "campaign.toml"]);
+    assert_eq!(made.status.code(), Some(0), "{}", said(&made));
+    let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let findings = record["findings"].as_array().unwrap();
+    let of_runs: Vec<&str> =
+        findings.iter().filter(|f| f["code"] == "blockage-of-run").map(|f| f["message"].as_str().unwrap()).collect();
+    // Four angles beyond it at four speeds.
+    assert_eq!(of_runs.len(), 16, "{of_runs:?}");
+    assert!(
+        of_runs[0].contains("H1LT at 45.0 deg blocks 5.6 % of the tank's 1 m by 0.6 m and ends 0.35 m from its walls; it passes 5 % beyond 37.0 deg"),
+        "{}",
+        of_runs[0]
+    );
+}

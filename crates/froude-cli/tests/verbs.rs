@@ -439,3 +439,42 @@ fn a_body_without_links_is_simulated_too() {
     let (value, u) = (c["value"].as_f64().unwrap(), c["standard_uncertainty"].as_f64().unwrap());
     assert!((value - 0.4).abs() < 4.0 * u && u < 0.01, "{c}");
 }
+
+/// The tare that a table has removed already is not subtracted again; what is uncertain about it is an error of all its rows, and what the rotor blocks is said.
+#[test]
+fn a_tare_that_was_removed_before_is_restored_as_an_error_of_all_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    for file in std::fs::read_dir(example("unh-rm2")).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_file()) {
+        std::fs::copy(&file, folder.path().join(file.file_name().unwrap())).unwrap();
+    }
+    let tare = json(&froude(folder.path(), &["--json", "identify", "tare.toml"]));
+    let of_frame = |e: &&serde_json::Value| e["id"] == "mounting frame/quadratic";
+    let k = &tare["estimates"].as_array().unwrap().iter().find(of_frame).unwrap()["coefficients"]["D_x_II"];
+    let of_k = k["standard_uncertainty"].as_f64().unwrap();
+    // Least squares of the twelve rows by a second program: 47.83 ± 1.14 %.
+    assert!((of_k / k["value"].as_f64().unwrap() - 0.01141).abs() < 1e-5, "{k}");
+    let out = json(&froude(folder.path(), &["--json", "identify", "rotor-drag.toml"]));
+    for estimate in out["estimates"].as_array().unwrap() {
+        let errors = estimate["errors"].as_object().unwrap();
+        let (_, error) = errors.iter().find(|(key, _)| key.starts_with("tare/")).unwrap();
+        let by = |j: usize| error["sensitivity"][j][0].as_f64().unwrap();
+        assert_eq!(estimate["type_a"]["names"][0], "S_0");
+        // k U² is a drag area of k/(ρ/2) at every speed and tip speed ratio: it moves S_0 alone.
+        let moved = by(0).abs() * error["covariance"][0][0].as_f64().unwrap().sqrt();
+        assert!((moved / (of_k / 500.0) - 1.0).abs() < 1e-6, "{moved}");
+        assert!((1..3).all(|j| by(j).abs() < 1e-6 * by(0).abs()), "{error}");
+        // Loads stay as they are: C_D at 3.1 is that of the rows there, 0.835 and 0.846, to 2 %.
+        let c_d = estimate["coefficients"]["S_0"]["value"].as_f64().unwrap() / 0.8675;
+        assert!((c_d - 0.84).abs() < 0.017, "{c_d}");
+    }
+    let findings: Vec<&str> =
+        out["findings"].as_array().unwrap().iter().map(|f| f["message"].as_str().unwrap()).collect();
+    let has = |text: &str| findings.iter().any(|f| f.contains(text));
+    assert!(
+        has(
+            "the tare of mounting frame/quadratic (f_x) was removed from the table before and is not subtracted again; its covariance is an error that all observations share"
+        ),
+        "{findings:?}"
+    );
+    assert!(has("the body blocks 9.7 % of the tank's cross-section"), "{findings:?}");
+}

@@ -23,7 +23,8 @@ use crate::uncertainty::SharedError;
 
 /// Subtracts the tare's predicted loads from `data`.
 ///
-/// The tare is a record made by an earlier fit; its coefficients' covariance becomes a shared error.
+/// The tare is a record made by an earlier fit; its coefficients' covariance becomes a shared error. Of a table that has it removed already the loads
+/// stay, and the shared error is the same: what was removed wrongly is missing in every row alike.
 ///
 /// y ← y − X_T β_T in N or N m, and C_B ← C_B + S X_T C_T X_Tᵀ Sᵀ: all rows share the error of the tare.
 ///
@@ -68,15 +69,20 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Vec<SharedError>, Ve
     .flatten()
     .collect();
     misfits.extend(beyond_its_angles(data, estimate, &law, &values, &predicted)?);
-    for (r, response) in law.responses.iter().enumerate() {
+    for (r, response) in law.responses.iter().enumerate().filter(|_| !tare.is_removed) {
         if let Some(channel) = data.channels.get_mut(response) {
             for i in 0..n {
                 channel.values[i] -= predicted[r * n + i];
             }
         }
     }
+    let (code, done) = if tare.is_removed {
+        ("tare-removed-before", "was removed from the table before and is not subtracted again")
+    } else {
+        ("tare-subtracted", "is subtracted")
+    };
     let message = format!(
-        "the tare of {} ({}) is subtracted{}",
+        "the tare of {} ({}) {done}{}",
         estimate.id,
         law.responses.join(", "),
         if estimate.type_a.is_some() {
@@ -87,7 +93,7 @@ pub fn subtract(data: &mut Dataset, tare: &Tare) -> Result<(Vec<SharedError>, Ve
     );
     let errors = errors(&file, estimate, &law, &slopes);
     let severity = if estimate.type_a.is_some() { Severity::Note } else { Severity::Warning };
-    let mut findings = vec![Finding::new(severity, "tare-subtracted", message)];
+    let mut findings = vec![Finding::new(severity, code, message)];
     findings.extend(misfits);
     Ok((errors, findings))
 }

@@ -12,7 +12,7 @@ use crate::dataset::Dataset;
 use crate::lint::motion::moving;
 
 /// Blockage above which a correction or a remark is due (ITTC 7.5-02-02-01 corrects resistance for blockage well below it).
-const BLOCKAGE_LIMIT: f64 = 0.05;
+pub const BLOCKAGE_LIMIT: f64 = 0.05;
 /// Submergence Froude number above which a body near the surface makes waves that matter.
 const WAVE_LIMIT: f64 = 0.4;
 

@@ -14,6 +14,7 @@ use indexmap::IndexMap;
 use crate::accelerated_tow::{AcceleratedPlan, AcceleratedTowSpec};
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
+use crate::decay::{DecayPlan, DecaySpec};
 use crate::error::{Place, RecordError};
 use crate::excited_response::{ExcitedPlan, ExcitedSpec};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
@@ -158,23 +159,10 @@ pub struct Source {
     pub accelerated_plan: Vec<AcceleratedPlan>,
     /// What is to be run in waves.
     pub excited_plan: Vec<ExcitedPlan>,
+    /// What is to be released.
+    pub decay_plan: Vec<DecayPlan>,
     /// Where it stands in the campaign.
     pub place: Place,
-}
-
-/// A body that is displaced and let go.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DecaySpec {
-    /// What it does.
-    pub axis: Motion,
-    /// Dry inertia of all that moves, kg or kg m².
-    pub inertia: Declared,
-    /// Stiffness of springs or hydrostatics, N/m or N m/rad.
-    pub stiffness: Declared,
-    /// The time from which it is free, s of each log; from its first passage through rest where it is not declared.
-    pub free_from_s: Option<f64>,
-    /// Half cycles left out after that.
-    pub skip_half_cycles: usize,
 }
 
 /// A motion of a rigid body, in the order of a 6 × 6 matrix.
@@ -198,6 +186,12 @@ impl Motion {
     /// Each of them.
     pub const ALL: [Self; 6] = [Self::Surge, Self::Sway, Self::Heave, Self::Roll, Self::Pitch, Self::Yaw];
     pub(crate) const NAMES: [&'static str; 6] = ["surge", "sway", "heave", "roll", "pitch", "yaw"];
+
+    /// As written in a campaign.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        Self::NAMES[self as usize]
+    }
 
     /// Whether it turns the body.
     #[must_use]
@@ -344,13 +338,15 @@ impl Shared {
     }
 }
 
-/// A tare record that is subtracted from the loads.
+/// A tare record that is subtracted from the loads, or was.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Tare {
     /// The `estimate.json`.
     pub record: PathBuf,
     /// `source/model` in it.
     pub select: Option<String>,
+    /// Whether the table has it removed already: its uncertainty alone is restored.
+    pub is_removed: bool,
 }
 
 /// One block of the run matrix: every speed at every angle for every configuration.
@@ -597,6 +593,7 @@ impl Source {
             self.oscillation_plan.is_empty(),
             self.rotation_plan.is_empty(),
             self.excited_plan.is_empty(),
+            self.decay_plan.is_empty(),
             self.weight_plan.is_empty(),
             self.accelerated_plan.is_empty(),
         ];
@@ -629,6 +626,7 @@ impl Source {
             weight_plan: Vec::new(),
             accelerated_tow: None,
             accelerated_plan: Vec::new(),
+            decay_plan: Vec::new(),
             oscillation_plan: Vec::new(),
             rotation_plan: Vec::new(),
             added_mass: Vec::new(),

@@ -12,10 +12,11 @@ use crate::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
-    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, DecaySpec, Fluid, Identify, Input, Motion,
-    PlanBlock, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
+    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, PlanBlock, PriorSpec,
+    RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
 };
-use crate::carriage_toml::{INERTIA, carriage, positive_constant};
+use crate::carriage_toml::carriage;
+use crate::decay::{decay, decay_plan};
 use crate::error::RecordError;
 use crate::excited_response::{excited, excited_plan};
 use crate::hash::short_key;
@@ -23,16 +24,13 @@ use crate::keep::parse_keep;
 use crate::oscillation::{oscillation, oscillation_plan};
 use crate::plausible;
 use crate::rotation::{rotation, rotation_plan};
-use crate::run::{ACCELERATED_TOW, EXCITED_RESPONSE, FORCED_OSCILLATION, ROTATION, STEADY, WEIGHT_TOW};
+use crate::run::{ACCELERATED_TOW, EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, ROTATION, STEADY, WEIGHT_TOW};
 use crate::section::{Section, Source as Text, found, parse as parse_toml};
 use crate::section_values::{at_most, count, one_of, series};
 use crate::steady::steady;
 use crate::table::known_dimension;
 use crate::units::Dimension;
 use crate::weight_tow::{weight_plan, weight_tow};
-
-/// N/m.
-const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
 
 /// Kinds of covariance that can be asked for.
 const COVARIANCES: [&str; 3] = ["classical", "HC3", "cluster"];
@@ -212,9 +210,13 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     let tare = s
         .section("tare")?
         .map(|t| -> Result<Tare, RecordError> {
-            t.only(&["record", "select"])?;
+            t.only(&["record", "select", "removed"])?;
             let record = t.text("record")?.ok_or_else(|| t.missing("record", "name the estimate.json of the tare"))?;
-            Ok(Tare { record: s.source.relative(record), select: t.text("select")?.map(str::to_owned) })
+            Ok(Tare {
+                record: s.source.relative(record),
+                select: t.text("select")?.map(str::to_owned),
+                is_removed: t.flag("removed")?.unwrap_or(false),
+            })
         })
         .transpose()?;
     let (models, model_places) = s.placed_texts("models")?.into_iter().unzip();
@@ -225,7 +227,9 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     // What belongs to the rows of a table would be passed over.
     let of_tables = ["models", "keep", "group", "uncertainty", "tare", "plan", "sidecar"];
     let is_method = |name: &str| methods.iter().any(|method| method == name);
-    let is_own = |key: &&str| TANK_METHODS.iter().any(|(name, own)| is_method(name) && own.contains(key));
+    let is_decay = methods.iter().any(|method| method.starts_with("decay"));
+    let has_own = |key: &str| TANK_METHODS.iter().any(|(name, own)| is_method(name) && own.contains(&key));
+    let is_own = |key: &&str| has_own(key) || (is_decay && *key == "plan");
     let of_table =
         of_tables.into_iter().filter(|key| !is_own(key)).find_map(|key| s.get(key).map(|value| (key, value)));
     if let (Some((key, value)), Some(instead)) = (of_table, why_no_rows(&input)) {
@@ -236,7 +240,6 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
             "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
         return Err(s.wrong("added_mass", value, problem));
     }
-    let is_decay = methods.iter().any(|method| method.starts_with("decay"));
     if let (Some(value), false) = (s.get("decay"), is_decay) {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
@@ -251,7 +254,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     let blocks = s.sections("plan")?;
     // The blocks of a plan are of the first method that has a form of its own.
     let of_its_own = [FORCED_OSCILLATION, ROTATION, EXCITED_RESPONSE, WEIGHT_TOW, ACCELERATED_TOW];
-    let planned = of_its_own.into_iter().find(|name| is_method(name));
+    let planned = of_its_own.into_iter().find(|name| is_method(name)).or(is_decay.then_some(FREE_DECAY));
     let blocks_of = |name: Option<&str>| if planned == name { blocks.as_slice() } else { &[] };
     Ok(Source {
         name,
@@ -267,6 +270,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         tare,
         decay: s.section("decay")?.map(|s| decay(&s)).transpose()?,
         added_mass: s.section("added_mass")?.map(|s| added_mass(&s)).transpose()?.unwrap_or_default(),
+        decay_plan: blocks_of(Some(FREE_DECAY)).iter().map(decay_plan).collect::<Result<_, _>>()?,
         oscillation: s.section("forced_oscillation")?.map(|s| oscillation(&s)).transpose()?,
         rotation: s.section(ROTATION)?.map(|s| rotation(&s)).transpose()?,
         rotation_plan: blocks_of(Some(ROTATION)).iter().map(rotation_plan).collect::<Result<_, _>>()?,
@@ -318,27 +322,6 @@ fn added_mass(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
         out.push(GivenOption { name: name.to_owned(), text, place });
     }
     Ok(out)
-}
-
-/// `[source.decay]`: what is displaced and let go.
-fn decay(s: &Section<'_>) -> Result<DecaySpec, RecordError> {
-    s.only(&["axis", "inertia", "stiffness", "free_from", "skip_half_cycles"])?;
-    let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
-        .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", for example"))?;
-    let (inertia, stiffness) =
-        if axis.is_rotation() { (INERTIA, Dimension::MOMENT) } else { (Dimension::MASS, STIFFNESS) };
-    let need = |key: &'static str, dimension, like: &str| {
-        positive_constant(s, key, dimension)?
-            .ok_or_else(|| s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}")))
-    };
-    let like = if axis.is_rotation() { ["0.4 kg m^2", "12 N m"] } else { ["12 kg", "180 N/m"] };
-    Ok(DecaySpec {
-        axis,
-        inertia: need("inertia", inertia, like[0])?,
-        stiffness: need("stiffness", stiffness, like[1])?,
-        free_from_s: s.quantity("free_from", Dimension::TIME)?,
-        skip_half_cycles: s.integer("skip_half_cycles")?.map_or(0, |n| n as usize),
-    })
 }
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {

@@ -32,6 +32,7 @@ mod checksum;
 pub mod chunks;
 pub mod comparison;
 pub mod csv_table;
+pub mod decay;
 mod error;
 pub mod estimate;
 pub mod excited_response;

@@ -1,6 +1,6 @@
 //! Free decay: a body on springs, displaced, held and let go. The twin of that rig.
 //!
-//! (M + A) q̈ + D_I q̇ + D_II q̇|q̇| + F_c sgn q̇ + C (q − q₀) = 0. Between two turning points the motion is smooth; a step that passes one is cut there,
+//! (M + A) q̈ + D_I q̇ + D_II q̇|q̇| + F_c sgn q̇ + C (q − q₀) = 0, or C sin(q − q₀) where a buoyancy at a radius drives the body back. Between two turning points the motion is smooth; a step that passes one is cut there,
 //! so that friction stops the body where its springs no longer overcome it, and Runge and Kutta's fourth order holds throughout.
 //!
 //! **Setting.** One axis, water at rest, springs without mass. **Units.** SI; position in m or rad.
@@ -16,6 +16,8 @@
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
+
+use crate::noise::OrnsteinUhlenbeck;
 
 /// Longest step, rad of the undamped phase: (0.05)⁴/120 = 5e-8 rad of phase a radian.
 const STEP_RAD: f64 = 0.05;
@@ -33,6 +35,8 @@ pub struct DecayRig {
     pub quadratic: f64,
     /// C, N/m or N m/rad.
     pub stiffness: f64,
+    /// Whether a force that keeps its direction drives the body back: C sin(q − q₀) in the place of C (q − q₀).
+    pub is_pendulum: bool,
     /// F_c, N or N m.
     pub coulomb: f64,
     /// q₀, m or rad.
@@ -44,8 +48,10 @@ pub struct DecayRig {
 pub struct DecaySensor {
     /// Samples a second.
     pub rate_hz: f64,
-    /// Standard deviation of a sample's white noise, m or rad.
+    /// Standard deviation of a sample's noise, m or rad.
     pub noise: f64,
+    /// Time over which that is correlated, s; `None` for white noise.
+    pub correlation_s: Option<f64>,
     /// Step, m or rad; 0 is none.
     pub step: f64,
     /// Drift of the zero, m/s or rad/s.
@@ -86,10 +92,15 @@ pub struct DecayTrace {
 }
 
 impl DecayRig {
+    /// What drives the body back at a distance from rest, N or N m.
+    fn restoring(&self, off: f64) -> f64 {
+        self.stiffness * if self.is_pendulum { libm::sin(off) } else { off }
+    }
+
     /// Acceleration; `sign` is that of the speed, held over a step.
     fn acceleration(&self, s: DecayState, sign: f64) -> f64 {
         let damping = s.speed * (self.linear + self.quadratic * sign * s.speed) + sign * self.coulomb;
-        -(damping + self.stiffness * (s.position - self.rest)) / (self.inertia + self.added)
+        -(damping + self.restoring(s.position - self.rest)) / (self.inertia + self.added)
     }
 
     /// Runge and Kutta's step with the sign held.
@@ -110,7 +121,7 @@ impl DecayRig {
         let off = s.position - self.rest;
         if s.speed != 0.0 {
             s.speed.signum()
-        } else if self.stiffness * off.abs() <= self.coulomb {
+        } else if self.restoring(off).abs() <= self.coulomb {
             0.0
         } else {
             -off.signum()
@@ -157,7 +168,8 @@ impl DecayRig {
     #[must_use]
     pub fn energy_j(&self, s: DecayState) -> f64 {
         let off = s.position - self.rest;
-        0.5 * ((self.inertia + self.added) * s.speed * s.speed + self.stiffness * off * off)
+        let lifted = if self.is_pendulum { 1.0 - libm::cos(off) } else { 0.5 * off * off };
+        0.5 * (self.inertia + self.added) * s.speed * s.speed + self.stiffness * lifted
     }
 
     /// Power that damping and friction take, W.
@@ -176,6 +188,7 @@ impl DecayRig {
         let samples = libm::ceil((release.held_s + release.free_s) * sensor.rate_hz) as usize;
         let mut state = DecayState { position: self.rest + release.displacement, speed: 0.0 };
         let mut is_held = true;
+        let mut slow = sensor.correlation_s.map(|time| OrnsteinUhlenbeck::new(sensor.noise, time, step_s, &mut rng));
         let mut out = DecayTrace { time_s: Vec::new(), position: Vec::new(), truth: Vec::new(), released_s };
         for i in 0..samples {
             let t = i as f64 * step_s;
@@ -183,8 +196,11 @@ impl DecayRig {
                 state = self.after(state, if is_held { t - released_s } else { step_s });
                 is_held = false;
             }
-            let z: f64 = rng.sample(StandardNormal);
-            let sensed = state.position + sensor.drift_per_s * t + sensor.noise * z;
+            let noise = match &mut slow {
+                Some(slow) => slow.step(&mut rng),
+                None => sensor.noise * rng.sample::<f64, _>(StandardNormal),
+            };
+            let sensed = state.position + sensor.drift_per_s * t + noise;
             out.time_s.push(t);
             out.position.push(if sensor.step > 0.0 { libm::round(sensed / sensor.step) * sensor.step } else { sensed });
             out.truth.push(state);
@@ -198,9 +214,18 @@ mod tests {
     use super::*;
     use core::f64::consts::PI;
 
-    const RIG: DecayRig =
-        DecayRig { inertia: 12.0, added: 8.0, linear: 4.0, quadratic: 40.0, stiffness: 180.0, coulomb: 0.0, rest: 0.3 };
-    const CLEAN: DecaySensor = DecaySensor { rate_hz: 50.0, noise: 0.0, step: 0.0, drift_per_s: 0.0 };
+    const RIG: DecayRig = DecayRig {
+        inertia: 12.0,
+        added: 8.0,
+        linear: 4.0,
+        quadratic: 40.0,
+        stiffness: 180.0,
+        is_pendulum: false,
+        coulomb: 0.0,
+        rest: 0.3,
+    };
+    const CLEAN: DecaySensor =
+        DecaySensor { rate_hz: 50.0, noise: 0.0, correlation_s: None, step: 0.0, drift_per_s: 0.0 };
     const RELEASE: Release = Release { displacement: 0.1, held_s: 0.5, free_s: 12.0 };
 
     /// Distance from rest at the next turning point.
@@ -263,9 +288,33 @@ mod tests {
         assert!(end.speed == 0.0 && (end.position - 0.3).abs() <= 0.9 / 180.0 + 1e-6, "{end:?}");
     }
 
+    /// A quarter of a pendulum's period is K(k)/ω, k = sin(a/2); K by the arithmetic-geometric mean.
+    #[test]
+    fn a_pendulum_has_the_period_of_the_elliptic_integral() {
+        let rig = DecayRig { linear: 0.0, quadratic: 0.0, is_pendulum: true, rest: 0.0, ..RIG };
+        for degrees in [5.0_f64, 30.0, 90.0] {
+            let a = degrees.to_radians();
+            let (mut x, mut y) = (1.0, (0.5 * a).cos());
+            for _ in 0..8 {
+                (x, y) = (0.5 * (x + y), (x * y).sqrt());
+            }
+            let quarter_s = 0.5 * PI / x / 3.0;
+            let there = rig.after(DecayState { position: a, speed: 0.0 }, quarter_s);
+            // 1.6 rad at 5e-8 a radian, of a; and the speed there is that of the energy.
+            assert!(there.position.abs() < 2e-7 * a, "{degrees} {there:?}");
+            assert!((there.speed + 3.0 * (2.0 - 2.0 * a.cos()).sqrt()).abs() < 1e-6 * a, "{degrees} {there:?}");
+        }
+    }
+
     #[test]
     fn the_energy_lost_is_what_damping_and_friction_took() {
-        let rig = DecayRig { coulomb: 0.2, ..RIG };
+        for is_pendulum in [false, true] {
+            energy_balance(is_pendulum);
+        }
+    }
+
+    fn energy_balance(is_pendulum: bool) {
+        let rig = DecayRig { coulomb: 0.2, is_pendulum, ..RIG };
         let defect = |h: f64| {
             let mut s = DecayState { position: 0.4, speed: 0.0 };
             let (start, mut lost) = (rig.energy_j(s), 0.0);

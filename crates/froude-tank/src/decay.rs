@@ -1,7 +1,7 @@
 //! Free decay: added mass and damping of one axis from releases.
 //!
-//! (M + A) q̈ + D_I q̇ + D_II q̇|q̇| + C (q − q₀) = 0: a body on springs or on its own hydrostatic stiffness is displaced, let go, and swings out.
-//! M and C are declared with their uncertainties; A, D_I and D_II are found, q₀ and the start of each release with them.
+//! (M + A) q̈ + D_I q̇ + D_II q̇|q̇| + C (q − q₀) = 0: a body on springs or on its own hydrostatic stiffness is displaced, let go, and swings out; one
+//! whose buoyancy exceeds its weight, at a radius from an axis, is driven back by B r sin(q − q₀) instead, C = B r. M and C are declared with their uncertainties; A, D_I and D_II are found, q₀ and the start of each release with them.
 //!
 //! **Setting.** One axis moves, water at rest before each release, far from walls and waves of its own making.
 //! **Frame.** Position along or about the axis; its zero and sign are free.
@@ -16,6 +16,9 @@
 //! | [`fit`]          | coefficients, scatter, what M and C do to them                   | Efron & Stein 1981, GUM      |
 //! | [`record`]        | estimate, rows and line for the page                             | –                            |
 //! | [`simulate`]     | releases as a rig would log them                                 | –                            |
+//! | [`releases`]     | those that a campaign plans, on the twin of its rig              | –                            |
+//! | [`forecast`]     | the interval to expect of each coefficient                       | Ljung 1999, GUM              |
+//! | [`plan`]         | run matrix, time, peaks and those intervals                      | –                            |
 //!
 //! Not here: the mass of springs (a third of it moves with the body: add it to M), two axes that swing together, waves that come back from the
 //! walls, memory of the free surface (A and D_I are those of the one frequency), the Keulegan–Carpenter number.
@@ -24,12 +27,15 @@ mod envelope;
 mod error;
 mod findings;
 pub mod fit;
+pub mod forecast;
 mod local;
 pub mod motion;
 mod output_error;
+pub mod plan;
 mod pool;
 pub mod record;
 mod reduced;
+pub mod releases;
 pub mod run;
 pub mod simulate;
 pub mod source;
@@ -40,4 +46,4 @@ pub use envelope::envelope;
 pub use error::DecayError;
 pub use fit::{DecayFit, HalfCycle, Method, Range, RunSummary, Scatter};
 pub use output_error::output_error;
-pub use run::{DecayRun, DecaySetup, DecayWindow};
+pub use run::{DecayRun, DecaySetup, DecayWindow, Restoring};

@@ -14,6 +14,7 @@
 //! | [`point`]    | means and zeros of one run                     | Sokal 1997; ITTC 7.5-02-02-02             |
 //! | [`row`]      | observations as the rows of a table            | –                                         |
 //! | [`tare`]     | rig without body, subtracted                   | JCGM 100:2008 (GUM), 5.2                  |
+//! | [`walls`]    | blockage and clearance at the angle of a run   | USR eq. 14; ITTC 7.5-02-02-01             |
 //! | [`simulate`] | the runs that a campaign would give            | –                                         |
 //! | [`mod@plan`] | run matrix, time, travel, intervals to expect  | Fisher 1922                               |
 //!
@@ -27,6 +28,7 @@ pub mod row;
 pub mod simulate;
 pub mod source;
 pub mod tare;
+pub mod walls;
 pub mod window;
 
 pub use error::SteadyError;

@@ -5,7 +5,9 @@ use froude_fit::budget::{OUTSIDE_95, Uncertain, combine};
 use froude_fit::coverage::{Count, z_limit};
 use froude_records::campaign::Motion;
 use froude_tank::decay::simulate::{Logged, Scenario};
-use froude_tank::decay::{DecayError, DecayFit, DecayRun, DecaySetup, DecayWindow, Method, envelope, output_error};
+use froude_tank::decay::{
+    DecayError, DecayFit, DecayRun, DecaySetup, DecayWindow, Method, Restoring, envelope, output_error,
+};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -314,7 +316,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
                 let off = error + fit.by_inertia[j] * dm + fit.by_stiffness[j] * dc;
                 let with = DecayFit {
                     inertia: Uncertain::new(12.0, 0.06),
-                    stiffness: Uncertain::new(180.0, 0.54),
+                    restoring: Restoring::Spring(Uncertain::new(180.0, 0.54)),
                     ..fit.clone()
                 };
                 for (b, (fit, error)) in [(&fit, error), (&with, off)].into_iter().enumerate() {

@@ -25,16 +25,26 @@ use crate::decay::reduced::Reduced;
 
 /// Added mass and damping from turning points and passages.
 ///
-/// Releases of any length; those without three half cycles are left out with a finding.
+/// Releases of any length; those with fewer than five peaks are left out with a finding.
 ///
 /// # Errors
 ///
-/// [`DecayError`]: a damaged log, a declared number that cannot be, or no release that swings.
+/// [`DecayError`]: a damaged log, a declared number that cannot be, no release with five peaks, or a restoring moment that is no spring's.
 pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, DecayError> {
-    let reduced = Reduced::of(runs, setup)?;
-    let values = reduced.pooled.values;
+    let reduced = Reduced::of(runs, setup, Method::Envelope)?;
+    let not_a_spring = |(run, swings): &(DecayRun<'_>, Swings)| DecayError::NotASpring {
+        run: run.id.to_owned(),
+        peak_rad: swings.turns.iter().map(|t| (t.position - swings.rest).abs()).fold(0.0, f64::max),
+        method: Method::Envelope.name(),
+    };
+    if let (true, Some(run)) = (setup.restoring.is_pendulum(), reduced.runs.first()) {
+        return Err(not_a_spring(run));
+    }
+    let undetermined = || DecayError::Undetermined { what: "linear and quadratic damping".to_owned() };
+    let pooled = reduced.pooled.ok_or_else(undetermined)?;
+    let values = pooled.values;
     let [by_inertia, by_stiffness] = DecayFit::by_declared(setup, values);
-    let rows = reduced.rows(setup);
+    let rows = reduced.rows(setup, values);
     let summary = |(run, swings): &(DecayRun<'_>, Swings)| {
         let [first, end] = swings.samples;
         let own: Vec<f64> = rows.iter().filter(|r| r.run == run.id).map(|r| r.residual).collect();
@@ -44,7 +54,7 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
             half_cycles: swings.half_cycles(),
             from_s: run.time_s[first],
             start: [swings.passages[0].position, swings.passages[0].slope],
-            rest: reduced.pooled.rest(swings, setup.stiffness.value),
+            rest: pooled.rest(swings, setup.restoring.stiffness()),
             noise: swings.noise,
             residual_rms: (own.iter().map(|r| r * r).sum::<f64>() / own.len() as f64).sqrt(),
             fitted: Vec::new(),
@@ -57,10 +67,10 @@ pub fn envelope(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, D
         values,
         type_a: reduced.scatter(setup),
         inertia: setup.inertia,
-        stiffness: setup.stiffness,
+        restoring: setup.restoring,
         by_inertia,
         by_stiffness,
-        range: reduced.range(),
+        range: reduced.range(pooled.omega_n),
         runs: reduced.runs.iter().map(summary).collect(),
         rows,
         findings: Vec::new(),

@@ -1,5 +1,7 @@
 //! Why releases give no coefficients.
 
+use froude_records::text::counted;
+
 /// Why releases give no coefficients; each message states what to do.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -79,18 +81,43 @@ pub enum DecayError {
         run: String,
     },
 
-    /// Fewer half cycles than three.
+    /// Fewer peaks than a method needs.
     #[error(
-        "run {run:?}: {found} half cycles between turning points, {needed} are needed; record longer, release from \
-         further out, or skip fewer"
+        "run {run:?}: {} further than {level:.3e} {unit} from rest ({over_noise} times the noise of a sample), and {method} needs {needed}; {advice}",
+        counted(*found, "peak", "peaks")
     )]
-    TooFewHalfCycles {
+    TooFewPeaks {
         /// The run.
         run: String,
-        /// Half cycles found.
+        /// Peaks found.
         found: usize,
-        /// Half cycles needed.
+        /// The distance from rest that a peak exceeds, m or rad.
+        level: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The same in standard deviations of a sample's noise.
+        over_noise: f64,
+        /// The method.
+        method: &'static str,
+        /// Peaks needed.
         needed: usize,
+        /// What to do.
+        advice: &'static str,
+    },
+
+    /// A restoring moment that the formulas of a method do not hold for.
+    #[error(
+        "run {run:?}: a buoyancy at a radius drives back by sin φ, which at {peak_rad:.3} rad is {:.1} % less than φ, and the formulas of {method} are those of a \
+         spring; use decay_output_error, or release from less and declare stiffness = B r",
+        100.0 * (1.0 - peak_rad.sin() / peak_rad)
+    )]
+    NotASpring {
+        /// The run.
+        run: String,
+        /// Its largest peak, rad.
+        peak_rad: f64,
+        /// The method.
+        method: &'static str,
     },
 
     /// A half cycle that is no half cycle.

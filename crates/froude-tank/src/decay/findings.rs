@@ -67,7 +67,7 @@ pub(super) fn common(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) 
     }
     out.extend((1..3).filter_map(|j| negative(fit, j)));
     out.extend(coulomb(reduced, fit, setup));
-    out.extend(first_half_cycles(fit));
+    out.extend(reduced.pooled.and_then(|_| first_half_cycles(fit)));
     for (run, swings) in &reduced.runs {
         out.extend((swings.unread > 0).then(|| {
             warning(
@@ -111,10 +111,11 @@ fn negative(fit: &DecayFit, j: usize) -> Option<Finding> {
 
 /// A part of the decrement that does not depend on the amplitude.
 fn coulomb(reduced: &Reduced<'_>, fit: &DecayFit, setup: &DecaySetup) -> Option<Finding> {
-    let [force, classical, classical_dof] = all_but(&reduced.sums, None).coulomb(&reduced.pooled)?;
+    let pooled = reduced.pooled?;
+    let [force, classical, classical_dof] = all_but(&reduced.sums, None).coulomb(&pooled)?;
     let n = reduced.sums.len();
     let (standard, dof) = if n >= FEWEST_RUNS {
-        jackknife_of_one(n, |g| all_but(&reduced.sums, Some(g)).coulomb(&reduced.pooled).map(|c| c[0]))?
+        jackknife_of_one(n, |g| all_but(&reduced.sums, Some(g)).coulomb(&pooled).map(|c| c[0]))?
     } else {
         (classical, classical_dof)
     };
@@ -171,7 +172,7 @@ fn first_half_cycles(fit: &DecayFit) -> Option<Finding> {
 
 /// A swing that is larger than the one before.
 fn growing(reduced: &Reduced<'_>, swings: &Swings, id: &str, setup: &DecaySetup) -> Option<Finding> {
-    let rest = reduced.pooled.rest(swings, setup.stiffness.value);
+    let rest = reduced.rest(swings, setup.restoring.stiffness());
     let amplitude = |k: usize| swings.side_of(k) * (swings.turns[k].position - rest);
     let chance = |k: usize| swings.noise * (swings.turns[k].variance + swings.turns[k + 1].variance).sqrt();
     let grown = (0..swings.half_cycles())

@@ -5,7 +5,7 @@ use froude_fit::faer::Mat;
 use froude_records::campaign::Motion;
 use froude_records::finding::{Finding, Severity};
 
-use super::run::DecaySetup;
+use super::run::{DecaySetup, Restoring};
 
 /// How the coefficients were got.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -26,6 +26,28 @@ impl Method {
         match self {
             Self::Envelope => "decay_envelope",
             Self::OutputError => "decay_output_error",
+        }
+    }
+
+    /// Peaks that a release must have: the envelope has three unknowns and a rest position of its own in four half cycles, the whole motion shows its period and its
+    /// decrement from one.
+    #[must_use]
+    pub const fn fewest_peaks(self) -> usize {
+        match self {
+            Self::Envelope => 5,
+            Self::OutputError => 2,
+        }
+    }
+
+    /// What to do about fewer.
+    pub(super) const fn of_few_peaks(self) -> &'static str {
+        match self {
+            Self::Envelope => {
+                "release from further out, record longer, skip fewer, or use decay_output_error, which needs 2"
+            }
+            Self::OutputError => {
+                "release from further out, record longer, skip fewer, or read the position with less noise"
+            }
         }
     }
 
@@ -126,8 +148,8 @@ pub struct DecayFit {
     pub type_a: Option<Scatter>,
     /// M as declared.
     pub inertia: Uncertain,
-    /// C as declared.
-    pub stiffness: Uncertain,
+    /// What drives the body back, as declared.
+    pub restoring: Restoring,
     /// ∂values/∂M.
     pub by_inertia: [f64; 3],
     /// ∂values/∂C, exact: the motion knows only ratios to C.
@@ -145,11 +167,11 @@ pub struct DecayFit {
 impl DecayFit {
     /// (∂values/∂M, ∂values/∂C): A = C/ω² − M, and damping is C times what the motion shows.
     pub(super) fn by_declared(setup: &DecaySetup, [added, linear, quadratic]: [f64; 3]) -> [[f64; 3]; 2] {
-        let c = setup.stiffness.value;
+        let c = setup.restoring.stiffness();
         [[-1.0, 0.0, 0.0], [(setup.inertia.value + added) / c, linear / c, quadratic / c]]
     }
 
-    /// The budget: scatter (where known), dry inertia, stiffness.
+    /// The budget: scatter (where known), dry inertia, and what is declared of the restoring force.
     #[must_use]
     pub fn budget(&self) -> Vec<Part> {
         let scatter = self.type_a.iter().map(|a| Part {
@@ -172,12 +194,12 @@ impl DecayFit {
             in_scatter: false,
             origin: None,
         };
-        scatter
-            .chain([
-                declared("dry inertia", self.by_inertia, self.inertia),
-                declared("stiffness", self.by_stiffness, self.stiffness),
-            ])
-            .collect()
+        let restoring = self
+            .restoring
+            .parts()
+            .into_iter()
+            .map(|(name, u, by)| declared(name, self.by_stiffness.map(|d| d * by), u));
+        scatter.chain([declared("dry inertia", self.by_inertia, self.inertia)]).chain(restoring).collect()
     }
 
     /// Uncertainty of coefficient `j` (0 added mass, 1 linear, 2 quadratic); `None` without a type A or such a coefficient.

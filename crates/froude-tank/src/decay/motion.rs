@@ -1,6 +1,6 @@
 //! The equation of motion, integrated between its turning points.
 //!
-//! q̈ = −ω²(q − r) − d₁ q̇ − d₂ q̇|q̇| − f sgn q̇, with ω² = C/(M+A), d₁ = D_I/(M+A), d₂ = D_II/(M+A) and f = Coulomb friction/(M+A), which the fit
+//! q̈ = −ω² s(q − r) − d₁ q̇ − d₂ q̇|q̇| − f sgn q̇, s(x) = x of a spring and sin x of a buoyancy at a radius, with ω² = C/(M+A), d₁ = D_I/(M+A), d₂ = D_II/(M+A) and f = Coulomb friction/(M+A), which the fit
 //! keeps at zero. q̇|q̇| has a kink where q̇ = 0; a step that passes it is cut there, so that every piece is smooth and Runge and
 //! Kutta's fourth order holds over any number of swings. In phase a step of `ω h` leaves (ω h)⁴/120 a radian: 8e-7 at
 //! [`LONGEST_STEP_RAD`], 5e-5 rad after ten cycles.
@@ -25,6 +25,8 @@ pub struct Motion {
     pub coulomb: f64,
     /// r, m or rad.
     pub rest: f64,
+    /// Whether s(x) is sin x.
+    pub is_pendulum: bool,
 }
 
 /// Names the derivatives that go along: by ω², d₁, d₂, r, and by the position and speed at the start.
@@ -52,19 +54,27 @@ impl<const K: usize> State<K> {
 }
 
 impl Motion {
+    /// s(q − r), and its derivative.
+    fn restoring(&self, q: f64) -> [f64; 2] {
+        let off = q - self.rest;
+        if self.is_pendulum { off.sin_cos().into() } else { [off, 1.0] }
+    }
+
     /// Acceleration; `sign` is that of the speed, held over a step.
     fn acceleration(&self, q: f64, v: f64, sign: f64) -> f64 {
-        -self.omega2 * (q - self.rest) - v * (self.linear + self.quadratic * sign * v) - sign * self.coulomb
+        -self.omega2 * self.restoring(q)[0] - v * (self.linear + self.quadratic * sign * v) - sign * self.coulomb
     }
 
     fn rate<const K: usize>(&self, s: &State<K>, sign: f64) -> State<K> {
         let damping = self.linear + 2.0 * self.quadratic * sign * s.v;
         // ∂q̈ by each parameter itself; the start has none.
-        let direct = [-(s.q - self.rest), -s.v, -sign * s.v * s.v, self.omega2, 0.0, 0.0];
+        let [off, slope] = self.restoring(s.q);
+        let stiffness = self.omega2 * slope;
+        let direct = [-off, -s.v, -sign * s.v * s.v, stiffness, 0.0, 0.0];
         let mut by = [[0.0; 2]; K];
         for k in 0..K {
             let [dq, dv] = s.by[k];
-            by[k] = [dv, direct[k] - self.omega2 * dq - damping * dv];
+            by[k] = [dv, direct[k] - stiffness * dq - damping * dv];
         }
         State { q: s.v, v: self.acceleration(s.q, s.v, sign), by }
     }
@@ -82,10 +92,10 @@ impl Motion {
     fn sign(&self, q: f64, v: f64) -> f64 {
         if v != 0.0 {
             v.signum()
-        } else if self.omega2 * (q - self.rest).abs() <= self.coulomb {
+        } else if self.omega2 * self.restoring(q)[0].abs() <= self.coulomb {
             0.0
         } else {
-            -(q - self.rest).signum()
+            -self.restoring(q)[0].signum()
         }
     }
 
@@ -172,7 +182,8 @@ impl Motion {
 mod tests {
     use super::*;
 
-    const MOTION: Motion = Motion { omega2: 9.0, linear: 0.12, quadratic: 1.5, coulomb: 0.0, rest: 0.02 };
+    const MOTION: Motion =
+        Motion { omega2: 9.0, linear: 0.12, quadratic: 1.5, coulomb: 0.0, rest: 0.02, is_pendulum: false };
 
     /// q = r + e^(−γt)(a cos ω_d t + b sin ω_d t): over 20 cycles, within the error that the step promises.
     #[test]
@@ -204,10 +215,16 @@ mod tests {
     /// Central differences of the path itself, in steps of a part of 1e-6: their own error is 1e-6 where they straddle a turning point.
     #[test]
     fn derivatives_are_those_of_the_path() {
-        let (start, step_s, n) = ([0.3, -0.2], 0.03, 400);
-        let along = MOTION.path_and_derivatives(start, step_s, n).unwrap();
+        for is_pendulum in [false, true] {
+            derivatives(&Motion { is_pendulum, ..MOTION });
+        }
+    }
+
+    fn derivatives(motion: &Motion) {
+        let (start, step_s, n) = ([0.5, -0.2], 0.03, 400);
+        let along = motion.path_and_derivatives(start, step_s, n).unwrap();
         let moved = |k: usize, d: f64| {
-            let (mut m, mut s) = (MOTION, start);
+            let (mut m, mut s) = (*motion, start);
             *[&mut m.omega2, &mut m.linear, &mut m.quadratic, &mut m.rest].into_iter().chain(&mut s).nth(k).unwrap() +=
                 d;
             m.path(s, step_s, n).unwrap()
@@ -225,7 +242,8 @@ mod tests {
     /// Coulomb friction alone: each half cycle loses 2f/ω², and the body stops within f/ω² of rest.
     #[test]
     fn coulomb_friction_takes_the_same_from_every_swing_and_stops_the_body() {
-        let motion = Motion { omega2: 4.0, linear: 0.0, quadratic: 0.0, coulomb: 0.05, rest: 0.0 };
+        let motion = Motion { omega2: 4.0, linear: 0.0, quadratic: 0.0, coulomb: 0.05, ..MOTION };
+        let motion = Motion { rest: 0.0, ..motion };
         let path = motion.path([0.2, 0.0], 0.001, 20_000).unwrap();
         let furthest = |k: usize| {
             let centre = (std::f64::consts::FRAC_PI_2 * k as f64 / 0.001).round() as usize;

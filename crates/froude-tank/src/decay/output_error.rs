@@ -38,11 +38,23 @@ struct Releases<'a> {
     runs: &'a [(DecayRun<'a>, Swings)],
     inertia: f64,
     stiffness: f64,
+    /// Whether that is the slope of a sine.
+    is_pendulum: bool,
     /// Whether each release has an added mass of its own.
     has_own: bool,
 }
 
-impl Releases<'_> {
+impl<'a> Releases<'a> {
+    fn of(reduced: &'a Reduced<'a>, setup: &DecaySetup) -> Self {
+        Self {
+            runs: &reduced.runs,
+            inertia: setup.inertia.value,
+            stiffness: setup.restoring.stiffness(),
+            is_pendulum: setup.restoring.is_pendulum(),
+            has_own: reduced.runs.len() >= FEWEST_RUNS,
+        }
+    }
+
     /// How many parameters all releases share.
     fn shared(&self) -> usize {
         SOUGHT - usize::from(self.has_own)
@@ -79,6 +91,7 @@ impl Releases<'_> {
                 quadratic: theta[damping + 1] / moving,
                 coulomb: 0.0,
                 rest,
+                is_pendulum: self.is_pendulum,
             };
             (motion, [q, v])
         })
@@ -125,20 +138,14 @@ impl Model for Releases<'_> {
 
 /// Added mass and damping by fitting the equation of motion.
 ///
-/// Releases of any length; those without three half cycles are left out with a finding.
+/// Releases of any length; those with fewer than two peaks are left out with a finding.
 ///
 /// # Errors
 ///
 /// [`DecayError`]: as for the envelope, and [`DecayError::Fit`] where the search does not start.
 pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFit, DecayError> {
-    let reduced = Reduced::of(runs, setup)?;
-    let n = reduced.runs.len();
-    let model = Releases {
-        runs: &reduced.runs,
-        inertia: setup.inertia.value,
-        stiffness: setup.stiffness.value,
-        has_own: n >= FEWEST_RUNS,
-    };
+    let reduced = Reduced::of(runs, setup, Method::OutputError)?;
+    let model = Releases::of(&reduced, setup);
     let parameters = start(&reduced, setup, &model);
     let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::Fit(e.to_string()))?;
     let values = model.sought(&found.values);
@@ -159,8 +166,6 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
             fitted: run.position[first..end].iter().zip(residuals).map(|(q, r)| q - r).collect(),
         }
     };
-    let mut range = reduced.range();
-    range.period_s = std::f64::consts::TAU / (setup.stiffness.value / (setup.inertia.value + values[0])).sqrt();
     let mut fit = DecayFit {
         method: Method::OutputError,
         axis: setup.axis,
@@ -168,11 +173,11 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         values,
         type_a: scatter(&model, &parameters, &found),
         inertia: setup.inertia,
-        stiffness: setup.stiffness,
+        restoring: setup.restoring,
         by_inertia,
         by_stiffness,
-        range,
-        rows: reduced.rows(setup),
+        range: reduced.range((setup.restoring.stiffness() / (setup.inertia.value + values[0])).sqrt()),
+        rows: reduced.rows(setup, values),
         runs: reduced.runs.iter().enumerate().map(summary).collect(),
         findings: Vec::new(),
     };
@@ -184,12 +189,59 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
     Ok(fit)
 }
 
-/// Where the search starts: the envelope's coefficients, and each release as its first samples show it.
+/// The fit of releases at its end, for a plan.
+pub(super) struct Linearised {
+    /// A, D_I and D_II there.
+    pub values: [f64; SOUGHT],
+    /// How many parameters there are.
+    pub parameters: usize,
+    /// Derivatives of each used release's samples by each parameter; empty by those of others.
+    pub derivatives: Vec<Vec<Vec<f64>>>,
+    /// A, D_I and D_II by the parameters: A is a mean where each release has its own.
+    pub sought: [Vec<f64>; SOUGHT],
+    /// Degrees of freedom of the scatter that the fit will state.
+    pub dof: f64,
+    /// Releases used, each with its peaks.
+    pub used: Vec<(String, usize)>,
+    /// The others.
+    pub left_out: Vec<DecayError>,
+}
+
+/// The same fit, linearised where it ends.
+pub(super) fn linearised(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<Linearised, DecayError> {
+    let reduced = Reduced::of(runs, setup, Method::OutputError)?;
+    let model = Releases::of(&reduced, setup);
+    let parameters = start(&reduced, setup, &model);
+    let found = minimise(&model, &parameters, &Settings::default()).map_err(|e| DecayError::Fit(e.to_string()))?;
+    let n = model.runs.len();
+    let grown = || DecayError::Fit("the motion of the truth grows beyond all numbers".to_owned());
+    let derivatives = (0..n).map(|run| model.derivatives(run, &found.values).ok_or_else(grown));
+    let mut sought: [Vec<f64>; SOUGHT] = std::array::from_fn(|_| vec![0.0; parameters.len()]);
+    let share = if model.has_own { 1.0 / n as f64 } else { 1.0 };
+    for run in 0..if model.has_own { n } else { 1 } {
+        sought[0][model.places(run)[0]] = share;
+    }
+    let damping = model.places(0)[1];
+    sought[1][damping] = 1.0;
+    sought[2][damping + 1] = 1.0;
+    let samples: usize = (0..n).map(|run| model.measured(run).0.len()).sum();
+    Ok(Linearised {
+        values: model.sought(&found.values),
+        parameters: parameters.len(),
+        derivatives: derivatives.collect::<Result<_, _>>()?,
+        sought,
+        dof: if model.has_own { n as f64 - 1.0 } else { samples as f64 - parameters.len() as f64 },
+        used: reduced.runs.iter().map(|(run, swings)| (run.id.to_owned(), swings.turns.len())).collect(),
+        left_out: reduced.left_out.clone(),
+    })
+}
+
+/// Where the search starts: the coefficients of the first stage, and each release as its first samples show it.
 fn start(reduced: &Reduced<'_>, setup: &DecaySetup, model: &Releases<'_>) -> Vec<Parameter> {
-    let [added, linear, quadratic] = reduced.pooled.values;
-    let omega = reduced.pooled.omega_n;
-    let moving = setup.stiffness.value / (omega * omega);
-    let speed = reduced.range().speed[1];
+    let [added, linear, quadratic] = reduced.start(setup);
+    let moving = setup.inertia.value + added;
+    let omega = (setup.restoring.stiffness() / moving).sqrt();
+    let speed = reduced.range(omega).speed[1];
     let [name_a, name_i, name_ii] = setup.axis.decay_names();
     let mut out = vec![
         Parameter::new(name_i, linear, NATURAL * moving * omega),

@@ -100,7 +100,7 @@ impl Sums {
 
     /// The coefficients from these sums; `None` where they do not determine them.
     pub fn estimate(&self, setup: &DecaySetup) -> Option<Estimate> {
-        let (m, c) = (setup.inertia.value, setup.stiffness.value);
+        let (m, c) = (setup.inertia.value, setup.restoring.stiffness());
         let g = &self.rows;
         let inverse = inverse_2([[g[0][0], g[0][1]], [g[1][0], g[1][1]]])?;
         let fitted = |third| {

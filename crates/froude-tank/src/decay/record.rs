@@ -21,7 +21,7 @@ use froude_identify::selection::{Recommendation, leave_one_out};
 use froude_identify::source::SourceResult;
 
 /// The law of the record.
-const LAW: &str = "added_mass_linear_quadratic";
+pub(super) const LAW: &str = "added_mass_linear_quadratic";
 
 /// Load and velocity along or about the axis, by its letters.
 fn channels(fit: &DecayFit) -> (String, String) {
@@ -66,8 +66,8 @@ pub fn result(
 
 /// What nobody declared an uncertainty of counts as exact.
 fn as_exact(fit: &DecayFit) -> Vec<Finding> {
-    let declared = [("inertia", fit.inertia), ("stiffness", fit.stiffness)];
-    let exact = declared.into_iter().filter(|(_, number)| number.standard == 0.0);
+    let restoring = fit.restoring.parts().into_iter().map(|(name, number, _)| (name, number));
+    let exact = [("inertia", fit.inertia)].into_iter().chain(restoring).filter(|(_, number)| number.standard == 0.0);
     let said = |(name, _)| {
         let text = format!(
             "the {name} is declared without a standard uncertainty and counts as exact: write {name} = {{ value = …, standard = \"0.5 %\" }}"
@@ -171,7 +171,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
             outputs: IndexMap::from([(load.clone(), Output { unit: force, formula: Some(formula) })]),
             constants: IndexMap::from([
                 ("inertia".to_owned(), constant(fit.inertia.value, inertia)),
-                ("stiffness".to_owned(), constant(fit.stiffness.value, stiffness)),
+                ("stiffness".to_owned(), constant(fit.restoring.stiffness(), stiffness)),
             ]),
         },
         refers_to: refers_to.into_iter().collect(),
@@ -202,7 +202,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
     }
 }
 
-/// Inertia and stiffness as declared: sources of the campaign that declare them alike have them in common.
+/// Inertia and restoring force as declared: sources of the campaign that declare them alike have them in common.
 fn errors(fit: &DecayFit, campaign: &Campaign) -> IndexMap<String, SharedError> {
     let of = |name: &str, declared: froude_fit::budget::Uncertain, by: [f64; 3]| {
         let key = format!("{}/{name} {:e} {:e}", campaign.key, declared.value, declared.standard);
@@ -217,10 +217,9 @@ fn errors(fit: &DecayFit, campaign: &Campaign) -> IndexMap<String, SharedError> 
         };
         (declared.standard > 0.0).then_some((key, error))
     };
-    [of("dry inertia", fit.inertia, fit.by_inertia), of("stiffness", fit.stiffness, fit.by_stiffness)]
-        .into_iter()
-        .flatten()
-        .collect()
+    let restoring =
+        fit.restoring.parts().into_iter().map(|(name, u, by)| of(name, u, fit.by_stiffness.map(|d| d * by)));
+    [of("dry inertia", fit.inertia, fit.by_inertia)].into_iter().chain(restoring).flatten().collect()
 }
 
 /// The budget of each coefficient, in sentences.

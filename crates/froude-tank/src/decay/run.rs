@@ -58,13 +58,64 @@ pub struct DecayWindow {
     pub free_from_s: Option<f64>,
     /// Half cycles left out after that: the water needs some to forget that it was at rest.
     pub skip_half_cycles: usize,
-    /// A swing counts while its amplitude is above this many standard deviations of a sample's noise.
+    /// A peak is the extreme of a half cycle that is further from rest than this many standard deviations of a sample's noise.
     pub smallest_over_noise: f64,
+    /// That standard deviation, m or rad, where it is declared; from the fourth differences of each log where not, which noise that is correlated from
+    /// sample to sample escapes.
+    pub noise: Option<f64>,
 }
 
 impl Default for DecayWindow {
     fn default() -> Self {
-        Self { free_from_s: None, skip_half_cycles: 0, smallest_over_noise: 5.0 }
+        Self { free_from_s: None, skip_half_cycles: 0, smallest_over_noise: 8.0, noise: None }
+    }
+}
+
+/// What drives a displaced body back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Restoring {
+    /// C (q − q₀): springs or hydrostatics, N/m or N m/rad.
+    Spring(Uncertain),
+    /// B r sin(q − q₀): a buoyancy that exceeds the weight, at a radius from the axis of a rotation.
+    Buoyancy {
+        /// B, N.
+        force_n: Uncertain,
+        /// r, m.
+        radius_m: Uncertain,
+    },
+}
+
+impl Restoring {
+    /// C: its slope at rest, N/m or N m/rad.
+    #[must_use]
+    pub fn stiffness(self) -> f64 {
+        match self {
+            Self::Spring(c) => c.value,
+            Self::Buoyancy { force_n, radius_m } => force_n.value * radius_m.value,
+        }
+    }
+
+    /// Whether it is a sine.
+    #[must_use]
+    pub const fn is_pendulum(self) -> bool {
+        matches!(self, Self::Buoyancy { .. })
+    }
+
+    /// What is declared of it: name, number, and ∂C by it.
+    #[must_use]
+    pub fn parts(self) -> Vec<(&'static str, Uncertain, f64)> {
+        match self {
+            Self::Spring(c) => vec![("stiffness", c, 1.0)],
+            Self::Buoyancy { force_n, radius_m } => {
+                vec![("buoyancy", force_n, radius_m.value), ("radius", radius_m, force_n.value)]
+            }
+        }
+    }
+
+    /// Its energy at a distance from rest, J.
+    #[must_use]
+    pub fn energy_j(self, off: f64) -> f64 {
+        self.stiffness() * if self.is_pendulum() { 1.0 - off.cos() } else { 0.5 * off * off }
     }
 }
 
@@ -75,32 +126,43 @@ pub struct DecaySetup {
     pub axis: Motion,
     /// M: dry inertia of all that moves, kg or kg m².
     pub inertia: Uncertain,
-    /// C: springs or hydrostatics, N/m or N m/rad.
-    pub stiffness: Uncertain,
+    /// What drives the body back.
+    pub restoring: Restoring,
     /// The part of each release that is used.
     pub window: DecayWindow,
 }
 
 impl DecaySetup {
-    /// The whole of each release from its first passage through rest.
+    /// On springs of a stiffness; the whole of each release from its first passage through rest.
     #[must_use]
     pub fn new(axis: Motion, inertia: Uncertain, stiffness: Uncertain) -> Self {
-        Self { axis, inertia, stiffness, window: DecayWindow::default() }
+        Self { axis, inertia, restoring: Restoring::Spring(stiffness), window: DecayWindow::default() }
+    }
+
+    /// The distance from rest that a peak exceeds, m or rad, where a sample has a noise.
+    pub(super) fn level(&self, noise: f64) -> f64 {
+        self.window.smallest_over_noise * noise
     }
 
     pub(super) fn check(&self) -> Result<(), DecayError> {
-        let refuse = |what, value, must| Err(DecayError::Declared { what, value, must });
-        let (m, c, w) = (self.inertia, self.stiffness, self.window);
+        let refuse = |what: &'static str, value, must| Err(DecayError::Declared { what, value, must });
+        let (m, w) = (self.inertia, self.window);
         if !(m.value >= 0.0 && m.value.is_finite()) {
             return refuse("the dry inertia", m.value, "zero or more and finite");
         }
-        if !(c.value > 0.0 && c.value.is_finite()) {
-            return refuse("the stiffness", c.value, "above zero and finite");
-        }
-        for (what, u) in [("the uncertainty of the inertia", m), ("the uncertainty of the stiffness", c)] {
-            if !(u.standard >= 0.0 && u.standard.is_finite()) {
-                return refuse(what, u.standard, "zero or more and finite");
+        let parts = self.restoring.parts();
+        for (what, u, _) in &parts {
+            if !(u.value > 0.0 && u.value.is_finite()) {
+                return refuse(what, u.value, "above zero and finite");
             }
+        }
+        for u in parts.iter().map(|(_, u, _)| *u).chain([m]) {
+            if !(u.standard >= 0.0 && u.standard.is_finite()) {
+                return refuse("a declared standard uncertainty", u.standard, "zero or more and finite");
+            }
+        }
+        if let Some(noise) = w.noise.filter(|x| !(*x > 0.0 && x.is_finite())) {
+            return refuse("the noise of a sample", noise, "above zero and finite");
         }
         if !(w.smallest_over_noise >= 2.0 && w.smallest_over_noise.is_finite()) {
             return refuse("the smallest swing over noise", w.smallest_over_noise, "2 or more and finite");

@@ -82,6 +82,7 @@ impl Scenario {
             quadratic: self.quadratic / self.moving,
             coulomb: self.coulomb / self.moving,
             rest: self.rest,
+            is_pendulum: false,
         };
         let step_s = 1.0 / self.rate_hz;
         // The release lies anywhere between two samples.

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use crate::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, RunSummary};
-use crate::decay::{envelope, output_error, record};
-use froude_identify::method::{Found, Method, MethodError, Need};
+use crate::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, Restoring, RunSummary};
+use crate::decay::{envelope, output_error, plan, record, releases};
+use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::runs::{logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
-use froude_records::campaign::{Campaign, DecaySpec, Motion, Source};
+use froude_records::campaign::{Campaign, Motion, Source};
+use froude_records::decay::{DecaySpec, DeclaredRestoring};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
@@ -51,12 +52,7 @@ impl Method for FreeDecay {
         asked: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let Some(spec) = &source.decay else {
-            let what = "nothing is declared of the body that oscillates: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
-                        \"12 kg\", standard = \"0.5 %\" }";
-            return Err(MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() });
-        };
-        let setup = setup_of(spec);
+        let setup = declared(source)?;
         progress("reading the releases");
         let Releases { logs, files, mut findings } = read(source.input.path())?;
         let runs = logs.iter().map(|log| release(log, setup.axis)).collect::<Result<Vec<_>, _>>()?;
@@ -84,9 +80,42 @@ impl Method for FreeDecay {
                 said.push(finding);
             }
         }
-        let blocks = fits.last().map(|fit| releases(fit, &runs)).into_iter().collect();
+        let blocks = fits.last().map(|fit| section(fit, &runs)).into_iter().collect();
         Ok(Found { results: out, blocks, findings: said, ..Found::default() })
     }
+
+    fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
+        releases::files(campaign, source, &planning(source)?).map(Some)
+    }
+
+    fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
+        plan::prospect(campaign, source, &planning(source)?).map(Some)
+    }
+}
+
+/// What `[source.decay]` declares.
+///
+/// # Errors
+///
+/// It is not there.
+pub fn declared(source: &Source) -> Result<DecaySetup, MethodError> {
+    source.decay.as_ref().map(setup_of).ok_or_else(|| {
+        let what = "nothing is declared of the body that oscillates: write [source.decay] with axis = \"heave\", inertia and stiffness, each as { value = \
+                    \"12 kg\", standard = \"0.5 %\" }";
+        MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+    })
+}
+
+/// The same where its plan has displacements of its axis.
+fn planning(source: &Source) -> Result<DecaySetup, MethodError> {
+    let setup = declared(source)?;
+    let is_angle = setup.axis.is_rotation();
+    let [needed, found] = if is_angle { ["angle", "displacement"] } else { ["displacement", "angle"] };
+    if source.decay_plan.iter().any(|block| block.is_angle != is_angle) {
+        let what = format!("[[source.plan]] states {found}, but the axis is {}: write {needed}", setup.axis.name());
+        return Err(MethodError::Undeclared { place: source.place.to_string(), what });
+    }
+    Ok(setup)
 }
 
 fn setup_of(spec: &DecaySpec) -> DecaySetup {
@@ -95,16 +124,23 @@ fn setup_of(spec: &DecaySpec) -> DecaySetup {
     let window = DecayWindow {
         free_from_s: spec.free_from_s,
         skip_half_cycles: spec.skip_half_cycles,
+        noise: spec.noise,
         ..DecayWindow::default()
     };
-    DecaySetup { window, ..DecaySetup::new(spec.axis, uncertain(spec.inertia), uncertain(spec.stiffness)) }
+    let restoring = match spec.restoring {
+        DeclaredRestoring::Stiffness(c) => Restoring::Spring(uncertain(c)),
+        DeclaredRestoring::Buoyancy { force_n, radius_m } => {
+            Restoring::Buoyancy { force_n: uncertain(force_n), radius_m: uncertain(radius_m) }
+        }
+    };
+    DecaySetup { axis: spec.axis, inertia: uncertain(spec.inertia), restoring, window }
 }
 
 /// Releases whose motion is drawn; more would be a page of the same.
 const DRAWN: usize = 6;
 
 /// The releases on the page: what was used of each, and the motion with that of the fit.
-fn releases(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
+fn section(fit: &DecayFit, runs: &[DecayRun<'_>]) -> DocumentSection {
     let unit = if fit.axis.is_rotation() { "rad" } else { "m" };
     let rows = fit.runs.iter().map(|r| {
         let [position, speed] = r.start;
@@ -196,8 +232,16 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
         return Err(MethodError::input(folder, what));
     }
     let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
+    let mut mounted: Option<String> = None;
     for path in paths {
         let mut log = import_run(&path, None)?;
+        let own = log.log.meta.configuration.clone();
+        if let Some(first) = mounted.replace(own.clone()).filter(|first| *first != own) {
+            let what = format!(
+                "is of {own:?}, and the log before it of {first:?}; inertia and restoring force are those of one body: give each a folder and a source of its own"
+            );
+            return Err(MethodError::input(path, what));
+        }
         if !log.log.meta.method.is_empty() && log.log.meta.method != FREE_DECAY {
             let what = format!(
                 "is a run of {}, and releases are read here; give its folder a source of its own",

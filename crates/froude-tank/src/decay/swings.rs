@@ -1,18 +1,21 @@
 //! Turning points and passages of one release.
 //!
-//! A swing begins where the position leaves a band about rest to one side and ends where it leaves it to the other; the band
-//! is as wide as the smallest swing that counts, so that noise about a passage makes none. Guesses from there are
-//! refined by [`super::local`]. The swing before the first passage has the release in it and is used only where the
-//! setup says that the motion is free by then.
+//! A swing begins where the position leaves a band about rest to one side and ends where it leaves it to the other; noise about a passage does not
+//! reach the band's edge. Guesses from there are refined by [`super::local`]. A peak is the turning point of a swing as refined, further from rest than the
+//! level that the setup states; the first one that is not ends the motion. The swing before the first passage has the release in it and is used only where
+//! the setup says that the motion is free by then.
 
 use std::f64::consts::PI;
 
 use super::error::DecayError;
+use super::fit::Method;
 use super::local::{self, FEWEST, REACH_RAD, Spot};
-use super::run::{DecayRun, DecayWindow};
+use super::run::{DecayRun, DecaySetup};
 
-/// Half cycles that a run must have.
-pub const FEWEST_HALF_CYCLES: usize = 3;
+/// The band about rest, as part of the distance that a peak exceeds.
+const BAND: f64 = 0.625;
+/// Turning points that show the position of rest; from fewer it is that of the body at rest again, where it is.
+const FEWEST_ROUGH: usize = 5;
 /// Where there is no noise, swings count down to this part of the largest.
 const NOISELESS: f64 = 1e-3;
 
@@ -36,35 +39,45 @@ pub struct Swings {
 }
 
 impl Swings {
-    /// The used part of a run.
-    pub fn of(run: &DecayRun<'_>, window: DecayWindow) -> Result<Self, DecayError> {
+    /// The used part of a run, with as many peaks as a method needs.
+    pub fn of(run: &DecayRun<'_>, setup: &DecaySetup, method: Method) -> Result<Self, DecayError> {
         run.check()?;
         let id = || run.id.to_owned();
+        let window = setup.window;
         let first = window.free_from_s.map_or(0, |t| run.time_s.partition_point(|s| *s < t));
         let (time_s, q) = (&run.time_s[first..], &run.position[first..]);
-        let noise = local::noise_of(q);
+        let noise = window.noise.unwrap_or_else(|| local::noise_of(q));
         let mut rest = midrange(&q[q.len() / 2..]);
         let range = q.iter().fold(0.0_f64, |m, x| m.max((x - rest).abs()));
-        if range.is_nan() || range <= 2.0 * window.smallest_over_noise * noise {
+        if range.is_nan() || range <= 2.0 * setup.level(noise) {
             return Err(DecayError::NoMotion { run: id(), range, noise });
         }
-        let band = (window.smallest_over_noise * noise).max(NOISELESS * range);
+        let level = setup.level(noise).max(NOISELESS * range);
+        let band = BAND * level;
         // The rest of the record's second half is crude; that of the swings themselves is not.
         for _ in 0..2 {
-            rest = rest_between(&rough_turns(q, rest, band)).unwrap_or(rest);
+            let turns = rough_turns(q, rest, band);
+            let of_rest = quiet(q, rest, band).filter(|_| turns.len() < FEWEST_ROUGH);
+            rest = of_rest.or_else(|| rest_between(&turns)).unwrap_or(rest);
         }
-        let crossed = crossings(time_s, q, rest, band);
-        let needed = FEWEST_HALF_CYCLES + 1;
+        let mut crossed = crossings(time_s, q, rest, band);
+        let above = crossed.iter().skip(window.skip_half_cycles).take_while(|c| c.furthest > level).count();
+        let few = |found: usize| DecayError::TooFewPeaks {
+            run: id(),
+            found,
+            level,
+            unit: setup.axis.position_unit(),
+            over_noise: window.smallest_over_noise,
+            method: method.name(),
+            needed: method.fewest_peaks(),
+            advice: method.of_few_peaks(),
+        };
         if crossed.len() < 2 {
             let tail = &q[q.len() - q.len() / 10 - 1..];
             let is_back = tail.iter().all(|x| (x - rest).abs() <= band);
-            return Err(if is_back && crossed.is_empty() {
-                DecayError::OverDamped { run: id() }
-            } else {
-                DecayError::TooFewHalfCycles { run: id(), found: 0, needed: FEWEST_HALF_CYCLES }
-            });
+            return Err(if is_back && crossed.is_empty() { DecayError::OverDamped { run: id() } } else { few(above) });
         }
-        let mut gaps: Vec<f64> = crossed.windows(2).map(|w| w[1].0 - w[0].0).collect();
+        let mut gaps: Vec<f64> = crossed.windows(2).map(|w| w[1].time_s - w[0].time_s).collect();
         let middle = gaps.len() / 2;
         let half_period_s = *gaps.select_nth_unstable_by(middle, f64::total_cmp).1;
         let reach_s = REACH_RAD * half_period_s / PI;
@@ -73,11 +86,12 @@ impl Swings {
             let needed = (FEWEST as f64 * PI / (2.0 * REACH_RAD)).ceil() as usize;
             return Err(DecayError::TooCoarse { run: id(), found: in_half_cycle, needed });
         }
+        crossed.truncate(window.skip_half_cycles + above);
         let (mut passages, mut turns) = (Vec::new(), Vec::new());
         let (mut side, mut unread) = (0.0, 0);
         for k in window.skip_half_cycles..crossed.len() {
-            let (guess_s, towards) = crossed[k];
-            let next_s = crossed.get(k + 1).map_or(guess_s + half_period_s, |c| c.0);
+            let guess_s = crossed[k].time_s;
+            let next_s = crossed.get(k + 1).map_or(guess_s + half_period_s, |c| c.time_s);
             let passage = local::passage(time_s, q, guess_s, reach_s, rest);
             let turn = local::turn(time_s, q, 0.5 * (guess_s + next_s), reach_s, noise);
             let (Some(passage), Some(turn)) = (passage, turn) else {
@@ -88,18 +102,20 @@ impl Swings {
                 unread = crossed.len() - 1 - k;
                 break;
             };
+            if (turn.position - rest).abs() <= level {
+                break;
+            }
             if turns.is_empty() {
-                side = towards;
+                side = crossed[k].side;
             }
             passages.push(passage);
             turns.push(turn);
         }
-        if turns.len() < needed && unread > 0 {
+        if turns.len() < method.fewest_peaks() && unread > 0 {
             return Err(DecayError::Irregular { run: id(), half_cycle: turns.len() });
         }
-        if turns.len() < needed {
-            let found = turns.len().saturating_sub(1);
-            return Err(DecayError::TooFewHalfCycles { run: id(), found, needed: FEWEST_HALF_CYCLES });
+        if turns.len() < method.fewest_peaks() {
+            return Err(few(turns.len()));
         }
         let begins = match window.free_from_s {
             Some(_) if window.skip_half_cycles == 0 => first,
@@ -120,7 +136,7 @@ impl Swings {
         0.5 * self.side_of(k) * (self.turns[k].position - self.turns[k + 1].position)
     }
 
-    /// Half cycles.
+    /// Half cycles between peaks.
     pub fn half_cycles(&self) -> usize {
         self.turns.len() - 1
     }
@@ -159,9 +175,26 @@ fn rest_between(turns: &[f64]) -> Option<f64> {
     (n > 0).then(|| 0.5 * (rests[(n - 1) / 2] + rests[n / 2]))
 }
 
-/// Guessed times of passages, with the side that the body goes to, beyond the band.
-fn crossings(time_s: &[f64], q: &[f64], rest: f64, band: f64) -> Vec<(f64, f64)> {
-    let mut out = Vec::new();
+/// The mean of a body that is at rest again over a tenth of its record or more: of the last half of that.
+fn quiet(q: &[f64], rest: f64, band: f64) -> Option<f64> {
+    let from = q.iter().rposition(|x| (x - rest).abs() > band).map_or(0, |i| i + 1);
+    let tail = &q[from..];
+    let last = &tail[tail.len() / 2..];
+    (10 * tail.len() >= q.len() && !last.is_empty()).then(|| last.iter().sum::<f64>() / last.len() as f64)
+}
+
+/// A passage as it is guessed, and the swing after it.
+struct Crossing {
+    time_s: f64,
+    /// +1 or −1: where the body goes to.
+    side: f64,
+    /// How far from rest any sample of the swing is, m or rad.
+    furthest: f64,
+}
+
+/// Guessed passages, each from beyond the band to beyond it on the other side.
+fn crossings(time_s: &[f64], q: &[f64], rest: f64, band: f64) -> Vec<Crossing> {
+    let mut out: Vec<Crossing> = Vec::new();
     let mut last: Option<usize> = None;
     for (i, x) in q.iter().enumerate() {
         let off = x - rest;
@@ -171,7 +204,11 @@ fn crossings(time_s: &[f64], q: &[f64], rest: f64, band: f64) -> Vec<(f64, f64)>
         if let Some(before) = last.filter(|&j| (q[j] - rest) * off < 0.0) {
             // The straight line between where it left the band and where it left it again.
             let part = (rest - q[before]) / (x - q[before]);
-            out.push((time_s[before] + part * (time_s[i] - time_s[before]), off.signum()));
+            let time_s = time_s[before] + part * (time_s[i] - time_s[before]);
+            out.push(Crossing { time_s, side: off.signum(), furthest: 0.0 });
+        }
+        if let Some(swing) = out.last_mut() {
+            swing.furthest = swing.furthest.max(off.abs());
         }
         last = Some(i);
     }
@@ -189,7 +226,9 @@ mod tests {
     }
 
     fn swings(time_s: &[f64], position: &[f64]) -> Result<Swings, DecayError> {
-        Swings::of(&DecayRun { id: "r", time_s, position }, DecayWindow::default())
+        let exact = |value| froude_fit::budget::Uncertain::new(value, 0.0);
+        let setup = DecaySetup::new(froude_records::campaign::Motion::Heave, exact(1.0), exact(1.0));
+        Swings::of(&DecayRun { id: "r", time_s, position }, &setup, Method::Envelope)
     }
 
     #[test]

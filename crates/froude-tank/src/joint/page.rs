@@ -4,7 +4,7 @@ use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series, TextTable};
 use froude_signal::spectrum::density;
 
-use super::forecast::Forecast;
+use super::forecast::Expected;
 use super::{Fitted, JointFit, Run};
 
 /// Runs that are drawn; more would be a page of the same.
@@ -144,12 +144,12 @@ pub(crate) fn minutes(seconds: f64) -> String {
     if seconds < 120.0 { format!("{seconds:.0} s") } else { format!("{:.1} min", seconds / 60.0) }
 }
 
-/// The intervals to expect; `law` names it in the caption.
-pub(crate) fn expected(found: &Forecast, law: &str) -> TextTable {
-    let rows = found.expected.iter().map(|e| {
+/// The intervals to expect; `parts` are the errors that each is made of, and `law` names it in the caption.
+pub(crate) fn expected(expected: &[Expected], parts: &[String], law: &str) -> TextTable {
+    let rows = expected.iter().map(|e| {
         let half = e.combined.arms[1];
         let relative = if e.value == 0.0 { "–".to_owned() } else { number::percent((half / e.value).abs()) };
-        let largest = (0..found.parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
+        let largest = (0..parts.len()).max_by(|&a, &b| e.by_part[a].total_cmp(&e.by_part[b]));
         vec![
             e.name.clone(),
             e.unit.clone(),
@@ -157,7 +157,7 @@ pub(crate) fn expected(found: &Forecast, law: &str) -> TextTable {
             number::significant(half, 2),
             relative,
             largest
-                .map_or_else(String::new, |k| format!("{} ({})", found.parts[k], number::significant(e.by_part[k], 2))),
+                .map_or_else(String::new, |k| format!("{} ({})", parts[k], number::significant(e.by_part[k], 2))),
         ]
     });
     TextTable {

@@ -42,7 +42,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
         expected.collect(),
         vec![
             runs(&planned, &found.cycles, &setup, campaign),
-            expected_table(&found, &format!(", with the drag law {law} of [simulate]")),
+            expected_table(&found.expected, &found.parts, &format!(", with the drag law {law} of [simulate]")),
         ],
     );
     let duration_s = planned.iter().map(duration_s).sum();

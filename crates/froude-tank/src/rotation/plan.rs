@@ -58,7 +58,7 @@ pub fn prospect(campaign: &Campaign, source: &Source) -> Result<Prospect, Method
     let section = DocumentSection {
         title: format!("Plan of {}", source.name),
         paragraphs,
-        tables: vec![runs(&planned, &found, &setup), expected(&found, "")],
+        tables: vec![runs(&planned, &found, &setup), expected(&found.expected, &found.parts, "")],
         charts: Vec::new(),
     };
     Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: each.collect(), section })

@@ -15,6 +15,7 @@ use super::error::SteadyError;
 use super::point::{Point, Run, Zero, point};
 use super::row::{Row, table};
 use super::tare::{self, Tare};
+use super::walls::Walls;
 use super::window::Motion;
 use super::{page, plan, simulate};
 use crate::logs::{self, Logs};
@@ -75,6 +76,8 @@ impl Method for Steady {
         progress("looking for steady windows");
         let reduced = reduce(source, &logs, &spec)?;
         findings.extend(reduced.findings);
+        let walls = Walls::of(campaign);
+        findings.extend(reduced.rows.iter().filter_map(|row| walls.and_then(|walls| walls.finding(row))));
         let table = table(source.input.path(), &reduced.rows);
         let mut observations = reduce_table(campaign, source, &table, files)?;
         if !reduced.errors.is_empty() && observations.data.rows != reduced.rows.len() {

@@ -83,6 +83,7 @@ fn main() -> ExitCode {
         }
         if wants("decay") {
             decay::all(claims, if full { 2_000 } else { 200 });
+            decay::mamba(claims, &root, if full { 2_000 } else { 40 })?;
         }
         if wants("oscillation") {
             oscillation::all(claims, &root, if full { 2_000 } else { 30 })?;

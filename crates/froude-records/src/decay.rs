@@ -1,0 +1,196 @@
+//! `[source.decay]`: a body that is displaced and let go, and the releases that are planned of it.
+//!
+//! ```toml
+//! [source.decay]
+//! axis      = "roll"
+//! inertia   = { value = "0.3693 kg m^2", standard = "0.5 %" }  # dry, of all that moves, about the axis
+//! buoyancy  = { value = "3.0 N", standard = "0.02 N" }         # less weight, at `radius` from the axis: the moment is B r sin φ
+//! radius    = { value = "476 mm", standard = "1 mm" }          # or: stiffness = { value = "12 N m", standard = "0.3 %" }
+//! noise     = "0.05 deg"                                       # of a sample; from the logs themselves where it is not declared
+//! free_from = "1.01 s"
+//!
+//! [[source.plan]]
+//! configuration = "H1LT"
+//! angle         = "30 deg"                                     # of the release; displacement = "0.1 m" along an axis
+//! repeats       = 5
+//! duration      = "20 s"
+//! ```
+
+use std::f64::consts::PI;
+
+use crate::campaign::Motion;
+use crate::carriage_toml::{INERTIA, positive_constant};
+use crate::error::RecordError;
+use crate::run::Declared;
+use crate::section::{Section, found};
+use crate::section_values::{at_most, count, one_of, series};
+use crate::units::Dimension;
+
+/// N/m.
+const STIFFNESS: Dimension = Dimension::new(0, 1, -2);
+/// Most releases that one block of a plan makes.
+const MOST_RUNS: usize = 10_000;
+/// Most samples of a planned release.
+const MOST_SAMPLES: f64 = 1e7;
+
+/// A body that is displaced and let go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DecaySpec {
+    /// What it does.
+    pub axis: Motion,
+    /// Dry inertia of all that moves, kg or kg m².
+    pub inertia: Declared,
+    /// What drives it back.
+    pub restoring: DeclaredRestoring,
+    /// Standard deviation of a sample's noise, m or rad, where it is declared.
+    pub noise: Option<f64>,
+    /// The time from which it is free, s of each log; from its first passage through rest where it is not declared.
+    pub free_from_s: Option<f64>,
+    /// Half cycles left out after that.
+    pub skip_half_cycles: usize,
+}
+
+/// What drives a displaced body back.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DeclaredRestoring {
+    /// Springs or hydrostatics of stiffness C, N/m or N m/rad: C q.
+    Stiffness(Declared),
+    /// A force that keeps its direction, at a radius from the axis of a rotation: B r sin q.
+    Buoyancy {
+        /// B: buoyancy less weight, N.
+        force_n: Declared,
+        /// r, m.
+        radius_m: Declared,
+    },
+}
+
+/// One block of planned releases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecayPlan {
+    /// What is mounted; empty where the campaign does not say.
+    pub configuration: String,
+    /// Displacements from rest, m or rad.
+    pub displacement: Vec<f64>,
+    /// Whether they are angles.
+    pub is_angle: bool,
+    /// How often each is released.
+    pub repeats: usize,
+    /// Time held before the release, s.
+    pub held_s: f64,
+    /// Time free after it, s.
+    pub free_s: f64,
+    /// Samples a second.
+    pub rate_hz: f64,
+}
+
+/// Reads `[source.decay]`.
+pub(crate) fn decay(s: &Section<'_>) -> Result<DecaySpec, RecordError> {
+    s.only(&["axis", "inertia", "stiffness", "buoyancy", "radius", "noise", "free_from", "skip_half_cycles"])?;
+    let axis = one_of(s, "axis", &Motion::NAMES, &Motion::ALL)?
+        .ok_or_else(|| s.missing("axis", "state its motion: axis = \"heave\", for example"))?;
+    let inertia = if axis.is_rotation() { INERTIA } else { Dimension::MASS };
+    let like = if axis.is_rotation() { "0.4 kg m^2" } else { "12 kg" };
+    let missing = |key: &str, like: &str| {
+        s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}"))
+    };
+    let noise = if axis.is_rotation() {
+        s.positive("noise", Dimension::ANGLE)?
+    } else {
+        s.positive("noise", Dimension::LENGTH)?
+    };
+    Ok(DecaySpec {
+        axis,
+        inertia: positive_constant(s, "inertia", inertia)?.ok_or_else(|| missing("inertia", like))?,
+        restoring: restoring(s, axis)?,
+        noise,
+        free_from_s: s.quantity("free_from", Dimension::TIME)?,
+        skip_half_cycles: s.integer("skip_half_cycles")?.map_or(0, |n| n as usize),
+    })
+}
+
+fn restoring(s: &Section<'_>, axis: Motion) -> Result<DeclaredRestoring, RecordError> {
+    let (dimension, like) = if axis.is_rotation() { (Dimension::MOMENT, "12 N m") } else { (STIFFNESS, "180 N/m") };
+    let instead =
+        if axis.is_rotation() { "; or, of a buoyancy that acts at a radius, buoyancy and radius" } else { "" };
+    let missing = |key: &str, like: &str, more: &str| {
+        s.missing(key, &format!("write {key} = {{ value = \"{like}\", standard = \"0.5 %\" }}{more}"))
+    };
+    let Some(buoyancy) = s.get("buoyancy") else {
+        if let Some(radius) = s.get("radius") {
+            return Err(s.wrong(
+                "radius",
+                radius,
+                "is that of a buoyancy, which is not declared: write buoyancy = \"3.0 N\"",
+            ));
+        }
+        let stiffness = positive_constant(s, "stiffness", dimension)?;
+        return Ok(DeclaredRestoring::Stiffness(stiffness.ok_or_else(|| missing("stiffness", like, instead))?));
+    };
+    if !axis.is_rotation() {
+        return Err(s.wrong(
+            "buoyancy",
+            buoyancy,
+            "at a radius drives a rotation back, and the axis is none: declare a stiffness",
+        ));
+    }
+    if let Some(stiffness) = s.get("stiffness") {
+        return Err(s.wrong(
+            "stiffness",
+            stiffness,
+            "stands beside buoyancy: what drives the body back is one or the other",
+        ));
+    }
+    let need = |key: &'static str, dimension, like: &str| {
+        positive_constant(s, key, dimension)?.ok_or_else(|| missing(key, like, ""))
+    };
+    Ok(DeclaredRestoring::Buoyancy {
+        force_n: need("buoyancy", Dimension::FORCE, "3.0 N")?,
+        radius_m: need("radius", Dimension::LENGTH, "476 mm")?,
+    })
+}
+
+/// Reads a `[[source.plan]]` of releases.
+pub(crate) fn decay_plan(s: &Section<'_>) -> Result<DecayPlan, RecordError> {
+    s.only(&["configuration", "angle", "displacement", "repeats", "held", "duration", "rate"])?;
+    let (key, value, dimension) = match (s.get("angle"), s.get("displacement")) {
+        (Some(value), None) => ("angle", value, Dimension::ANGLE),
+        (None, Some(value)) => ("displacement", value, Dimension::LENGTH),
+        (Some(_), Some(value)) => {
+            return Err(s.wrong("displacement", value, "stands beside angle: a release is from one or the other"));
+        }
+        (None, None) => {
+            return Err(s.missing(
+                "angle",
+                "write what it is released from: angle = \"30 deg\" about an axis, displacement = \"0.1 m\" along one",
+            ));
+        }
+    };
+    let out = DecayPlan {
+        configuration: s.text("configuration")?.unwrap_or_default().to_owned(),
+        displacement: series(s, key, value, dimension)?,
+        is_angle: key == "angle",
+        repeats: count(s, "repeats", MOST_RUNS as u64)?.unwrap_or(1),
+        held_s: s.positive("held", Dimension::TIME)?.unwrap_or(1.0),
+        free_s: s.positive("duration", Dimension::TIME)?.unwrap_or(20.0),
+        rate_hz: s.positive("rate", Dimension::ANGULAR_SPEED)?.unwrap_or(100.0),
+    };
+    let is_turned_over = |x: &f64| key == "angle" && x.abs() >= PI;
+    if out.displacement.iter().any(|x| *x == 0.0 || is_turned_over(x)) {
+        return Err(s.wrong(
+            key,
+            value,
+            format!("is {}; a release is away from rest, by less than half a turn", found(value)),
+        ));
+    }
+    let samples = (out.held_s + out.free_s) * out.rate_hz;
+    if samples > MOST_SAMPLES {
+        let at = s.get("duration").or_else(|| s.get("rate")).unwrap_or(value);
+        return Err(s.wrong(
+            "duration",
+            at,
+            format!("makes {samples:.0} samples of a release; {MOST_SAMPLES:.0} are the most"),
+        ));
+    }
+    at_most(s, &[out.displacement.len(), out.repeats], MOST_RUNS)?;
+    Ok(out)
+}

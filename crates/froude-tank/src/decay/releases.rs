@@ -1,0 +1,180 @@
+//! The twin of a campaign's releases: the logs and sidecars that it would give for chosen true coefficients.
+//!
+//! Inertia and restoring force are drawn once for the campaign, about what is declared. Each release has a zero of its own.
+
+use froude_identify::method::{Export, MethodError};
+use froude_records::campaign::{Campaign, Motion, SensorSpec, Source, Truth};
+use froude_records::run::{FREE_DECAY, Role};
+use froude_rig::decay::{DecayRig, DecaySensor, Release};
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+use super::record::LAW;
+use super::run::{DecaySetup, Restoring};
+use super::simulate::Logged;
+
+/// Standard deviation of the zero of a release, as part of its displacement.
+const ZERO: f64 = 0.02;
+
+/// One planned release.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// Its name.
+    pub id: String,
+    /// What is mounted; empty where the campaign does not say.
+    pub configuration: String,
+    /// How it is released.
+    pub release: Release,
+    /// Samples a second.
+    pub rate_hz: f64,
+}
+
+/// The run matrix of a source.
+#[must_use]
+pub fn planned(source: &Source) -> Vec<Planned> {
+    let mut out = Vec::new();
+    for block in &source.decay_plan {
+        for &displacement in &block.displacement {
+            for _ in 0..block.repeats {
+                out.push(Planned {
+                    id: format!("{:03}", out.len() + 1),
+                    configuration: block.configuration.clone(),
+                    release: Release { displacement, held_s: block.held_s, free_s: block.free_s },
+                    rate_hz: block.rate_hz,
+                });
+            }
+        }
+    }
+    out
+}
+
+/// A, D_I and D_II of `[simulate.coefficients]`.
+///
+/// # Errors
+///
+/// No `[simulate]`, a record or another law instead of them, one that is not stated.
+pub fn truth_of(campaign: &Campaign, axis: Motion) -> Result<[f64; 3], MethodError> {
+    let undeclared = |place: &str, what: String| MethodError::Undeclared { place: place.to_owned(), what };
+    let place = campaign.path.display().to_string();
+    let names = axis.decay_names();
+    let all = names.join(", ");
+    let Some(simulate) = &campaign.simulate else {
+        let what = format!(
+            "a twin needs [simulate] with seed, model = \"{LAW}\" and the true {all} in [simulate.coefficients]"
+        );
+        return Err(undeclared(&place, what));
+    };
+    let Truth::Coefficients { model, values } = &simulate.truth else {
+        let what =
+            format!("the twin of a free decay takes its truth from [simulate.coefficients] ({all}), not from a record");
+        return Err(undeclared(&place, what));
+    };
+    if model != LAW {
+        let what =
+            format!("the truth of a free decay is model = \"{LAW}\" with {all}, and [simulate] states {model:?}");
+        return Err(undeclared(&place, what));
+    }
+    let mut out = [0.0; 3];
+    for (out, name) in out.iter_mut().zip(&names) {
+        let missing = || undeclared("[simulate.coefficients]", format!("{name} is missing; the truth needs {all}"));
+        *out = values.get(name).copied().ok_or_else(missing)?;
+    }
+    Ok(out)
+}
+
+/// The sensor of the position among those of `[[simulate.sensor]]`.
+pub(super) fn sensor_of(sensors: &[SensorSpec], axis: Motion) -> Option<&SensorSpec> {
+    let names = if axis.is_rotation() { ["angle", "phi"] } else { ["position", "displacement"] };
+    sensors.iter().find(|s| names.contains(&s.quantity.as_str()))
+}
+
+/// The logs of all planned releases; the same seed gives the same logs.
+#[must_use]
+pub fn simulated(
+    planned: &[Planned],
+    setup: &DecaySetup,
+    [added, linear, quadratic]: [f64; 3],
+    sensors: &[SensorSpec],
+    seed: u64,
+) -> Vec<Logged> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut draw = || -> f64 { rng.sample(StandardNormal) };
+    let mut about = |u: froude_fit::budget::Uncertain| u.value + u.standard * draw();
+    let inertia = about(setup.inertia);
+    let stiffness = match setup.restoring {
+        Restoring::Spring(c) => about(c),
+        Restoring::Buoyancy { force_n, radius_m } => about(force_n) * about(radius_m),
+    };
+    let sensor = sensor_of(sensors, setup.axis);
+    let of = |part: Option<f64>| part.unwrap_or(0.0);
+    let one = |(i, run): (usize, &Planned)| {
+        let rig = DecayRig {
+            inertia,
+            added,
+            linear,
+            quadratic,
+            stiffness,
+            is_pendulum: setup.restoring.is_pendulum(),
+            coulomb: 0.0,
+            rest: of(sensor.and_then(|s| s.bias)) + ZERO * run.release.displacement * draw(),
+        };
+        let sensor = DecaySensor {
+            rate_hz: run.rate_hz,
+            noise: of(sensor.and_then(|s| s.noise)),
+            correlation_s: sensor.and_then(|s| s.correlation_s),
+            step: of(sensor.and_then(|s| s.resolution)),
+            drift_per_s: 0.0,
+        };
+        let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(i as u64 + 1);
+        let trace = rig.release(sensor, run.release, seed);
+        Logged { id: run.id.clone(), time_s: trace.time_s, position: trace.position }
+    };
+    planned.iter().enumerate().map(one).collect()
+}
+
+/// The files of all planned releases of a source: a log and its sidecar each.
+///
+/// # Errors
+///
+/// What the campaign does not declare.
+pub fn files(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Result<Vec<Export>, MethodError> {
+    let truth = truth_of(campaign, setup.axis)?;
+    let planned = planned(source);
+    let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
+    let mut out = Vec::new();
+    for (run, log) in planned.iter().zip(simulated(&planned, setup, truth, sensors, seed)) {
+        out.push(Export { name: format!("{}.csv", run.id), content: text(&log, setup.axis).into_bytes() });
+        out.push(Export { name: format!("{}.toml", run.id), content: sidecar(run, setup.axis).into_bytes() });
+    }
+    Ok(out)
+}
+
+/// Name of the column that moves, with its unit.
+const fn column(axis: Motion) -> [&'static str; 2] {
+    if axis.is_rotation() { ["angle", "rad"] } else { ["position", "m"] }
+}
+
+fn text(log: &Logged, axis: Motion) -> String {
+    let [name, _] = column(axis);
+    let mut out = format!("time,{name}\n");
+    for (t, q) in log.time_s.iter().zip(&log.position) {
+        out += &format!("{t:.6},{q:.8}\n");
+    }
+    out
+}
+
+fn sidecar(run: &Planned, axis: Motion) -> String {
+    let [name, unit] = column(axis);
+    let mounted = if run.configuration.is_empty() {
+        String::new()
+    } else {
+        format!("\n[mounted]\nconfiguration = {:?}\n", run.configuration)
+    };
+    format!(
+        "# A release of the twin.\nschema = 1\nmethod = \"{FREE_DECAY}\"\nrole = \"{}\"\n{mounted}\n[columns]\n\
+         time = {{ name = \"time\", unit = \"s\" }}\n\
+         {name} = {{ name = \"{name}\", unit = \"{unit}\", sign = 1, frame = \"sensor\", clock = \"log\" }}\n",
+        Role::Decay.name()
+    )
+}
