@@ -19,7 +19,6 @@ use crate::error::{Place, RecordError};
 use crate::excited_response::{ExcitedPlan, ExcitedSpec};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::rotation::{RotationPlan, RotationSpec};
-use crate::run::Declared;
 use crate::steady::SteadySpec;
 use crate::units::Dimension;
 use crate::weight_tow::{WeightPlan, WeightTowSpec};
