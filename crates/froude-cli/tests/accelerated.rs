@@ -80,7 +80,7 @@ fn nine_runs_are_planned_simulated_and_identified() {
     for shared in ["mass of H1LT", "delay", "gain of the force"] {
         assert!(errors.iter().any(|key| key.contains(shared)), "{shared}: {errors:?}");
     }
-    let page = std::fs::read_to_string(folder.path().join("results/report.html")).unwrap();
+    let page = std::fs::read_to_string(folder.path().join("campaign-results/report.html")).unwrap();
     for caption in ["Force and windows", "Fitted beside measured", "Spectrum of the residuals"] {
         assert!(page.contains(caption), "{caption}");
     }

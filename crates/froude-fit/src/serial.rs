@@ -17,8 +17,8 @@
 
 use faer::Mat;
 
-/// Largest ρ that is looked for: beyond it a hundred rows are worth one.
-const LARGEST: f64 = 0.98;
+/// A correlation time of more than this part of the longest run is not told from what the law fits.
+const LONGEST: f64 = 0.1;
 /// Halvings of the interval that holds ρ.
 const HALVINGS: usize = 40;
 
@@ -53,7 +53,8 @@ pub fn serial(design: &Mat<f64>, sensitivity: &Mat<f64>, residual: &[f64], run: 
         let left = Left::of(design, sensitivity, run, &pairs, rho);
         left.products / left.squares
     };
-    let (mut low, mut high) = (0.0, LARGEST);
+    let longest = run.chunk_by(|a, b| a == b).map(<[usize]>::len).max().unwrap_or(1);
+    let (mut low, mut high) = (0.0, (-1.0 / (LONGEST * longest as f64)).exp());
     if found <= expected(low) {
         high = low;
     } else if found >= expected(high) {
@@ -69,10 +70,7 @@ pub fn serial(design: &Mat<f64>, sensitivity: &Mat<f64>, residual: &[f64], run: 
     // Σ ρ^2|i−j| over all rows of a run, and over all runs.
     let sizes = run.chunk_by(|a, b| a == b).map(<[usize]>::len);
     let doubled: f64 = sizes.map(|m| (1..m).map(|k| 2.0 * (m - k) as f64 * rho.powi(2 * k as i32)).sum::<f64>()).sum();
-    let of_variance = (n as f64).powi(2) / (n as f64 + doubled) - determined as f64;
-    if of_variance < 1.0 {
-        return None;
-    }
+    let of_variance = ((n as f64).powi(2) / (n as f64 + doubled) - determined as f64).max(1.0);
     // Of a slow coefficient's variance, σ² (1 + ρ)/(1 − ρ).
     let relative = 2.0 / of_variance + 4.0 / ((1.0 - rho * rho) * n as f64);
     let p = design.ncols();

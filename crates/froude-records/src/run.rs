@@ -59,7 +59,8 @@ pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{
     ACCELERATED_TOW, Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction,
-    EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, Mounted, ROTATION, Role, RunMeta, RunStatus, STEADY, TOW, WEIGHT_TOW,
+    EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, Mounted, ROTATION, Role, RunMeta, RunStatus, STEADY, TOW,
+    WEIGHT_TOW,
 };
 pub use reader::{Block, RunReader, read_run};
 pub use recorder::{Packing, Recorder};

@@ -22,8 +22,8 @@ use super::reduce::{Setup, reduce};
 use super::rows::{Rows, window};
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
-use crate::noise::correlated;
 use crate::joint::forecast::inverted;
+use crate::noise::correlated;
 
 /// A coefficient with the interval to expect.
 #[derive(Debug, Clone, PartialEq)]

@@ -27,8 +27,10 @@ const FEWEST_ROWS: usize = 6;
 const MOVES: f64 = 0.02;
 /// A row's acceleration must exceed its noise this many times, in the mean square.
 const ABOVE_NOISE: f64 = 3.0;
-/// A cell that stands at its largest or smallest reading in this part of the moving samples is clipped.
+/// A cell that stands at its largest or smallest reading in this part of the moving samples is clipped …
 const CLIPPED: f64 = 0.05;
+/// … where at rest no reading has more than this part of the samples.
+const REPEATS: f64 = 0.1;
 
 /// How a run moves, as it was logged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -263,24 +265,21 @@ fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Z
     Ok(Zero { ends, standard_n, dof: (independent - 1.0).max(1.0), rest_s })
 }
 
-/// A cell that stands at one reading where it moves, and not at rest: one whose noise is below its step repeats itself there too.
+/// A cell that stands at its largest or smallest reading where it moves. One whose noise is below its step repeats itself at rest, too, and is none.
 fn clipped(run: &TowRun<'_>, begins_s: f64, ends_s: f64) -> Result<(), AcceleratedError> {
     let (low, high) =
         run.force_n.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
     let (from, to) = (run.time_s.partition_point(|t| *t < begins_s), run.time_s.partition_point(|t| *t <= ends_s));
     let moving = &run.force_n[from..to];
     let rest = run.force_n[..from].iter().chain(&run.force_n[to..]);
-    let part = |value: f64, of: &mut dyn Iterator<Item = &f64>| {
-        let (mut n, mut there) = (0_usize, 0_usize);
-        for x in of {
-            n += 1;
-            there += usize::from(*x == value);
-        }
-        there as f64 / n.max(1) as f64
-    };
+    let part = |value: f64| moving.iter().filter(|x| **x == value).count() as f64 / moving.len().max(1) as f64;
+    let mut readings: Vec<f64> = rest.copied().collect();
+    readings.sort_by(f64::total_cmp);
+    let most = readings.chunk_by(|a, b| a == b).map(<[f64]>::len).max().unwrap_or(0);
+    let repeats = most as f64 / readings.len().max(1) as f64;
     for value in [low, high] {
-        let found = part(value, &mut moving.iter());
-        if found >= CLIPPED && low < high && part(value, &mut rest.clone()) == 0.0 {
+        let found = part(value);
+        if found >= CLIPPED && low < high && repeats <= REPEATS {
             return Err(AcceleratedError::Clipped { run: run.id.to_owned(), value, part: 1e2 * found });
         }
     }

@@ -51,7 +51,10 @@ pub fn prospect(campaign: &Campaign, source: &Source, setup: &DecaySetup) -> Res
     let section = DocumentSection {
         title: format!("Plan of {}", source.name),
         paragraphs,
-        tables: vec![runs(&planned, &found, setup), expected_table(&found.expected, &found.parts, &format!(", with the law {LAW} of [simulate]"))],
+        tables: vec![
+            runs(&planned, &found, setup),
+            expected_table(&found.expected, &found.parts, &format!(", with the law {LAW} of [simulate]")),
+        ],
         charts: Vec::new(),
     };
     Ok(Prospect { source: source.name.clone(), runs: planned.len(), duration_s, expected: expected.collect(), section })

@@ -156,8 +156,7 @@ pub(crate) fn expected(expected: &[Expected], parts: &[String], law: &str) -> Te
             number::significant(e.value, 4),
             number::significant(half, 2),
             relative,
-            largest
-                .map_or_else(String::new, |k| format!("{} ({})", parts[k], number::significant(e.by_part[k], 2))),
+            largest.map_or_else(String::new, |k| format!("{} ({})", parts[k], number::significant(e.by_part[k], 2))),
         ]
     });
     TextTable {
