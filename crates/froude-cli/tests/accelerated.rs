@@ -110,6 +110,42 @@ fn one_run_gives_drag_and_added_mass_together() {
     assert!(errors.iter().any(|key| key.contains("mass of H1LT by runs in air")), "{errors:?}");
 }
 
+/// An added mass of potential flow as a prior of what the ramps show: C_A = A22/(ρV).
+#[test]
+fn an_added_mass_of_a_record_is_a_prior() {
+    let folder = simulated(&ONE);
+    // An ellipsoid of some 1 kg across: 6 × 6 by closed form.
+    let body = "[body]\nshape = \"ellipsoid\"\nsemi_axis_x = \"150 mm\"\nsemi_axis_y = \"45 mm\"\nsemi_axis_z = \"45 mm\"\n\n[fluid]\ndensity = \"1000 kg/m^3\"\n";
+    std::fs::write(folder.path().join("ellipsoid.toml"), format!("schema = 1\n{body}")).unwrap();
+    let output = froude(folder.path(), &["added-mass", "ellipsoid.toml", "--out", "am"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let path = folder.path().join("campaign.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let with = |prior: &str| {
+        std::fs::write(&path, text.replace("[simulate]\n", &format!("[identify]\nprior = [{prior}]\n\n[simulate]\n")))
+            .unwrap();
+    };
+    let record: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("am/estimate.json")).unwrap()).unwrap();
+    let a22 = record["estimates"][0]["coefficients"]["A22"]["value"].as_f64().unwrap();
+    with(
+        "{ coefficient = \"C_Ay\", record = \"am/estimate.json\", entry = \"A22\", volume = \"1.2723e-3 m^3\", model_form = \"0.01 %\" }",
+    );
+    let found = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let added = &found["estimates"][0]["coefficients"]["C_Ay"];
+    assert_eq!(added["status"].as_str(), Some("prior"));
+    // The prior is a hundred times narrower than the data: C_A = A22/(ρV).
+    let value = added["value"].as_f64().unwrap();
+    assert!((value / (a22 / (1000.0 * 1.2723e-3)) - 1.0).abs() < 1e-3, "{value} {a22}");
+    with("{ coefficient = \"C_Ay\", record = \"am/estimate.json\", entry = \"A22\", model_form = \"5 %\" }");
+    let error = refused(folder.path());
+    assert!(error.contains("C_Ay is a pure number and A22 is in kg; write volume"), "{error}");
+    with("{ coefficient = \"C_Ay\", record = \"am/estimate.json\", entry = \"A77\", model_form = \"5 %\" }");
+    assert!(refused(folder.path()).contains("is \"A77\", which"), "{}", refused(folder.path()));
+    with("{ coefficient = \"C_Ay\", record = \"none.json\", entry = \"A22\", model_form = \"5 %\" }");
+    assert!(refused(folder.path()).contains("none.json"), "{}", refused(folder.path()));
+}
+
 #[test]
 fn what_is_not_declared_is_refused_with_what_to_write() {
     let folder = simulated(&ONE);

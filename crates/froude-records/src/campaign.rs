@@ -426,6 +426,25 @@ pub struct PriorSpec {
     pub standard_uncertainty: f64,
     /// The model; `None` for all that have the coefficient.
     pub model: Option<String>,
+    /// The record that value and uncertainty are taken from, where they are not written.
+    pub record: Option<PriorRecord>,
+}
+
+/// Where a prior is taken from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PriorRecord {
+    /// `estimate.json`.
+    pub path: PathBuf,
+    /// `source/model`; `None` for the recommended one.
+    pub select: Option<String>,
+    /// Its coefficient, `A66` say.
+    pub entry: String,
+    /// Reference volume of a coefficient C_A that an entry in kg is a prior of, m³: C_A = A/(ρV).
+    pub volume_m3: Option<f64>,
+    /// What is added to its uncertainty in the mean square, as part of it: how far an ideal fluid is from a real one.
+    pub model_form: f64,
+    /// Where it stands in the campaign.
+    pub place: Place,
 }
 
 /// A declared block of cross-validation: fitted to rows inside, compared with the rest.

@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::campaign::Campaign;
 use crate::campaign_toml;
 use crate::error::{RecordError, read_bytes, utf8};
+use crate::prior_record;
 
 /// The largest campaign that is read.
 pub(crate) const LARGEST_BYTES: u64 = 4 << 20;
@@ -16,8 +17,9 @@ pub(crate) const LARGEST_BYTES: u64 = 4 << 20;
 /// See [`RecordError`].
 pub fn read_campaign(path: &Path) -> Result<Campaign, RecordError> {
     let bytes = read_bytes(path, LARGEST_BYTES, "a campaign")?;
-    let campaign = campaign_toml::parse(path, utf8(path, &bytes)?)?;
+    let mut campaign = campaign_toml::parse(path, utf8(path, &bytes)?)?;
     campaign.check_files()?;
+    prior_record::resolve(&mut campaign)?;
     Ok(campaign)
 }
 

@@ -12,8 +12,8 @@ use crate::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 use crate::body::link;
 use crate::body_axis::BodyAxis;
 use crate::campaign::{
-    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, PlanBlock, PriorSpec,
-    RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
+    AngleOffset, BodySpec, BoundKind, BoundsSpec, BudgetEntry, Campaign, Fluid, Identify, Input, PlanBlock,
+    PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
 };
 use crate::carriage_toml::carriage;
 use crate::decay::{decay, decay_plan};
@@ -460,17 +460,52 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
 }
 
 fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
-    s.only(&["coefficient", "value", "standard_uncertainty", "model"])?;
+    s.only(&[
+        "coefficient",
+        "value",
+        "standard_uncertainty",
+        "model",
+        "record",
+        "select",
+        "entry",
+        "volume",
+        "model_form",
+    ])?;
+    let coefficient =
+        s.text("coefficient")?.ok_or_else(|| s.missing("coefficient", "name the coefficient"))?.to_owned();
+    let model = s.text("model")?.map(str::to_owned);
+    if let Some(record) = s.text("record")? {
+        if let Some((key, value)) = ["value", "standard_uncertainty"].iter().find_map(|k| Some((*k, s.get(k)?))) {
+            return Err(s.wrong(key, value, "and record are given; a prior is written, or taken from a record"));
+        }
+        let entry =
+            s.text("entry")?.ok_or_else(|| s.missing("entry", "name the coefficient of the record, \"A66\" say"))?;
+        let record = PriorRecord {
+            path: s.source.relative(record),
+            select: s.text("select")?.map(str::to_owned),
+            entry: entry.to_owned(),
+            volume_m3: s.positive("volume", Dimension::VOLUME)?,
+            model_form: s.positive("model_form", Dimension::ONE)?.unwrap_or(0.0),
+            place: s.place(),
+        };
+        // Value and uncertainty follow when the record is read.
+        let (value, standard_uncertainty) = (f64::NAN, f64::NAN);
+        return Ok(PriorSpec { coefficient, value, standard_uncertainty, model, record: Some(record) });
+    }
+    if let Some((key, value)) = ["select", "entry", "volume", "model_form"].iter().find_map(|k| Some((*k, s.get(k)?))) {
+        return Err(s.wrong(key, value, "belongs to a prior of a record: write record = \"estimate.json\" beside it"));
+    }
     let need = |key: &'static str| -> Result<f64, RecordError> {
         let value =
             s.get(key).ok_or_else(|| s.missing(key, "a prior needs coefficient, value and standard_uncertainty"))?;
         coefficient_value(s, key, value)
     };
     let out = PriorSpec {
-        coefficient: s.text("coefficient")?.ok_or_else(|| s.missing("coefficient", "name the coefficient"))?.to_owned(),
+        coefficient,
         value: need("value")?,
         standard_uncertainty: need("standard_uncertainty")?,
-        model: s.text("model")?.map(str::to_owned),
+        model,
+        record: None,
     };
     if out.standard_uncertainty <= 0.0 {
         return Err(RecordError::Value {

@@ -52,6 +52,7 @@ pub mod page;
 mod parquet_sums;
 pub mod parquet_table;
 pub mod plausible;
+mod prior_record;
 mod raw_column;
 pub mod read;
 pub mod rotation;

@@ -194,8 +194,13 @@ fn lambdas_are_held_or_known_beforehand_by_name() {
     let held = fitted(&logged, &setup(), &fixed).unwrap();
     assert_eq!(value(&held, "lambda_2"), LAMBDAS[1]);
     let free = fitted(&logged, &setup(), &Identify::default()).unwrap();
-    let prior =
-        PriorSpec { coefficient: "lambda_1".to_owned(), value: LAMBDAS[0], standard_uncertainty: 1e-7, model: None };
+    let prior = PriorSpec {
+        coefficient: "lambda_1".to_owned(),
+        value: LAMBDAS[0],
+        standard_uncertainty: 1e-7,
+        model: None,
+        record: None,
+    };
     let known = fitted(&logged, &setup(), &Identify { prior: vec![prior], ..Identify::default() }).unwrap();
     assert!((value(&known, "lambda_1") - LAMBDAS[0]).abs() < 1e-7);
     let of = |fit: &RotationFit| fit.unknown("lambda_1").unwrap().combined.unwrap().standard;

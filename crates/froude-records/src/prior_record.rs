@@ -1,0 +1,91 @@
+//! Priors that are taken from a record: an added mass of potential flow, for a method that cannot see added mass itself.
+//!
+//! ```toml
+//! [identify]
+//! prior = [
+//!   { coefficient = "lambda_1", record = "added-mass/estimate.json", entry = "A66", model_form = "5 %" },
+//!   { coefficient = "C_A", record = "added-mass/estimate.json", entry = "A22", volume = "1.27e-3 m^3", model_form = "5 %" },
+//! ]
+//! ```
+//!
+//! The value is that of the entry; with `volume`, C_A = A/(ρV) by the density that the record refers to. Its standard uncertainty is that of the record (of the
+//! mesh, that is) and `model_form` of the value, added in the mean square: an ideal fluid is no real one, and the record does not know by how much.
+
+use crate::campaign::{Campaign, PriorRecord, PriorSpec};
+use crate::error::RecordError;
+use crate::estimate::Estimate;
+use crate::json::read_estimates;
+use crate::units::{Dimension, parse_unit};
+
+/// Reads every record that a prior is taken from.
+///
+/// # Errors
+///
+/// A record that cannot be read; no such estimate or entry; a unit that is not that of the coefficient; no uncertainty.
+pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
+    for prior in &mut campaign.identify.prior {
+        if let Some(from) = prior.record.clone() {
+            (prior.value, prior.standard_uncertainty) = value(prior, &from)?;
+        }
+    }
+    Ok(())
+}
+
+fn value(prior: &PriorSpec, from: &PriorRecord) -> Result<(f64, f64), RecordError> {
+    let wrong =
+        |key: &str, problem: String| RecordError::Value { place: from.place.clone(), key: key.to_owned(), problem };
+    if !from.path.exists() {
+        return Err(RecordError::MissingFile {
+            place: from.place.clone(),
+            key: "record".to_owned(),
+            path: from.path.clone(),
+        });
+    }
+    let file = read_estimates(&from.path)?;
+    let named = |e: &&Estimate| from.select.as_ref().is_none_or(|id| *id == e.id);
+    let has = |e: &&Estimate| e.coefficients.contains_key(&from.entry);
+    let estimate = file.estimates.iter().filter(named).find(has).ok_or_else(|| {
+        let there: Vec<String> = file
+            .estimates
+            .iter()
+            .map(|e| format!("{} with {}", e.id, e.coefficients.keys().cloned().collect::<Vec<_>>().join(", ")))
+            .collect();
+        wrong(
+            "entry",
+            format!("is {:?}, which {} has not; it has {}", from.entry, from.path.display(), there.join("; ")),
+        )
+    })?;
+    let Some((entry, found)) = estimate.coefficients.get(&from.entry).and_then(|c| Some((c, c.value?))) else {
+        return Err(wrong("entry", format!("is {:?}, which {} does not determine", from.entry, estimate.id)));
+    };
+    let unit = parse_unit(&entry.unit).map(|u| u.dimension).ok();
+    let per = match from.volume_m3 {
+        None => 1.0,
+        Some(_) if unit != Some(Dimension::MASS) => {
+            let problem = format!("turns a mass into C_A, and {} is in {}; leave it out", from.entry, entry.unit);
+            return Err(wrong("volume", problem));
+        }
+        Some(volume) => {
+            let density = estimate.refers_to.get("density").ok_or_else(|| {
+                wrong("volume", format!("gives C_A = A/(ρV), and {} states no density that it refers to", estimate.id))
+            })?;
+            density.value * volume
+        }
+    };
+    let is_coefficient = prior.coefficient.starts_with("C_");
+    if is_coefficient && from.volume_m3.is_none() && unit != Some(Dimension::ONE) {
+        let problem = format!(
+            "is needed: {} is a pure number and {} is in {}; write volume = \"1.27e-3 m^3\", the volume that {} refers to",
+            prior.coefficient, from.entry, entry.unit, prior.coefficient
+        );
+        return Err(wrong("volume", problem));
+    }
+    let value = found / per;
+    let standard = (entry.standard_uncertainty.unwrap_or(0.0) / per).hypot(from.model_form * value);
+    if standard > 0.0 {
+        return Ok((value, standard));
+    }
+    let problem =
+        format!("{} has no uncertainty in {}; write model_form = \"5 %\", for example", from.entry, estimate.id);
+    Err(wrong("model_form", problem))
+}
