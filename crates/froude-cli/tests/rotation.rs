@@ -117,7 +117,7 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
         ("axis    = \"upright\"", "# axis", "state how the axis of rotation lies"),
         ("axis    = \"upright\"", "axis = \"stream\"", "declare K"),
         ("axis    = \"upright\"", "restoring = \"2 mN m\"\naxis = \"upright\"", "gravity restores nothing"),
-        ("inertia = {", "# inertia = {", "inertia is missing"),
+        ("inertia = {", "# inertia = {", "neither declared nor measured"),
         (
             "frequency = [\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]",
             "frequency = [\"1.0 1/s\"]",
