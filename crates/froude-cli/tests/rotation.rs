@@ -49,14 +49,14 @@ fn replace_in(path: &Path, from: &str, to: &str) {
     std::fs::write(path, text.replace(from, to)).unwrap();
 }
 
-/// The plan states what the issue of the paper's gait is: λ₁ to 1 %, λ₂ to some ten, the two of the damping correlated.
+/// The plan's intervals are those that the identification then states, to what nine runs let them scatter.
 #[test]
 fn a_campaign_is_planned_simulated_and_identified() {
     let folder = example(&[]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     assert_eq!((plan[0]["runs"].as_u64(), plan[0]["source"].as_str()), (Some(9), Some("turning rig")));
-    // Seven periods of 6 s, of 36/7 s and of 4.5 s, and a second before each, three times.
-    assert!((plan[0]["duration"]["value"].as_f64().unwrap() - 337.5).abs() < 0.5, "{plan}");
+    // Seven periods of 6 s, of 36/7 s and of 4.5 s, and two seconds before each, three times.
+    assert!((plan[0]["duration"]["value"].as_f64().unwrap() - 346.5).abs() < 0.5, "{plan}");
     let of = |name: &str, key: &str| {
         let all = plan[0]["expected"].as_array().unwrap();
         all.iter().find(|e| e["coefficient"] == name).unwrap()[key].as_f64().unwrap()
@@ -96,7 +96,7 @@ fn a_campaign_is_planned_simulated_and_identified() {
     for name in ["inertia", "gain of the torque", "delay"] {
         assert!(keys.iter().any(|key| key.contains(name)), "{name}: {keys:?}");
     }
-    let output = froude(folder.path(), &["identify", "campaign.toml", "--replace"]);
+    let output = froude(folder.path(), &["identify", "campaign.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     let page = std::fs::read_to_string(folder.path().join("campaign-results/report.html")).unwrap();
     for words in [
@@ -117,7 +117,7 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
         ("axis    = \"upright\"", "# axis", "state how the axis of rotation lies"),
         ("axis    = \"upright\"", "axis = \"stream\"", "declare K"),
         ("axis    = \"upright\"", "restoring = \"2 mN m\"\naxis = \"upright\"", "gravity restores nothing"),
-        ("inertia = {", "# inertia = {", "inertia is missing"),
+        ("inertia = {", "# inertia = {", "neither declared nor measured"),
         (
             "frequency = [\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]",
             "frequency = [\"1.0 1/s\"]",
@@ -181,6 +181,9 @@ fn nothing_about_a_run_is_taken_for_granted() {
     let text = identify();
     assert!(text.contains("the coefficients are of one body"), "{text}");
     replace_in(&sidecar, "[mounted]\nconfiguration = \"tail\"\n\n[columns]", "[columns]");
+    let output = froude(folder.path(), &["inspect", "runs"]);
+    let text = String::from_utf8_lossy(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("rotation, role test") && text.contains("method = \"rotation\" in a [[source]]"), "{text}");
     // One amplitude and one frequency: marked, not refused.
     let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
     let found = record["findings"].as_array().unwrap().iter().any(|f| f["code"] == "not-told-apart");
@@ -193,7 +196,9 @@ fn nothing_about_a_run_is_taken_for_granted() {
     let whole = std::fs::read_to_string(&log).unwrap();
     let rows: Vec<Vec<f64>> =
         whole.lines().skip(1).map(|l| l.split(',').map(|x| x.parse().unwrap()).collect()).collect();
-    let (low, high) = rows.iter().fold((f64::MAX, f64::MIN), |(low, high), r| (low.min(r[2]), high.max(r[2])));
+    // Well below the peaks of the steady swing: the largest torque of all is that of the start.
+    let steady = rows.iter().filter(|r| r[0] > 8.0);
+    let (low, high) = steady.fold((f64::MAX, f64::MIN), |(low, high), r| (low.min(r[2]), high.max(r[2])));
     let limit = low + 0.65 * (high - low);
     let clipped: String = rows.iter().map(|r| format!("{},{},{}\n", r[0], r[1], r[2].min(limit))).collect();
     std::fs::write(&log, format!("time,theta,torque\n{clipped}")).unwrap();

@@ -45,7 +45,8 @@ fn plan(mounted: Mounted, amplitudes_deg: &[f64], omegas_deg: &[f64], periods: f
                 mounted,
                 amplitude_rad: amplitude.to_radians(),
                 omega_rad_s: omega.to_radians(),
-                still_s: 1.0,
+                // Longer than a quarter of a period, so that the rest is told from a log that begins in the motion.
+                still_s: 2.0,
                 periods,
             };
             out.push(Planned { id: format!("{mounted:?} {amplitude} {omega}"), turn, rate_hz: 100.0 });
@@ -80,7 +81,7 @@ fn fitted(logged: &[Simulated], setup: &Setup, identify: &Identify) -> Result<Ro
 }
 
 fn value(fit: &RotationFit, name: &str) -> f64 {
-    fit.unknown(name).unwrap_or_else(|| panic!("{name}")).value.unwrap()
+    fit.unknown(name).expect(name).value.unwrap()
 }
 
 /// What the harmonics leave of the start-up decays with the servo, 18 rad/s: e^{−18·4.5} after one period.
@@ -168,17 +169,17 @@ fn the_sign_of_the_axis_does_not_matter() {
 
 /// By an independent program: dense covariance matrices, a sine for the servo's, 1 mN m correlated as e^{−t/0.5 s}, five periods of nine runs.
 ///
-/// The servo swings 0.1 % further than a sine, and its cycles begin elsewhere: 1 % is allowed.
+/// The servo swings 0.06 % further than a sine: 0.5 % is allowed.
 #[test]
 fn the_forecast_is_that_of_a_second_program() {
     let setup = Setup { cycles: Cycles { used: Some(5), ..Cycles::default() }, ..setup() };
     let found = forecast(&gait(7.0), &setup, &TRUTH, &noise(1e-3), &Identify::default()).unwrap();
     let relative = |j: usize| found.expected[j].combined.standard / LAMBDAS[j];
-    for (j, beforehand) in [9.218e-3, 0.106_43, 0.059_485].into_iter().enumerate() {
-        assert!((relative(j) / beforehand - 1.0).abs() < 0.01, "{j}: {} {beforehand}", relative(j));
+    for (j, beforehand) in [9.217e-3, 0.106_456, 0.059_512].into_iter().enumerate() {
+        assert!((relative(j) / beforehand - 1.0).abs() < 0.005, "{j}: {} {beforehand}", relative(j));
     }
     let r = found.correlation("lambda_2", "lambda_3").unwrap();
-    assert!((r + 0.936).abs() < 0.005, "{r}");
+    assert!((r + 0.936).abs() < 0.001, "{r}");
     // Within what the prior leaves, λ₃ held makes λ₂ better by √(1 − r²) or more.
     let fixed = Identify { fixed: [("lambda_3".to_owned(), LAMBDAS[2])].into_iter().collect(), ..Identify::default() };
     let held = forecast(&gait(7.0), &setup, &TRUTH, &noise(1e-3), &fixed).unwrap();
@@ -264,7 +265,9 @@ fn what_cannot_be_used_is_refused_with_what_to_do() {
     let mut clipped = logged.clone();
     let torque = &mut clipped[4].trace.torque_n_m;
     let (low, high) = torque.iter().fold((f64::MAX, f64::MIN), |(low, high), x| (low.min(*x), high.max(*x)));
-    torque.iter_mut().for_each(|x| *x = x.min(low + 0.7 * (high - low)));
+    for x in torque.iter_mut() {
+        *x = x.min(low + 0.7 * (high - low));
+    }
     let runs = views(&clipped);
     assert!(matches!(
         motions(&runs, &setup()).unwrap_err(),

@@ -9,8 +9,8 @@ use froude_records::RecordError;
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::run::{
-    Block, BodyState, Doubt, DoubtKind, FORCED_OSCILLATION, ImportedRun, Mounted, Role, RunMeta, RunReader, RunStatus,
-    TOW, import_run, read_run, read_run_meta,
+    Block, BodyState, Doubt, DoubtKind, FORCED_OSCILLATION, ImportedRun, Mounted, ROTATION, Role, RunMeta, RunReader,
+    RunStatus, STEADY, TOW, WEIGHT_TOW, import_run, read_run, read_run_meta,
 };
 use froude_records::text::counted;
 use indexmap::IndexMap;
@@ -176,8 +176,8 @@ fn logs(paths: &[PathBuf]) -> Inspection {
         }
     }
     let next = match methods.first().map(String::as_str) {
-        Some(FORCED_OSCILLATION) => {
-            format!("runs = \"FOLDER\" and method = \"{FORCED_OSCILLATION}\" in a [[source]] take a folder of such runs")
+        Some(method @ (FORCED_OSCILLATION | ROTATION | STEADY | WEIGHT_TOW)) => {
+            format!("runs = \"FOLDER\" and method = \"{method}\" in a [[source]] take a folder of such runs")
         }
         _ => "runs = \"FOLDER\" and method = \"decay_envelope\" or \"decay_output_error\" in a [[source]] take a folder of releases".to_owned(),
     };

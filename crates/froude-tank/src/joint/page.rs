@@ -113,6 +113,7 @@ pub(crate) fn spectrum(
         }
     }
     let n = runs.len() as f64;
+    let squared = if unit.contains(' ') { format!("({unit})²") } else { format!("{unit}²") };
     // The mean was taken off: the first line says nothing.
     let series = Series {
         name: "residual".to_owned(),
@@ -132,7 +133,7 @@ pub(crate) fn spectrum(
         x_label: "frequency [Hz]".to_owned(),
         x_scale: Scale::Logarithmic,
         panels: vec![ChartPanel {
-            y_label: format!("power density [({unit})²/Hz]"),
+            y_label: format!("power density [{squared}/Hz]"),
             y_scale: Scale::Logarithmic,
             series: vec![series],
         }],

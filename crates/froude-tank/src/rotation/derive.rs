@@ -85,6 +85,8 @@ pub fn derived(fit: &RotationFit, setup: &Setup) -> Vec<Derived> {
         let mut gradient = vec![0.0; fit.unknowns.len()];
         for (lambda, factor) in LAMBDAS.iter().zip(factors).filter(|(_, factor)| *factor != 0.0) {
             let j = fit.position(lambda)?;
+            // What is held has no interval, and says nothing that was not declared.
+            fit.unknowns[j].combined?;
             value += factor * fit.unknowns[j].value?;
             gradient[j] = factor;
         }

@@ -12,6 +12,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
+use super::error::RotationError;
 use super::fit::{INERTIA, LAMBDAS, RESTORING, RESTORING_IN_AIR, TARES};
 use super::setup::{RotationRun, Setup};
 use super::source::{declared, setup_of};
@@ -151,8 +152,12 @@ impl Truths {
             Ok([need(names[0])?, need(names[1])?, need(names[2])?])
         };
         let is_level = setup.restoring_n_m.is_some();
-        if setup.inertia_kg_m2.is_none() {
-            need(INERTIA)?;
+        match setup.inertia_kg_m2 {
+            Some(_) => {}
+            None if plans(Role::DryAir) => {
+                need(INERTIA)?;
+            }
+            None => return Err(MethodError::refused(RotationError::NoInertia)),
         }
         Ok(Self {
             lambdas: three(LAMBDAS)?,
