@@ -17,6 +17,7 @@ const PERIODS: usize = 4;
 /// # Errors
 ///
 /// Those of [`align`].
+#[must_use]
 pub fn camera(run: &WaveRun<'_>, used: &Used) -> Option<Result<Alignment, SignalError>> {
     let position = run.camera_m.filter(|_| run.shows == Shows::Acceleration)?;
     let omega = used.wave.omega_rad_s;
