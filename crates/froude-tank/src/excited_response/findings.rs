@@ -106,7 +106,7 @@ fn of_values(at: &AtPeriod, setup: &Setup) -> Vec<Finding> {
             "window-not-steady",
             format!(
                 "waves of {:.3} s: {} is {:.1} {unit} from the first half of the window and {:.1} {unit} from the last (the difference has a standard uncertainty of {:.1} {unit}): the start has not decayed, or reflections are \
-                 back; move the window, which is from {:.4} s to {:.4} s after the wavemaker's start",
+                 back; move the window, which is from {:.1} s to {:.1} s after the wavemaker's start",
                 at.period_s,
                 NAMES[j],
                 at.halves[0][j],

@@ -64,8 +64,9 @@ fn at_wave(
 ) -> Result<Forecast, ExcitedError> {
     let (rig, period_s) = (runs[0].rig, runs[0].period_s);
     let run = || runs[0].id.clone();
-    if to_s > rig.lasts_s {
-        let (start_s, last_s) = (rig.still_s, rig.lasts_s);
+    // The start is seen when the stroke has come up: at most its ramp later.
+    let (start_s, last_s) = (rig.still_s + rig.ramp_s, rig.lasts_s - rig.ramp_s);
+    if to_s > last_s {
         return Err(ExcitedError::WindowOutside { run: run(), from_s, to_s, start_s, last_s });
     }
     let cycles = ((to_s - from_s) / period_s).floor() as usize;
