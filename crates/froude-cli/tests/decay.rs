@@ -240,7 +240,7 @@ fn a_campaign_of_releases_is_planned_simulated_and_identified() {
     let shown = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(shown.contains("5 releases have fewer peaks than the 5 that decay_envelope needs"), "{shown}");
     let output = bench::froude(&["simulate", text(&campaign)]);
-    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "free decay: 5 runs in releases");
+    assert!(String::from_utf8_lossy(&output.stdout).starts_with("free decay: 5 runs in "), "{output:?}");
     let record = json(&["identify", text(&campaign), "--json"]);
     let estimate = &record["estimates"][0];
     for expected in plan[0]["expected"].as_array().unwrap() {
@@ -255,7 +255,7 @@ fn a_campaign_of_releases_is_planned_simulated_and_identified() {
     }
     let errors: Vec<&str> =
         estimate["errors"].as_object().unwrap().values().map(|e| e["name"].as_str().unwrap()).collect();
-    assert_eq!(errors, ["dry inertia", "buoyancy", "radius"]);
+    assert_eq!(errors, ["buoyancy", "dry inertia", "radius"]);
     let doubts = record["findings"].as_array().unwrap();
     assert!(doubts.is_empty(), "{doubts:?}");
 }

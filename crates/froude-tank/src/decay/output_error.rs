@@ -181,12 +181,27 @@ pub fn output_error(runs: &[DecayRun<'_>], setup: &DecaySetup) -> Result<DecayFi
         runs: reduced.runs.iter().enumerate().map(summary).collect(),
         findings: Vec::new(),
     };
+    reach_of_releases(&mut fit, &reduced);
     fit.findings = findings::common(&reduced, &fit, setup);
     fit.findings.extend(findings::of_residuals(&fit, &found.residuals, &reduced));
     if found.report.end != End::Converged {
         fit.findings.push(findings::not_converged(found.report));
     }
     Ok(fit)
+}
+
+/// A release that is used before its first passage reaches further and goes faster there than any half cycle after it.
+fn reach_of_releases(fit: &mut DecayFit, reduced: &Reduced<'_>) {
+    for (summary, (run, swings)) in fit.runs.iter().zip(&reduced.runs) {
+        if summary.from_s >= swings.passages[0].time_s - run.step_s() {
+            continue;
+        }
+        let [furthest, fastest] = [&mut fit.range.amplitude[1], &mut fit.range.speed[1]];
+        for pair in summary.fitted.windows(2) {
+            *furthest = furthest.max((pair[0] - summary.rest).abs());
+            *fastest = fastest.max((pair[1] - pair[0]).abs() / run.step_s());
+        }
+    }
 }
 
 /// The fit of releases at its end, for a plan.

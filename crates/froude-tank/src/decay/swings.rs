@@ -49,7 +49,7 @@ impl Swings {
         let noise = window.noise.unwrap_or_else(|| local::noise_of(q));
         let mut rest = midrange(&q[q.len() / 2..]);
         let range = q.iter().fold(0.0_f64, |m, x| m.max((x - rest).abs()));
-        if range.is_nan() || range <= 2.0 * setup.level(noise) {
+        if range.is_nan() || range <= setup.level(noise) {
             return Err(DecayError::NoMotion { run: id(), range, noise });
         }
         let level = setup.level(noise).max(NOISELESS * range);
