@@ -46,5 +46,5 @@ pub use error::OscillationError;
 pub use fit::{OscillationFit, fit};
 pub use forces::Drag;
 pub use froude_hydro::swing::{Medium, Pivot};
-pub use motion::{Motion, motions};
+pub use motion::{Motion, motions, motions_without};
 pub use setup::{Body, Cycles, OscillationRun, Setup};

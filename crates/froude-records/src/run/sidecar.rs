@@ -19,13 +19,15 @@ use crate::error::{RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
 use crate::run::channel::Meaning;
+use crate::run::declarations::{self, Declarations, Stated};
 use crate::run::meta::{
     Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, Mounted, Role, RunMeta,
     RunStatus, TOW,
 };
+use crate::run::sensor::Sensor;
 use crate::section::{Section, Source, parse};
 use crate::section_values::{count, one_of};
-use crate::units::Dimension;
+use crate::units::{Dimension, parse_unit};
 use crate::write::write_atomically;
 
 /// The largest sidecar that is read.
@@ -291,7 +293,10 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         s.only(&[&ALWAYS[..], &["kind"], &MOUNTED, &CARRIAGE].concat())?;
         (TOW.to_owned(), role("kind")?, mounted(s)?, carriage(s)?)
     } else {
-        s.only(&[&ALWAYS[..], &["method", "role", "mounted", "conditions", "carriage", "channels"]].concat())?;
+        s.only(
+            &[&ALWAYS[..], &["method", "role", "mounted", "conditions", "carriage", "channels"], &declarations::KEYS]
+                .concat(),
+        )?;
         let method = s.text("method")?.ok_or_else(|| {
             s.missing("method", "state the kind of experiment that it belongs to: \"tow\", \"free_decay\", …")
         })?;
@@ -323,11 +328,21 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         log_rate_hz: s.quantity("log_rate", Dimension::ANGULAR_SPEED)?.unwrap_or(0.0),
         date: text("date")?,
         start_unix_ns: s.integer("start_unix_ns")?.unwrap_or(0),
+        declared: Declarations::read(s)?,
         ..RunMeta::default()
     };
     if let Some(channels) = s.section("channels")? {
         for (name, _, value) in channels.entries() {
-            out.channels.insert(name.to_owned(), Meaning::read(&channels.as_section(name, value)?, name)?);
+            let entry = channels.as_section(name, value)?;
+            let (meaning, words) = Meaning::read(&entry, name, &out.declared.frame_names())?;
+            let sensor = Sensor::read(&entry, parse_unit(&meaning.unit).ok().map(|unit| unit.dimension))?;
+            let undeclared = ["sign", "frame", "clock"].into_iter().filter(|key| entry.get(key).is_none()).collect();
+            let frame = words.declared_frame().map(str::to_owned);
+            let stated = Stated { sensor, frame, undeclared };
+            if stated != Stated::default() {
+                out.stated.insert(name.to_owned(), stated);
+            }
+            out.channels.insert(name.to_owned(), meaning);
         }
     }
     if let Some(log) = s.section("log")? {

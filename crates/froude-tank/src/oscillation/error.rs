@@ -64,6 +64,23 @@ pub enum OscillationError {
         fewest: usize,
     },
 
+    /// Cycles that marks touch.
+    #[error(
+        "run {run:?}: of its {whole} whole cycles {left} are left without a mark, and {fewest} are needed: {marks}; repeat the run, or widen the sensor's range"
+    )]
+    Marked {
+        /// The run.
+        run: String,
+        /// Whole cycles.
+        whole: usize,
+        /// Those left.
+        left: usize,
+        /// Needed.
+        fewest: usize,
+        /// The marks in words.
+        marks: String,
+    },
+
     /// The sensor was at the end of its range.
     #[error(
         "run {run:?}: {channel} stays at {value} {unit} for {samples} samples from {from_s:.2} s on, longer than a smooth motion does: it is clipped; \

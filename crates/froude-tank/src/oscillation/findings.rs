@@ -35,6 +35,18 @@ fn warning(code: &str, message: String) -> Finding {
 pub fn of_runs(runs: &[OscillationRun<'_>], motions: &[Motion], setup: &Setup, campaign: &Campaign) -> Vec<Finding> {
     let mut out = Vec::new();
     for (run, motion) in runs.iter().zip(motions) {
+        out.extend((motion.dropped > 0).then(|| {
+            warning(
+                "cycles-dropped",
+                format!(
+                    "run {:?}: {} that a mark touches {} not used, {} are",
+                    run.id,
+                    counted(motion.dropped, "cycle", "cycles"),
+                    if motion.dropped == 1 { "is" } else { "are" },
+                    motion.whole
+                ),
+            )
+        }));
         let mean = motion.amplitudes_rad.iter().sum::<f64>() / motion.amplitudes_rad.len() as f64;
         let off = |a: &f64| (a / mean - 1.0).abs();
         let worst = (0..motion.amplitudes_rad.len())
@@ -45,7 +57,7 @@ pub fn of_runs(runs: &[OscillationRun<'_>], motions: &[Motion], setup: &Setup, c
                 format!(
                     "run {:?}: cycle {} swings {:.2} deg where the mean is {:.2} deg; leave out more cycles of start-up (cycles.skip), or look at the servo",
                     run.id,
-                    cycle + 1 + setup.cycles.skip,
+                    motion.numbers[cycle] + 1 + setup.cycles.skip,
                     motion.amplitudes_rad[cycle].to_degrees(),
                     mean.to_degrees()
                 ),

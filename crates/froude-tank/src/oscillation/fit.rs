@@ -78,8 +78,10 @@ pub struct DeclaredError {
 pub struct Fitted {
     /// Zero of the load cell, N.
     pub zero_n: f64,
-    /// The fitted force at the samples used, N, its zero included.
+    /// The fitted force from the first sample used to the last, N, its zero included.
     pub force_n: Vec<f64>,
+    /// Samples used of them.
+    pub used: usize,
     /// Root mean square of measured less fitted, N.
     pub residual_rms_n: f64,
     /// τ: integrated autocorrelation time of that, samples; `None` where the run is too short to tell.
@@ -209,7 +211,7 @@ impl<'a> Joint<'a> {
             names.push((DELAY.to_owned(), "s".to_owned()));
         }
         let period_s = motions.iter().map(|m| m.angle.period_s()).fold(f64::INFINITY, f64::min);
-        let samples = motions.iter().map(|m| m.samples().len()).sum();
+        let samples = motions.iter().map(Motion::count).sum();
         Self { runs, motions, setup, drag, identify, names, buoyancy, mass, delay, period_s, samples }
     }
 
@@ -527,14 +529,17 @@ impl<'a> Joint<'a> {
             .map(|r| {
                 let rows = self.motions[r].samples();
                 let force = self.force(r, rows.clone(), beta, delay_s, &values)?;
-                let measured = &self.runs[r].force_n[rows];
-                let n = force.len() as f64;
-                let zero_n = measured.iter().zip(&force).map(|(y, f)| y - f).sum::<f64>() / n;
-                let left: Vec<f64> = measured.iter().zip(&force).map(|(y, f)| y - f - zero_n).collect();
+                let first = rows.start;
+                let away = |i: usize| self.runs[r].force_n[i] - force[i - first];
+                let used = || self.motions[r].cycles.iter().cloned().flatten();
+                let n = self.motions[r].count() as f64;
+                let zero_n = used().map(away).sum::<f64>() / n;
+                let left: Vec<f64> = used().map(|i| away(i) - zero_n).collect();
                 Ok(Fitted {
                     zero_n,
                     residual_rms_n: (left.iter().map(|x| x * x).sum::<f64>() / n).sqrt(),
                     correlation: integrated_time(&left),
+                    used: left.len(),
                     force_n: force.iter().map(|f| f + zero_n).collect(),
                 })
             })
@@ -614,7 +619,7 @@ impl<'a> Joint<'a> {
             })
             .collect();
         let fitted = self.fitted(&values(&fit))?;
-        let squares: f64 = fitted.iter().map(|f| f.force_n.len() as f64 * f.residual_rms_n.powi(2)).sum();
+        let squares: f64 = fitted.iter().map(|f| f.used as f64 * f.residual_rms_n.powi(2)).sum();
         Ok(OscillationFit {
             law: self.drag.law.name.clone(),
             unknowns,
@@ -645,7 +650,7 @@ fn unbounded(fit: &ls::Fit) -> Vec<f64> {
 fn effective_samples(fitted: &[Fitted]) -> f64 {
     let known: Vec<f64> = fitted.iter().filter_map(|f| f.correlation).collect();
     let mean = if known.is_empty() { f64::INFINITY } else { known.iter().sum::<f64>() / known.len() as f64 };
-    fitted.iter().map(|f| (f.force_n.len() as f64 / f.correlation.unwrap_or(mean).max(1.0)).max(1.0)).sum()
+    fitted.iter().map(|f| (f.used as f64 / f.correlation.unwrap_or(mean).max(1.0)).max(1.0)).sum()
 }
 
 fn of_body(what: &str, body: &str) -> String {

@@ -185,14 +185,14 @@ fn forces(fit: &OscillationFit, runs: &[OscillationRun<'_>], motions: &[Motion])
 
 /// The spectrum of what the fit leaves, mean over the runs of one length of segment.
 fn spectrum(fit: &OscillationFit, runs: &[OscillationRun<'_>], motions: &[Motion]) -> Option<Chart> {
-    let shortest = motions.iter().map(|m| m.samples().len()).min()?;
+    let shortest = motions.iter().map(|m| m.longest().len()).min()?;
     let segment = (shortest / SEGMENTS).checked_ilog2().map(|bits| 1_usize << bits).filter(|n| *n >= 16)?;
     let mut sum: Vec<f64> = Vec::new();
     let mut frequency = Vec::new();
     for ((run, motion), fitted) in runs.iter().zip(motions).zip(&fit.fitted) {
-        let used = motion.samples();
+        let (used, first) = (motion.longest(), motion.samples().start);
         let rate_hz = (used.len() - 1) as f64 / (run.time_s[used.end - 1] - run.time_s[used.start]);
-        let left: Vec<f64> = run.force_n[used].iter().zip(&fitted.force_n).map(|(y, f)| y - f).collect();
+        let left: Vec<f64> = used.map(|i| run.force_n[i] - fitted.force_n[i - first]).collect();
         let (f, p) = density(&left, rate_hz, segment).ok()?;
         if sum.is_empty() {
             (frequency, sum) = (f, p);

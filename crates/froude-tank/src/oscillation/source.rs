@@ -9,13 +9,16 @@ use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect
 use froude_identify::source::laws;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::oscillation::OscillationSpec;
+use froude_records::run::marks::Mark;
+use froude_records::run::step::Step;
 use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
 
 use super::forces::{Drag, LOAD};
+use super::motion::{Motion, motions_without};
 use super::setup::{Body, Cycles, OscillationRun, Setup};
-use super::{findings, fit, motions, page, plan, record, simulate};
+use super::{findings, fit, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
 
 /// The joint fit in time.
@@ -53,12 +56,21 @@ impl Method for ForcedOscillation {
     ) -> Result<Found, MethodError> {
         let spec = declared(source)?;
         progress("reading the runs");
-        let Logs { runs: logs, files, mut findings } =
+        let Logs { runs: logs, mut files, mut findings } =
             logs::read(source.input.path(), FORCED_OSCILLATION, &[Role::Test, Role::DryAir], "time, angle and force")?;
-        let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let mut setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let clocks_s = logs.iter().map(stamps_standard_s).fold(0.0, f64::max);
+        if let Some(delay) = &mut setup.delay_s {
+            // One that is found needs no word of the clocks; of one that is declared their error is an error too.
+            delay.standard = delay.standard.hypot(clocks_s);
+        }
         let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the angles");
-        let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
+        let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
+        let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
+        for (log, motion) in logs.iter().zip(&motions) {
+            logs::add_step(&mut files, log, window_step(log, motion));
+        }
         let mut fits = Vec::new();
         for drag in drags(campaign, source, &setup)? {
             progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
@@ -86,6 +98,30 @@ impl Method for ForcedOscillation {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+}
+
+/// Standard uncertainty of what lies between the stamps of angle and force of a run, s.
+fn stamps_standard_s(log: &ImportedRun) -> f64 {
+    let of = |name: &str| log.told.get(name).map_or(0.0, |told| told.time_standard_s);
+    of("angle").hypot(of("force"))
+}
+
+/// What is used of a run, as a step.
+fn window_step(log: &ImportedRun, motion: &Motion) -> Step {
+    let rows = motion.samples();
+    let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);
+    let but = if motion.dropped == 0 { String::new() } else { format!(", but {} that a mark touches", motion.dropped) };
+    let words = format!(
+        "{from_s:.3} s to {to_s:.3} s: {} whole cycles{but}; angle by harmonics of {:.4} s",
+        motion.whole,
+        motion.angle.period_s()
+    );
+    let step = Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s");
+    step.with("cycles", motion.whole as f64, "1").with("dropped", motion.dropped as f64, "1").with(
+        "period",
+        motion.angle.period_s(),
+        "s",
+    )
 }
 
 /// Configurations of the runs, in order of first appearance.
