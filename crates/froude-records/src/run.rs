@@ -43,6 +43,7 @@ pub mod cell;
 pub(crate) mod channel;
 pub mod clocks;
 pub(crate) mod declarations;
+mod declared_text;
 mod doubt;
 mod file;
 pub mod frames;

@@ -20,6 +20,7 @@ use crate::estimate::Measured;
 use crate::hash::Fingerprint;
 use crate::run::channel::Meaning;
 use crate::run::declarations::{self, Declarations, Stated};
+use crate::run::declared_text;
 use crate::run::meta::{
     Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, Mounted, Role, RunMeta,
     RunStatus, TOW,
@@ -147,7 +148,7 @@ pub(crate) fn of_record(path: &Path, record: &BTreeMap<String, String>) -> Resul
 /// A value as TOML: a table or bare as it is, or a text in quotes.
 fn written(key: &str, value: &str) -> String {
     let last = key.rsplit('.').next().unwrap_or(key);
-    if key.starts_with("channels.") {
+    if declared_text::is_verbatim(key) {
         return value.to_owned();
     }
     let is_named_freely = ["versions.", "constants.", "conditions."].iter().any(|section| key.starts_with(section));
@@ -155,7 +156,7 @@ fn written(key: &str, value: &str) -> String {
 }
 
 /// A basic string of TOML.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {
@@ -169,7 +170,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// A key that a person chose: bare where TOML allows it.
-fn key_word(name: &str) -> String {
+pub(crate) fn key_word(name: &str) -> String {
     let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
     if is_bare { name.to_owned() } else { quoted(name) }
 }
@@ -191,6 +192,9 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     put("start_unix_ns", meta.start_unix_ns.to_string());
     put("log_rate", format!("{} Hz", meta.log_rate_hz));
     put("note", meta.note.clone());
+    for (key, value) in declared_text::at_the_head(&meta.declared) {
+        put(&key, value);
+    }
     let Mounted { body, is_ballasted, hung_weight_n, travel } = &meta.mounted;
     let CarriageFacts { set, pair, repeat, axis, target_speed_m_s, direction, rig, twin_seed } = &meta.carriage;
     let known = [
@@ -235,12 +239,11 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
         put("counts_per_revolution", format!("{} 1", constants.counts_per_revolution));
         put("efficiency_is_calibrated", constants.is_calibrated.to_string());
     }
-    for (name, Meaning { quantity, unit, frame, sign, clock }) in &meta.channels {
-        let [quantity, unit, frame, clock] = [quantity, unit, frame.name(), clock].map(quoted);
-        put(
-            &format!("channels.{}", key_word(name)),
-            format!("{{ quantity = {quantity}, unit = {unit}, frame = {frame}, sign = {sign}, clock = {clock} }}"),
-        );
+    for (name, meaning) in &meta.channels {
+        put(&format!("channels.{}", key_word(name)), declared_text::channel(meaning, meta.stated.get(name)));
+    }
+    for (key, value) in declared_text::in_sections(&meta.declared) {
+        put(&key, value);
     }
     if let Some(log) = &meta.log {
         put("log.bytes", log.bytes.to_string());
