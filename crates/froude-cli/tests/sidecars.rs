@@ -254,7 +254,7 @@ fn words_of_a_sidecar_that_are_not_known_are_refused_with_the_nearest_and_their_
         (with("range = [\"8 N\", \"-8 N\"]"), "t0.4.toml:9:", "the smaller end stands first"),
         (with("filter = { kind = \"butterwort\", causal = true }"), "t0.4.toml:9:", "did you mean `butterworth`?"),
         (with("filter = { kind = \"butterworth\", order = 2, corner = \"20 Hz\" }"), "t0.4.toml:9:", "causal"),
-        (format!("{}{}", sidecar(), MARK.replace("why", "wy")), "t0.4.toml:13:", "did you mean `why`?"),
+        (format!("{}{}", sidecar(), MARK.replace("why", "whhy")), "t0.4.toml:13:", "did you mean `why`?"),
         (
             format!("{}{}", sidecar(), MARK.replace("\"outlier\"", "\"outlyer\"")),
             "t0.4.toml:13:",

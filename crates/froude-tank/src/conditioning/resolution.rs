@@ -1,8 +1,8 @@
 //! The step of a reading against its noise.
 //!
 //! A reading in steps of q has a standard uncertainty of q/√12 that is independent from sample to sample only where noise of that size or more moves it from
-//! step to step. Below that it repeats, and no mean averages it down. The noise is that of second differences, √(Σ(xᵢ₋₁ − 2xᵢ + xᵢ₊₁)²/6n), which a smooth
-//! motion does not enter; what the steps themselves add to it is in there too.
+//! step to step. Below that it repeats, and no mean averages it down. The noise is that of second differences, √(Σ(xᵢ₋₁ − 2xᵢ + xᵢ₊₁)²/6n) without the largest
+//! of them, which neither a smooth motion nor a start enters; what the steps themselves add to it is in there too.
 //!
 //! **Source.** JCGM 100:2008 (GUM), F.2.2.1; Widrow & Kollár (2008), *Quantization Noise*, ch. 4.
 
@@ -10,12 +10,19 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::significant;
 use froude_records::run::ImportedRun;
 
+/// This part of the second differences, the largest, are left out: a start, a stop, an outlier.
+const LEFT_OUT: f64 = 0.05;
+/// What is left then of the variance of a normal noise: 1 − 2·1.96 φ(1.96)/0.95.
+const LEFT: f64 = 0.759;
+
 /// Standard deviation of the noise by second differences; `None` for fewer than three samples.
 #[must_use]
 pub fn noise(values: &[f64]) -> Option<f64> {
-    let n = values.len().checked_sub(2).filter(|n| *n > 0)?;
-    let squares: f64 = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).sum();
-    Some((squares / (6.0 * n as f64)).sqrt())
+    let mut squares: Vec<f64> = values.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).powi(2)).collect();
+    squares.sort_by(f64::total_cmp);
+    squares.truncate(((1.0 - LEFT_OUT) * squares.len() as f64).ceil() as usize);
+    let n = squares.len();
+    (n > 0).then(|| (squares.iter().sum::<f64>() / (6.0 * LEFT * n as f64)).sqrt())
 }
 
 /// Says where the step of a channel is larger than its noise.
@@ -56,9 +63,13 @@ mod tests {
         };
         let values: Vec<f64> =
             (0..20_000).map(|i| 0.3 * (std::f64::consts::TAU * f64::from(i) / 100.0).sin() + 0.1 * uniform()).collect();
-        // 0.1/√12 = 28.9 mN; the motion adds 0.3·3.9e-3/√12 = 0.3 mN in squares; 20,000 samples tell it to 1 %.
+        // 0.1/√12 = 28.9 mN; the motion adds 0.3·3.9e-3/√12 = 0.3 mN in squares; 20,000 samples tell it to 1 %. Three evenly distributed numbers have fewer large
+        // differences than normal ones (excess kurtosis −0.6), of which the largest 5 % hold 18 % of the squares and not 24 %: 4 % of the root.
         let found = noise(&values).unwrap();
-        assert!((found / (0.1 / 12.0_f64.sqrt()) - 1.0).abs() < 0.03, "{found}");
+        assert!((found / (0.1 / 12.0_f64.sqrt()) - 1.0).abs() < 0.06, "{found}");
+        let mut jumps = values;
+        jumps.iter_mut().skip(7_000).for_each(|x| *x += 50.0);
+        assert!((noise(&jumps).unwrap() / found - 1.0).abs() < 1e-3);
         assert_eq!(noise(&[1.0, 2.0]), None);
     }
 }
