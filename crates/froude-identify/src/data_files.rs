@@ -48,6 +48,11 @@ impl<'a> DataFiles<'a> {
         let mut out = Vec::new();
         for file in files {
             let key = self.key(&file.path, &file.role)?;
+            if let Some((_, data)) = self.files.iter_mut().find(|(known, _)| *known == file.path) {
+                // Several methods may read one run; what they do alike is done once.
+                let new = file.steps.iter().filter(|step| !data.steps.contains(step)).cloned().collect::<Vec<_>>();
+                data.steps.extend(new);
+            }
             if observed(&file.role) {
                 out.push(key);
             }

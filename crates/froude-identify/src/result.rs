@@ -6,6 +6,7 @@ use froude_records::campaign::SourceKind;
 use froude_records::comparison::NestedTest;
 use froude_records::estimate::{Estimate, Range};
 use froude_records::finding::Finding;
+use froude_records::run::step::Step;
 use indexmap::IndexMap;
 
 use crate::dataset::Dataset;
@@ -46,19 +47,21 @@ pub struct SourceResult {
 }
 
 /// A file that was read for a source.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct ReadFile {
     /// Where it lies.
     pub path: PathBuf,
     /// What it was read as: `table`, `sidecar`, `record`, or the kind of a run.
     pub role: String,
+    /// What was done to its data, in order.
+    pub steps: Vec<Step>,
 }
 
 impl ReadFile {
     /// A file read as `role`.
     #[must_use]
     pub fn new(path: PathBuf, role: &str) -> Self {
-        Self { path, role: role.to_owned() }
+        Self { path, role: role.to_owned(), steps: Vec::new() }
     }
 }
 

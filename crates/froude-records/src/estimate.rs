@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::comparison::Comparison;
 use crate::finding::Finding;
+use crate::run::step::Step;
 
 pub mod v1;
 
@@ -46,7 +47,7 @@ pub struct EstimateFile {
 }
 
 /// A file and its fingerprint.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct DataFile {
     /// Path as the campaign names it.
     pub path: String,
@@ -55,6 +56,9 @@ pub struct DataFile {
     /// What it was read as: `campaign`, `table`, `sidecar`, `record`, `mesh`, or the kind of a run (`wet`, `dry`, …).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub role: Option<String>,
+    /// What was done to its data, in order; empty where that is not stated, or nothing was done.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub steps: Vec<Step>,
 }
 
 /// A number with its unit.

@@ -94,7 +94,7 @@ impl DataFile {
     ///
     /// [`RecordError::Read`] when the file cannot be read.
     pub fn of(path: &Path, named: &str) -> Result<Self, RecordError> {
-        Ok(Self { path: named.to_owned(), sha256: sha256_of_file(path)?, role: None })
+        Ok(Self { path: named.to_owned(), sha256: sha256_of_file(path)?, ..Self::default() })
     }
 }
 

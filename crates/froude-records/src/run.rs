@@ -15,6 +15,8 @@
 //! | reading, whole or streamed | [`read_run`], [`RunReader`] |
 //! | whether it lies as it was driven | [`check_pair`], [`Doubt`] |
 //! | another program's log     | [`import_run`] |
+//! | what is declared of its data | [`mod@sensor`], [`mod@clocks`], [`mod@frames`], [`mod@cell`], [`mod@marks`] |
+//! | what was done to it       | [`mod@step`] |
 //!
 //! **On disk.** `ID.mcap`: topics `/axis/y`, `/axis/x`, `/force`, `/truth/…`, one message a tick (ROS 2 definitions, CDR bytes),
 //! `/events` (`rcl_interfaces/msg/Log`), and metadata records `froude_run` (at the beginning) and
@@ -37,23 +39,33 @@ pub const STOPPED_EARLY: &str = "stopped-early.txt";
 pub const LAST_RUN: &str = "last run: ";
 
 mod allowance;
+pub mod cell;
 pub(crate) mod channel;
+pub mod clocks;
+pub(crate) mod declarations;
+mod declared_text;
 mod doubt;
 mod file;
+pub mod frames;
 mod import;
 mod layout;
 mod log;
+pub mod marks;
 mod meta;
 mod pair;
 mod reader;
+mod recorded;
 mod recorder;
 mod seal;
+pub mod sensor;
 pub(crate) mod sidecar;
+pub mod step;
 mod sync;
 
 pub use crate::run::doubt::{Doubt, DoubtKind};
 pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
+pub use declarations::{Declarations, Stated, Told};
 pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
@@ -63,6 +75,7 @@ pub use meta::{
     WEIGHT_TOW,
 };
 pub use reader::{Block, RunReader, read_run};
+pub use recorded::recorded_run;
 pub use recorder::{Packing, Recorder};
 pub use seal::CampaignMark;
 pub use sidecar::{parse_run_meta, read_run_meta, run_meta_text, write_run_meta};

@@ -6,9 +6,13 @@ use indexmap::IndexMap;
 
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
+use crate::nearest::suggestion;
 use crate::raw_column::{Raw, check_dimension, fill_or_delete, in_light_of, unit_of_column};
 use crate::run::Role;
+use crate::run::cell::Cell;
 use crate::run::channel::Words;
+use crate::run::declarations::{self, Declarations};
+use crate::run::sensor::{self, Sensor};
 use crate::run::sidecar::{conditions, configuration};
 use crate::scale::{Scale, Value};
 use crate::section::{Section, Source, parse};
@@ -42,6 +46,8 @@ pub struct RunFacts {
     pub configuration: String,
     /// What it was done in.
     pub conditions: IndexMap<String, Measured>,
+    /// What is declared of its data beside the channels.
+    pub declared: Declarations,
 }
 
 /// What one column of the table is.
@@ -57,6 +63,8 @@ pub struct Mapping {
     pub undeclared: Vec<&'static str>,
     /// Factor that gives a dimensionless column its dimension.
     pub scale: Option<Scale>,
+    /// What is stated about its sensor.
+    pub sensor: Sensor,
     /// The message about it as a channel of a log.
     pub(crate) words: Words,
     /// Where it stands in the sidecar.
@@ -93,7 +101,10 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
     let document = parse(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("sidecar")?;
-    root.only(&["schema", "method", "role", "mounted", "conditions", "constants", "columns"])?;
+    root.only(
+        &[&["schema", "method", "role", "mounted", "conditions", "constants", "columns"], &declarations::KEYS[..]]
+            .concat(),
+    )?;
     if let Some(mounted) = root.section("mounted")? {
         mounted.only(&["configuration"])?;
     }
@@ -102,6 +113,7 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         role: one_of(&root, "role", &Role::NAMES, &Role::ALL)?,
         configuration: configuration(&root)?,
         conditions: conditions(&root)?,
+        declared: Declarations::read(&root)?,
     };
     let mut constants = IndexMap::new();
     if let Some(section) = root.section("constants")? {
@@ -114,13 +126,62 @@ pub fn parse_sidecar(path: &Path, text: &str) -> Result<Sidecar, RecordError> {
         root.missing("columns", "write [columns] with lines like speed_col = { name = \"speed\", unit = \"m/s\" }")
     })?;
     for (header, _, value) in section.entries() {
-        columns.insert(header.to_owned(), mapping(&section.as_section(header, value)?)?);
+        columns.insert(header.to_owned(), mapping(&section.as_section(header, value)?, &run.declared.frame_names())?);
+    }
+    of_a_run(&root, &run, &columns)?;
+    if let Some(cell) = &run.declared.cell {
+        bridges(&root, cell, &columns)?;
     }
     Ok(Sidecar { path: path.to_owned(), run, constants, columns })
 }
 
-fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
-    section.only(&["name", "unit", "sign", "scale", "quantity", "frame", "clock"])?;
+/// What is done to the data of a run is done by the methods of runs: a table's is read as it stands.
+fn of_a_run(root: &Section<'_>, run: &RunFacts, columns: &IndexMap<String, Mapping>) -> Result<(), RecordError> {
+    if run.method.is_some() {
+        return Ok(());
+    }
+    let needs = "is of the log of a run: state what that is with method = \"steady\", role = \"test\", for example; observations of a table are read as they stand";
+    for key in declarations::KEYS {
+        if let Some(value) = root.get(key) {
+            return Err(root.wrong(key, value, needs));
+        }
+    }
+    match columns.values().find(|column| !column.sensor.is_silent()) {
+        Some(column) => Err(RecordError::Value {
+            place: column.place.clone(),
+            key: "range, resolution, filter or delay".to_owned(),
+            problem: needs.to_owned(),
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Every bridge of a cell is a column, and no load of it is.
+fn bridges(root: &Section<'_>, cell: &Cell, columns: &IndexMap<String, Mapping>) -> Result<(), RecordError> {
+    let names = || columns.values().map(|column| column.name.as_str());
+    let Some(value) = root.get("cell") else { return Ok(()) };
+    if let Some(missing) = cell.columns.iter().find(|bridge| !names().any(|name| name == bridge.as_str())) {
+        return Err(root.wrong(
+            "cell",
+            value,
+            format!(
+                "names the bridge {missing:?}, which no column is; {}",
+                suggestion(missing, names().collect::<Vec<_>>())
+            ),
+        ));
+    }
+    match cell.loads.iter().find(|load| names().any(|name| name == load.as_str())) {
+        Some(doubled) => Err(root.wrong(
+            "cell",
+            value,
+            format!("makes the load {doubled}, which is a column too; leave one of them out"),
+        )),
+        None => Ok(()),
+    }
+}
+
+fn mapping(section: &Section<'_>, frames: &[&str]) -> Result<Mapping, RecordError> {
+    section.only(&[&["name", "unit", "sign", "scale", "quantity", "frame", "clock"], &sensor::KEYS[..]].concat())?;
     let name =
         section.text("name")?.ok_or_else(|| section.missing("name", "write name = \"f_x\", for example"))?.to_owned();
     let place = section.place();
@@ -168,9 +229,11 @@ fn mapping(section: &Section<'_>) -> Result<Mapping, RecordError> {
             advice: "write unit = \"…\" beside its name, or scale = \"…\" for a dimensionless column".to_owned(),
         });
     }
-    let words = Words::read(section, unit.as_ref().map(|unit| unit.dimension))?;
+    let dimension = unit.as_ref().map(|unit| unit.dimension);
+    let words = Words::read(section, dimension, frames)?;
+    let sensor = Sensor::read(section, dimension.filter(|_| scale.is_none()))?;
     let undeclared = ["unit", "sign", "frame", "clock"].into_iter().filter(|key| section.get(key).is_none()).collect();
-    Ok(Mapping { name, unit, sign, undeclared, scale, words, place })
+    Ok(Mapping { name, unit, sign, undeclared, scale, sensor, words, place })
 }
 
 impl Sidecar {

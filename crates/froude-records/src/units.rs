@@ -18,7 +18,7 @@
 //! | symbols | prefixes |
 //! | --- | --- |
 //! | `m s g N Pa Hz A V W J l L K Nm` | `n u µ m c d h k M G` |
-//! | `rad deg ° gon rev rpm min h degC °C ft in kn kt nmi lb lbf gf kgf t bar Nmm % 1` | none |
+//! | `rad deg ° gon rev rpm min h degC °C ft in kn kt nmi lb lbf gf kgf t bar Nmm % ppm 1` | none |
 //!
 //! Angles, minutes, hours and degC take no prefix: `Grad` is German for degree and French for a 400th of a turn, never a
 //! milliard of radians.

@@ -13,6 +13,7 @@ use froude_records::estimate::{
 };
 use froude_records::finding::{Finding, Severity};
 use froude_records::json::{parse_estimates, read_estimates, write_estimates};
+use froude_records::run::step::Step;
 use froude_records::schema::{ESTIMATE_1_JSON_SCHEMA, ESTIMATE_JSON_SCHEMA};
 use proptest::prelude::*;
 
@@ -111,6 +112,7 @@ fn sample() -> EstimateFile {
             path: "tank.csv".to_owned(),
             sha256: "0".repeat(64),
             role: Some("table".to_owned()),
+            steps: vec![Step::new("filter", "f_x", "a delay of 13 ms taken off").with("delay", 0.013, "s")],
         }]),
         versions: [("froude".to_owned(), "0.1.0".to_owned())].into(),
         comparison: Some(comparison()),

@@ -7,6 +7,7 @@
 //! | module              | what                                                              | ends of the record      |
 //! |---------------------|-------------------------------------------------------------------|-------------------------|
 //! | [`butterworth`]     | low-pass design, as second-order sections                         | –                       |
+//! | [`analogue`]        | what a filter before the log does to a signal, and to noise       | –                       |
 //! | [`zero_phase`]      | forward and backward: no phase, twice the attenuation             | odd extension           |
 //! | [`gaussian`]        | smoothing by a Gaussian                                           | mirrored                |
 //! | [`savitzky_golay`]  | local polynomial: value and derivatives                           | polynomial of the end   |
@@ -28,6 +29,7 @@
 //! (`froude-fit::diagnostics`, where χ² is).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod analogue;
 pub mod blocks;
 pub mod butterworth;
 mod cascade;

@@ -186,7 +186,7 @@ impl<E> Problem<'_, E> {
     }
 
     pub fn samples(&self) -> usize {
-        self.runs.iter().map(|run| run.motion.samples().len()).sum()
+        self.runs.iter().map(|run| run.motion.count()).sum()
     }
 
     /// Whole cycles of all runs.
@@ -259,8 +259,10 @@ pub struct DeclaredError {
 pub struct Fitted {
     /// Zero of the load cell.
     pub zero: f64,
-    /// The fitted load at the samples used, its zero included.
+    /// The fitted load from the first sample used to the last, its zero included.
     pub load: Vec<f64>,
+    /// Samples used of them.
+    pub used: usize,
     /// Root mean square of measured less fitted.
     pub residual_rms: f64,
     /// τ: integrated autocorrelation time of that, samples; `None` where the run is too short to tell.

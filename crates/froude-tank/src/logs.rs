@@ -1,15 +1,21 @@
 //! Logs of other programs as the runs of a tank method: a folder with one log per run, each with a sidecar that states what it is.
 //!
-//! Nothing about a channel is taken for granted: unit, sign, frame and clock are declared, or the run is refused.
+//! Nothing about a channel is taken for granted: unit, sign, frame and clock are declared, or the run is refused. What a sidecar declares of the data is done to
+//! them when they are read ([`crate::conditioning`]), so that every method gets channels that it can use.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
-use froude_identify::runs::{logs_in, recorded_in, refuse_others};
+use froude_identify::runs::{files, logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{Channel, ImportedRun, Role, import_run};
+use froude_records::run::clocks::is_own;
+use froude_records::run::step::Step;
+use froude_records::run::{Channel, ImportedRun, Role, RunReader, RunStatus, import_run, read_run_meta, recorded_run};
 use froude_records::units::Dimension;
+
+use crate::conditioning;
+use crate::motion::Motion;
 
 /// The logs of a folder that a method uses.
 pub(crate) struct Logs {
@@ -26,17 +32,17 @@ pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) 
             "`runs` is a folder with one log per run; put the logs that are meant into a folder of their own",
         ));
     }
-    let paths = logs_in(folder)?;
+    let paths = paths_in(folder, method)?;
     if paths.is_empty() {
         refuse_others(folder, method, &recorded_in(folder)?)?;
         let what = format!(
-            "no runs: put one log per run there, as CSV or Parquet with {channels}, each with a sidecar (.toml)"
+            "no runs: put one log per run there, as CSV, Parquet or MCAP with {channels}, each with a sidecar (.toml)"
         );
         return Err(MethodError::input(folder, what));
     }
     let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     for path in paths {
-        let log = import_run(&path, None)?;
+        let mut log = imported(&path)?;
         let meta = &log.log.meta;
         if meta.method != method {
             let found = if meta.method.is_empty() {
@@ -51,21 +57,106 @@ pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) 
             );
             return Err(MethodError::input(path, what));
         }
-        out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
+        if meta.status != RunStatus::Complete {
+            let text = format!("{}: its sidecar says {}, not complete; left out", path.display(), meta.status.name());
+            out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
+            continue;
+        }
         let role = meta.role;
         if !roles.contains(&role) {
             let text = format!("{}: a run of the role {} is not used by {method}", path.display(), role.name());
             out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
             continue;
         }
+        conditioning::condition(&mut log, method)?;
+        out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
         let sidecar = path.with_extension("toml");
-        out.files.push(ReadFile::new(path, role.name()));
+        out.files.push(ReadFile { steps: log.done.clone(), ..ReadFile::new(path, role.name()) });
         if sidecar.exists() {
             out.files.push(ReadFile::new(sidecar, "sidecar"));
         }
         out.runs.push(log);
     }
     Ok(out)
+}
+
+/// The logs of a folder, in the order of their names: those of other programs, and those of `method` that Froude recorded.
+///
+/// # Errors
+///
+/// A folder that cannot be listed, or one run in two files.
+pub(crate) fn paths_in(folder: &Path, method: &str) -> Result<Vec<PathBuf>, MethodError> {
+    let mut out = logs_in(folder)?;
+    for path in files(&[folder.to_owned()])? {
+        if path.is_file() && recorded_of(&path).is_some_and(|of| of == method) {
+            out.push(path);
+        }
+    }
+    out.sort();
+    if let Some(pair) = out.windows(2).find(|pair| pair[0].with_extension("") == pair[1].with_extension("")) {
+        let what = format!(
+            "is one run with {}: a run that counts twice makes every interval too narrow; keep one of them",
+            pair[0].display()
+        );
+        return Err(MethodError::input(&pair[1], what));
+    }
+    Ok(out)
+}
+
+/// The method that a recorded run says it is of.
+fn recorded_of(log: &Path) -> Option<String> {
+    let sidecar = log.with_extension("toml");
+    let meta = if sidecar.exists() {
+        read_run_meta(&sidecar).ok()
+    } else {
+        RunReader::open(log).ok()?.read_all().ok().map(|log| log.meta)
+    };
+    meta.map(|meta| meta.method)
+}
+
+/// Reads a log of any kind.
+///
+/// # Errors
+///
+/// A log that cannot be read, one that is damaged, or another than its sidecar's.
+pub(crate) fn imported(path: &Path) -> Result<ImportedRun, MethodError> {
+    if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap")) {
+        return Ok(import_run(path, None)?);
+    }
+    let log = recorded_run(path)?;
+    match log.findings.iter().find(|finding| finding.severity == Severity::Error) {
+        Some(doubt) => Err(MethodError::NoSet { first: doubt.message.clone(), more: 0 }),
+        None => Ok(log),
+    }
+}
+
+/// Adds a step to those of the file of a run.
+pub(crate) fn add_step(files: &mut [ReadFile], log: &ImportedRun, step: Step) {
+    if let Some(file) = files.iter_mut().find(|file| file.path == log.log.path) {
+        file.steps.push(step);
+    }
+}
+
+/// Standard uncertainty of what lies between the stamps of two channels of a run, s.
+pub(crate) fn stamps_standard_s(log: &ImportedRun, channels: [&str; 2]) -> f64 {
+    let [a, b] = channels.map(|name| log.told.get(name).map_or(0.0, |told| told.time_standard_s));
+    a.hypot(b)
+}
+
+/// The cycles that are used of a run, as a step.
+pub(crate) fn cycles_step(log: &ImportedRun, motion: &Motion) -> Step {
+    let rows = motion.samples();
+    let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);
+    let but = if motion.dropped == 0 { String::new() } else { format!(", but {} that a mark touches", motion.dropped) };
+    let period_s = motion.angle.period_s();
+    let words = format!(
+        "{from_s:.3} s to {to_s:.3} s: {} whole cycles{but}; angle by harmonics of {period_s:.4} s",
+        motion.whole
+    );
+    let step = Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s");
+    step.with("cycles", motion.whole as f64, "1")
+        .with("dropped", motion.dropped as f64, "1")
+        .with("period", period_s, "s")
 }
 
 /// A channel that is declared in full; `why` says what a guess would cost, `along` what its sign is that of.
@@ -84,16 +175,20 @@ pub(crate) fn channel<'a>(
             format!("a run needs the channel {name} ({}), and has {there}", dimension.describe()),
         )
     })?;
-    let mapping = log
-        .sidecar
-        .iter()
-        .flat_map(|s| s.columns.values())
-        .find(|column| column.name.trim_start_matches("y/") == name.trim_start_matches("y/"));
-    let undeclared = mapping.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |m| m.undeclared.clone());
+    let told = log.told.get(name);
+    let undeclared = told.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |told| told.undeclared.clone());
+    let place = told.map_or_else(|| log.log.path.display().to_string(), |told| told.place.to_string());
+    let clock = &channel.meaning.clock;
+    if undeclared.is_empty() && !is_own(clock) {
+        let what = format!(
+            "{name} has the clock {clock:?}, which cannot be aligned with that of the log: declare [clocks.{clock}] {}, or write clock = \"log\" where the log's own times are meant",
+            "{ offset = \"12 ms\", skew = \"0 ms/s\", standard = \"1 ms\", found = \"by …\" }"
+        );
+        return Err(MethodError::Undeclared { place, what });
+    }
     if undeclared.is_empty() {
         return Ok(channel);
     }
-    let place = mapping.map_or_else(|| log.log.path.display().to_string(), |m| m.place.to_string());
     Err(MethodError::Undeclared {
         place,
         what: format!(

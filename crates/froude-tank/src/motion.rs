@@ -2,8 +2,11 @@
 
 use std::ops::Range;
 
+use froude_records::run::marks::Mark;
 use froude_signal::SignalError;
 use froude_signal::harmonic::Harmonics;
+
+use crate::conditioning::stretches::{in_words, touching};
 
 /// The motion has begun where the angle is this part of its size away from its middle.
 const BEGUN: f64 = 0.1;
@@ -80,6 +83,23 @@ pub enum MotionError {
         fewest: usize,
     },
 
+    /// Cycles that marks touch.
+    #[error(
+        "run {run:?}: of its {whole} whole cycles {left} are left without a mark, and {fewest} are needed: {marks}; repeat the run, or widen the sensor's range"
+    )]
+    Marked {
+        /// The run.
+        run: String,
+        /// Whole cycles.
+        whole: usize,
+        /// Those left.
+        left: usize,
+        /// Needed.
+        fewest: usize,
+        /// The marks in words.
+        marks: String,
+    },
+
     /// The sensor was at the end of its range.
     #[error(
         "run {run:?}: {channel} stays at {value} {unit} for {samples} samples from {from_s:.2} s on, longer than a smooth motion does: it is clipped; \
@@ -112,6 +132,8 @@ pub(crate) struct Logged<'a> {
     pub angle_rad: &'a [f64],
     /// What the cell shows: its channel, its unit, its values.
     pub load: (&'static str, &'static str, &'a [f64]),
+    /// What is not used of it.
+    pub marks: &'a [Mark],
 }
 
 /// A run as it is used.
@@ -125,10 +147,34 @@ pub struct Motion {
     pub whole: usize,
     /// Half of what the angle moves through in each cycle, rad.
     pub amplitudes_rad: Vec<f64>,
+    /// Which cycles they are, counted from 0 after those left out at the start: what is marked is missing among them.
+    pub numbers: Vec<usize>,
+    /// Whole cycles that are not used because a mark touches them.
+    pub dropped: usize,
 }
 
 impl Motion {
-    /// All samples used.
+    /// Samples used.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.cycles.iter().map(ExactSizeIterator::len).sum()
+    }
+
+    /// The longest stretch of cycles that follow each other.
+    #[must_use]
+    pub fn longest(&self) -> Range<usize> {
+        let mut best = 0..0;
+        let mut now = 0..0;
+        for cycle in &self.cycles {
+            now = if cycle.start == now.end { now.start..cycle.end } else { cycle.clone() };
+            if now.len() > best.len() {
+                best = now.clone();
+            }
+        }
+        best
+    }
+
+    /// From the first sample used to the last; cycles that a mark touches lie between them and are not used.
     #[must_use]
     pub fn samples(&self) -> Range<usize> {
         self.cycles.first().map_or(0, |c| c.start)..self.cycles.last().map_or(0, |c| c.end)
@@ -158,8 +204,10 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let refused = |source| MotionError::Angle { run: run.id.to_owned(), source };
     let rough = Harmonics::fit(run.time_s, run.angle_rad, 1, None).map_err(refused)?;
     let period_s = rough.period_s();
-    for (channel, values, unit) in [("angle", run.angle_rad, "rad"), (load, loads, load_unit)] {
-        clipped(run, channel, values, unit, period_s)?;
+    if run.marks.iter().all(|mark| mark.why != "clipped") {
+        for (channel, values, unit) in [("angle", run.angle_rad, "rad"), (load, loads, load_unit)] {
+            clipped(run, channel, values, unit, period_s)?;
+        }
     }
     let (first, end) = moving(run, rough.mean, period_s);
     let start_s = run.time_s[first] + asked.skip as f64 * period_s;
@@ -175,17 +223,25 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     }
     let last = if asked.used.is_some_and(|used| used <= there) { at(start_s + whole as f64 * period_s) } else { end };
     let begins = |cycle: usize| at(start_s + cycle as f64 * period_s);
-    let cycles: Vec<Range<usize>> =
-        (0..whole).map(|c| begins(c)..if c + 1 == whole { last } else { begins(c + 1) }).collect();
-    let used = cycles[0].start..last;
-    let angle = Harmonics::fit(&run.time_s[used.clone()], &run.angle_rad[used], harmonics, Some(rough.omega_rad_s))
-        .map_err(refused)?;
+    let cycles = (0..whole).map(|c| begins(c)..if c + 1 == whole { last } else { begins(c + 1) });
+    let is_free = |(_, rows): &(usize, Range<usize>)| touching(run.time_s, rows, run.marks).is_empty();
+    let (numbers, cycles): (Vec<usize>, Vec<Range<usize>>) = cycles.enumerate().filter(is_free).unzip();
+    let dropped = whole - cycles.len();
+    if cycles.len() < asked.fewest.max(1) {
+        let (left, fewest, marks) = (cycles.len(), asked.fewest.max(1), in_words(run.marks));
+        return Err(MotionError::Marked { run: run.id.to_owned(), whole, left, fewest, marks });
+    }
+    let whole = cycles.len();
+    let used =
+        |values: &[f64]| cycles.iter().flat_map(|rows| values[rows.clone()].iter().copied()).collect::<Vec<f64>>();
+    let angle =
+        Harmonics::fit(&used(run.time_s), &used(run.angle_rad), harmonics, Some(rough.omega_rad_s)).map_err(refused)?;
     let half_range = |rows: &Range<usize>| {
         let (low, high) = (run.angle_rad[rows.clone()].iter())
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
         0.5 * (high - low)
     };
-    Ok(Motion { angle, whole, amplitudes_rad: cycles.iter().map(half_range).collect(), cycles })
+    Ok(Motion { angle, whole, amplitudes_rad: cycles.iter().map(half_range).collect(), numbers, dropped, cycles })
 }
 
 /// From where to where a run oscillates, as samples.

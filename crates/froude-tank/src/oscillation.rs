@@ -46,4 +46,4 @@ pub use error::OscillationError;
 pub use fit::{OscillationFit, fit};
 pub use forces::Drag;
 pub use froude_hydro::swing::{Medium, Pivot};
-pub use setup::{Body, OscillationRun, Setup, motions};
+pub use setup::{Body, OscillationRun, Setup, motions, motions_without};

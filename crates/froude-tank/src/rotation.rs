@@ -41,4 +41,4 @@ pub use error::RotationError;
 pub use fit::{RotationFit, fit};
 pub use froude_hydro::swing::Pivot as Axis;
 pub use froude_rig::rotation::Mounted;
-pub use setup::{RotationRun, Setup, motions};
+pub use setup::{RotationRun, Setup, motions, motions_without};

@@ -32,6 +32,6 @@ pub mod walls;
 pub mod window;
 
 pub use error::SteadyError;
-pub use point::{Load, Point, Run, point};
+pub use point::{Load, Point, Run, point, point_told};
 pub use row::Row;
-pub use window::{Motion, Window, window};
+pub use window::{Motion, Told, Window, window, window_told};

@@ -13,6 +13,7 @@ use froude_records::text::counted;
 use froude_report::{InputFile, Report};
 
 use crate::pipeline::Outcome;
+use crate::steps_page;
 
 /// The whole report of a campaign.
 pub fn report(
@@ -49,7 +50,10 @@ pub fn report(
     Ok(Report {
         title: campaign.name.clone(),
         subtitle: subtitle(sources, &published),
-        blocks: summaries.iter().map(|summary| summary.section.clone()).chain(blocks).collect(),
+        blocks: (summaries.iter().map(|summary| summary.section.clone()))
+            .chain(blocks)
+            .chain(steps_page::section(file.data.values()))
+            .collect(),
         date,
         method: method::sentences(campaign, sources, &published),
         sources: sources.iter().map(section).collect::<Result<_, _>>()?,

@@ -39,6 +39,7 @@ pub mod pipeline;
 pub mod plan;
 mod registry;
 pub mod results;
+mod steps_page;
 pub mod twin;
 
 /// What most programs need.

@@ -6,7 +6,7 @@ use super::*;
 use crate::compare::stated::NORMAL_COVERAGE;
 
 fn file(path: &str, sha256: &str) -> DataFile {
-    DataFile { path: path.to_owned(), sha256: sha256.to_owned(), role: None }
+    DataFile { path: path.to_owned(), sha256: sha256.to_owned(), ..DataFile::default() }
 }
 
 /// A quadratic drag fit: `D` with its standard uncertainty and degrees of freedom.

@@ -18,7 +18,8 @@ use toml::Spanned;
 use toml::de::DeValue;
 
 use crate::error::RecordError;
-use crate::nearest::meant;
+use crate::nearest::{meant, suggestion};
+use crate::run::sensor::KEYS as KEYS_OF_SENSOR;
 use crate::section::Section;
 use crate::units::{Dimension, parse_unit};
 
@@ -150,8 +151,8 @@ impl Meaning {
     /// # Errors
     ///
     /// A unit of another dimension than the quantity's, a sign against that of a name of Froude's own.
-    pub(crate) fn read(s: &Section<'_>, name: &str) -> Result<Self, RecordError> {
-        s.only(&["quantity", "unit", "frame", "sign", "clock"])?;
+    pub(crate) fn read(s: &Section<'_>, name: &str, frames: &[&str]) -> Result<(Self, Words), RecordError> {
+        s.only(&[&["quantity", "unit", "frame", "sign", "clock"], &KEYS_OF_SENSOR[..]].concat())?;
         let unit = s
             .text("unit")?
             .ok_or_else(|| s.missing("unit", "write unit = \"m\", for example; \"1\" for counts and codes"))?;
@@ -165,7 +166,7 @@ impl Meaning {
             let problem = format!("is {unit:?}; expected {}, which {name} is", expected.describe());
             return Err(wrong(s, "unit", problem));
         }
-        let words = Words::read(s, Some(dimension.dimension))?;
+        let words = Words::read(s, Some(dimension.dimension), frames)?;
         words.set(&mut out);
         if let Some(sign) = s.number("sign")? {
             out.sign = match sign {
@@ -179,7 +180,7 @@ impl Meaning {
                 let problem = format!("is {}; expected {expected}: the name {name} says it", out.sign);
                 Err(wrong(s, "sign", problem))
             }
-            _ => Ok(out),
+            _ => Ok((out, words)),
         }
     }
 }
@@ -193,13 +194,21 @@ fn dimension_of(quantity: &str) -> Option<Dimension> {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Words {
     quantity: Option<String>,
-    frame: Option<Frame>,
+    frame: Option<Along>,
     clock: Option<String>,
 }
 
+/// A frame as it is written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Along {
+    Known(Frame),
+    /// One of `[frames]`.
+    Declared(String),
+}
+
 impl Words {
-    /// Reads `quantity`, `frame` and `clock`; `dimension` is that of the channel's unit, where it has one.
-    pub fn read(s: &Section<'_>, dimension: Option<Dimension>) -> Result<Self, RecordError> {
+    /// Reads `quantity`, `frame` and `clock`; `dimension` is that of the channel's unit, where it has one, `frames` are those that are declared.
+    pub fn read(s: &Section<'_>, dimension: Option<Dimension>, frames: &[&str]) -> Result<Self, RecordError> {
         let quantity = s.text("quantity")?;
         if let Some(word) = quantity {
             let advice = meant(word, QUANTITIES.iter().map(|(known, _)| *known));
@@ -214,8 +223,24 @@ impl Words {
                 return Err(wrong(s, "quantity", problem));
             }
         }
-        let frame = crate::section_values::one_of(s, "frame", &Frame::NAMES, &Frame::ALL)?;
+        let frame = s.text("frame")?.map(|word| {
+            let known = Frame::ALL.into_iter().find(|frame| frame.name() == word).map(Along::Known);
+            let declared = || frames.contains(&word).then(|| Along::Declared(word.to_owned()));
+            known.or_else(declared).ok_or_else(|| {
+                let all = Frame::NAMES.into_iter().chain(frames.iter().copied());
+                wrong(s, "frame", format!("is {word:?}; {}", suggestion(word, all)))
+            })
+        });
+        let frame = frame.transpose()?;
         Ok(Self { quantity: quantity.map(str::to_owned), frame, clock: s.text("clock")?.map(str::to_owned) })
+    }
+
+    /// The declared frame that the channel is along, where it is along one.
+    pub fn declared_frame(&self) -> Option<&str> {
+        match &self.frame {
+            Some(Along::Declared(name)) => Some(name),
+            _ => None,
+        }
     }
 
     /// Puts what is declared in the place of what was assumed.
@@ -223,8 +248,11 @@ impl Words {
         if let Some(quantity) = &self.quantity {
             meaning.quantity.clone_from(quantity);
         }
-        if let Some(frame) = self.frame {
-            meaning.frame = frame;
+        match &self.frame {
+            Some(Along::Known(frame)) => meaning.frame = *frame,
+            // Until it is turned.
+            Some(Along::Declared(_)) => meaning.frame = Frame::Sensor,
+            None => {}
         }
         if let Some(clock) = &self.clock {
             meaning.clock.clone_from(clock);

@@ -23,9 +23,11 @@ use crate::error::{Place, RecordError};
 use crate::estimate::Measured;
 use crate::finding::{Finding, Severity};
 use crate::run::channel::{LOG, Meaning};
+use crate::run::declarations::{Declarations, Told};
 use crate::run::log::{Channel, Gap, GapCause, RunLog};
 use crate::run::meta::{Role, RunMeta, RunStatus};
-use crate::sidecar::{Sidecar, read_sidecar};
+use crate::run::step::Step;
+use crate::sidecar::{Mapping, Sidecar, read_sidecar};
 use crate::table::{Column, ColumnData, Table, sidecar_of};
 use crate::table_file::read_table;
 use crate::text::counted;
@@ -61,6 +63,12 @@ pub struct ImportedRun {
     pub steps: TimeSteps,
     /// What a reader should know.
     pub findings: Vec<Finding>,
+    /// What its sidecar declares of the channels, by the channel's name.
+    pub told: IndexMap<String, Told>,
+    /// What it declares of the data beside them.
+    pub declared: Declarations,
+    /// What was done to the data, in order.
+    pub done: Vec<Step>,
 }
 
 /// Steps between ticks, s.
@@ -108,15 +116,17 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
     let time_s = times(table)?;
     let steps = steps(&time_s);
     let mut channels = IndexMap::new();
+    let mut told = IndexMap::new();
     for column in &table.columns {
         let ColumnData::Number { si, dimension, .. } = &column.data else { continue };
         if column.name == "time" {
             continue;
         }
         let mut meaning = Meaning::of(&column.name, &Unit::si(*dimension).text, LOG);
-        let entry = sidecar.and_then(|s| s.columns.values().find(|entry| entry.name == column.name));
-        if let Some(entry) = entry {
+        let entry = sidecar.and_then(|s| s.columns.iter().find(|(_, entry)| entry.name == column.name));
+        if let Some((header, entry)) = entry {
             entry.words.set(&mut meaning);
+            told.insert(channel_name(&column.name), entry.told(header));
         }
         if channels.insert(channel_name(&column.name), Channel { meaning, values: si.clone() }).is_some() {
             return Err(RecordError::DuplicateColumn { place: Place::whole(&table.path), column: column.name.clone() });
@@ -141,7 +151,24 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
     let lost = gaps(&time_s, steps);
     let findings = vec![finding(table, steps, &lost)];
     let log = RunLog { path: table.path.clone(), time_s, channels, lost, meta, ..RunLog::default() };
-    Ok(ImportedRun { sidecar: sidecar.cloned(), log, steps, findings })
+    let declared = sidecar.map(|s| s.run.declared.clone()).unwrap_or_default();
+    Ok(ImportedRun { sidecar: sidecar.cloned(), log, steps, findings, told, declared, done: Vec::new() })
+}
+
+impl Mapping {
+    /// What is declared of the channel that the column becomes.
+    fn told(&self, header: &str) -> Told {
+        Told {
+            sensor: self.sensor.clone(),
+            frame: self.words.declared_frame().map(str::to_owned),
+            undeclared: self.undeclared.clone(),
+            column: self.unit.as_ref().map_or_else(|| header.to_owned(), |unit| format!("{header} [{unit}]")),
+            factor: self.unit.as_ref().map_or(1.0, |unit| unit.factor),
+            sign: self.sign,
+            time_standard_s: 0.0,
+            place: self.place.clone(),
+        }
+    }
 }
 
 fn channel_name(name: &str) -> String {
@@ -181,7 +208,7 @@ fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
     }
 }
 
-fn steps(time_s: &[f64]) -> TimeSteps {
+pub(super) fn steps(time_s: &[f64]) -> TimeSteps {
     let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
     let middle = steps.len() / 2;
     let median_s = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;

@@ -6,6 +6,7 @@ use crate::body_axis::BodyAxis;
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
 use crate::run::channel::Meaning;
+use crate::run::declarations::{Declarations, Stated};
 
 /// What a run is, on which rig, and how it ended.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -47,6 +48,10 @@ pub struct RunMeta {
     pub start_unix_ns: u64,
     /// What its channels are, by name; of a log without a word of it, what their names tell, when the whole log has been read.
     pub channels: IndexMap<String, Meaning>,
+    /// What is stated of the channels beside their meaning, by the channel's name; those of which nothing is are not there.
+    pub stated: IndexMap<String, Stated>,
+    /// What is declared of the data beside the channels.
+    pub declared: Declarations,
     /// Length and hash of the log, known when it has been finished; only a sidecar has it.
     pub log: Option<Fingerprint>,
 }

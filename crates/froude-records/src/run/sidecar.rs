@@ -19,13 +19,16 @@ use crate::error::{RecordError, read_bytes, utf8};
 use crate::estimate::Measured;
 use crate::hash::Fingerprint;
 use crate::run::channel::Meaning;
+use crate::run::declarations::{self, Declarations, Stated};
+use crate::run::declared_text;
 use crate::run::meta::{
     Axis, AxisConstants, BodyState, CarriageFacts, ClockAlignment, Declared, Direction, Mounted, Role, RunMeta,
     RunStatus, TOW,
 };
+use crate::run::sensor::Sensor;
 use crate::section::{Section, Source, parse};
 use crate::section_values::{count, one_of};
-use crate::units::Dimension;
+use crate::units::{Dimension, parse_unit};
 use crate::write::write_atomically;
 
 /// The largest sidecar that is read.
@@ -145,7 +148,7 @@ pub(crate) fn of_record(path: &Path, record: &BTreeMap<String, String>) -> Resul
 /// A value as TOML: a table or bare as it is, or a text in quotes.
 fn written(key: &str, value: &str) -> String {
     let last = key.rsplit('.').next().unwrap_or(key);
-    if key.starts_with("channels.") {
+    if declared_text::is_verbatim(key) {
         return value.to_owned();
     }
     let is_named_freely = ["versions.", "constants.", "conditions."].iter().any(|section| key.starts_with(section));
@@ -153,7 +156,7 @@ fn written(key: &str, value: &str) -> String {
 }
 
 /// A basic string of TOML.
-fn quoted(text: &str) -> String {
+pub(crate) fn quoted(text: &str) -> String {
     let mut out = String::from("\"");
     for c in text.chars() {
         match c {
@@ -167,7 +170,7 @@ fn quoted(text: &str) -> String {
 }
 
 /// A key that a person chose: bare where TOML allows it.
-fn key_word(name: &str) -> String {
+pub(crate) fn key_word(name: &str) -> String {
     let is_bare = !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '-'));
     if is_bare { name.to_owned() } else { quoted(name) }
 }
@@ -189,6 +192,9 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
     put("start_unix_ns", meta.start_unix_ns.to_string());
     put("log_rate", format!("{} Hz", meta.log_rate_hz));
     put("note", meta.note.clone());
+    for (key, value) in declared_text::at_the_head(&meta.declared) {
+        put(&key, value);
+    }
     let Mounted { body, is_ballasted, hung_weight_n, travel } = &meta.mounted;
     let CarriageFacts { set, pair, repeat, axis, target_speed_m_s, direction, rig, twin_seed } = &meta.carriage;
     let known = [
@@ -233,12 +239,11 @@ fn entries(meta: &RunMeta) -> Vec<(String, String)> {
         put("counts_per_revolution", format!("{} 1", constants.counts_per_revolution));
         put("efficiency_is_calibrated", constants.is_calibrated.to_string());
     }
-    for (name, Meaning { quantity, unit, frame, sign, clock }) in &meta.channels {
-        let [quantity, unit, frame, clock] = [quantity, unit, frame.name(), clock].map(quoted);
-        put(
-            &format!("channels.{}", key_word(name)),
-            format!("{{ quantity = {quantity}, unit = {unit}, frame = {frame}, sign = {sign}, clock = {clock} }}"),
-        );
+    for (name, meaning) in &meta.channels {
+        put(&format!("channels.{}", key_word(name)), declared_text::channel(meaning, meta.stated.get(name)));
+    }
+    for (key, value) in declared_text::in_sections(&meta.declared) {
+        put(&key, value);
     }
     if let Some(log) = &meta.log {
         put("log.bytes", log.bytes.to_string());
@@ -291,7 +296,10 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         s.only(&[&ALWAYS[..], &["kind"], &MOUNTED, &CARRIAGE].concat())?;
         (TOW.to_owned(), role("kind")?, mounted(s)?, carriage(s)?)
     } else {
-        s.only(&[&ALWAYS[..], &["method", "role", "mounted", "conditions", "carriage", "channels"]].concat())?;
+        s.only(
+            &[&ALWAYS[..], &["method", "role", "mounted", "conditions", "carriage", "channels"], &declarations::KEYS]
+                .concat(),
+        )?;
         let method = s.text("method")?.ok_or_else(|| {
             s.missing("method", "state the kind of experiment that it belongs to: \"tow\", \"free_decay\", …")
         })?;
@@ -323,11 +331,21 @@ fn meta(s: &Section<'_>, schema: u64) -> Result<RunMeta, RecordError> {
         log_rate_hz: s.quantity("log_rate", Dimension::ANGULAR_SPEED)?.unwrap_or(0.0),
         date: text("date")?,
         start_unix_ns: s.integer("start_unix_ns")?.unwrap_or(0),
+        declared: Declarations::read(s)?,
         ..RunMeta::default()
     };
     if let Some(channels) = s.section("channels")? {
         for (name, _, value) in channels.entries() {
-            out.channels.insert(name.to_owned(), Meaning::read(&channels.as_section(name, value)?, name)?);
+            let entry = channels.as_section(name, value)?;
+            let (meaning, words) = Meaning::read(&entry, name, &out.declared.frame_names())?;
+            let sensor = Sensor::read(&entry, parse_unit(&meaning.unit).ok().map(|unit| unit.dimension))?;
+            let undeclared = ["sign", "frame", "clock"].into_iter().filter(|key| entry.get(key).is_none()).collect();
+            let frame = words.declared_frame().map(str::to_owned);
+            let stated = Stated { sensor, frame, undeclared };
+            if stated != Stated::default() {
+                out.stated.insert(name.to_owned(), stated);
+            }
+            out.channels.insert(name.to_owned(), meaning);
         }
     }
     if let Some(log) = s.section("log")? {

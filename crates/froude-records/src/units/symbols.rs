@@ -49,6 +49,7 @@ pub(super) const PLAIN: &[(&str, f64, f64, Dimension)] = &[
     ("rev", 2.0 * PI, 1.0, Dimension::ONE),
     ("rpm", 2.0 * PI / 60.0, 1.0, Dimension::ANGULAR_SPEED),
     ("%", 1.0, 100.0, Dimension::ONE),
+    ("ppm", 1.0, 1e6, Dimension::ONE),
 ];
 
 /// Those of [`PLAIN`], and degC, before which people write a prefix where a person elsewhere reads another word.

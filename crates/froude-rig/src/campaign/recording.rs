@@ -55,8 +55,6 @@ impl<'a> Recording<'a> {
                 hung_weight_n: (run.role == Role::Calibration).then_some(run.hung_weight_n),
                 travel: setting.travel.filter(|_| run.body != BodyState::None),
             },
-            configuration: String::new(),
-            conditions: IndexMap::new(),
             carriage: CarriageFacts {
                 set: run.set,
                 pair: run.pair,
@@ -74,12 +72,10 @@ impl<'a> Recording<'a> {
                 ("froude".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
                 ("board".to_owned(), facts.version.clone()),
             ]),
-            clock: None,
             log_rate_hz: rate_hz,
             date: setting.date.clone(),
             start_unix_ns: setting.start_unix_ns,
-            channels: IndexMap::new(),
-            log: None,
+            ..RunMeta::default()
         };
         let truths: &[(&str, &str)] = if probe.truth.is_some() { &TRUTHS } else { &[] };
         // The short axis is recorded where it is declared, or where it is the one that moves.

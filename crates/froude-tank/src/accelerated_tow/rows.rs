@@ -16,8 +16,10 @@
 use std::f64::consts::TAU;
 
 use froude_fit::series::mean;
+use froude_records::run::marks::Mark;
 
 use super::error::AcceleratedError;
+use crate::conditioning::stretches::longest_free;
 
 /// Fewest samples in a window.
 const FEWEST_SAMPLES: f64 = 8.0;
@@ -52,6 +54,8 @@ pub struct TowRun<'a> {
     pub way: Way<'a>,
     /// Force of the rig on the body along the axis, N.
     pub force_n: &'a [f64],
+    /// What is not used of it.
+    pub marks: &'a [Mark],
 }
 
 /// The rows of one run.
@@ -138,7 +142,8 @@ pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Windo
     let middles = (0..=count.max(-1.0) as i64).map(|i| first + window_s * (0.5 + i as f64 / 3.0));
     // Where ticks are missing nothing is weighted: as many samples as its length has, but for one at either end.
     let is_whole = |w: &Window| w.value.len() as f64 > window_s / step_s - 1.5;
-    Ok(middles.map(|t| (t, window(run.time_s, t, window_s))).filter(|(_, w)| is_whole(w)).collect())
+    let is_free = |t: &f64| run.marks.iter().all(|mark| !mark.touches(t - 0.5 * window_s, t + 0.5 * window_s));
+    Ok(middles.filter(is_free).map(|t| (t, window(run.time_s, t, window_s))).filter(|(_, w)| is_whole(w)).collect())
 }
 
 /// The rows of a run; the force is taken `delay_s` later than the motion.
@@ -237,8 +242,9 @@ impl Zero {
 fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Zero, AcceleratedError> {
     let t = run.time_s;
     let (first, last) = (t[0], t[t.len() - 1]);
-    let before = t.partition_point(|t| *t < begins_s);
-    let after = t.partition_point(|t| *t <= ends_s);
+    let free = |rows| longest_free(t, rows, run.marks).unwrap_or(0..0);
+    let before = free(0..t.partition_point(|t| *t < begins_s));
+    let after = free(t.partition_point(|t| *t <= ends_s)..t.len());
     let step_s = (last - first) / (t.len() - 1) as f64;
     // A single window of rest is as short as a row: two are the least that tells its scatter.
     let is_enough = |rows: &std::ops::Range<usize>| rows.len() as f64 * step_s >= 2.0 * window_s;
@@ -246,8 +252,8 @@ fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Z
         is_enough(&rows).then(|| (0.5 * (t[rows.start] + t[rows.end - 1]), mean(&run.force_n[rows], step_s)))
     };
     let rest = |rows: std::ops::Range<usize>| is_enough(&rows).then(|| [t[rows.start], t[rows.end - 1]]);
-    let rest_s = [rest(0..before), rest(after..t.len())];
-    let (ends, standard_n, independent) = match (of(0..before), of(after..t.len())) {
+    let rest_s = [rest(before.clone()), rest(after.clone())];
+    let (ends, standard_n, independent) = match (of(before), of(after)) {
         (Some((from, a)), Some((to, b))) => {
             let both = 0.5 * a.standard.hypot(b.standard);
             ([(from, a.value), (to, b.value)], both, a.effective_n + b.effective_n - 1.0)
@@ -321,7 +327,7 @@ mod tests {
         let v: Vec<f64> = t.iter().map(|t| -4.0 * (t - 6.0) * bump(*t)).collect();
         let f: Vec<f64> = t.iter().map(|t| 2.0 * (16.0 * (t - 6.0).powi(2) - 4.0) * bump(*t)).collect();
         for way in [Way::Position(&x), Way::Speed(&v)] {
-            let run = TowRun { id: "a", time_s: &t, way, force_n: &f };
+            let run = TowRun { id: "a", time_s: &t, way, force_n: &f, marks: &[] };
             let rows = rows(&run, 0.4, 0.0).unwrap();
             for (a, f) in rows.acceleration_m_s2.iter().zip(&rows.force_n) {
                 // Sums of forty samples in the place of integrals: the window's bend ends in zero with a slope, which costs h⁴ of its second derivative.
@@ -334,7 +340,7 @@ mod tests {
     fn a_run_without_rest_and_one_that_does_not_move_are_refused() {
         let t = times(400);
         let moving: Vec<f64> = t.iter().map(|t| 0.3 + 0.1 * t).collect();
-        let run = TowRun { id: "a", time_s: &t, way: Way::Speed(&moving), force_n: &moving };
+        let run = TowRun { id: "a", time_s: &t, way: Way::Speed(&moving), force_n: &moving, marks: &[] };
         assert!(matches!(rows(&run, 0.4, 0.0), Err(AcceleratedError::NoZero { .. })));
         let still = vec![0.0; 400];
         let run = TowRun { way: Way::Speed(&still), ..run };

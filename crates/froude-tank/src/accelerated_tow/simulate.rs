@@ -55,6 +55,7 @@ impl Simulated {
             time_s: &self.trace.time_s,
             way: Way::Position(&self.trace.position_m),
             force_n: &self.trace.force_n,
+            marks: &[],
         };
         Mounted { run, body: self.planned.body, is_dry: self.planned.is_dry }
     }

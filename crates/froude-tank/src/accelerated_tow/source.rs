@@ -229,7 +229,7 @@ fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<Mounted<'a>, MethodErr
     let force_n = channel("force", Dimension::FORCE, &format!("the rig on the body along +{axis}"))?;
     let meta = &log.log.meta;
     Ok(Mounted {
-        run: TowRun { id: &meta.id, time_s: &log.log.time_s, way, force_n },
+        run: TowRun { id: &meta.id, time_s: &log.log.time_s, way, force_n, marks: &log.declared.marks },
         body: setup.bodies.iter().position(|b| b.name == meta.configuration).unwrap_or(0),
         is_dry: meta.role == Role::DryAir,
     })

@@ -2,17 +2,19 @@
 
 use std::path::Path;
 
+use crate::conditioning::condition;
 use crate::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, Restoring, RunSummary};
 use crate::decay::{envelope, output_error, plan, record, releases};
+use crate::logs;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
-use froude_identify::runs::{logs_in, recorded_in, refuse_others};
+use froude_identify::runs::{recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
 use froude_records::campaign::{Campaign, Motion, Source};
 use froude_records::decay::{DecaySpec, DeclaredRestoring};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Series, TextTable};
-use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role, import_run};
+use froude_records::run::{Channel, FREE_DECAY, ImportedRun, Role};
 use froude_records::units::Dimension;
 
 /// Envelope and output error of releases.
@@ -225,7 +227,7 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
         let what = "`runs` is a folder with one log a release; put the logs that are meant into a folder of their own";
         return Err(MethodError::input(folder, what));
     }
-    let paths = logs_in(folder)?;
+    let paths = logs::paths_in(folder, FREE_DECAY)?;
     if paths.is_empty() {
         refuse_others(folder, FREE_DECAY, &recorded_in(folder)?)?;
         let what = "no releases: put one log per release there, as CSV or Parquet with `time [s]` and `position [m]` (or `angle [deg]`)";
@@ -234,7 +236,7 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
     let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     let mut mounted: Option<String> = None;
     for path in paths {
-        let mut log = import_run(&path, None)?;
+        let mut log = logs::imported(&path)?;
         let own = log.log.meta.configuration.clone();
         if let Some(first) = mounted.replace(own.clone()).filter(|first| *first != own) {
             let what = format!(
@@ -250,10 +252,11 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
             return Err(MethodError::input(path, what));
         }
         (log.log.meta.method, log.log.meta.role) = (FREE_DECAY.to_owned(), Role::Decay);
+        condition(&mut log, FREE_DECAY)?;
         // Steps that are not even are refused by the methods; that they are is no news.
         out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
         let sidecar = path.with_extension("toml");
-        out.files.push(ReadFile::new(path, RELEASE));
+        out.files.push(ReadFile { steps: log.done.clone(), ..ReadFile::new(path, RELEASE) });
         if sidecar.exists() {
             out.files.push(ReadFile::new(sidecar, "sidecar"));
         }

@@ -62,7 +62,7 @@ impl<E: Equation> Problem<'_, E> {
             })
             .collect();
         let fitted = self.fitted(&values(&fit))?;
-        let squares: f64 = fitted.iter().map(|f| f.load.len() as f64 * f.residual_rms.powi(2)).sum();
+        let squares: f64 = fitted.iter().map(|f| f.used as f64 * f.residual_rms.powi(2)).sum();
         let samples = self.samples();
         Ok(JointFit {
             law: self.law.clone(),

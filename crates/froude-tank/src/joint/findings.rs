@@ -25,6 +25,17 @@ pub(crate) fn warning(code: &str, message: String) -> Finding {
 /// A motion that is not the same from cycle to cycle, or not of the harmonics that it was fitted by.
 pub(crate) fn of_motion(id: &str, motion: &Motion, cycles: Cycles, harmonics: usize) -> Vec<Finding> {
     let mut out = Vec::new();
+    out.extend((motion.dropped > 0).then(|| {
+        warning(
+            "cycles-dropped",
+            format!(
+                "run {id:?}: {} that a mark touches {} not used, {} are",
+                counted(motion.dropped, "cycle", "cycles"),
+                if motion.dropped == 1 { "is" } else { "are" },
+                motion.whole
+            ),
+        )
+    }));
     let mean = motion.amplitudes_rad.iter().sum::<f64>() / motion.amplitudes_rad.len() as f64;
     let off = |a: &f64| (a / mean - 1.0).abs();
     let worst = (0..motion.amplitudes_rad.len())
@@ -35,7 +46,7 @@ pub(crate) fn of_motion(id: &str, motion: &Motion, cycles: Cycles, harmonics: us
             format!(
                 "run {:?}: cycle {} swings {:.2} deg where the mean is {:.2} deg; leave out more cycles of start-up (cycles.skip), or look at the servo",
                 id,
-                cycle + 1 + cycles.skip,
+                motion.numbers[cycle] + 1 + cycles.skip,
                 motion.amplitudes_rad[cycle].to_degrees(),
                 mean.to_degrees()
             ),

@@ -97,14 +97,14 @@ pub(crate) fn spectrum(
     times_s: &[&[f64]],
     (name, unit): (&str, &str),
 ) -> Option<Chart> {
-    let shortest = runs.iter().map(|run| run.motion.samples().len()).min()?;
+    let shortest = runs.iter().map(|run| run.motion.longest().len()).min()?;
     let segment = (shortest / SEGMENTS).checked_ilog2().map(|bits| 1_usize << bits).filter(|n| *n >= 16)?;
     let mut sum: Vec<f64> = Vec::new();
     let mut frequency = Vec::new();
     for ((run, time_s), fitted) in runs.iter().zip(times_s).zip(&fit.fitted) {
-        let used = run.motion.samples();
+        let (used, first) = (run.motion.longest(), run.motion.samples().start);
         let rate_hz = (used.len() - 1) as f64 / (time_s[used.end - 1] - time_s[used.start]);
-        let left: Vec<f64> = run.load[used].iter().zip(&fitted.load).map(|(y, f)| y - f).collect();
+        let left: Vec<f64> = used.map(|i| run.load[i] - fitted.load[i - first]).collect();
         let (f, p) = density(&left, rate_hz, segment).ok()?;
         if sum.is_empty() {
             (frequency, sum) = (f, p);

@@ -286,12 +286,14 @@ impl<E: Equation> Problem<'_, E> {
             .map(|(r, run)| {
                 let rows = run.motion.samples();
                 let load = self.load(r, rows.clone(), beta, delay_s)?;
-                let measured = &run.load[rows];
-                let n = load.len() as f64;
-                let zero = measured.iter().zip(&load).map(|(y, f)| y - f).sum::<f64>() / n;
-                let left: Vec<f64> = measured.iter().zip(&load).map(|(y, f)| y - f - zero).collect();
+                let away = |i: usize| run.load[i] - load[i - rows.start];
+                let used = || run.motion.cycles.iter().cloned().flatten();
+                let n = run.motion.count() as f64;
+                let zero = used().map(away).sum::<f64>() / n;
+                let left: Vec<f64> = used().map(|i| away(i) - zero).collect();
                 Ok(Fitted {
                     zero,
+                    used: left.len(),
                     residual_rms: (left.iter().map(|x| x * x).sum::<f64>() / n).sqrt(),
                     correlation: integrated_time(&left),
                     load: load.iter().map(|f| f + zero).collect(),
@@ -310,5 +312,5 @@ pub(super) fn values(fit: &ls::Fit) -> Vec<f64> {
 fn effective_samples(fitted: &[Fitted]) -> f64 {
     let known: Vec<f64> = fitted.iter().filter_map(|f| f.correlation).collect();
     let mean = if known.is_empty() { f64::INFINITY } else { known.iter().sum::<f64>() / known.len() as f64 };
-    fitted.iter().map(|f| (f.load.len() as f64 / f.correlation.unwrap_or(mean).max(1.0)).max(1.0)).sum()
+    fitted.iter().map(|f| (f.used as f64 / f.correlation.unwrap_or(mean).max(1.0)).max(1.0)).sum()
 }

@@ -2,6 +2,7 @@
 
 use froude_fit::budget::Uncertain;
 use froude_hydro::swing::{Medium, Pivot};
+use froude_records::run::marks::Mark;
 
 use super::error::OscillationError;
 use crate::motion::{Cycles, Logged, Motion, motion};
@@ -120,10 +121,24 @@ impl Setup {
 ///
 /// [`OscillationError::Motion`] of the first run that has one.
 pub fn motions(runs: &[OscillationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, OscillationError> {
-    let logged = |run: &OscillationRun<'_>| {
-        let OscillationRun { id, time_s, angle_rad, force_n, .. } = *run;
-        let of = Logged { id, time_s, angle_rad, load: ("force", "N", force_n) };
-        Ok(motion(&of, setup.cycles, setup.harmonics)?)
-    };
-    runs.iter().map(logged).collect()
+    runs.iter().map(|run| of_run(run, setup, &[])).collect()
+}
+
+/// The same without the cycles that a mark touches; `marks` belong to `runs`, a list each.
+///
+/// # Errors
+///
+/// As [`motions`]: too few cycles without a mark, too.
+pub fn motions_without(
+    runs: &[OscillationRun<'_>],
+    setup: &Setup,
+    marks: &[&[Mark]],
+) -> Result<Vec<Motion>, OscillationError> {
+    runs.iter().zip(marks).map(|(run, marks)| of_run(run, setup, marks)).collect()
+}
+
+fn of_run(run: &OscillationRun<'_>, setup: &Setup, marks: &[Mark]) -> Result<Motion, OscillationError> {
+    let OscillationRun { id, time_s, angle_rad, force_n, .. } = *run;
+    let of = Logged { id, time_s, angle_rad, load: ("force", "N", force_n), marks };
+    Ok(motion(&of, setup.cycles, setup.harmonics)?)
 }

@@ -8,12 +8,13 @@ use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect
 use froude_identify::source::laws;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::oscillation::OscillationSpec;
+use froude_records::run::marks::Mark;
 use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
 
 use super::forces::{Drag, LOAD};
-use super::setup::{Body, OscillationRun, Setup, motions};
+use super::setup::{Body, OscillationRun, Setup, motions_without};
 use super::{findings, fit, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
 use crate::motion::Cycles;
@@ -54,12 +55,21 @@ impl Method for ForcedOscillation {
     ) -> Result<Found, MethodError> {
         let spec = declared(source)?;
         progress("reading the runs");
-        let Logs { runs: logs, files, mut findings } =
+        let Logs { runs: logs, mut files, mut findings } =
             logs::read(source.input.path(), FORCED_OSCILLATION, &[Role::Test, Role::DryAir], "time, angle and force")?;
-        let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let mut setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "force"])).fold(0.0, f64::max);
+        if let Some(delay) = &mut setup.delay_s {
+            // One that is found needs no word of the clocks; of one that is declared their error is an error too.
+            delay.standard = delay.standard.hypot(clocks_s);
+        }
         let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the angles");
-        let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
+        let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
+        let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
+        for (log, motion) in logs.iter().zip(&motions) {
+            logs::add_step(&mut files, log, logs::cycles_step(log, motion));
+        }
         let mut fits = Vec::new();
         for drag in drags(campaign, source, &setup)? {
             progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));

@@ -3,6 +3,7 @@
 use froude_fit::budget::Uncertain;
 use froude_hydro::Link;
 use froude_hydro::swing::Pivot;
+use froude_records::run::marks::Mark;
 use froude_rig::rotation::Mounted;
 
 use super::error::RotationError;
@@ -76,10 +77,24 @@ impl Setup {
 ///
 /// [`RotationError::Motion`] of the first run that has one.
 pub fn motions(runs: &[RotationRun<'_>], setup: &Setup) -> Result<Vec<Motion>, RotationError> {
-    let logged = |run: &RotationRun<'_>| {
-        let RotationRun { id, time_s, angle_rad, torque_n_m, .. } = *run;
-        let of = Logged { id, time_s, angle_rad, load: ("torque", "N m", torque_n_m) };
-        Ok(motion(&of, setup.cycles, setup.harmonics)?)
-    };
-    runs.iter().map(logged).collect()
+    runs.iter().map(|run| of_run(run, setup, &[])).collect()
+}
+
+/// The same without the cycles that a mark touches; `marks` belong to `runs`, a list each.
+///
+/// # Errors
+///
+/// As [`motions`]: too few cycles without a mark, too.
+pub fn motions_without(
+    runs: &[RotationRun<'_>],
+    setup: &Setup,
+    marks: &[&[Mark]],
+) -> Result<Vec<Motion>, RotationError> {
+    runs.iter().zip(marks).map(|(run, marks)| of_run(run, setup, marks)).collect()
+}
+
+fn of_run(run: &RotationRun<'_>, setup: &Setup, marks: &[Mark]) -> Result<Motion, RotationError> {
+    let RotationRun { id, time_s, angle_rad, torque_n_m, .. } = *run;
+    let of = Logged { id, time_s, angle_rad, load: ("torque", "N m", torque_n_m), marks };
+    Ok(motion(&of, setup.cycles, setup.harmonics)?)
 }

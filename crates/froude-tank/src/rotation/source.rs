@@ -5,11 +5,12 @@ use froude_identify::answer::Made;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::rotation::RotationSpec;
+use froude_records::run::marks::Mark;
 use froude_records::run::{Channel, Declared, ImportedRun, ROTATION, Role};
 use froude_records::units::Dimension;
 
 use super::derive::derived;
-use super::setup::{RotationRun, Setup, motions};
+use super::setup::{RotationRun, Setup, motions_without};
 use super::simulate::mounted;
 use super::{findings, fit, page, plan, record, simulate};
 use crate::fluid::density_kg_m3;
@@ -51,13 +52,22 @@ impl Method for Rotation {
         let spec = declared(source)?;
         progress("reading the runs");
         let roles = [Role::Test, Role::DryAir, Role::Tare];
-        let Logs { runs: logs, files, mut findings } =
+        let Logs { runs: logs, mut files, mut findings } =
             logs::read(source.input.path(), ROTATION, &roles, "time, angle and torque")?;
         one_body(&logs)?;
-        let setup = setup_of(campaign, source, spec)?;
+        let mut setup = setup_of(campaign, source, spec)?;
+        let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "torque"])).fold(0.0, f64::max);
+        if let Some(delay) = &mut setup.delay_s {
+            // One that is found needs no word of the clocks; of one that is declared their error is an error too.
+            delay.standard = delay.standard.hypot(clocks_s);
+        }
         let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the angles");
-        let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
+        let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
+        let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
+        for (log, motion) in logs.iter().zip(&motions) {
+            logs::add_step(&mut files, log, logs::cycles_step(log, motion));
+        }
         progress("fitting the torques");
         let fit = fit(&runs, &motions, &setup, &campaign.identify).map_err(MethodError::refused)?;
         let derived = derived(&fit, &setup);

@@ -61,6 +61,32 @@ pub enum SteadyError {
         part: f64,
     },
 
+    /// Marks in the window.
+    #[error(
+        "run {run:?}: its steady window holds {marks}; what is left of it is too short: tow longer, widen the sensor's range, or name a window without marks ([[segments]] name = \"steady\")"
+    )]
+    Marked {
+        /// The run.
+        run: String,
+        /// The marks in words.
+        marks: String,
+    },
+
+    /// A window that a person has named.
+    #[error(
+        "run {run:?}: the segment steady, from {from_s:.3} s to {to_s:.3} s, has {samples} samples of the log; correct it in [[segments]] of its sidecar"
+    )]
+    Declared {
+        /// The run.
+        run: String,
+        /// Where it begins, s of the log.
+        from_s: f64,
+        /// Where it ends, s of the log.
+        to_s: f64,
+        /// Samples in it.
+        samples: usize,
+    },
+
     /// No zero of the load cell.
     #[error(
         "run {run:?}: nothing tells the zero of the sensor: the log has no part at rest of {needed_s} s or more, and there is no run of the role \"still\" with \

@@ -9,7 +9,7 @@ use froude_fit::series::{Mean, mean, tapered};
 use froude_records::steady::SteadySpec;
 
 use super::error::SteadyError;
-use super::window::{Motion, Window, window};
+use super::window::{Motion, Told, Window, window_told};
 
 /// A sensor that stands at its largest or smallest reading in this part of a window is clipped …
 const CLIPPED: f64 = 0.2;
@@ -80,6 +80,15 @@ pub struct Point {
 ///
 /// [`SteadyError`]: columns that do not match, no window, a clipped sensor, no zero.
 pub fn point(run: &Run<'_>, spec: &SteadySpec) -> Result<Point, SteadyError> {
+    point_told(run, spec, &Told::default())
+}
+
+/// The same without what is marked, in the windows that a person has named.
+///
+/// # Errors
+///
+/// As [`point`]; a window that holds marks, or is none.
+pub fn point_told(run: &Run<'_>, spec: &SteadySpec, told: &Told<'_>) -> Result<Point, SteadyError> {
     let n = run.time_s.len();
     let lengths = run.loads.iter().map(|(name, values)| (*name, values.len())).chain(match run.motion {
         Motion::Speed(v) => Some(("speed", v.len())),
@@ -96,7 +105,7 @@ pub fn point(run: &Run<'_>, spec: &SteadySpec) -> Result<Point, SteadyError> {
             });
         }
     }
-    let window = window(run.id, run.time_s, run.motion, spec)?;
+    let window = window_told(run.id, run.time_s, run.motion, spec, told)?;
     observed(run, window, spec)
 }
 

@@ -6,18 +6,21 @@ use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::run::marks::SegmentKind;
+use froude_records::run::step::Step;
 use froude_records::run::{ImportedRun, Role, STEADY};
 use froude_records::steady::SteadySpec;
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
 use super::error::SteadyError;
-use super::point::{Point, Run, Zero, point};
+use super::point::{Point, Run, Zero, point_told};
 use super::row::{Row, table};
 use super::tare::{self, Tare};
 use super::walls::Walls;
-use super::window::Motion;
+use super::window::{Motion, Told};
 use super::{page, plan, simulate};
+use crate::conditioning::stretches::{in_words, longest_free, rows};
 use crate::logs::{self, Logs};
 
 /// Windows of raw runs as observations.
@@ -67,7 +70,7 @@ impl Method for Steady {
     ) -> Result<Found, MethodError> {
         let spec = source.steady.unwrap_or_default();
         progress("reading the runs");
-        let Logs { runs: logs, files, mut findings } = logs::read(
+        let Logs { runs: logs, mut files, mut findings } = logs::read(
             source.input.path(),
             STEADY,
             &[Role::Test, Role::Tare, Role::Still],
@@ -78,6 +81,11 @@ impl Method for Steady {
         findings.extend(reduced.findings);
         let walls = Walls::of(campaign);
         findings.extend(reduced.rows.iter().filter_map(|row| walls.and_then(|walls| walls.finding(row))));
+        for (run, step) in reduced.steps {
+            if let Some(log) = logs.iter().find(|log| log.log.meta.id == run) {
+                logs::add_step(&mut files, log, step);
+            }
+        }
         let table = table(source.input.path(), &reduced.rows);
         let mut observations = reduce_table(campaign, source, &table, files)?;
         if !reduced.errors.is_empty() && observations.data.rows != reduced.rows.len() {
@@ -109,11 +117,13 @@ struct Reduced {
     rows: Vec<Row>,
     errors: Vec<SharedError>,
     findings: Vec<Finding>,
+    /// The window of each run, by its id.
+    steps: Vec<(String, Step)>,
 }
 
 /// Every test as an observation; one that gives none is left out and said, unless none is left.
 fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Reduced, MethodError> {
-    let mut findings = Vec::new();
+    let (mut findings, mut steps) = (Vec::new(), Vec::new());
     let stills = stills(logs)?;
     let (mut rows, mut tares) = (Vec::new(), Vec::new());
     let mut first: Option<SteadyError> = None;
@@ -124,12 +134,14 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
             Some(Err(error)) => Err(error),
             zero => {
                 run.zero = zero.and_then(Result::ok);
-                point(&run, spec)
+                point_told(&run, spec, &Told { marks: &log.declared.marks, segments: &log.declared.segments })
             }
         };
         match found {
             Ok(point) => {
                 findings.extend(of_point(&log.log.meta.id, &point));
+                findings.extend(of_named_window(log, &run, &point, spec));
+                steps.push((log.log.meta.id.clone(), window_step(log, &point)));
                 if log.log.meta.role == Role::Tare {
                     tares.push(Tare { angle_rad, point });
                 } else {
@@ -168,7 +180,55 @@ fn reduce(source: &Source, logs: &[ImportedRun], spec: &SteadySpec) -> Result<Re
         );
         findings.push(Finding::new(Severity::Note, "tare-subtracted", text));
     }
-    Ok(Reduced { rows, errors, findings })
+    Ok(Reduced { rows, errors, findings, steps })
+}
+
+/// The window of a run as a step.
+fn window_step(log: &ImportedRun, point: &Point) -> Step {
+    let time_s = &log.log.time_s;
+    let named = log.declared.segments.iter().any(|segment| segment.kind == SegmentKind::Steady);
+    let steady = &point.window.steady;
+    let (from_s, to_s) = (time_s[steady.start], time_s[steady.end - 1]);
+    let by = if named { "as it is named in [[segments]]" } else { "by the rule of [source.steady]" };
+    let words = format!(
+        "{from_s:.3} s to {to_s:.3} s, {by}; mean tapered at both ends, the zero between the parts at rest taken off"
+    );
+    let step = Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s");
+    let rest = |rows: &std::ops::Range<usize>| rows.len() as f64 * log.steps.median_s;
+    let step = step.with("at_rest_before", rest(&point.window.before), "s").with(
+        "at_rest_after",
+        rest(&point.window.after),
+        "s",
+    );
+    step.with("speed", point.speed_m_s, "m/s")
+}
+
+/// Whether a window that a person has named is steady by the rule.
+fn of_named_window(log: &ImportedRun, run: &Run<'_>, point: &Point, spec: &SteadySpec) -> Option<Finding> {
+    let segment = log.declared.segments.iter().find(|segment| segment.kind == SegmentKind::Steady)?;
+    let (rows, time_s) = (point.window.steady.clone(), run.time_s);
+    let block = ((spec.block_s / log.steps.median_s).round() as usize).clamp(1, rows.len());
+    let speeds = (rows.start..=rows.end - block).step_by(block).map(|at| run.motion.mean_m_s(time_s, at..at + block));
+    let (low, high) = speeds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let who = if segment.by.is_empty() { "somebody" } else { &segment.by };
+    let (text, severity, code) = if half > spec.tolerance * middle.abs() {
+        let text = format!(
+            "the speed of its blocks of {} s differs by ± {:.2} % of {middle:.4} m/s, and {:.2} % is steady by the rule; it is used as it was named",
+            spec.block_s,
+            1e2 * half / middle.abs(),
+            1e2 * spec.tolerance
+        );
+        (text, Severity::Warning, "named-window-not-steady")
+    } else {
+        ("it is steady by the rule too".to_owned(), Severity::Note, "named-window")
+    };
+    let id = &log.log.meta.id;
+    let text = format!(
+        "run {id:?}: its window from {:.3} s to {:.3} s was named by {who}; {text}",
+        segment.from_s, segment.to_s
+    );
+    Some(Finding::new(severity, code, text))
 }
 
 /// What one observation shows.
@@ -235,7 +295,7 @@ fn run(log: &ImportedRun) -> Result<Run<'_>, MethodError> {
         let frame = log.log.channels[*name].meaning.frame;
         if frame != froude_records::run::Frame::Body {
             let what = format!(
-                "{name} is along the axes of {:?}; loads are taken along those of the body: mount the cell with the body, or turn its readings, and write frame = \"body\"",
+                "{name} is along the axes of {:?}; loads are taken along those of the body: declare how the cell lies in [frames.cell] and write frame = \"cell\", or frame = \"body\" where it is mounted with the body",
                 frame.name()
             );
             return Err(MethodError::input(&log.log.path, what));
@@ -258,6 +318,17 @@ struct Still {
     loads: Vec<(String, Zero)>,
 }
 
+/// The part of a still run that is used: the one that is named, without marks.
+fn at_rest(log: &ImportedRun) -> Result<std::ops::Range<usize>, MethodError> {
+    let (time_s, declared) = (&log.log.time_s, &log.declared);
+    let named = declared.segments.iter().find(|segment| segment.kind == SegmentKind::Still);
+    let whole = named.map_or(0..time_s.len(), |segment| rows(time_s, segment.from_s, segment.to_s));
+    longest_free(time_s, whole, &declared.marks).filter(|rows| rows.len() >= 4).ok_or_else(|| {
+        let what = format!("nothing is left of this still run: {}; take another", in_words(&declared.marks));
+        MethodError::input(&log.log.path, what)
+    })
+}
+
 fn stills(logs: &[ImportedRun]) -> Result<Vec<Still>, MethodError> {
     let mut out = Vec::new();
     for log in logs.iter().filter(|log| log.log.meta.role == Role::Still) {
@@ -268,8 +339,9 @@ fn stills(logs: &[ImportedRun]) -> Result<Vec<Still>, MethodError> {
             )
         })?;
         let step_s = log.steps.median_s;
+        let rows = at_rest(log)?;
         let of = |name: &str| {
-            let mean = log.log.channels.get(name).map(|c| froude_fit::series::mean(&c.values, step_s));
+            let mean = log.log.channels.get(name).map(|c| froude_fit::series::mean(&c.values[rows.clone()], step_s));
             mean.map(|m| (name.to_owned(), Zero { value: m.value, standard: m.standard }))
         };
         out.push(Still { at_s, loads: LOADS.iter().filter_map(|(name, _)| of(name)).collect() });

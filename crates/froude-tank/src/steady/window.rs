@@ -7,14 +7,28 @@
 
 use std::ops::Range;
 
+use froude_records::run::marks::{Mark, Segment, SegmentKind};
 use froude_records::steady::SteadySpec;
 
 use super::error::SteadyError;
+use crate::conditioning::stretches::{in_words, longest_free, rows, touching};
 
 /// What moves more slowly than this part of the largest speed is at rest.
 const AT_REST: f64 = 0.02;
 /// A stretch that is steady moves at this part of the largest speed, or faster.
 const MOVES: f64 = 0.1;
+
+/// Fewest samples of a window.
+const FEWEST: usize = 4;
+
+/// What a sidecar declares of a run's parts.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Told<'a> {
+    /// What is not to be used.
+    pub marks: &'a [Mark],
+    /// What a person has named.
+    pub segments: &'a [Segment],
+}
 
 /// What is known of the motion of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,6 +123,80 @@ pub fn window(run: &str, time_s: &[f64], motion: Motion<'_>, spec: &SteadySpec) 
     let before = 0..first.saturating_sub(1) * block;
     let after = ((last + 1) * block + settle).min(n)..n;
     Ok(Window { steady, before, after })
+}
+
+/// The parts of a run without what is marked, by the rules or as a person has named them.
+///
+/// A segment `steady` is the window, whatever the rule says; segments `still` are the parts at rest, the nearest before and after the window. Where the window by
+/// the rule holds a mark, it is looked for between the marks. A part at rest that holds one is cut to its longest stretch without.
+///
+/// # Errors
+///
+/// As [`window`]; [`SteadyError::Marked`] where marks leave no window, [`SteadyError::Declared`] for one that a person has named and that is none.
+pub fn window_told(
+    run: &str,
+    time_s: &[f64],
+    motion: Motion<'_>,
+    spec: &SteadySpec,
+    told: &Told<'_>,
+) -> Result<Window, SteadyError> {
+    let named = |kind: SegmentKind| told.segments.iter().filter(move |segment| segment.kind == kind);
+    let mut found = match named(SegmentKind::Steady).next() {
+        Some(segment) => {
+            let steady = rows(time_s, segment.from_s, segment.to_s);
+            if steady.len() < FEWEST {
+                let (from_s, to_s, samples) = (segment.from_s, segment.to_s, steady.len());
+                return Err(SteadyError::Declared { run: run.to_owned(), from_s, to_s, samples });
+            }
+            let marks = touching(time_s, &steady, told.marks);
+            if !marks.is_empty() {
+                return Err(SteadyError::Marked { run: run.to_owned(), marks: in_words(&marks) });
+            }
+            // At rest is what the rule says, where there is a rule that finds anything.
+            let by_rule = window(run, time_s, motion, spec).ok();
+            let (before, after) = by_rule.map_or((0..0, time_s.len()..time_s.len()), |w| (w.before, w.after));
+            let (before, after) = (before.start..before.end.min(steady.start), after.start.max(steady.end)..after.end);
+            Window {
+                before: before.start..before.end.max(before.start),
+                after: after.start..after.end.max(after.start),
+                steady,
+            }
+        }
+        None => between(run, time_s, motion, spec, told.marks)?,
+    };
+    let stills: Vec<Range<usize>> =
+        named(SegmentKind::Still).map(|segment| rows(time_s, segment.from_s, segment.to_s)).collect();
+    if !stills.is_empty() {
+        let n = time_s.len();
+        found.before = stills.iter().rfind(|rows| rows.end <= found.steady.start).cloned().unwrap_or(0..0);
+        found.after = stills.iter().find(|rows| rows.start >= found.steady.end).cloned().unwrap_or(n..n);
+    }
+    for part in [&mut found.before, &mut found.after] {
+        *part = longest_free(time_s, part.clone(), told.marks).unwrap_or(part.end..part.end);
+    }
+    Ok(found)
+}
+
+/// The window by the rule, between the marks where it holds one.
+fn between(
+    run: &str,
+    time_s: &[f64],
+    motion: Motion<'_>,
+    spec: &SteadySpec,
+    marks: &[Mark],
+) -> Result<Window, SteadyError> {
+    let whole = window(run, time_s, motion, spec)?;
+    let within = touching(time_s, &whole.steady, marks);
+    if within.is_empty() {
+        return Ok(whole);
+    }
+    // Of a steady stretch every part is steady: settled already, and as long as is left.
+    let step_s = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
+    match longest_free(time_s, whole.steady.clone(), marks).filter(|rows| rows.len() as f64 * step_s >= spec.shortest_s)
+    {
+        Some(steady) => Ok(Window { steady, ..whole }),
+        None => Err(SteadyError::Marked { run: run.to_owned(), marks: in_words(&within) }),
+    }
 }
 
 /// The longest stretch of numbers within ± `tolerance` of the middle of their range, that middle being `least` or more in size; the first of several.

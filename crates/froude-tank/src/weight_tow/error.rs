@@ -10,6 +10,20 @@ pub enum WeightTowError {
     #[error(transparent)]
     Loads(#[from] SteadyError),
 
+    /// Marks where it is looked at.
+    #[error(
+        "run {run:?}: {}, holds {marks}; film it again, or give the camera a view without what was marked",
+        if *.is_balanced { "what moves, which the equation of motion is fitted to" } else { "the last part of its way" }
+    )]
+    Marked {
+        /// The run.
+        run: String,
+        /// The marks in words.
+        marks: String,
+        /// Whether the equation of motion is fitted.
+        is_balanced: bool,
+    },
+
     /// The wagon does not move, or not far enough.
     #[error(
         "run {run:?}: the mark moves {moved_m:.3} m, and the last {window_m:.3} m of its way are looked at; check the scale, or state a shorter window in [source.weight_tow]"

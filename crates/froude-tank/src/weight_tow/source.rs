@@ -6,6 +6,7 @@ use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::run::step::Step;
 use froude_records::run::{ImportedRun, Role, WEIGHT_TOW};
 use froude_records::units::Dimension;
 use froude_records::weight_tow::WeightTowSpec;
@@ -14,6 +15,7 @@ use super::error::WeightTowError;
 use super::reduce::{ERRORS, Reduced, WeightRun, reduce};
 use super::track::metres;
 use super::{page, plan, simulate};
+use crate::conditioning::stretches::{in_words, touching};
 use crate::logs::{self, Logs};
 use crate::steady::row::{Row, table};
 
@@ -50,7 +52,7 @@ impl Method for WeightTow {
     ) -> Result<Found, MethodError> {
         let spec = simulate::declared(source)?;
         progress("reading the runs");
-        let Logs { runs: logs, files, mut findings } =
+        let Logs { runs: logs, mut files, mut findings } =
             logs::read(source.input.path(), WEIGHT_TOW, &[Role::Test], "time, mark or position, and loads")?;
         progress("reading the tracks");
         let positions = logs.iter().map(|log| position(log, &spec)).collect::<Result<Vec<_>, _>>()?;
@@ -58,8 +60,9 @@ impl Method for WeightTow {
         let mut first: Option<WeightTowError> = None;
         for (log, position_m) in logs.iter().zip(&positions) {
             let run = run(log, position_m)?;
-            match reduce(&run, &spec, None) {
+            match reduce(&run, &spec, None).and_then(|found| without_marks(log, found)) {
                 Ok(found) => {
+                    logs::add_step(&mut files, log, window_step(log, &found));
                     findings.extend(of_run(run.id, &found, run.weight_n - spec.friction_n.value));
                     rows.push(Row {
                         run: run.id.to_owned(),
@@ -113,6 +116,30 @@ impl Method for WeightTow {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+}
+
+/// A reduced run, where nothing of what it was reduced from is marked.
+fn without_marks(log: &ImportedRun, found: Reduced) -> Result<Reduced, WeightTowError> {
+    let used = if found.balance.is_some() { &found.track.moving } else { &found.track.window };
+    let marks = touching(&log.log.time_s, used, &log.declared.marks);
+    if marks.is_empty() {
+        return Ok(found);
+    }
+    let (run, marks) = (log.log.meta.id.clone(), in_words(&marks));
+    Err(WeightTowError::Marked { run, marks, is_balanced: found.balance.is_some() })
+}
+
+/// The last part of the way as a step.
+fn window_step(log: &ImportedRun, found: &Reduced) -> Step {
+    let rows = &found.track.window;
+    let (from_s, to_s) = (log.log.time_s[rows.start], log.log.time_s[rows.end - 1]);
+    let by = if found.balance.is_some() { "the equation of motion over all that moves" } else { "shown steady" };
+    let words = format!("{from_s:.3} s to {to_s:.3} s, the last part of the way; {by}");
+    Step::new("window", "", words).with("from", from_s, "s").with("to", to_s, "s").with(
+        "speed",
+        found.track.speed_m_s,
+        "m/s",
+    )
 }
 
 /// The positions of a log, m: of its mark by scale and lens, or as they stand.

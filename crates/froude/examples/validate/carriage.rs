@@ -274,7 +274,7 @@ fn pairs_of_one_calibration(claims: &mut Claims, pairs: usize) {
         let runs: Vec<DragRun<'_>> = logged.iter().map(|r| r.view()).collect();
         let mut estimates = drag_report(&runs, &declared).map(|report| report.estimates).unwrap_or_default();
         estimates.retain(|estimate| estimate.method.name == Method::Mcd.name());
-        let data = vec![DataFile { path: format!("{seed}.mcap"), sha256: format!("{seed}"), role: None }];
+        let data = vec![DataFile { path: format!("{seed}.mcap"), sha256: format!("{seed}"), ..DataFile::default() }];
         for estimate in &mut estimates {
             estimate.source = format!("{seed}");
             estimate.data = vec!["d1".to_owned()];

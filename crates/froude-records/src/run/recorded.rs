@@ -1,0 +1,83 @@
+//! A run that Froude recorded, as one that was imported: its log in SI, with what its sidecar declares of the channels.
+
+use std::path::Path;
+
+use indexmap::IndexMap;
+
+use crate::error::{Place, RecordError};
+use crate::finding::Finding;
+use crate::run::channel::Frame;
+use crate::run::declarations::Told;
+use crate::run::import::{ImportedRun, steps};
+use crate::run::log::RunLog;
+use crate::run::reader::{head_of, read_run};
+use crate::run::sidecar::read_run_meta;
+use crate::units::{Unit, parse_unit};
+
+/// Reads `RUN.mcap` with `RUN.toml` beside it: units and signs are undone, as an importer does; what is doubtful about the log is a finding.
+///
+/// # Errors
+///
+/// As [`read_run`]; fewer than two ticks, a unit that cannot be read.
+pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
+    let sidecar = path.with_extension("toml");
+    // Before the whole is read: then what is not declared has been filled in by the channels' names.
+    let declared = if sidecar.exists() { Some(read_run_meta(&sidecar)?) } else { head_of(path)? }.unwrap_or_default();
+    let mut log = read_run(path)?;
+    if log.len() < 2 {
+        let found = log.len();
+        return Err(RecordError::Value {
+            place: Place::whole(path),
+            key: "time".to_owned(),
+            problem: format!("has {found} values; a log needs two ticks at least"),
+        });
+    }
+    let mut told = IndexMap::new();
+    for (name, channel) in &mut log.channels {
+        let meaning = &mut channel.meaning;
+        let unit = parse_unit(&meaning.unit).map_err(|e| RecordError::BadUnit {
+            place: Place::whole(path),
+            column: format!("{name} [{}]", meaning.unit),
+            problem: e.to_string(),
+        })?;
+        let sign = f64::from(meaning.sign);
+        channel.values.iter_mut().for_each(|x| *x = sign * unit.to_si(*x));
+        let stated = declared.stated.get(name).cloned().unwrap_or_default();
+        let mut undeclared = stated.undeclared;
+        if !declared.channels.contains_key(name) {
+            undeclared = vec!["unit", "sign", "frame", "clock"];
+        } else if meaning.frame == Frame::None && stated.frame.is_none() && !undeclared.contains(&"frame") {
+            undeclared.push("frame");
+        }
+        if stated.frame.is_some() {
+            meaning.frame = Frame::Sensor;
+        }
+        told.insert(
+            name.clone(),
+            Told {
+                sensor: stated.sensor,
+                frame: stated.frame,
+                undeclared,
+                column: format!("{name} [{unit}]"),
+                factor: unit.factor,
+                sign,
+                time_standard_s: 0.0,
+                place: Place::whole(if sidecar.exists() { &sidecar } else { path }),
+            },
+        );
+        meaning.unit = Unit::si(unit.dimension).text;
+        meaning.sign = 1;
+    }
+    let steps = steps(&log.time_s);
+    let findings: Vec<Finding> = log.doubts.iter().map(super::Doubt::finding).collect();
+    let declared = std::mem::take(&mut log.meta.declared);
+    Ok(ImportedRun {
+        sidecar: None,
+        log: RunLog { doubts: Vec::new(), ..log },
+        steps,
+        findings,
+        told,
+        declared,
+        done: Vec::new(),
+    })
+}

@@ -1,0 +1,50 @@
+//! From a log as it was read to channels that a method can use: what its sidecar declares of the data is done to them, in this order.
+//!
+//! | step        | module      | what                                                                                                   |
+//! |-------------|-------------|--------------------------------------------------------------------------------------------------------|
+//! | `read`      | –           | columns by unit and sign (done by the importer)                                                        |
+//! | `clock`, `delay`, `filter` | [`align`] | stamps of another clock, and late ones, as times of the log                               |
+//! | `clipped`   | [`clipped`] | readings at the end of the range, or flat at an extreme, are marked                                    |
+//! | `resampled` | [`align`]   | channels whose stamps moved, by a cubic spline at the rows of the log; rows without data are cut        |
+//! | `cell`      | [`loads`]   | bridges of a load cell as loads, by its matrix                                                         |
+//! | `frame`     | [`loads`]   | loads along the sensor's axes as loads along the body's, about its reference point                     |
+//! | `segment`, `mark` | [`stretches`] | the declared test, and what is not to be used                                                  |
+//!
+//! Every step stands in [`ImportedRun::done`]; what a reader should know of it is a finding.
+//!
+//! Not here: windows of a method, which leave marks out themselves ([`stretches::MARK_AWARE`]).
+
+pub mod align;
+pub mod clipped;
+pub mod loads;
+pub mod resolution;
+pub mod stretches;
+
+use froude_identify::method::MethodError;
+use froude_records::run::ImportedRun;
+use froude_records::run::step::Step;
+
+/// Does to a run what its sidecar declares.
+///
+/// # Errors
+///
+/// Clocks without a time in common, bridges or loads that a matrix or a rotation needs and the log lacks, marks that leave nothing.
+pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
+    let read = run.told.iter().filter_map(|(name, told)| {
+        let meaning = &run.log.channels.get(name)?.meaning;
+        let frame = told.frame.as_deref().unwrap_or_else(|| meaning.frame.name());
+        let words = format!(
+            "column {}, times {}, frame {frame}, clock {}; in {} from here on",
+            told.column, told.sign, meaning.clock, meaning.unit
+        );
+        Some(Step::new("read", name, words).with("factor", told.factor, "1").with("sign", told.sign, "1"))
+    });
+    run.done = read.collect();
+    resolution::check(run);
+    let stamps = align::stamps(run, method);
+    clipped::mark(run, &stamps);
+    align::resample(run, &stamps)?;
+    loads::of_cell(run)?;
+    loads::in_body(run)?;
+    stretches::cut(run, method)
+}
