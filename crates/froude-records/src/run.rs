@@ -14,7 +14,7 @@
 //! | recording (MCAP)          | [`Recorder`]   |
 //! | reading, whole or streamed | [`read_run`], [`RunReader`] |
 //! | whether it lies as it was driven | [`check_pair`], [`Doubt`] |
-//! | another program's log     | [`import_run`] |
+//! | another program's log     | [`import_run`]; one that is too long to be held [`Ticks`], [`Extremes`], [`run_of_means`] |
 //!
 //! **On disk.** `ID.mcap`: topics `/axis/y`, `/axis/x`, `/force`, `/truth/…`, one message a tick (ROS 2 definitions, CDR bytes),
 //! `/events` (`rcl_interfaces/msg/Log`), and metadata records `froude_run` (at the beginning) and
@@ -39,6 +39,7 @@ pub const LAST_RUN: &str = "last run: ";
 mod allowance;
 pub(crate) mod channel;
 mod doubt;
+mod extremes;
 mod file;
 mod import;
 mod layout;
@@ -50,11 +51,13 @@ mod recorder;
 mod seal;
 pub(crate) mod sidecar;
 mod sync;
+mod ticks;
 
 pub use crate::run::doubt::{Doubt, DoubtKind};
 pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
-pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_table};
+pub use extremes::{Extremes, Stay};
+pub use import::{AXIS_NAMES, Averaged, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_means, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{
@@ -65,3 +68,4 @@ pub use reader::{Block, RunReader, read_run};
 pub use recorder::{Packing, Recorder};
 pub use seal::CampaignMark;
 pub use sidecar::{parse_run_meta, read_run_meta, run_meta_text, write_run_meta};
+pub use ticks::Ticks;

@@ -12,6 +12,7 @@
 //! | [`savitzky_golay`]  | local polynomial: value and derivatives                           | polynomial of the end   |
 //! | [`differences`]     | central differences                                               | one-sided               |
 //! | [`decimate`]        | zero-phase FIR low-pass, every q-th sample                        | zeros                   |
+//! | [`block_mean`]      | means of blocks of neighbours                                     | whole blocks alone      |
 //! | [`stream`]          | the same chain a chunk at a time, in bounded memory               | as above                |
 //! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
 //! | [`exponential`]     | exact step of a linear system whose inputs stand still             | –                       |
@@ -28,6 +29,7 @@
 //! (`froude-fit::diagnostics`, where χ² is).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod block_mean;
 pub mod blocks;
 pub mod butterworth;
 mod cascade;

@@ -5,6 +5,7 @@
 
 pub mod decay;
 mod logs;
+mod long_logs;
 pub mod oscillation;
 pub mod steady;
 pub mod weight_tow;

@@ -8,8 +8,10 @@ use froude_identify::method::MethodError;
 use froude_identify::runs::{logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
 use froude_records::finding::{Finding, Severity};
-use froude_records::run::{Channel, ImportedRun, Role, import_run};
+use froude_records::run::{Channel, ImportedRun, Role};
 use froude_records::units::Dimension;
+
+use crate::long_logs::{self, LENGTHS, Lengths};
 
 /// The logs of a folder that a method uses.
 pub(crate) struct Logs {
@@ -19,7 +21,25 @@ pub(crate) struct Logs {
 }
 
 /// Every log of a folder whose role is one of `roles`; `channels` says in words what a log of `method` has beside the time.
-pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) -> Result<Logs, MethodError> {
+pub(crate) fn read(
+    folder: &Path,
+    method: &str,
+    roles: &[Role],
+    channels: &str,
+    progress: &dyn Fn(&str),
+) -> Result<Logs, MethodError> {
+    read_averaging(folder, method, roles, channels, LENGTHS, progress)
+}
+
+/// The same, with other lengths of what is averaged.
+pub(crate) fn read_averaging(
+    folder: &Path,
+    method: &str,
+    roles: &[Role],
+    channels: &str,
+    lengths: Lengths,
+    progress: &dyn Fn(&str),
+) -> Result<Logs, MethodError> {
     if folder.is_file() {
         return Err(MethodError::input(
             folder,
@@ -36,7 +56,7 @@ pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) 
     }
     let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     for path in paths {
-        let log = import_run(&path, None)?;
+        let log = long_logs::import(&path, lengths, progress)?;
         let meta = &log.log.meta;
         if meta.method != method {
             let found = if meta.method.is_empty() {
@@ -57,6 +77,7 @@ pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) 
             out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
             continue;
         }
+        out.findings.extend(long_logs::note(&log));
         let sidecar = path.with_extension("toml");
         out.files.push(ReadFile::new(path, role.name()));
         if sidecar.exists() {

@@ -14,15 +14,19 @@ use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
 
 use super::forces::{Drag, LOAD};
+use super::motion::{Motion, not_clipped};
 use super::setup::{Body, Cycles, OscillationRun, Setup};
 use super::{findings, fit, motions, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
+use crate::long_logs;
 
 /// The joint fit in time.
 pub struct ForcedOscillation;
 
 const WORDS: &str =
     "added mass, drag, buoyancy and delay fitted together in time, to runs of a body that a motor swings";
+const ROLES: [Role; 2] = [Role::Test, Role::DryAir];
+const CHANNELS: &str = "time, angle and force";
 /// The drag law where none is asked for.
 const DEFAULT_LAW: &str = "linear_quadratic";
 
@@ -54,11 +58,12 @@ impl Method for ForcedOscillation {
         let spec = declared(source)?;
         progress("reading the runs");
         let Logs { runs: logs, files, mut findings } =
-            logs::read(source.input.path(), FORCED_OSCILLATION, &[Role::Test, Role::DryAir], "time, angle and force")?;
+            logs::read(source.input.path(), FORCED_OSCILLATION, &ROLES, CHANNELS, progress)?;
         let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
         let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the angles");
         let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
+        let fastest_hz = as_recorded(&logs, &motions, &setup)?;
         let mut fits = Vec::new();
         for drag in drags(campaign, source, &setup)? {
             progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
@@ -67,11 +72,15 @@ impl Method for ForcedOscillation {
         }
         let chosen = record::chosen(&fits);
         findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
+        findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
         findings.extend(fits.iter().flat_map(|(_, fit)| findings::of_fit(fit, &runs, &motions, &setup)));
         let blocks = fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup)).into_iter().collect();
         let estimate = |(i, (drag, fit)): (usize, &(Drag, _))| {
             let context = record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions };
-            let estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
+            let mut estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
+            if let Some(step) = long_logs::step(&logs, &fastest_hz) {
+                estimate.method.words = format!("{step}; {}", estimate.method.words);
+            }
             Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
         };
         let results = fits.iter().enumerate().map(estimate).collect();
@@ -86,6 +95,20 @@ impl Method for ForcedOscillation {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+}
+
+/// Holds the extremes of the rows recorded against clipping, which averages hide; the frequency of the highest harmonic of each run, Hz.
+fn as_recorded(logs: &[ImportedRun], motions: &[Motion], setup: &Setup) -> Result<Vec<f64>, MethodError> {
+    let of = |(log, motion): (&ImportedRun, &Motion)| {
+        let period_s = motion.angle.period_s();
+        for (channel, unit) in [("angle", "rad"), ("force", "N")] {
+            if let Some(extremes) = log.averaged.as_ref().and_then(|averaged| averaged.extremes.get(channel)) {
+                not_clipped(&log.log.meta.id, channel, unit, extremes, period_s).map_err(MethodError::refused)?;
+            }
+        }
+        Ok(setup.harmonics as f64 / period_s)
+    };
+    logs.iter().zip(motions).map(of).collect()
 }
 
 /// Configurations of the runs, in order of first appearance.
