@@ -8,6 +8,7 @@
 //! |---------------------|-------------------------------------------------------------------|-------------------------|
 //! | [`butterworth`]     | low-pass design, as second-order sections                         | –                       |
 //! | [`zero_phase`]      | forward and backward: no phase, twice the attenuation             | odd extension           |
+//! | [`causal`]          | forward only, a chunk at a time: with the filter's phase           | empty, or settled       |
 //! | [`gaussian`]        | smoothing by a Gaussian                                           | mirrored                |
 //! | [`savitzky_golay`]  | local polynomial: value and derivatives                           | polynomial of the end   |
 //! | [`differences`]     | central differences                                               | one-sided               |
@@ -33,6 +34,7 @@ pub mod block_mean;
 pub mod blocks;
 pub mod butterworth;
 mod cascade;
+pub mod causal;
 pub mod clock;
 mod convolve;
 pub mod decimate;

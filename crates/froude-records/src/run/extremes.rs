@@ -105,9 +105,9 @@ mod tests {
     fn a_sine_that_is_cut_off_is_clipped_and_one_that_turns_is_not() {
         let (time, values) = cut(0.9, 1e-3);
         let stay = Extremes::of(&time, &values).clipped(5.0).unwrap();
-        // sin > 0.9 for 2·arccos(0.9)/2π = 0.1436 of 5 s, 72 samples.
+        // sin > 0.9 for 2·arccos(0.9)/2π = 0.1436 of 5 s, 72 samples; what the noise lifts, from 0.89 on, makes it 76 at most.
         assert_eq!(stay.value, 0.9);
-        assert!((70..=74).contains(&stay.samples), "{stay:?}");
+        assert!((71..=76).contains(&stay.samples), "{stay:?}");
         assert!((stay.from_s % 5.0 - 0.89).abs() < 0.02, "{stay:?}");
         let (time, values) = cut(2.0, 1e-3);
         assert_eq!(Extremes::of(&time, &values).clipped(5.0), None);

@@ -18,7 +18,7 @@ use super::motion::{Motion, not_clipped};
 use super::setup::{Body, Cycles, OscillationRun, Setup};
 use super::{findings, fit, motions, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
-use crate::long_logs;
+use crate::long_logs::{self, LENGTHS, Lengths};
 
 /// The joint fit in time.
 pub struct ForcedOscillation;
@@ -55,37 +55,7 @@ impl Method for ForcedOscillation {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let spec = declared(source)?;
-        progress("reading the runs");
-        let Logs { runs: logs, files, mut findings } =
-            logs::read(source.input.path(), FORCED_OSCILLATION, &ROLES, CHANNELS, progress)?;
-        let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
-        let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
-        progress("fitting the angles");
-        let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
-        let fastest_hz = as_recorded(&logs, &motions, &setup)?;
-        let mut fits = Vec::new();
-        for drag in drags(campaign, source, &setup)? {
-            progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
-            let fit = fit(&runs, &motions, &setup, &drag, &campaign.identify).map_err(MethodError::refused)?;
-            fits.push((drag, fit));
-        }
-        let chosen = record::chosen(&fits);
-        findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
-        findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
-        findings.extend(fits.iter().flat_map(|(_, fit)| findings::of_fit(fit, &runs, &motions, &setup)));
-        let blocks = fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup)).into_iter().collect();
-        let estimate = |(i, (drag, fit)): (usize, &(Drag, _))| {
-            let context = record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions };
-            let mut estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
-            if let Some(step) = long_logs::step(&logs, &fastest_hz) {
-                estimate.method.words = format!("{step}; {}", estimate.method.words);
-            }
-            Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
-        };
-        let results = fits.iter().enumerate().map(estimate).collect();
-        let summary = (!fits.is_empty()).then(|| page::laws(&fits, chosen));
-        Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
+        identified(campaign, source, LENGTHS, progress)
     }
 
     fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
@@ -95,6 +65,46 @@ impl Method for ForcedOscillation {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+}
+
+/// Reads, fits, chooses; logs beyond `lengths` are averaged.
+fn identified(
+    campaign: &Campaign,
+    source: &Source,
+    lengths: Lengths,
+    progress: &dyn Fn(&str),
+) -> Result<Found, MethodError> {
+    let spec = declared(source)?;
+    progress("reading the runs");
+    let Logs { runs: logs, files, mut findings } =
+        logs::read_averaging(source.input.path(), FORCED_OSCILLATION, &ROLES, CHANNELS, lengths, progress)?;
+    let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+    let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
+    progress("fitting the angles");
+    let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
+    let fastest_hz = as_recorded(&logs, &motions, &setup)?;
+    let mut fits = Vec::new();
+    for drag in drags(campaign, source, &setup)? {
+        progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
+        let fit = fit(&runs, &motions, &setup, &drag, &campaign.identify).map_err(MethodError::refused)?;
+        fits.push((drag, fit));
+    }
+    let chosen = record::chosen(&fits);
+    findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
+    findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
+    findings.extend(fits.iter().flat_map(|(_, fit)| findings::of_fit(fit, &runs, &motions, &setup)));
+    let blocks = fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup)).into_iter().collect();
+    let estimate = |(i, (drag, fit)): (usize, &(Drag, _))| {
+        let context = record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions };
+        let mut estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
+        if let Some(step) = long_logs::step(&logs, &fastest_hz) {
+            estimate.method.words = format!("{step}; {}", estimate.method.words);
+        }
+        Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
+    };
+    let results = fits.iter().enumerate().map(estimate).collect();
+    let summary = (!fits.is_empty()).then(|| page::laws(&fits, chosen));
+    Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
 }
 
 /// Holds the extremes of the rows recorded against clipping, which averages hide; the frequency of the highest harmonic of each run, Hz.
@@ -289,3 +299,6 @@ fn channel<'a>(log: &'a ImportedRun, name: &str, dimension: Dimension) -> Result
     };
     logs::channel(log, name, dimension, "added mass is wrong by its size where one is guessed", along)
 }
+
+#[cfg(test)]
+mod tests;
