@@ -55,8 +55,9 @@ pub(crate) fn read_averaging(
         return Err(MethodError::input(folder, what));
     }
     let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
-    for path in paths {
-        let log = long_logs::import(&path, lengths, progress)?;
+    let readings = long_logs::readings(&paths, lengths);
+    for (path, reading) in paths.into_iter().zip(readings) {
+        let log = long_logs::import(&path, reading, progress)?;
         let meta = &log.log.meta;
         if meta.method != method {
             let found = if meta.method.is_empty() {

@@ -1,11 +1,12 @@
 //! Logs of more rows than are held in memory: averaged in blocks while they are read.
 //!
-//! An hour of eight channels at 10 kHz is 36 million rows, 2.3 GB of numbers, and the motions of a tank take seconds. A log of more than a million
-//! rows becomes one of half a million at most: each block of q rows its mean, times and all channels alike ([`froude_signal::block_mean`]). Nothing
+//! An hour of eight channels at 10 kHz is 36 million rows, 2.3 GB of numbers, and the motions of a tank take seconds. Logs of more than a million
+//! rows together become half a million: each block of q rows its mean, times and all channels alike ([`froude_signal::block_mean`]). Nothing
 //! is delayed, what is lost of a tone is the same in every channel and stated, and white noise stays white, so that coefficients and their
-//! uncertainties are those of the whole log. Gaps, uneven steps and what a sensor at the end of its range shows are told by the rows recorded.
+//! uncertainties are those of the whole logs. All logs of a folder come to one rate, so that none gains weight on another by being shorter. Gaps,
+//! uneven steps and what a sensor at the end of its range shows are told by the rows recorded.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use froude_identify::method::MethodError;
 use froude_records::RecordError;
@@ -15,20 +16,60 @@ use froude_records::number;
 use froude_records::run::{Averaged, Extremes, ImportedRun, Ticks, import_run, run_of_means};
 use froude_records::sidecar::read_sidecar;
 use froude_records::table::{Column, ColumnData, Table};
+use froude_records::units::Dimension;
 use froude_signal::block_mean::{BlockMean, gain, noise_bandwidth_hz};
 use indexmap::IndexMap;
 
-/// Where a log is too long, and what is kept of it.
+/// Where the logs of a folder are too long, and what is kept of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Lengths {
-    /// Most rows that are read as they are.
+    /// Most rows, of all logs together, that are read as they are.
     pub longest: usize,
-    /// Most rows that a longer log is averaged to.
+    /// Rows, likewise, that longer logs are averaged to.
     pub kept: usize,
 }
 
 /// Eight channels of a million rows are 64 MB, and a reduction takes some times that.
 pub(crate) const LENGTHS: Lengths = Lengths { longest: 1_000_000, kept: 500_000 };
+
+/// How a log is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Reading {
+    /// Rows that it has, as far as that is known.
+    rows: usize,
+    /// Rows whose mean is one; 1 for a log that is read as it is.
+    block_rows: usize,
+}
+
+/// How each log of a folder is read: as it is, or by means over one time, the same for all of them.
+pub(crate) fn readings(paths: &[PathBuf], lengths: Lengths) -> Vec<Reading> {
+    let rows: Vec<usize> = paths.iter().map(|path| count_rows(path).unwrap_or(0)).collect();
+    let whole = |rows: &usize| Reading { rows: *rows, block_rows: 1 };
+    if rows.iter().sum::<usize>() <= lengths.longest {
+        return rows.iter().map(whole).collect();
+    }
+    let steps_s: Vec<Option<f64>> = paths.iter().map(|path| first_step_s(path)).collect();
+    let length_s: f64 = rows.iter().zip(&steps_s).filter_map(|(n, step)| Some(*n as f64 * (*step)?)).sum();
+    let block_s = length_s / lengths.kept as f64;
+    let of = |(rows, step): (&usize, &Option<f64>)| {
+        step.map_or(whole(rows), |step| Reading { rows: *rows, block_rows: (block_s / step).round().max(1.0) as usize })
+    };
+    rows.iter().zip(&steps_s).map(of).collect()
+}
+
+/// Median step of the first rows, s; `None` of a log that cannot be read: reading it says why.
+fn first_step_s(path: &Path) -> Option<f64> {
+    let mut found = None;
+    // The first part is all that is asked for: what is returned ends the reading.
+    let _ = for_each_chunk::<RecordError>(path, None, &mut |part| {
+        let time_s = part.number("time", Dimension::TIME)?;
+        let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        found = steps.get(steps.len() / 2).copied().filter(|step| *step > 0.0);
+        Err(RecordError::NoRows { path: path.to_owned() })
+    });
+    found
+}
 
 /// Loss of the fastest tone that counts, as part of its amplitude, beyond which averages are too coarse.
 const MOST_LOST: f64 = 1e-3;
@@ -36,24 +77,22 @@ const MOST_LOST: f64 = 1e-3;
 const KEPT: f64 = 1e-4;
 
 /// Reads a log through the sidecar beside it, whole or averaged.
-pub(crate) fn import(path: &Path, lengths: Lengths, progress: &dyn Fn(&str)) -> Result<ImportedRun, MethodError> {
-    match count_rows(path) {
-        Some(rows) if rows > lengths.longest => {
-            let mut means = Means::of(rows.div_ceil(lengths.kept));
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let mut shown = None;
-            for_each_chunk::<RecordError>(path, None, &mut |part| {
-                means.push(&part)?;
-                let percent = (100 * means.rows / rows).min(100);
-                if shown.replace(percent) != Some(percent) {
-                    progress(&format!("reading {name}, {percent} %"));
-                }
-                Ok(())
-            })?;
-            means.finish(path)
-        }
-        _ => Ok(import_run(path, None)?),
+pub(crate) fn import(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> Result<ImportedRun, MethodError> {
+    if reading.block_rows == 1 {
+        return Ok(import_run(path, None)?);
     }
+    let mut means = Means::of(reading.block_rows);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut shown = None;
+    for_each_chunk::<RecordError>(path, None, &mut |part| {
+        means.push(&part)?;
+        let percent = (100 * means.rows / reading.rows.max(1)).min(100);
+        if shown.replace(percent) != Some(percent) {
+            progress(&format!("reading {name}, {percent} %"));
+        }
+        Ok(())
+    })?;
+    means.finish(path)
 }
 
 /// The means of a log while it goes by.
