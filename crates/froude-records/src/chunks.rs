@@ -39,6 +39,19 @@ pub fn for_each_chunk<E: From<RecordError>>(
     }
 }
 
+/// Rows of a table; lines of a CSV count as rows, one more or less. `None` where it cannot be read, or but once: reading it says why.
+#[must_use]
+pub fn count_rows(path: &Path) -> Option<usize> {
+    if !path.is_file() {
+        return None;
+    }
+    match Format::of(path) {
+        Ok(Format::Csv) => n_lines(path, usize::MAX).ok(),
+        Ok(Format::Parquet) => parquet_table::n_rows(path).ok(),
+        Err(_) => None,
+    }
+}
+
 /// Whether a table has more rows than `limit`; lines of a CSV count as rows. False where it cannot be read: reading it says why.
 #[must_use]
 pub fn has_more_rows(path: &Path, limit: usize) -> bool {
@@ -47,26 +60,26 @@ pub fn has_more_rows(path: &Path, limit: usize) -> bool {
         return false;
     }
     match Format::of(path) {
-        Ok(Format::Csv) => has_more_lines(path, limit).unwrap_or(false),
+        Ok(Format::Csv) => n_lines(path, limit).is_ok_and(|lines| lines > limit),
         Ok(Format::Parquet) => parquet_table::n_rows(path).is_ok_and(|rows| rows > limit),
         Err(_) => false,
     }
 }
 
-fn has_more_lines(path: &Path, limit: usize) -> std::io::Result<bool> {
+/// Lines below the first, which names the columns; counted until there are more than `most`.
+fn n_lines(path: &Path, most: usize) -> std::io::Result<usize> {
     let mut file = File::open(path)?;
     let mut buffer = vec![0; CHUNK_BYTES];
-    let mut lines = 0;
-    // The first line names the columns.
-    while lines <= limit + 1 {
+    let mut lines = 0_usize;
+    while lines.saturating_sub(1) <= most {
         match file.read(&mut buffer) {
-            Ok(0) => return Ok(false),
+            Ok(0) => break,
             Ok(n) => lines += memchr::memchr_iter(b'\n', &buffer[..n]).count(),
             Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
             Err(e) => return Err(e),
         }
     }
-    Ok(true)
+    Ok(lines.saturating_sub(1))
 }
 
 fn csv<E: From<RecordError>>(

@@ -101,7 +101,8 @@ fn read<R: ChunkReader + 'static>(path: &Path, source: R, sidecar: Option<&Sidec
     let mut raws = opened.empty()?;
     let mut first_row = 1;
     for g in 0..opened.reader.num_row_groups() {
-        first_row += opened.group(g, first_row, &mut raws, &mut room)?;
+        let mut group = opened.group(g)?;
+        first_row += opened.take(&mut group, usize::MAX, first_row, &mut raws, &mut room)?;
     }
     opened.add(&mut sums, &raws);
     opened.check_sums(sums)?;
@@ -115,7 +116,7 @@ pub(crate) fn n_rows(path: &Path) -> Result<usize, RecordError> {
     Ok(usize::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0))
 }
 
-/// Hands on a table a chunk of rows at a time; a row group is unpacked at once.
+/// Hands on a table a chunk of rows at a time; of a row group a page of each column is unpacked at once.
 pub(crate) fn for_each_chunk<E: From<RecordError>>(
     path: &Path,
     sidecar: Option<&Sidecar>,
@@ -130,19 +131,14 @@ pub(crate) fn for_each_chunk<E: From<RecordError>>(
     let mut sums = opened.sums();
     let mut first_row = 1;
     for g in 0..opened.reader.num_row_groups() {
-        let mut raws = opened.empty()?;
-        let n = caught(path, || opened.group(g, first_row, &mut raws, &mut Room::new(path)))?;
-        opened.add(&mut sums, &raws);
-        for start in (0..n).step_by(CHUNK_ROWS) {
-            let rows = start..(start + CHUNK_ROWS).min(n);
-            let part = |raw: &Raw| match raw {
-                Raw::Numbers(numbers) => Raw::Numbers(numbers.get(rows.clone()).unwrap_or_default().to_vec()),
-                Raw::Texts(texts) => Raw::Texts(texts.get(rows.clone()).unwrap_or_default().to_vec()),
-            };
-            let lines = (first_row + rows.start..first_row + rows.end).collect();
-            each(opened.table(raws.iter().map(part).collect(), lines)?)?;
+        let mut group = caught(path, || opened.group(g))?;
+        while group.taken < group.rows {
+            let (mut raws, mut room) = (opened.empty()?, Room::new(path));
+            let n = caught(path, || opened.take(&mut group, CHUNK_ROWS, first_row, &mut raws, &mut room))?;
+            opened.add(&mut sums, &raws);
+            each(opened.table(raws, (first_row..first_row + n).collect())?)?;
+            first_row += n;
         }
-        first_row += n;
     }
     opened.check_sums(sums)?;
     if first_row == 1 { Err(RecordError::NoRows { path: path.to_owned() }.into()) } else { Ok(()) }
@@ -204,30 +200,49 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
         kept.map(|(_, field)| of(field)).sum()
     }
 
-    /// Reads a row group behind what is there; how many rows it has.
-    fn group(&self, g: usize, first_row: usize, raws: &mut [Raw], room: &mut Room<'_>) -> Result<usize, RecordError> {
-        let damaged = |e: ParquetError| RecordError::Damaged { path: self.path.to_owned(), reason: in_words(&e) };
+    /// A row group from its first row on.
+    fn group(&self, g: usize) -> Result<Group, RecordError> {
         let descriptions = self.reader.metadata().file_metadata().schema_descr_ptr();
-        let group = self.reader.get_row_group(g).map_err(damaged)?;
-        let n_rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
-        Room::new(self.path).take(self.bytes_a_row().saturating_mul(n_rows as u64))?;
-        for (j, want) in self.wants.iter().enumerate() {
+        let group = self.reader.get_row_group(g).map_err(|e| self.damaged(&e))?;
+        let of = |(j, want): (usize, &Want<'_>)| -> Result<_, RecordError> {
             if matches!(want, Want::LeftOut) {
-                continue;
+                return Ok(None);
             }
-            let pages = group.get_column_page_reader(j).map_err(damaged)?;
+            let pages = group.get_column_page_reader(j).map_err(|e| self.damaged(&e))?;
             let left = u64::try_from(group.metadata().column(j).uncompressed_size()).unwrap_or(0);
-            let pages = Box::new(Checked { pages, left });
-            let column = get_column_reader(descriptions.column(j), pages);
+            Ok(Some(get_column_reader(descriptions.column(j), Box::new(Checked { pages, left }))))
+        };
+        let columns = self.wants.iter().enumerate().map(of).collect::<Result<_, _>>()?;
+        Ok(Group { columns, rows: usize::try_from(group.metadata().num_rows()).unwrap_or(0), taken: 0 })
+    }
+
+    /// Reads rows of a group behind what is there, `most` at most; how many they are.
+    fn take(
+        &self,
+        group: &mut Group,
+        most: usize,
+        first_row: usize,
+        raws: &mut [Raw],
+        room: &mut Room<'_>,
+    ) -> Result<usize, RecordError> {
+        let n_rows = most.min(group.rows - group.taken);
+        for (j, (column, want)) in group.columns.iter_mut().zip(&self.wants).enumerate() {
+            let Some(column) = column else { continue };
             let is_unsigned = matches!(
                 self.fields()[j].get_basic_info().logical_type_ref(),
                 Some(LogicalType::Integer(integer)) if !integer.is_signed
             );
             let advice = || want.advice(self.path, self.sidecar);
-            let cells = Cells { path: self.path, column: &self.header[j], advice: &advice, first_row, n_rows };
+            let header = &self.header[j];
+            let cells = Cells { path: self.path, column: header, advice: &advice, first_row, n_rows };
             cells.read(column, is_unsigned, &mut raws[j], room)?;
         }
+        group.taken += n_rows;
         Ok(n_rows)
+    }
+
+    fn damaged(&self, error: &ParquetError) -> RecordError {
+        RecordError::Damaged { path: self.path.to_owned(), reason: in_words(error) }
     }
 
     fn table(&self, raws: Vec<Raw>, rows: Vec<usize>) -> Result<Table, RecordError> {
@@ -264,6 +279,14 @@ impl<'a, R: ChunkReader + 'static> Opened<'a, R> {
         }
         Ok(())
     }
+}
+
+/// A row group as far as it was read.
+struct Group {
+    /// Its columns, side by side; none for what is left out.
+    columns: Vec<Option<ColumnReader>>,
+    rows: usize,
+    taken: usize,
 }
 
 /// Pages whose claims are checked against their bytes before the decoder allocates for them.
@@ -320,7 +343,7 @@ impl Iterator for Checked {
     }
 }
 
-/// One column of one row group.
+/// Some rows of one column.
 struct Cells<'a> {
     path: &'a Path,
     column: &'a str,
@@ -341,7 +364,7 @@ impl Cells<'_> {
 
     fn read(
         &self,
-        column: ColumnReader,
+        column: &mut ColumnReader,
         is_unsigned: bool,
         raw: &mut Raw,
         room: &mut Room<'_>,
@@ -370,7 +393,7 @@ impl Cells<'_> {
 
     fn numbers<T: DataType>(
         &self,
-        column: ColumnReaderImpl<T>,
+        column: &mut ColumnReaderImpl<T>,
         out: &mut Vec<f64>,
         room: &mut Room<'_>,
         number: impl Fn(&T::T) -> f64,
@@ -395,10 +418,10 @@ impl Cells<'_> {
         })
     }
 
-    /// Every cell of the column, `None` for a null, with its row in the group from 0.
+    /// Every cell of these rows, `None` for a null, with its row from 0.
     fn each<T: DataType>(
         &self,
-        mut column: ColumnReaderImpl<T>,
+        column: &mut ColumnReaderImpl<T>,
         mut see: impl FnMut(usize, Option<&T::T>) -> Result<(), RecordError>,
     ) -> Result<(), RecordError> {
         const BATCH: usize = 4096;
@@ -412,7 +435,7 @@ impl Cells<'_> {
                 .read_records(most, Some(&mut levels), None, &mut values)
                 .map_err(|e| self.damaged(in_words(&e)))?;
             if n == 0 {
-                return Err(self.damaged(format!("column {} ends after {row} of {} rows", self.column, self.n_rows)));
+                return Err(self.damaged(format!("column {} ends before row {}", self.column, self.first_row + row)));
             }
             // A required column has no levels: every cell has a value.
             let mut given = values.iter();

@@ -14,7 +14,7 @@
 //! | recording (MCAP)          | [`Recorder`]   |
 //! | reading, whole or streamed | [`read_run`], [`RunReader`] |
 //! | whether it lies as it was driven | [`check_pair`], [`Doubt`] |
-//! | another program's log     | [`import_run`] |
+//! | another program's log     | [`import_run`]; one that is too long to be held [`Ticks`], [`Extremes`], [`run_of_means`] |
 //! | what is declared of its data | [`mod@sensor`], [`mod@clocks`], [`mod@frames`], [`mod@cell`], [`mod@marks`] |
 //! | what was done to it       | [`mod@step`] |
 //!
@@ -45,6 +45,7 @@ pub mod clocks;
 pub(crate) mod declarations;
 mod declared_text;
 mod doubt;
+mod extremes;
 mod file;
 pub mod frames;
 mod import;
@@ -61,12 +62,14 @@ pub mod sensor;
 pub(crate) mod sidecar;
 pub mod step;
 mod sync;
+mod ticks;
 
 pub use crate::run::doubt::{Doubt, DoubtKind};
 pub use crate::run::pair::{Pair, check_names, check_pair};
 pub use channel::{BOARD, Frame, LOG, Meaning};
 pub use declarations::{Declarations, Stated, Told};
-pub use import::{AXIS_NAMES, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_table};
+pub use extremes::{Extremes, Stay};
+pub use import::{AXIS_NAMES, Averaged, ImportedRun, TimeSteps, import_run, is_servo_log, run_of_means, run_of_table};
 pub use layout::{AxisSample, CarriageSample, ChannelSpec, Kind, Layout};
 pub use log::{Channel, Event, EventKind, Gap, GapCause, RunLog};
 pub use meta::{
@@ -79,3 +82,4 @@ pub use recorded::recorded_run;
 pub use recorder::{Packing, Recorder};
 pub use seal::CampaignMark;
 pub use sidecar::{parse_run_meta, read_run_meta, run_meta_text, write_run_meta};
+pub use ticks::Ticks;

@@ -9,10 +9,12 @@
 //! | [`butterworth`]     | low-pass design, as second-order sections                         | –                       |
 //! | [`analogue`]        | what a filter before the log does to a signal, and to noise       | –                       |
 //! | [`zero_phase`]      | forward and backward: no phase, twice the attenuation             | odd extension           |
+//! | [`causal`]          | forward only, a chunk at a time: with the filter's phase           | empty, or settled       |
 //! | [`gaussian`]        | smoothing by a Gaussian                                           | mirrored                |
 //! | [`savitzky_golay`]  | local polynomial: value and derivatives                           | polynomial of the end   |
 //! | [`differences`]     | central differences                                               | one-sided               |
 //! | [`decimate`]        | zero-phase FIR low-pass, every q-th sample                        | zeros                   |
+//! | [`block_mean`]      | means of blocks of neighbours                                     | whole blocks alone      |
 //! | [`stream`]          | the same chain a chunk at a time, in bounded memory               | as above                |
 //! | [`blocks`]          | indices of the moving-block bootstrap                             | –                       |
 //! | [`exponential`]     | exact step of a linear system whose inputs stand still             | –                       |
@@ -30,9 +32,11 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod analogue;
+pub mod block_mean;
 pub mod blocks;
 pub mod butterworth;
 mod cascade;
+pub mod causal;
 pub mod clock;
 mod convolve;
 pub mod decimate;

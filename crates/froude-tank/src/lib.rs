@@ -10,6 +10,7 @@ pub mod excited_response;
 mod fluid;
 pub mod joint;
 mod logs;
+mod long_logs;
 pub mod motion;
 mod noise;
 pub mod oscillation;

@@ -11,10 +11,11 @@ use froude_identify::source::ReadFile;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::clocks::is_own;
 use froude_records::run::step::Step;
-use froude_records::run::{Channel, ImportedRun, Role, RunReader, RunStatus, import_run, read_run_meta, recorded_run};
+use froude_records::run::{Channel, ImportedRun, Role, RunReader, RunStatus, read_run_meta, recorded_run};
 use froude_records::units::Dimension;
 
 use crate::conditioning;
+use crate::long_logs::{self, LENGTHS, Lengths, Reading};
 use crate::motion::Motion;
 
 /// The logs of a folder that a method uses.
@@ -25,7 +26,25 @@ pub(crate) struct Logs {
 }
 
 /// Every log of a folder whose role is one of `roles`; `channels` says in words what a log of `method` has beside the time.
-pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) -> Result<Logs, MethodError> {
+pub(crate) fn read(
+    folder: &Path,
+    method: &str,
+    roles: &[Role],
+    channels: &str,
+    progress: &dyn Fn(&str),
+) -> Result<Logs, MethodError> {
+    read_averaging(folder, method, roles, channels, LENGTHS, progress)
+}
+
+/// The same, with other lengths of what is averaged.
+pub(crate) fn read_averaging(
+    folder: &Path,
+    method: &str,
+    roles: &[Role],
+    channels: &str,
+    lengths: Lengths,
+    progress: &dyn Fn(&str),
+) -> Result<Logs, MethodError> {
     if folder.is_file() {
         return Err(MethodError::input(
             folder,
@@ -41,8 +60,9 @@ pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) 
         return Err(MethodError::input(folder, what));
     }
     let mut out = Logs { runs: Vec::new(), files: Vec::new(), findings: Vec::new() };
-    for path in paths {
-        let mut log = imported(&path)?;
+    let readings = long_logs::readings(&paths, lengths);
+    for (path, reading) in paths.into_iter().zip(readings) {
+        let mut log = imported(&path, reading, progress)?;
         let meta = &log.log.meta;
         if meta.method != method {
             let found = if meta.method.is_empty() {
@@ -68,6 +88,7 @@ pub(crate) fn read(folder: &Path, method: &str, roles: &[Role], channels: &str) 
             out.findings.push(Finding::new(Severity::Warning, "run-left-out", text));
             continue;
         }
+        out.findings.extend(long_logs::note(&log));
         conditioning::condition(&mut log, method)?;
         out.findings.extend(log.findings.iter().filter(|f| f.severity > Severity::Note).cloned());
         let sidecar = path.with_extension("toml");
@@ -114,14 +135,14 @@ fn recorded_of(log: &Path) -> Option<String> {
     meta.map(|meta| meta.method)
 }
 
-/// Reads a log of any kind.
+/// Reads a log of any kind; one that Froude recorded as it is.
 ///
 /// # Errors
 ///
 /// A log that cannot be read, one that is damaged, or another than its sidecar's.
-pub(crate) fn imported(path: &Path) -> Result<ImportedRun, MethodError> {
+pub(crate) fn imported(path: &Path, reading: Reading, progress: &dyn Fn(&str)) -> Result<ImportedRun, MethodError> {
     if !path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mcap")) {
-        return Ok(import_run(path, None)?);
+        return long_logs::import(path, reading, progress);
     }
     let log = recorded_run(path)?;
     match log.findings.iter().find(|finding| finding.severity == Severity::Error) {

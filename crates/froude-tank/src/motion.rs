@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use froude_records::run::marks::Mark;
+use froude_records::run::{Extremes, Stay};
 use froude_signal::SignalError;
 use froude_signal::harmonic::Harmonics;
 
@@ -16,10 +17,6 @@ const GOES_ON: f64 = 0.5;
 const QUARTER: f64 = 0.25;
 /// The size of an angle: this part of its samples are nearer to the middle.
 const SIZE: f64 = 0.9;
-/// A sensor that stands at its extreme this many times as long as a smooth motion would is clipped, …
-const CLIPPED: f64 = 3.0;
-/// … from so many samples on.
-const FEWEST_CLIPPED: usize = 5;
 
 /// Which cycles of a run are used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -206,7 +203,7 @@ pub(crate) fn motion(run: &Logged<'_>, asked: Cycles, harmonics: usize) -> Resul
     let period_s = rough.period_s();
     if run.marks.iter().all(|mark| mark.why != "clipped") {
         for (channel, values, unit) in [("angle", run.angle_rad, "rad"), (load, loads, load_unit)] {
-            clipped(run, channel, values, unit, period_s)?;
+            not_clipped(run.id, channel, unit, &Extremes::of(run.time_s, values), period_s)?;
         }
     }
     let (first, end) = moving(run, rough.mean, period_s);
@@ -262,43 +259,17 @@ fn moving(run: &Logged<'_>, middle: f64, period_s: f64) -> (usize, usize) {
 }
 
 /// A channel that stands at its largest or smallest value for longer than a smooth motion with its resolution would.
-///
-/// About its peak a sine of amplitude A stays within one step q for (1/π)√(2q/A) of its period.
-fn clipped(
-    run: &Logged<'_>,
+pub(crate) fn not_clipped(
+    run: &str,
     channel: &'static str,
-    values: &[f64],
     unit: &'static str,
+    extremes: &Extremes,
     period_s: f64,
 ) -> Result<(), MotionError> {
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-    let step = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
-    let (n, amplitude) = (values.len(), 0.5 * (high - low));
-    if amplitude.is_nan() || amplitude <= 0.0 {
-        return Ok(());
-    }
-    let rate_hz = (n - 1) as f64 / (run.time_s[n - 1] - run.time_s[0]);
-    let smooth = period_s * rate_hz * (2.0 * (step / amplitude).min(1.0)).sqrt() / std::f64::consts::PI;
-    for value in [low, high] {
-        let (mut longest, mut at, mut length) = (0, 0, 0);
-        for (i, x) in values.iter().enumerate() {
-            length = if *x == value { length + 1 } else { 0 };
-            if length > longest {
-                (longest, at) = (length, i + 1 - length);
-            }
-        }
-        if longest >= FEWEST_CLIPPED && longest as f64 > CLIPPED * smooth.max(1.0) {
-            let from_s = run.time_s[at];
-            return Err(MotionError::Clipped {
-                run: run.id.to_owned(),
-                channel,
-                value,
-                unit,
-                samples: longest,
-                from_s,
-            });
+    match extremes.clipped(period_s) {
+        None => Ok(()),
+        Some(Stay { value, samples, from_s }) => {
+            Err(MotionError::Clipped { run: run.to_owned(), channel, value, unit, samples, from_s })
         }
     }
-    Ok(())
 }

@@ -24,9 +24,11 @@ use crate::estimate::Measured;
 use crate::finding::{Finding, Severity};
 use crate::run::channel::{LOG, Meaning};
 use crate::run::declarations::{Declarations, Told};
+use crate::run::extremes::Extremes;
 use crate::run::log::{Channel, Gap, GapCause, RunLog};
 use crate::run::meta::{Role, RunMeta, RunStatus};
 use crate::run::step::Step;
+use crate::run::ticks::Ticks;
 use crate::sidecar::{Mapping, Sidecar, read_sidecar};
 use crate::table::{Column, ColumnData, Table, sidecar_of};
 use crate::table_file::read_table;
@@ -47,10 +49,10 @@ pub const AXIS_NAMES: [&str; 9] = [
 ];
 
 /// Steps that differ less than this from their median, relative to it, are even but for the clock's resolution.
-const EVEN: f64 = 0.01;
+pub(crate) const EVEN: f64 = 0.01;
 
 /// A step longer than this many medians has ticks missing in it.
-const GAP: f64 = 1.5;
+pub(crate) const GAP: f64 = 1.5;
 
 /// A log that was imported, with what was found in it.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +63,8 @@ pub struct ImportedRun {
     pub log: RunLog,
     /// How even its time steps are.
     pub steps: TimeSteps,
+    /// What was done to a log that is too long to be held; `None` of one that is as it was recorded.
+    pub averaged: Option<Averaged>,
     /// What a reader should know.
     pub findings: Vec<Finding>,
     /// What its sidecar declares of the channels, by the channel's name.
@@ -69,6 +73,19 @@ pub struct ImportedRun {
     pub declared: Declarations,
     /// What was done to the data, in order.
     pub done: Vec<Step>,
+}
+
+/// A log whose rows are means of the rows recorded; its time steps and gaps are those of the rows recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Averaged {
+    /// Rows recorded.
+    pub rows: usize,
+    /// Rows in a block.
+    pub block_rows: usize,
+    /// Rows of blocks that a gap or the end of the log cut, which are left out.
+    pub left_out: usize,
+    /// Extremes of each channel as it was recorded.
+    pub extremes: IndexMap<String, Extremes>,
 }
 
 /// Steps between ticks, s.
@@ -115,6 +132,37 @@ pub fn import_run(path: &Path, sidecar: Option<&Path>) -> Result<ImportedRun, Re
 pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<ImportedRun, RecordError> {
     let time_s = times(table)?;
     let steps = steps(&time_s);
+    let lost = gaps(&time_s, steps);
+    run(table, sidecar, time_s, steps, lost)
+}
+
+/// A table of means, and what was recorded of it.
+///
+/// # Errors
+///
+/// As [`import_run`], and what [`Ticks::finish`] refuses.
+pub fn run_of_means(
+    table: &Table,
+    sidecar: Option<&Sidecar>,
+    ticks: Ticks,
+    averaged: Averaged,
+) -> Result<ImportedRun, RecordError> {
+    let time_s = times(table)?;
+    let (steps, lost) = ticks.finish(&table.path)?;
+    let mut out = run(table, sidecar, time_s, steps, lost)?;
+    out.log.meta.log_rate_hz /= averaged.block_rows as f64;
+    let named = averaged.extremes.into_iter().map(|(name, extremes)| (channel_name(&name), extremes));
+    out.averaged = Some(Averaged { extremes: named.collect(), ..averaged });
+    Ok(out)
+}
+
+fn run(
+    table: &Table,
+    sidecar: Option<&Sidecar>,
+    time_s: Vec<f64>,
+    steps: TimeSteps,
+    lost: Vec<Gap>,
+) -> Result<ImportedRun, RecordError> {
     let mut channels = IndexMap::new();
     let mut told = IndexMap::new();
     for column in &table.columns {
@@ -148,11 +196,19 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
         log_rate_hz: 1.0 / steps.median_s,
         ..RunMeta::default()
     };
-    let lost = gaps(&time_s, steps);
     let findings = vec![finding(table, steps, &lost)];
     let log = RunLog { path: table.path.clone(), time_s, channels, lost, meta, ..RunLog::default() };
     let declared = sidecar.map(|s| s.run.declared.clone()).unwrap_or_default();
-    Ok(ImportedRun { sidecar: sidecar.cloned(), log, steps, findings, told, declared, done: Vec::new() })
+    Ok(ImportedRun {
+        sidecar: sidecar.cloned(),
+        log,
+        steps,
+        averaged: None,
+        findings,
+        told,
+        declared,
+        done: Vec::new(),
+    })
 }
 
 impl Mapping {
@@ -177,6 +233,19 @@ fn channel_name(name: &str) -> String {
 
 /// The time column, two ticks at least, increasing.
 fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
+    let time_s = time_column(table)?;
+    if time_s.len() < 2 {
+        let problem = "has one value; a log needs two ticks at least".to_owned();
+        return Err(RecordError::Value { place: table.place_of_row(0), key: "time".to_owned(), problem });
+    }
+    match time_s.windows(2).position(|w| w[1] <= w[0]) {
+        Some(row) => Err(not_increasing(table.place_of_row(row + 1), time_s[row], time_s[row + 1])),
+        None => Ok(time_s.to_vec()),
+    }
+}
+
+/// The times of a table, s.
+pub(crate) fn time_column(table: &Table) -> Result<&[f64], RecordError> {
     let is_time = |c: &&Column| c.name == "time";
     let Some(_) = table.columns.iter().find(is_time) else {
         return Err(RecordError::UnknownColumn {
@@ -187,25 +256,12 @@ fn times(table: &Table) -> Result<Vec<f64>, RecordError> {
                 .to_owned(),
         });
     };
-    let time_s = table.number("time", Dimension::TIME)?;
-    let refuse = |row: usize, problem: String| RecordError::Value {
-        place: table.place_of_row(row),
-        key: "time".to_owned(),
-        problem,
-    };
-    if time_s.len() < 2 {
-        return Err(refuse(0, "has one value; a log needs two ticks at least".to_owned()));
-    }
-    match time_s.windows(2).position(|w| w[1] <= w[0]) {
-        Some(row) => {
-            let (before, now) = (time_s[row], time_s[row + 1]);
-            Err(refuse(
-                row + 1,
-                format!("is {now} s after {before} s; it must increase: sort the rows, or delete doubled ones"),
-            ))
-        }
-        None => Ok(time_s.to_vec()),
-    }
+    table.number("time", Dimension::TIME)
+}
+
+pub(crate) fn not_increasing(place: Place, before: f64, now: f64) -> RecordError {
+    let problem = format!("is {now} s after {before} s; it must increase: sort the rows, or delete doubled ones");
+    RecordError::Value { place, key: "time".to_owned(), problem }
 }
 
 pub(super) fn steps(time_s: &[f64]) -> TimeSteps {
@@ -220,17 +276,18 @@ pub(super) fn steps(time_s: &[f64]) -> TimeSteps {
 /// Where a step is so long that ticks are missing in it.
 fn gaps(time_s: &[f64], steps: TimeSteps) -> Vec<Gap> {
     let long = time_s.windows(2).filter(|w| w[1] - w[0] > GAP * steps.median_s);
-    long.map(|w| {
-        let ticks = ((w[1] - w[0]) / steps.median_s).round() as u64 - 1;
-        Gap {
-            from_s: Some(w[0]),
-            to_s: Some(w[1]),
-            ticks: Some(ticks),
-            cause: GapCause::Link,
-            text: format!("{} missing between {} s and {} s of the log", ticks_are(ticks), w[0], w[1]),
-        }
-    })
-    .collect()
+    long.map(|w| gap(w[0], w[1], steps.median_s)).collect()
+}
+
+pub(crate) fn gap(from_s: f64, to_s: f64, step_s: f64) -> Gap {
+    let ticks = ((to_s - from_s) / step_s).round() as u64 - 1;
+    Gap {
+        from_s: Some(from_s),
+        to_s: Some(to_s),
+        ticks: Some(ticks),
+        cause: GapCause::Link,
+        text: format!("{} missing between {from_s} s and {to_s} s of the log", ticks_are(ticks)),
+    }
 }
 
 fn ticks_are(n: u64) -> String {

@@ -72,6 +72,7 @@ pub fn recorded_run(path: &Path) -> Result<ImportedRun, RecordError> {
     let findings: Vec<Finding> = log.doubts.iter().map(super::Doubt::finding).collect();
     let declared = std::mem::take(&mut log.meta.declared);
     Ok(ImportedRun {
+        averaged: None,
         sidecar: None,
         log: RunLog { doubts: Vec::new(), ..log },
         steps,

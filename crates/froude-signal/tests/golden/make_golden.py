@@ -61,3 +61,47 @@ def harmonics(p):
 
 found = optimize.least_squares(harmonics, [3, 0, 1, 0, 0, 0], xtol=1e-15, ftol=1e-15, gtol=1e-15)
 line("harmonics_2", found.x)
+
+# Ends and corners of the recursive filters: a record hardly longer than its extension, a low corner, a high order, and the causal pass.
+line("short", x[:40])
+for name, order, corner, record in (("short", 8, 200.0, x[:40]), ("low", 4, 5.0, x), ("high", 8, 60.0, x)):
+    line(f"sosfiltfilt_{name}", signal.sosfiltfilt(signal.butter(order, corner, fs=1000.0, output="sos"), record))
+for order, corner in ((3, 60.0), (4, 100.0)):
+    sos = signal.butter(order, corner, fs=1000.0, output="sos")
+    line(f"sosfilt_{order}", signal.sosfilt(sos, x))
+    line(f"sosfilt_settled_{order}", signal.sosfilt(sos, x, zi=signal.sosfilt_zi(sos) * x[0])[0])
+
+# Harmonics of a frequency that is known: linear least squares, with the covariance of independent residuals.
+tau = t - 0.3495
+A = np.stack([np.ones(700)] + [f(k * 2 * np.pi * 3 * tau) for k in (1, 2, 3) for f in (np.cos, np.sin)], 1)
+p, squares, *_ = np.linalg.lstsq(A, x, rcond=None)
+line("held", p)
+line("held_covariance", squares[0] / (700 - 7) * np.linalg.inv(A.T @ A))
+
+# Two channels of one motion, the second 20 ms ahead at 2 s and by 7 ms more each second: leads of windows of four periods, and their line.
+w, late_time = 2 * np.pi * 1.7, np.arange(1200) / 200.0
+
+
+def motion(s):
+    return 0.2 + np.sin(w * s) + 0.1 * np.cos(2 * w * s)
+
+
+first = motion(late_time) + 1e-3 * np.sin(731 * late_time)
+second = 0.86 * motion(late_time + 0.02 + 7e-3 * (late_time - 2.0)) + 1e-3 * np.cos(613 * late_time)
+line("skew_first", first)
+line("skew_second", second)
+middles, leads, gains = [], [], []
+start, period = late_time[0], 2 * np.pi / w
+while start + 4 * period <= late_time[-1]:
+    rows = (late_time >= start) & (late_time < start + 4 * period)
+    s = late_time[rows]
+    m = 0.5 * (s[0] + s[-1])
+    B = np.stack([np.ones(len(s))] + [f(k * w * (s - m)) for k in (1, 2, 3) for f in (np.cos, np.sin)], 1)
+    a, b = (np.linalg.lstsq(B, c[rows], rcond=None)[0] for c in (first, second))
+    middles.append(m)
+    leads.append((np.arctan2(a[2], a[1]) - np.arctan2(b[2], b[1])) / w)
+    gains.append(np.hypot(b[1], b[2]) / np.hypot(a[1], a[2]))
+    start = late_time[0] + len(leads) * period
+leads = np.unwrap(np.array(leads) * w) / w
+skew, offset = np.polyfit(np.array(middles) - np.mean(middles), leads, 1)
+line("skew_found", [np.mean(middles), offset, skew, np.sort(gains)[len(gains) // 2]])

@@ -59,6 +59,7 @@ impl Method for AcceleratedTow {
             ACCELERATED_TOW,
             &[Role::Test, Role::DryAir],
             "time, position or speed, and force",
+            progress,
         )?;
         let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
         progress("weighting motion and force");

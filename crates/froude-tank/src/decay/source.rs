@@ -6,6 +6,7 @@ use crate::conditioning::condition;
 use crate::decay::{DecayFit, DecayRun, DecaySetup, DecayWindow, Method as DecayMethod, Restoring, RunSummary};
 use crate::decay::{envelope, output_error, plan, record, releases};
 use crate::logs;
+use crate::long_logs::Reading;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::runs::{recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
@@ -236,7 +237,7 @@ fn read(folder: &Path) -> Result<Releases, MethodError> {
     let mut out = Releases { logs: Vec::new(), files: Vec::new(), findings: Vec::new() };
     let mut mounted: Option<String> = None;
     for path in paths {
-        let mut log = logs::imported(&path)?;
+        let mut log = logs::imported(&path, Reading::WHOLE, &|_| ())?;
         let own = log.log.meta.configuration.clone();
         if let Some(first) = mounted.replace(own.clone()).filter(|first| *first != own) {
             let what = format!(

@@ -54,7 +54,7 @@ impl Method for ExcitedResponse {
         progress("reading the runs");
         let channels = "time, wavemaker, and force or acceleration";
         let Logs { runs: logs, files, findings: mut said } =
-            logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels)?;
+            logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels, progress)?;
         let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the waves");
         let found = fit(&runs, &setup).map_err(MethodError::refused)?;

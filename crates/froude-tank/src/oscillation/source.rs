@@ -17,6 +17,7 @@ use super::forces::{Drag, LOAD};
 use super::setup::{Body, OscillationRun, Setup, motions_without};
 use super::{findings, fit, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
+use crate::long_logs::{self, LENGTHS, Lengths};
 use crate::motion::Cycles;
 use crate::reference;
 
@@ -25,6 +26,8 @@ pub struct ForcedOscillation;
 
 const WORDS: &str =
     "added mass, drag, buoyancy and delay fitted together in time, to runs of a body that a motor swings";
+const ROLES: [Role; 2] = [Role::Test, Role::DryAir];
+const CHANNELS: &str = "time, angle and force";
 /// The drag law where none is asked for.
 const DEFAULT_LAW: &str = "linear_quadratic";
 
@@ -53,41 +56,7 @@ impl Method for ForcedOscillation {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let spec = declared(source)?;
-        progress("reading the runs");
-        let Logs { runs: logs, mut files, mut findings } =
-            logs::read(source.input.path(), FORCED_OSCILLATION, &[Role::Test, Role::DryAir], "time, angle and force")?;
-        let mut setup = setup_of(campaign, source, spec, &configurations(&logs))?;
-        let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "force"])).fold(0.0, f64::max);
-        if let Some(delay) = &mut setup.delay_s {
-            // One that is found needs no word of the clocks; of one that is declared their error is an error too.
-            delay.standard = delay.standard.hypot(clocks_s);
-        }
-        let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
-        progress("fitting the angles");
-        let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
-        let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
-        for (log, motion) in logs.iter().zip(&motions) {
-            logs::add_step(&mut files, log, logs::cycles_step(log, motion));
-        }
-        let mut fits = Vec::new();
-        for drag in drags(campaign, source, &setup)? {
-            progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
-            let fit = fit(&runs, &motions, &setup, &drag, &campaign.identify).map_err(MethodError::refused)?;
-            fits.push((drag, fit));
-        }
-        let chosen = record::chosen(&fits);
-        findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
-        findings.extend(fits.iter().flat_map(|(_, fit)| findings::of_fit(fit, &runs, &motions, &setup)));
-        let blocks = fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup)).into_iter().collect();
-        let estimate = |(i, (drag, fit)): (usize, &(Drag, _))| {
-            let context = record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions };
-            let estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
-            Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
-        };
-        let results = fits.iter().enumerate().map(estimate).collect();
-        let summary = (!fits.is_empty()).then(|| page::laws(&fits, chosen));
-        Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
+        identified(campaign, source, LENGTHS, progress)
     }
 
     fn simulate(&self, campaign: &Campaign, source: &Source) -> Result<Option<Vec<Export>>, MethodError> {
@@ -97,6 +66,56 @@ impl Method for ForcedOscillation {
     fn plan(&self, campaign: &Campaign, source: &Source) -> Result<Option<Prospect>, MethodError> {
         plan::prospect(campaign, source).map(Some)
     }
+}
+
+/// Reads, fits, chooses; logs beyond `lengths` are averaged.
+fn identified(
+    campaign: &Campaign,
+    source: &Source,
+    lengths: Lengths,
+    progress: &dyn Fn(&str),
+) -> Result<Found, MethodError> {
+    let spec = declared(source)?;
+    progress("reading the runs");
+    let Logs { runs: logs, mut files, mut findings } =
+        logs::read_averaging(source.input.path(), FORCED_OSCILLATION, &ROLES, CHANNELS, lengths, progress)?;
+    let mut setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+    let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "force"])).fold(0.0, f64::max);
+    if let Some(delay) = &mut setup.delay_s {
+        // One that is found needs no word of the clocks; of one that is declared their error is an error too.
+        delay.standard = delay.standard.hypot(clocks_s);
+    }
+    let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
+    progress("fitting the angles");
+    let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
+    let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
+    for (log, motion) in logs.iter().zip(&motions) {
+        logs::add_step(&mut files, log, logs::cycles_step(log, motion));
+    }
+    let of_cell = [("angle", "rad"), ("force", "N")];
+    let fastest_hz = long_logs::as_recorded(&logs, &motions, setup.harmonics, of_cell).map_err(MethodError::refused)?;
+    let mut fits = Vec::new();
+    for drag in drags(campaign, source, &setup)? {
+        progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
+        let fit = fit(&runs, &motions, &setup, &drag, &campaign.identify).map_err(MethodError::refused)?;
+        fits.push((drag, fit));
+    }
+    let chosen = record::chosen(&fits);
+    findings.extend(findings::of_runs(&runs, &motions, &setup, campaign));
+    findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
+    findings.extend(fits.iter().flat_map(|(_, fit)| findings::of_fit(fit, &runs, &motions, &setup)));
+    let blocks = fits.get(chosen).map(|(_, fit)| page::section(fit, &runs, &motions, &setup)).into_iter().collect();
+    let estimate = |(i, (drag, fit)): (usize, &(Drag, _))| {
+        let context = record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions };
+        let mut estimate = record::estimate(fit, drag, &context, (i == chosen).then_some(fits.len()));
+        if let Some(step) = long_logs::step(&logs, &fastest_hz) {
+            estimate.method.words = format!("{step}; {}", estimate.method.words);
+        }
+        Made { name: estimate.id.clone(), estimate, files: files.clone() }.into()
+    };
+    let results = fits.iter().enumerate().map(estimate).collect();
+    let summary = (!fits.is_empty()).then(|| page::laws(&fits, chosen));
+    Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
 }
 
 /// Configurations of the runs, in order of first appearance.
@@ -256,3 +275,6 @@ fn channel<'a>(log: &'a ImportedRun, name: &str, dimension: Dimension) -> Result
     };
     logs::channel(log, name, dimension, "added mass is wrong by its size where one is guessed", along)
 }
+
+#[cfg(test)]
+mod tests;

@@ -15,6 +15,7 @@ use super::simulate::mounted;
 use super::{findings, fit, page, plan, record, simulate};
 use crate::fluid::density_kg_m3;
 use crate::logs::{self, Logs, distinct};
+use crate::long_logs;
 use crate::motion::Cycles;
 
 /// The joint fit in time.
@@ -53,7 +54,7 @@ impl Method for Rotation {
         progress("reading the runs");
         let roles = [Role::Test, Role::DryAir, Role::Tare];
         let Logs { runs: logs, mut files, mut findings } =
-            logs::read(source.input.path(), ROTATION, &roles, "time, angle and torque")?;
+            logs::read(source.input.path(), ROTATION, &roles, "time, angle and torque", progress)?;
         one_body(&logs)?;
         let mut setup = setup_of(campaign, source, spec)?;
         let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "torque"])).fold(0.0, f64::max);
@@ -68,6 +69,10 @@ impl Method for Rotation {
         for (log, motion) in logs.iter().zip(&motions) {
             logs::add_step(&mut files, log, logs::cycles_step(log, motion));
         }
+        let of_cell = [("angle", "rad"), ("torque", "N m")];
+        let fastest_hz =
+            long_logs::as_recorded(&logs, &motions, setup.harmonics, of_cell).map_err(MethodError::refused)?;
+        findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
         progress("fitting the torques");
         let fit = fit(&runs, &motions, &setup, &campaign.identify).map_err(MethodError::refused)?;
         let derived = derived(&fit, &setup);
@@ -75,7 +80,10 @@ impl Method for Rotation {
         findings.extend(findings::of_fit(&fit, &derived, &runs, &motions, &setup));
         let context =
             record::Context { campaign, source, setup: &setup, runs: &runs, motions: &motions, derived: &derived };
-        let estimate = record::estimate(&fit, &context);
+        let mut estimate = record::estimate(&fit, &context);
+        if let Some(step) = long_logs::step(&logs, &fastest_hz) {
+            estimate.method.words = format!("{step}; {}", estimate.method.words);
+        }
         let made = Made { name: estimate.id.clone(), estimate, files };
         Ok(Found {
             results: vec![made.into()],

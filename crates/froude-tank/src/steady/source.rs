@@ -75,6 +75,7 @@ impl Method for Steady {
             STEADY,
             &[Role::Test, Role::Tare, Role::Still],
             "time, speed or position, and loads",
+            progress,
         )?;
         progress("looking for steady windows");
         let reduced = reduce(source, &logs, &spec)?;

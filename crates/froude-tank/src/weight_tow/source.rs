@@ -53,7 +53,7 @@ impl Method for WeightTow {
         let spec = simulate::declared(source)?;
         progress("reading the runs");
         let Logs { runs: logs, mut files, mut findings } =
-            logs::read(source.input.path(), WEIGHT_TOW, &[Role::Test], "time, mark or position, and loads")?;
+            logs::read(source.input.path(), WEIGHT_TOW, &[Role::Test], "time, mark or position, and loads", progress)?;
         progress("reading the tracks");
         let positions = logs.iter().map(|log| position(log, &spec)).collect::<Result<Vec<_>, _>>()?;
         let (mut rows, mut reduced) = (Vec::new(), Vec::new());

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, steady, weights, accelerated, excited, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, clocks,
 //! dynamic, potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -23,6 +23,7 @@ mod eiv;
 mod emps;
 mod excited;
 mod flexible;
+mod hour;
 mod kvlcc2;
 mod oscillation;
 mod potential;
@@ -47,6 +48,15 @@ const SHORT_REPETITIONS: usize = 2_000;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [hour::CHILD, campaign] = &arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        return match hour::child(Path::new(campaign)) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("validate: {error}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let full = arguments.iter().any(|a| a == "--full");
     let chosen: Vec<&String> = arguments.iter().filter(|a| !a.starts_with("--")).collect();
     let wants = |part: &str| chosen.is_empty() || chosen.iter().any(|c| *c == part);
@@ -90,6 +100,10 @@ fn main() -> ExitCode {
         }
         if wants("rotation") {
             rotation::all(claims, &root, if full { 2_000 } else { 40 })?;
+        }
+        if wants("hour") {
+            // An hour, or two minutes: twenty-four periods are beyond a million rows too.
+            hour::all(claims, &root, if full { 720 } else { 24 })?;
         }
         if wants("steady") {
             steady::all(claims, &root, if full { 20_000 } else { 60 })?;

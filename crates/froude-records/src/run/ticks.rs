@@ -1,0 +1,187 @@
+//! The times of a log as they go by, in bounded memory: whether they increase, how even their steps are, where ticks are missing.
+
+use std::path::Path;
+
+use crate::error::{Place, RecordError};
+use crate::run::import::{EVEN, GAP, TimeSteps, gap, not_increasing, time_column};
+use crate::run::log::Gap;
+use crate::table::Table;
+
+/// Steps that the median is taken of: every one of a shorter log, evenly spread ones of a longer.
+const MOST_STEPS: usize = 1 << 16;
+/// Gaps beyond which a log is no longer one with gaps.
+const MOST_GAPS: usize = 10_000;
+
+/// What is known of the times that went by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ticks {
+    last_s: Option<f64>,
+    /// Median step of the first rows: what gaps are told by while the log goes by.
+    usual_s: Option<f64>,
+    shortest_s: f64,
+    longest_s: f64,
+    steps: usize,
+    /// Every so many steps one is kept.
+    every: usize,
+    kept: Vec<f64>,
+    long: Vec<[f64; 2]>,
+}
+
+impl Default for Ticks {
+    fn default() -> Self {
+        Self {
+            last_s: None,
+            usual_s: None,
+            shortest_s: f64::INFINITY,
+            longest_s: 0.0,
+            steps: 0,
+            every: 1,
+            kept: Vec::new(),
+            long: Vec::new(),
+        }
+    }
+}
+
+impl Ticks {
+    /// Takes the times of a part of the log in. Returns them, and the rows before which ticks are missing.
+    ///
+    /// # Errors
+    ///
+    /// A time column that is missing or does not increase; more gaps than a log has.
+    pub fn push<'t>(&mut self, part: &'t Table) -> Result<(&'t [f64], Vec<usize>), RecordError> {
+        let time_s = time_column(part)?;
+        if self.usual_s.is_none() && time_s.len() > 1 {
+            self.usual_s = median(&mut time_s.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>());
+        }
+        let mut gaps = Vec::new();
+        for (row, &now) in time_s.iter().enumerate() {
+            let Some(before) = self.last_s.replace(now) else { continue };
+            if now <= before {
+                return Err(not_increasing(part.place_of_row(row), before, now));
+            }
+            let step_s = now - before;
+            if self.usual_s.is_some_and(|usual| step_s > GAP * usual) {
+                gaps.push(row);
+                self.long.push([before, now]);
+            }
+            (self.shortest_s, self.longest_s) = (self.shortest_s.min(step_s), self.longest_s.max(step_s));
+            if self.steps.is_multiple_of(self.every) {
+                self.kept.push(step_s);
+            }
+            self.steps += 1;
+            if self.kept.len() == MOST_STEPS {
+                self.kept = self.kept.iter().copied().step_by(2).collect();
+                self.every *= 2;
+            }
+        }
+        if self.long.len() > MOST_GAPS {
+            let problem = format!(
+                "steps by more than {GAP} of its usual {:.6} ms at {} places; a log of so many rows is averaged in blocks while it is read, and \
+                 needs even steps: resample it, or cut it into runs",
+                1e3 * self.usual_s.unwrap_or(f64::NAN),
+                self.long.len()
+            );
+            return Err(RecordError::Value { place: Place::whole(&part.path), key: "time".to_owned(), problem });
+        }
+        Ok((time_s, gaps))
+    }
+
+    /// The steps, and where ticks are missing.
+    ///
+    /// # Errors
+    ///
+    /// Steps whose median is not that of the first rows: what lies between would be averaged over unequal times.
+    pub(crate) fn finish(mut self, path: &Path) -> Result<(TimeSteps, Vec<Gap>), RecordError> {
+        let refuse =
+            |problem: String| RecordError::Value { place: Place::whole(path), key: "time".to_owned(), problem };
+        let (Some(median_s), Some(usual_s)) = (median(&mut self.kept), self.usual_s) else {
+            return Err(refuse("has one value; a log needs two ticks at least".to_owned()));
+        };
+        if (median_s / usual_s - 1.0).abs() > EVEN {
+            return Err(refuse(format!(
+                "steps by {:.6} ms at first and by {:.6} ms in the median of all; a log of so many rows is averaged in blocks while it is read, and \
+                 needs even steps: resample it, or cut it into runs",
+                1e3 * usual_s,
+                1e3 * median_s
+            )));
+        }
+        let steps = TimeSteps { median_s, shortest_s: self.shortest_s, longest_s: self.longest_s };
+        Ok((steps, self.long.into_iter().map(|[from_s, to_s]| gap(from_s, to_s, median_s)).collect()))
+    }
+}
+
+fn median(steps: &mut [f64]) -> Option<f64> {
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::run_of_table;
+    use crate::table::{Column, ColumnData};
+    use crate::units::{Dimension, Unit};
+
+    fn table(time_s: &[f64], first_row: usize) -> Table {
+        Table {
+            path: "a.parquet".into(),
+            columns: vec![Column {
+                name: "time".to_owned(),
+                data: ColumnData::Number {
+                    unit: Unit::si(Dimension::TIME),
+                    dimension: Dimension::TIME,
+                    si: time_s.to_vec(),
+                },
+            }],
+            n_rows: time_s.len(),
+            line_of_row: (first_row + 1..=first_row + time_s.len()).collect(),
+            sidecar: None,
+            left_out: Vec::new(),
+        }
+    }
+
+    fn through(time_s: &[f64]) -> Result<(TimeSteps, Vec<Gap>, Vec<usize>), RecordError> {
+        let (mut ticks, mut rows) = (Ticks::default(), Vec::new());
+        for (k, part) in time_s.chunks(1000).enumerate() {
+            let gaps = ticks.push(&table(part, 1000 * k))?.1;
+            rows.extend(gaps.iter().map(|row| 1000 * k + row));
+        }
+        let (steps, lost) = ticks.finish(Path::new("a.parquet"))?;
+        Ok((steps, lost, rows))
+    }
+
+    /// Two gaps, one of them between chunks; steps jitter by a tenth of a per mille.
+    #[test]
+    fn steps_and_gaps_are_those_of_the_log_in_memory() {
+        let time: Vec<f64> = (0..9_000)
+            .filter(|i| !(500..510).contains(i) && !(1006..1010).contains(i))
+            .map(|i| 1e-4 * (f64::from(i) + 1e-4 * f64::from(i * 7 % 11)))
+            .collect();
+        let whole = run_of_table(&table(&time, 0), None).unwrap();
+        let (steps, lost, rows) = through(&time).unwrap();
+        assert_eq!((steps, &lost), (whole.steps, &whole.log.lost));
+        assert_eq!((lost.len(), rows), (2, vec![500, 996]));
+        assert_eq!(lost.iter().filter_map(|gap| gap.ticks).sum::<u64>(), 14);
+    }
+
+    #[test]
+    fn what_goes_back_is_named_by_its_row_across_chunks() {
+        let mut time: Vec<f64> = (0..3_000).map(f64::from).collect();
+        time[2000] = 1999.0;
+        let error = through(&time).unwrap_err().to_string();
+        assert_eq!(error, run_of_table(&table(&time, 0), None).unwrap_err().to_string());
+        assert!(error.contains("row 2001"), "{error}");
+    }
+
+    #[test]
+    fn a_rate_that_changes_is_refused_and_the_median_of_a_long_log_is_kept_in_little() {
+        let time: Vec<f64> = (0..4_000).map(|i| f64::from(i) + f64::from((i - 1000).max(0)) * 0.2).collect();
+        assert!(through(&time).unwrap_err().to_string().contains("1000.000000 ms at first and by 1200.000000 ms"));
+        let time: Vec<f64> = (0..300_000).map(|i| f64::from(i) * 0.25).collect();
+        let mut ticks = Ticks::default();
+        ticks.push(&table(&time, 0)).unwrap();
+        assert!(ticks.kept.len() < MOST_STEPS && ticks.every == 8, "{}", ticks.every);
+        let often: Vec<f64> = (0..30_000).map(|i| f64::from(i) + f64::from(i / 2)).collect();
+        assert!(through(&often).unwrap_err().to_string().contains("at 10"), "gaps after every second row");
+    }
+}
