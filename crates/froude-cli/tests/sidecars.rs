@@ -140,7 +140,9 @@ fn readings_at_the_end_of_a_declared_range_are_marked_and_not_used() {
     pulled.iter_mut().filter(|row| (8.0..8.2).contains(&row[0])).for_each(|row| row[2] = 8.0);
     write(&runs, "t0.4", &pulled, &ranged);
     let mut beyond = tow(0.5);
-    beyond.iter_mut().for_each(|row| row[2] = row[2].max(-8.0));
+    for row in &mut beyond {
+        row[2] = row[2].max(-8.0);
+    }
     write(&runs, "t0.5", &beyond, &ranged);
     let record = identified(folder.path());
     assert!((drag(&record) / clean - 1.0).abs() < SAME, "{} {clean}", drag(&record));
@@ -171,7 +173,9 @@ fn readings_at_the_end_of_a_declared_range_are_marked_and_not_used() {
 fn a_step_that_is_larger_than_the_noise_is_a_finding() {
     let folder = three();
     let mut coarse = tow(0.3);
-    coarse.iter_mut().for_each(|row| row[2] = (row[2] / 0.05).round() * 0.05);
+    for row in &mut coarse {
+        row[2] = (row[2] / 0.05).round() * 0.05;
+    }
     let fine = FORCE.replace(" }", ", resolution = \"1 mN\" }");
     let rough = FORCE.replace(" }", ", resolution = \"50 mN\" }");
     write(&folder.path().join("runs"), "t0.3", &coarse, &sidecar().replace(FORCE, &rough));

@@ -105,7 +105,7 @@ pub(crate) fn cell(root: &Section<'_>, frames: &[&str]) -> Result<Option<Cell>, 
         rows.ok_or_else(|| s.wrong("matrix", value, format!("is {}; expected rows of numbers", found(value))))?;
     count("matrix", rows.len(), loads.len(), "loads")?;
     let mut matrix = Vec::new();
-    for row in rows.iter() {
+    for row in rows {
         let numbers = row.get_ref().as_array().filter(|numbers| numbers.len() == columns.len()).ok_or_else(|| {
             s.wrong(
                 "matrix",

@@ -179,10 +179,10 @@ pub fn in_body(run: &mut ImportedRun) -> Result<(), MethodError> {
                 );
                 return Err(MethodError::input(&run.log.path, what));
             }
-            let mut meaning = Meaning::of(name, &dimension_of_load(name).to_string(), LOG);
             // A clock that is not aligned stays one.
-            let clocks = old.iter().flatten().map(|channel| channel.meaning.clock.as_str());
-            meaning.clock = clocks.clone().find(|clock| !is_own(clock)).unwrap_or(LOG).to_owned();
+            let mut clocks = old.iter().flatten().map(|channel| channel.meaning.clock.as_str());
+            let clock = clocks.find(|clock| !is_own(clock)).unwrap_or(LOG);
+            let mut meaning = Meaning::of(name, &dimension_of_load(name).to_string(), clock);
             meaning.frame = Frame::Body;
             let mut undeclared: Vec<&'static str> =
                 own.iter().flat_map(|(_, told)| told.undeclared.iter().copied()).collect();
