@@ -97,7 +97,7 @@ fn the_real_section_has_the_added_mass_that_was_computed_beforehand() {
             rest.split([' ', ',']).next().unwrap().parse().unwrap()
         };
         assert!((number("skew ") - skew).abs() <= 1.5, "{text}");
-        assert!((0.85..=0.88).contains(&number("gain ")), "{text}");
+        assert!((0.855..0.875).contains(&number("gain ")), "{text}");
         assert!(text.contains("reported and not repaired"), "{text}");
     }
     let lost = messages(&record, "camera-not-alignable");

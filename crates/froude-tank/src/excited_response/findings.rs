@@ -31,7 +31,7 @@ pub fn findings(found: &[AtPeriod], runs: &[WaveRun<'_>], setup: &Setup) -> Vec<
     for at in found {
         out.extend(of_waves(at, runs));
         out.extend(of_values(at, setup));
-        out.extend(at.free.iter().filter_map(|used| of_camera(&runs[used.run], used)));
+        out.extend(at.free.iter().filter_map(|used| of_camera(&runs[used.run], used, setup.harmonics)));
     }
     out.push(Finding::new(
         Severity::Note,
@@ -149,11 +149,11 @@ fn of_values(at: &AtPeriod, setup: &Setup) -> Vec<Finding> {
 }
 
 /// The camera of a free run.
-fn of_camera(run: &WaveRun<'_>, used: &Used) -> Option<Finding> {
-    let found = match camera(run, used)? {
+fn of_camera(run: &WaveRun<'_>, used: &Used, harmonics: usize) -> Option<Finding> {
+    let found = match camera(run, used, harmonics)? {
         Ok(found) => found,
         Err(error) => {
-            let text = format!("run {:?}: the camera's heave cannot be set beside the accelerometers: {error}", run.id);
+            let text = format!("the camera cannot be set beside the accelerometers: {error}");
             return Some(warning("camera-not-compared", text));
         }
     };

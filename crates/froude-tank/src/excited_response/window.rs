@@ -22,7 +22,7 @@ const UP: f64 = 0.9;
 pub fn window(runs: &[(&WaveRun<'_>, &Wave)], harmonics: usize) -> Result<[f64; 2], ExcitedError> {
     let (mut from_s, mut to_s, mut period_s) = (0.0_f64, f64::INFINITY, 0.0_f64);
     for (run, wave) in runs {
-        from_s = from_s.max(up(run, wave, harmonics)?);
+        from_s = from_s.max(up(run, wave, harmonics, UP)?);
         to_s = to_s.min(wave.runs_s);
         period_s = period_s.max(wave.period_s());
     }
@@ -32,8 +32,12 @@ pub fn window(runs: &[(&WaveRun<'_>, &Wave)], harmonics: usize) -> Result<[f64; 
     Ok([from_s, to_s])
 }
 
-/// When the signal of a run has come up, s after the wavemaker's start.
-fn up(run: &WaveRun<'_>, wave: &Wave, harmonics: usize) -> Result<f64, ExcitedError> {
+/// When the signal of a run has come to a part of its largest, s after the wavemaker's start; while that runs.
+///
+/// # Errors
+///
+/// [`ExcitedError::Channel`].
+pub fn up(run: &WaveRun<'_>, wave: &Wave, harmonics: usize, part: f64) -> Result<f64, ExcitedError> {
     let period_s = wave.period_s();
     let fits = (wave.runs_s / period_s - CYCLES).floor().max(0.0) as usize;
     let amplitude = |k: usize| {
@@ -45,6 +49,6 @@ fn up(run: &WaveRun<'_>, wave: &Wave, harmonics: usize) -> Result<f64, ExcitedEr
     };
     let amplitudes = (0..fits).map(amplitude).collect::<Result<Vec<_>, _>>()?;
     let largest = amplitudes.iter().copied().fold(0.0, f64::max);
-    let first = amplitudes.iter().position(|a| *a >= UP * largest).unwrap_or(0);
+    let first = amplitudes.iter().position(|a| *a >= part * largest).unwrap_or(0);
     Ok(first as f64 * period_s)
 }
