@@ -12,9 +12,10 @@ use froude_records::oscillation::OscillationSpec;
 use froude_records::run::{Channel, Declared, FORCED_OSCILLATION, ImportedRun, Role};
 use froude_records::table::links_of_configuration;
 use froude_records::units::Dimension;
+use froude_signal::harmonic::Harmonics;
 
 use super::forces::{Drag, LOAD};
-use super::motion::{Motion, not_clipped};
+use super::motion::not_clipped;
 use super::setup::{Body, Cycles, OscillationRun, Setup};
 use super::{findings, fit, motions, page, plan, record, simulate};
 use crate::logs::{self, Logs, distinct};
@@ -81,8 +82,9 @@ fn identified(
     let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
     let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
     progress("fitting the angles");
+    not_clipped_as_recorded(&logs, &runs)?;
     let motions = motions(&runs, &setup).map_err(MethodError::refused)?;
-    let fastest_hz = as_recorded(&logs, &motions, &setup)?;
+    let fastest_hz: Vec<f64> = motions.iter().map(|m| setup.harmonics as f64 / m.angle.period_s()).collect();
     let mut fits = Vec::new();
     for drag in drags(campaign, source, &setup)? {
         progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));
@@ -107,18 +109,19 @@ fn identified(
     Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
 }
 
-/// Holds the extremes of the rows recorded against clipping, which averages hide; the frequency of the highest harmonic of each run, Hz.
-fn as_recorded(logs: &[ImportedRun], motions: &[Motion], setup: &Setup) -> Result<Vec<f64>, MethodError> {
-    let of = |(log, motion): (&ImportedRun, &Motion)| {
-        let period_s = motion.angle.period_s();
+/// Holds the extremes of the rows recorded against clipping: averages show fewer samples of it, or none.
+fn not_clipped_as_recorded(logs: &[ImportedRun], runs: &[OscillationRun<'_>]) -> Result<(), MethodError> {
+    for (log, run) in logs.iter().zip(runs) {
+        let Some(averaged) = &log.averaged else { continue };
+        // A motion without a period is refused where it is fitted.
+        let Ok(rough) = Harmonics::fit(run.time_s, run.angle_rad, 1, None) else { continue };
         for (channel, unit) in [("angle", "rad"), ("force", "N")] {
-            if let Some(extremes) = log.averaged.as_ref().and_then(|averaged| averaged.extremes.get(channel)) {
-                not_clipped(&log.log.meta.id, channel, unit, extremes, period_s).map_err(MethodError::refused)?;
+            if let Some(extremes) = averaged.extremes.get(channel) {
+                not_clipped(run.id, channel, unit, extremes, rough.period_s()).map_err(MethodError::refused)?;
             }
         }
-        Ok(setup.harmonics as f64 / period_s)
-    };
-    logs.iter().zip(motions).map(of).collect()
+    }
+    Ok(())
 }
 
 /// Configurations of the runs, in order of first appearance.
