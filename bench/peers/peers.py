@@ -85,6 +85,28 @@ def filtered(case, x):
     return lambda: shown(signal.sosfiltfilt(sections, x))
 
 
+def shorter(x, n=1_000_000, rate_hz=1000.0):
+    x = np.ascontiguousarray(x[:n])
+    return np.arange(len(x)) / rate_hz, x
+
+
+def harmonics(t, x):
+    """Mean and three harmonics of 0.2 Hz about the middle of the record."""
+    s = 2 * np.pi * 0.2 * (t - 0.5 * (t[0] + t[-1]))
+
+    def solve():
+        A = np.stack([np.ones(len(t))] + [f(k * s) for k in (1, 2, 3) for f in (np.cos, np.sin)], 1)
+        return np.linalg.solve(A.T @ A, A.T @ x)
+    return solve
+
+
+def resampled(t, x):
+    from scipy import interpolate
+    at = np.arange(len(x) * 99 // 100) / 1000.0 * 1.007 + 0.3e-3
+    at = at[at < t[-1]]
+    return lambda: shown(interpolate.CubicSpline(t, x)(at))
+
+
 def hour(path, rate_hz=10_000.0, factor=10, trim_s=0.2, lag_s=1.0):
     """Order 4 at 100 Hz, differences, parallel decimation, least squares, HAC by moving sums."""
     import scipy.linalg as sl
@@ -119,6 +141,9 @@ def main(case, folder):
         call, runs = (lambda: csv(os.path.join(folder, "record.csv"), reader)), 3
     elif case in ("gaussian", "savitzky-golay", "forward-backward"):
         call = filtered(case, np.fromfile(os.path.join(folder, "u.f64")))
+    elif case in ("harmonics", "resample"):
+        t, x = shorter(np.fromfile(os.path.join(folder, "u.f64"), count=1_000_000))
+        call = harmonics(t, x) if case == "harmonics" else resampled(t, x)
     elif case == "hour":
         import scipy.signal  # noqa: F401
         call, runs = (lambda: hour(os.path.join(folder, "hour.f64"))), 2

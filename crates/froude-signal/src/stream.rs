@@ -207,20 +207,21 @@ mod tests {
             }
         }
 
-        /// The overlap follows the slowest pole: seams stay below rounding at every corner, 14 samples or 20,000 long. At 1 Hz and 1 kHz
-        /// states of 1/(1 − |z|) ≈ 400 times the values round, squared over two passes: 400² ε, and less than the bar.
+        /// The overlap follows the slowest pole: seams stay below 1e-12 of the largest number whether it is 14 samples or 20,000. Below 2.4 Hz
+        /// at 1 kHz rounding itself is larger, with the whole record as without seams: ε/|1 − z|², |1 − z| ≈ 2π·corner/rate.
         #[test]
-        fn seams_are_below_1e_12_whatever_the_slowest_pole(
+        fn seams_are_below_1e_12_or_rounding_whatever_the_slowest_pole(
             seed in 0_u64..1000, cut in 500_usize..40_000, order in 1_usize..7, corner_hz in prop::sample::select(vec![1.0, 3.0, 20.0, 150.0, 400.0]),
         ) {
             let f = low_pass(order, corner_hz, 1000.0).unwrap();
-            let x: Vec<f64> = (0..4 * f.memory() + 5000).map(|i| ((i as u64 ^ seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f64 / (1 << 24) as f64).collect();
+            let x: Vec<f64> = (0..4 * f.memory() + 5000).map(|i| ((i as u64 ^ seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f64 / 16_777_216.0).collect();
             let whole = zero_phase::filter(&f, &x).unwrap();
             let parts = through(ZeroPhase::new(f), &x, cut);
             let largest = whole.iter().fold(0.0_f64, |m, y| m.max(y.abs()));
+            let bar = 1e-12_f64.max(f64::EPSILON * (std::f64::consts::TAU * corner_hz / 1000.0).powi(-2));
             prop_assert_eq!(whole.len(), parts.len());
             for (i, (a, b)) in whole.iter().zip(&parts).enumerate() {
-                prop_assert!((a - b).abs() <= 1e-12 * largest, "{} {} {}", i, a, b);
+                prop_assert!((a - b).abs() <= bar * largest, "{} {} {}", i, a, b);
             }
         }
 

@@ -18,9 +18,10 @@ use froude_records::sidecar::read_sidecar;
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::Dimension;
 use froude_signal::block_mean::{BlockMean, gain, noise_bandwidth_hz};
+use froude_signal::harmonic::Harmonics;
 use indexmap::IndexMap;
 
-use crate::motion::{Motion, MotionError, not_clipped};
+use crate::motion::{MotionError, not_clipped};
 
 /// Where the logs of a folder are too long, and what is kept of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -215,25 +216,24 @@ fn left(log: &ImportedRun, frequency_hz: f64) -> Option<f64> {
     log.averaged.as_ref().map(|averaged| gain(averaged.block_rows, 1.0 / log.steps.median_s, frequency_hz))
 }
 
-/// Holds the extremes of the rows recorded against clipping, which averages hide; the frequency of the highest harmonic of each run, Hz.
+/// Holds the extremes of the rows recorded against clipping: averages show fewer samples of it, or none.
 ///
-/// `channels` are those of the method with their units.
-pub(crate) fn as_recorded(
+/// `channels` are those of the method with their units, the angle first.
+pub(crate) fn not_clipped_as_recorded(
     logs: &[ImportedRun],
-    motions: &[Motion],
-    harmonics: usize,
     channels: [(&'static str, &'static str); 2],
-) -> Result<Vec<f64>, MotionError> {
-    let of = |(log, motion): (&ImportedRun, &Motion)| {
-        let period_s = motion.angle.period_s();
+) -> Result<(), MotionError> {
+    for log in logs {
+        let (Some(averaged), Some(angle)) = (&log.averaged, log.log.channels.get(channels[0].0)) else { continue };
+        // A motion without a period is refused where it is fitted.
+        let Ok(rough) = Harmonics::fit(&log.log.time_s, &angle.values, 1, None) else { continue };
         for (channel, unit) in channels {
-            if let Some(extremes) = log.averaged.as_ref().and_then(|averaged| averaged.extremes.get(channel)) {
-                not_clipped(&log.log.meta.id, channel, unit, extremes, period_s)?;
+            if let Some(extremes) = averaged.extremes.get(channel) {
+                not_clipped(&log.log.meta.id, channel, unit, extremes, rough.period_s())?;
             }
         }
-        Ok(harmonics as f64 / period_s)
-    };
-    logs.iter().zip(motions).map(of).collect()
+    }
+    Ok(())
 }
 
 /// That averages are too coarse for a tone.

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Cases: `columns`, `columns-qr`, `non-negative`, `csv`,
-//! `csv-cluster`, `gaussian`, `savitzky-golay`, `forward-backward`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
+//! `csv-cluster`, `gaussian`, `savitzky-golay`, `forward-backward`, `harmonics`, `resample`, `hour`. The problem and the peers are described in `bench/peers/README.md`.
 
 mod hour;
 mod make;
@@ -47,6 +47,8 @@ fn main() -> Outcome<()> {
         "csv" => csv(dir, threads, false),
         "csv-cluster" => csv(dir, threads, true),
         "gaussian" | "savitzky-golay" | "forward-backward" => signals::filter(dir, case),
+        "harmonics" => signals::harmonics(dir),
+        "resample" => signals::resample(dir),
         "hour" => hour::identify(dir),
         other => Err(format!("there is no case {other}").into()),
     })?;

@@ -87,13 +87,13 @@ fn identified(
     }
     let runs = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
     progress("fitting the angles");
+    long_logs::not_clipped_as_recorded(&logs, [("angle", "rad"), ("force", "N")]).map_err(MethodError::refused)?;
     let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
     let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
     for (log, motion) in logs.iter().zip(&motions) {
         logs::add_step(&mut files, log, logs::cycles_step(log, motion));
     }
-    let of_cell = [("angle", "rad"), ("force", "N")];
-    let fastest_hz = long_logs::as_recorded(&logs, &motions, setup.harmonics, of_cell).map_err(MethodError::refused)?;
+    let fastest_hz: Vec<f64> = motions.iter().map(|m| setup.harmonics as f64 / m.angle.period_s()).collect();
     let mut fits = Vec::new();
     for drag in drags(campaign, source, &setup)? {
         progress(&format!("{FORCED_OSCILLATION} with {}", drag.law.name));

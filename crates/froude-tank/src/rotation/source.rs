@@ -64,14 +64,14 @@ impl Method for Rotation {
         }
         let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the angles");
+        long_logs::not_clipped_as_recorded(&logs, [("angle", "rad"), ("torque", "N m")])
+            .map_err(MethodError::refused)?;
         let marks: Vec<&[Mark]> = logs.iter().map(|log| log.declared.marks.as_slice()).collect();
         let motions = motions_without(&runs, &setup, &marks).map_err(MethodError::refused)?;
         for (log, motion) in logs.iter().zip(&motions) {
             logs::add_step(&mut files, log, logs::cycles_step(log, motion));
         }
-        let of_cell = [("angle", "rad"), ("torque", "N m")];
-        let fastest_hz =
-            long_logs::as_recorded(&logs, &motions, setup.harmonics, of_cell).map_err(MethodError::refused)?;
+        let fastest_hz: Vec<f64> = motions.iter().map(|m| setup.harmonics as f64 / m.angle.period_s()).collect();
         findings.extend(logs.iter().zip(&fastest_hz).filter_map(|(log, hz)| long_logs::too_coarse(log, *hz)));
         progress("fitting the torques");
         let fit = fit(&runs, &motions, &setup, &campaign.identify).map_err(MethodError::refused)?;
