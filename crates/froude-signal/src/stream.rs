@@ -214,7 +214,8 @@ mod tests {
             seed in 0_u64..1000, cut in 500_usize..40_000, order in 1_usize..7, corner_hz in prop::sample::select(vec![1.0, 3.0, 20.0, 150.0, 400.0]),
         ) {
             let f = low_pass(order, corner_hz, 1000.0).unwrap();
-            let x: Vec<f64> = (0..4 * f.memory() + 5000).map(|i| ((i as u64 ^ seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40) as f64 / 16_777_216.0).collect();
+            let word = |i: usize| (i as u64 ^ seed).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 40;
+            let x: Vec<f64> = (0..4 * f.memory() + 5000).map(|i| word(i) as f64 / 16_777_216.0).collect();
             let whole = zero_phase::filter(&f, &x).unwrap();
             let parts = through(ZeroPhase::new(f), &x, cut);
             let largest = whole.iter().fold(0.0_f64, |m, y| m.max(y.abs()));

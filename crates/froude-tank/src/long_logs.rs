@@ -1,7 +1,7 @@
 //! Logs of more rows than are held in memory: averaged in blocks while they are read.
 //!
 //! An hour of eight channels at 10 kHz is 36 million rows, 2.3 GB of numbers, and the motions of a tank take seconds. Logs of more than a million
-//! rows together become half a million: each block of q rows its mean, times and all channels alike ([`froude_signal::block_mean`]). Nothing
+//! rows together become a quarter of a million: each block of q rows its mean, times and all channels alike ([`froude_signal::block_mean`]). Nothing
 //! is delayed, what is lost of a tone is the same in every channel and stated, and white noise stays white, so that coefficients and their
 //! uncertainties are those of the whole logs. All logs of a folder come to one rate, so that none gains weight on another by being shorter. Gaps,
 //! uneven steps and what a sensor at the end of its range shows are told by the rows recorded.
@@ -32,8 +32,8 @@ pub(crate) struct Lengths {
     pub kept: usize,
 }
 
-/// Eight channels of a million rows are 64 MB, and a reduction takes some times that.
-pub(crate) const LENGTHS: Lengths = Lengths { longest: 1_000_000, kept: 500_000 };
+/// Eight channels of a million rows are 64 MB, and a reduction takes some times that; correlation times cost rows times lags.
+pub(crate) const LENGTHS: Lengths = Lengths { longest: 1_000_000, kept: 250_000 };
 
 /// How a log is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
