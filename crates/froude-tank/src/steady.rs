@@ -1,7 +1,7 @@
 //! Steady towing, and bodies held in a stream: from raw series to one observation per run.
 //!
 //! A run is at rest, comes up to speed, stays there, and comes to rest. Its steady window is found by a stated rule ([`mod@window`]), its zero is that of
-//! the still parts before and after, drawn as a straight line between them, and its mean counts the correlation of its samples ([`point`]). The motion
+//! the still parts before and after, drawn as a straight line between them, and its mean counts the correlation of its samples ([`mod@point`]). The motion
 //! in water with the body off (role `tare`) is subtracted at the same speed and angle ([`tare`]). The rows go the way of every table: the same laws,
 //! budget and choice.
 //!
@@ -11,7 +11,7 @@
 //! | module       | what                                           | source                                    |
 //! |--------------|------------------------------------------------|-------------------------------------------|
 //! | [`mod@window`]   | the steady window and the still parts          | –                                         |
-//! | [`point`]    | means and zeros of one run                     | Sokal 1997; ITTC 7.5-02-02-02             |
+//! | [`mod@point`] | means and zeros of one run                     | Sokal 1997; ITTC 7.5-02-02-02             |
 //! | [`row`]      | observations as the rows of a table            | –                                         |
 //! | [`tare`]     | rig without body, subtracted                   | JCGM 100:2008 (GUM), 5.2                  |
 //! | [`simulate`] | the runs that a campaign would give            | –                                         |
