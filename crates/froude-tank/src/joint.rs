@@ -1,7 +1,7 @@
 //! The joint fit in time: what a load cell shows while a motor swings a body, as known motions times unknown coefficients.
 //!
 //! y(t) = known(t − d) + Σ x_j(t − d) β_j + zero of the run + noise, the same β for all runs and the delay d among them. A method states its equation
-//! ([`Equation`]); the fit, its scatter, its budget and its forecast are common.
+//! (`Equation`); the fit, its scatter, its budget and its forecast are common.
 //!
 //! | module           | what                                                        | source                                |
 //! |------------------|-------------------------------------------------------------|---------------------------------------|
