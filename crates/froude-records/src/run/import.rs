@@ -140,7 +140,7 @@ pub fn run_of_table(table: &Table, sidecar: Option<&Sidecar>) -> Result<Imported
 ///
 /// # Errors
 ///
-/// As [`import_run`], and what [`Ticks::finish`] refuses.
+/// As [`import_run`], and what `Ticks::finish` refuses.
 pub fn run_of_means(
     table: &Table,
     sidecar: Option<&Sidecar>,
