@@ -180,8 +180,29 @@ pub(crate) fn cycles_step(log: &ImportedRun, motion: &Motion) -> Step {
         .with("period", period_s, "s")
 }
 
-/// A channel that is declared in full; `why` says what a guess would cost, `along` what its sign is that of.
+/// A channel that is declared in full and has the log's times; `why` says what a guess would cost, `along` what its sign is that of.
 pub(crate) fn channel<'a>(
+    log: &'a ImportedRun,
+    name: &str,
+    dimension: Dimension,
+    why: &str,
+    along: &str,
+) -> Result<&'a Channel, MethodError> {
+    let channel = of_any_clock(log, name, dimension, why, along)?;
+    let clock = &channel.meaning.clock;
+    if is_own(clock) {
+        return Ok(channel);
+    }
+    let place = log.told.get(name).map_or_else(|| log.log.path.display().to_string(), |told| told.place.to_string());
+    let what = format!(
+        "{name} has the clock {clock:?}, which cannot be aligned with that of the log: declare [clocks.{clock}] {}, or write clock = \"log\" where the log's own times are meant",
+        "{ offset = \"12 ms\", skew = \"0 ms/s\", standard = \"1 ms\", found = \"by …\" }"
+    );
+    Err(MethodError::Undeclared { place, what })
+}
+
+/// The same of a channel whose clock may be one that nobody knows: to be compared with another, and for nothing else.
+pub(crate) fn of_any_clock<'a>(
     log: &'a ImportedRun,
     name: &str,
     dimension: Dimension,
@@ -198,18 +219,10 @@ pub(crate) fn channel<'a>(
     })?;
     let told = log.told.get(name);
     let undeclared = told.map_or_else(|| vec!["unit", "sign", "frame", "clock"], |told| told.undeclared.clone());
-    let place = told.map_or_else(|| log.log.path.display().to_string(), |told| told.place.to_string());
-    let clock = &channel.meaning.clock;
-    if undeclared.is_empty() && !is_own(clock) {
-        let what = format!(
-            "{name} has the clock {clock:?}, which cannot be aligned with that of the log: declare [clocks.{clock}] {}, or write clock = \"log\" where the log's own times are meant",
-            "{ offset = \"12 ms\", skew = \"0 ms/s\", standard = \"1 ms\", found = \"by …\" }"
-        );
-        return Err(MethodError::Undeclared { place, what });
-    }
     if undeclared.is_empty() {
         return Ok(channel);
     }
+    let place = told.map_or_else(|| log.log.path.display().to_string(), |told| told.place.to_string());
     Err(MethodError::Undeclared {
         place,
         what: format!(

@@ -23,6 +23,7 @@ const WORDS: &str =
 const REFERENCE: &str = "reference";
 const FORCE: &str = "f_z";
 const POSITION: &str = "heave";
+const WHY: &str = "added mass and damping follow from the phase between force and motion, which a guess turns";
 /// What the names of its accelerometers begin with.
 const ACCELERATION: &str = "acceleration";
 
@@ -167,7 +168,9 @@ fn run(log: &ImportedRun) -> Result<WaveRun<'_>, MethodError> {
             Cow::Owned((0..log.log.time_s.len()).map(mean).collect())
         }
     };
-    let camera = if has_position { Some(position()?.values.as_slice()) } else { None };
+    // Its clock is what the comparison finds.
+    let compared = || logs::of_any_clock(log, POSITION, Dimension::LENGTH, WHY, heave);
+    let camera = if has_position { Some(compared()?.values.as_slice()) } else { None };
     Ok(WaveRun { camera_m: camera, ..of(Shows::Acceleration, signal) })
 }
 
@@ -177,11 +180,5 @@ fn channel<'a>(
     dimension: Dimension,
     along: &str,
 ) -> Result<&'a Channel, MethodError> {
-    logs::channel(
-        log,
-        name,
-        dimension,
-        "added mass and damping follow from the phase between force and motion, which a guess turns",
-        along,
-    )
+    logs::channel(log, name, dimension, WHY, along)
 }
