@@ -72,6 +72,10 @@ fn nine_runs_are_planned_simulated_and_identified() {
     let volume = estimate["refers_to"]["link_volume"]["value"].as_f64().unwrap();
     // As declared.
     assert!((volume - 1.2723e-3).abs() < 1e-12);
+    // C_A ρ V of the one body.
+    let (added, c_a) = (&estimate["derived"]["added_mass"], &estimate["coefficients"]["C_Ay"]);
+    let ratio = added["value"].as_f64().unwrap() / c_a["value"].as_f64().unwrap();
+    assert!((ratio - 1000.0 * 1.2723e-3).abs() < 1e-9, "{ratio}");
     let formula = estimate["law"]["outputs"]["f_y"]["formula"].as_str().unwrap();
     assert!(formula.ends_with("- C_Ay*density*volume*v_y_dot"), "{formula}");
     // χ with 8 degrees of freedom has a standard deviation of a quarter.
@@ -157,7 +161,16 @@ fn what_is_not_declared_is_refused_with_what_to_write() {
         refused(folder.path())
     };
     let error = with("mass   = {", "# mass   = {");
-    assert!(error.contains("the mass below the load cell is not known: write mass = { value"), "{error}");
+    assert!(error.contains("the mass below the load cell is not known of H1LT: write mass = { value"), "{error}");
+    // The other sign: the water would drive the body.
+    std::fs::write(&path, &text).unwrap();
+    let sidecar = folder.path().join("runs/001.toml");
+    let own = std::fs::read_to_string(&sidecar).unwrap();
+    std::fs::write(&sidecar, own.replace("unit = \"N\", sign = 1", "unit = \"N\", sign = -1")).unwrap();
+    let found = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
+    let error = found["findings"].as_array().unwrap().iter().find(|f| f["code"] == "force-along-motion").unwrap();
+    assert_eq!(error["severity"].as_str(), Some("error"));
+    std::fs::write(&sidecar, own).unwrap();
     let error = with("axis   = \"y\"", "# axis");
     assert!(error.contains("state which axis of the body lies along the travel"), "{error}");
     let error = with("link_volume = \"1.2723e-3 m^3\"", "");

@@ -62,9 +62,9 @@ pub fn forecast(
     source: &Source,
 ) -> Result<Forecast, MethodError> {
     let exact = exactly(setup);
-    let logs = simulated(planned, &exact, truth, &[], 0).ok_or_else(|| no_mass(source))?;
+    let logs = simulated(planned, &exact, truth, &[], 0).ok_or_else(|| no_mass(source, setup))?;
     let mounted: Vec<_> = logs.iter().map(Simulated::view).collect();
-    let mut reduced = reduce(&mounted, setup).ok_or_else(|| no_mass(source))?;
+    let mut reduced = reduce(&mounted, setup).ok_or_else(|| no_mass(source, setup))?;
     if !reduced.left_out.is_empty() {
         return Err(MethodError::refused(reduced.left_out.remove(0)));
     }

@@ -124,6 +124,11 @@ impl Truths {
                 "the twin of {ACCELERATED_TOW} needs seed, model, and the true coefficients of drag and {added} in [simulate.coefficients]"
             )));
         };
+        let sensors = campaign.simulate.as_ref().map_or(&[] as &[SensorSpec], |s| &s.sensors);
+        if let Some(other) = sensors.iter().find(|s| !["force", "position"].contains(&s.quantity.as_str())) {
+            let what = format!("a sensor has quantity = {:?}; this twin has force and position", other.quantity);
+            return Err(undeclared(what));
+        }
         let value = values
             .shift_remove(&added)
             .ok_or_else(|| undeclared(format!("{added} is missing in [simulate.coefficients]; the truth needs it")))?;
@@ -240,7 +245,7 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let planned = planned(source, &setup);
     let (seed, sensors) = campaign.simulate.as_ref().map_or((0, [].as_slice()), |s| (s.seed, s.sensors.as_slice()));
     let mut out = Vec::new();
-    for run in simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source))? {
+    for run in simulated(&planned, &setup, &truth, sensors, seed).ok_or_else(|| no_mass(source, &setup))? {
         out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
         out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run, &setup).into_bytes() });
     }

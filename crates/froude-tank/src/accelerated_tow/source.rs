@@ -7,11 +7,12 @@ use froude_identify::seam::Choice;
 use froude_identify::source::{Asked, identify_laws};
 use froude_records::accelerated_tow::AcceleratedTowSpec;
 use froude_records::campaign::{Campaign, Source};
+use froude_records::estimate::Derived;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::{ACCELERATED_TOW, Declared, ImportedRun, Role};
 use froude_records::units::Dimension;
 
-use super::law::asked;
+use super::law::{asked, names};
 use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
 use super::rows::{TowRun, Way, root_mean_square};
 use super::{page, plan, simulate};
@@ -22,6 +23,8 @@ use crate::reference;
 pub struct AcceleratedTow;
 
 const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
+/// A row whose acceleration is below this part of the largest is one of constant speed.
+const STEADY: f64 = 0.05;
 /// Noise of the acceleration lowers C_A by its part in the mean square; this part is reported.
 const ATTENUATED: f64 = 1e-3;
 /// Masses by runs in air and by declaration further apart than so many standard uncertainties are reported.
@@ -64,7 +67,7 @@ impl Method for AcceleratedTow {
         let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
         progress("weighting motion and force");
         let mounted = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
-        let mut reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source))?;
+        let mut reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source, &setup))?;
         if reduced.runs.is_empty() {
             let first = (!reduced.left_out.is_empty()).then(|| reduced.left_out.remove(0));
             let none = "no run of the role test: what is fitted has role = \"test\" in its sidecar";
@@ -77,6 +80,7 @@ impl Method for AcceleratedTow {
                 .map(|error| Finding::new(Severity::Warning, "run-left-out", format!("left out: {error}"))),
         );
         findings.extend(of_runs(&reduced, &setup, spec));
+        findings.extend(driven(&reduced, &setup));
         let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
         let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial };
         if laws.len() > 1 {
@@ -122,6 +126,18 @@ fn refer(estimate: &mut froude_records::estimate::Estimate, campaign: &Campaign,
     } else if let [only] = setup.bodies.as_slice() {
         estimate.refers_to.insert("volume".to_owned(), measured(only.volume_m3));
     }
+    let name = names(&setup.axis)[3].clone();
+    if let ([only], Some(c)) = (setup.bodies.as_slice(), estimate.coefficients.get(&name)) {
+        let kg = setup.density_kg_m3 * only.volume_m3;
+        let added = Derived {
+            formula: format!("{name}*density*volume"),
+            value: c.value.map(|x| kg * x),
+            unit: "kg".to_owned(),
+            standard_uncertainty: c.standard_uncertainty.map(|u| kg * u),
+            interval_95: c.interval_95.map(|ends| ends.map(|x| kg * x)),
+        };
+        estimate.derived.insert("added_mass".to_owned(), added);
+    }
     estimate.method.words = format!(
         "{}; motion and force weighted by cos⁴ windows of {} s, a third of that apart; acceleration by the windows' derivatives; force taken {} ms after the motion; zero of each run \
          the straight line between its parts at rest",
@@ -143,10 +159,17 @@ pub fn declared(source: &Source) -> Result<&AcceleratedTowSpec, MethodError> {
     })
 }
 
-pub(super) fn no_mass(source: &Source) -> MethodError {
-    let what = "the mass below the load cell is not known: write mass = { value = \"1.63 kg\", standard = \"5 g\" } in [source.accelerated_tow], for each configuration where \
-                they differ, or log runs of each in air (role = \"dry_air\")";
-    MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() }
+pub(super) fn no_mass(source: &Source, setup: &Setup) -> MethodError {
+    let without = setup.bodies.iter().filter(|body| body.mass_kg.is_none());
+    let names: Vec<&str> = without
+        .map(|body| if body.name.is_empty() { "runs that state no configuration" } else { &body.name })
+        .collect();
+    let what = format!(
+        "the mass below the load cell is not known of {}: write mass = {{ value = \"1.63 kg\", standard = \"5 g\" }} in [source.accelerated_tow], for each configuration where they differ, \
+         or log runs of each in air (role = \"dry_air\")",
+        names.join(", ")
+    );
+    MethodError::Undeclared { place: source.place.to_string(), what }
 }
 
 fn configurations(logs: &[ImportedRun]) -> Vec<String> {
@@ -233,6 +256,23 @@ fn run<'a>(log: &'a ImportedRun, setup: &Setup) -> Result<Mounted<'a>, MethodErr
         run: TowRun { id: &meta.id, time_s: &log.log.time_s, way, force_n, marks: &log.declared.marks },
         body: setup.bodies.iter().position(|b| b.name == meta.configuration).unwrap_or(0),
         is_dry: meta.role == Role::DryAir,
+    })
+}
+
+/// A load of the water that drives the body: the force has the other sign, or the motion has.
+fn driven(reduced: &Reduced, setup: &Setup) -> Option<Finding> {
+    let [load, speed, acceleration, _] = names(&setup.axis);
+    let of = |name: &str| reduced.data.values(name).unwrap_or_default();
+    let (f, v, a) = (of(&load), of(&speed), of(&acceleration));
+    let largest = a.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
+    let steady = |i: &usize| a[*i].abs() < STEADY * largest;
+    let work: f64 = (0..reduced.data.rows).filter(steady).map(|i| f[i] * v[i]).sum();
+    (work > 0.0).then(|| {
+        let text = format!(
+            "{load} points along {speed} where the speed is constant: the water would drive the body; `force` is that of the rig on the body, and its sign, or that of the motion, is the other \
+             one: look at sign in the sidecars"
+        );
+        Finding::new(Severity::Error, "force-along-motion", text)
     })
 }
 
