@@ -8,7 +8,7 @@
 //! ]
 //! ```
 //!
-//! The value is that of the entry; with `volume`, C_A = A/(ρV) by the density that the record refers to. Its standard uncertainty is that of the record (of the
+//! The value is that of the entry, in the water of the test where both densities are stated; with `volume`, C_A = A/(ρV) by the density that the record refers to. Its standard uncertainty is that of the record (of the
 //! mesh, that is) and `model_form` of the value, added in the mean square: an ideal fluid is no real one, and the record does not know by how much.
 
 use crate::campaign::{Campaign, PriorRecord, PriorSpec};
@@ -21,17 +21,18 @@ use crate::units::{Dimension, parse_unit};
 ///
 /// # Errors
 ///
-/// A record that cannot be read; no such estimate or entry; a unit that is not that of the coefficient; no uncertainty.
+/// A record that cannot be read; no such estimate or entry; a mass for λ₁, or for C_A without its volume; no uncertainty.
 pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
+    let density = campaign.fluid.density_kg_m3;
     for prior in &mut campaign.identify.prior {
         if let Some(from) = prior.record.clone() {
-            (prior.value, prior.standard_uncertainty) = value(prior, &from)?;
+            (prior.value, prior.standard_uncertainty) = value(prior, &from, density)?;
         }
     }
     Ok(())
 }
 
-fn value(prior: &PriorSpec, from: &PriorRecord) -> Result<(f64, f64), RecordError> {
+fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> Result<(f64, f64), RecordError> {
     let wrong =
         |key: &str, problem: String| RecordError::Value { place: from.place.clone(), key: key.to_owned(), problem };
     if !from.path.exists() {
@@ -59,17 +60,27 @@ fn value(prior: &PriorSpec, from: &PriorRecord) -> Result<(f64, f64), RecordErro
         return Err(wrong("entry", format!("is {:?}, which {} does not determine", from.entry, estimate.id)));
     };
     let unit = parse_unit(&entry.unit).map(|u| u.dimension).ok();
+    let inertia = Dimension::new(2, 1, 0);
+    if prior.coefficient == "lambda_1" && unit != Some(inertia) {
+        let problem = format!("is {}, in {}; lambda_1 is in kg m^2, as A66 is", from.entry, entry.unit);
+        return Err(wrong("entry", problem));
+    }
+    let of_record = estimate.refers_to.get("density").map(|density| density.value);
     let per = match from.volume_m3 {
+        // An added mass is proportional to the density: it is taken in the water of the test.
+        None if unit == Some(Dimension::MASS) || unit == Some(inertia) => {
+            of_record.zip(density_kg_m3).map_or(1.0, |(there, here)| there / here)
+        }
         None => 1.0,
         Some(_) if unit != Some(Dimension::MASS) => {
             let problem = format!("turns a mass into C_A, and {} is in {}; leave it out", from.entry, entry.unit);
             return Err(wrong("volume", problem));
         }
         Some(volume) => {
-            let density = estimate.refers_to.get("density").ok_or_else(|| {
+            let density = of_record.ok_or_else(|| {
                 wrong("volume", format!("gives C_A = A/(ρV), and {} states no density that it refers to", estimate.id))
             })?;
-            density.value * volume
+            density * volume
         }
     };
     let is_coefficient = prior.coefficient.starts_with("C_");

@@ -215,7 +215,10 @@ fn the_law_behind_lambda_3_is_named() {
     let derived = derived(&fit, &setup());
     let found = law_behind(&derived).unwrap();
     let words = found.words();
-    assert!(found.e_n < -1.0 && words.starts_with("friction alone cannot explain lambda_3"), "{words}");
+    assert!(
+        found.e_n < -1.0 && words.starts_with("one friction coefficient cannot explain lambda_2 and lambda_3"),
+        "{words}"
+    );
     assert!(
         (found.c_d[0] - 1.8601).abs() < found.c_d[1]
             && (found.from_lambda_2[0] - 0.0544).abs() < found.from_lambda_2[1]

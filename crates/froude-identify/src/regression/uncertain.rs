@@ -92,7 +92,11 @@ fn serial(data: &Dataset, problem: &fit::Problem, fitted: &fit::Fit) -> Option<P
     let residual: Vec<f64> = (0..problem.response.len()).map(left).collect();
     let found = fit::serial::serial(x, &fitted.sensitivity, &residual, &labels(&data.run))?;
     Some(Part {
-        name: format!("scatter of the rows in time, correlated by {:.2} from one to the next", found.correlation),
+        name: format!(
+            "scatter of the rows in time, correlated by {:.2} from one to the next{}",
+            found.correlation,
+            if found.is_largest { ", the most that runs of this length tell: it may be more" } else { "" }
+        ),
         shared: "sample",
         kind: Kind::A,
         covariance: found.covariance,

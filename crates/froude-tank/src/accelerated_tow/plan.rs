@@ -209,7 +209,7 @@ impl Noise<'_> {
         let rho = (-self.setup.window_s / 3.0 / time).exp().max(OVERLAP);
         let n = n as f64;
         let of_variance = (n * (1.0 - rho * rho) / (1.0 + rho * rho) - p as f64).max(1.0);
-        2.0 / (2.0 / of_variance + 4.0 / ((1.0 - rho * rho) * n))
+        2.0 / (2.0 / of_variance + (4.0 + 8.0 * rho) / ((1.0 - rho * rho) * n))
     }
 }
 

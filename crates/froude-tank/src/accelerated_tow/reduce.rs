@@ -6,8 +6,8 @@
 //! |-----------------------|-----------------------------------------------------|
 //! | mass, 1 kg            | a                                                   |
 //! | delay, 1 s            | −ḟ_m                                                |
-//! | gain of the force     | −f_m                                                |
-//! | gain of the motion    | m a + μ a + D_I v + 2 D_II v|v|, as the fit sees it |
+//! | gain of the force     | −f_m; of a mass weighed by the same cell m a − f_m  |
+//! | gain of the motion    | m a + μ a + D_I v + 2 D_II v|v|; without m a where the mass is weighed |
 //! | zero of a run, 1 N    | 1, in that run                                      |
 //!
 //! **Units.** SI. **Source.** JCGM 100:2008 (GUM), 5.2.
@@ -84,6 +84,8 @@ pub struct Reduced {
     pub runs: Vec<(String, usize, Rows)>,
     /// Masses by body.
     pub masses: Vec<Mass>,
+    /// μ by body as a plain fit has it, kg.
+    pub added_kg: Vec<f64>,
     /// The rows as a data set.
     pub data: Dataset,
     /// What declared errors do to them.
@@ -157,9 +159,12 @@ pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
         put(&format!("mass{of}{by}"), own, mass.standard_kg, mass.dof);
     }
     put("delay", slope.iter().map(|s| -s).collect(), setup.delay_s.standard_uncertainty, f64::INFINITY);
-    put("gain of the force", force.iter().map(|f| -f).collect(), setup.force_relative, f64::INFINITY);
-    let moved =
-        |i: usize| (masses[of_body[i]].value_kg + added_kg[i]) * a[i] + linear * v[i] + 2.0 * quadratic * square[i];
+    // A mass that the same cell and encoder weigh errs with them: m̂ a is then what it is, whatever the gains.
+    let weighed = |i: usize| if masses[of_body[i]].is_weighed { masses[of_body[i]].value_kg } else { 0.0 };
+    let by_force = (0..n).map(|i| weighed(i) * a[i] - force[i]).collect();
+    put("gain of the force", by_force, setup.force_relative, f64::INFINITY);
+    let rigid = |i: usize| masses[of_body[i]].value_kg - weighed(i);
+    let moved = |i: usize| (rigid(i) + added_kg[of_body[i]]) * a[i] + linear * v[i] + 2.0 * quadratic * square[i];
     put("gain of the motion", (0..n).map(moved).collect(), setup.motion_relative, f64::INFINITY);
     let is_by_run = n_runs >= FEWEST_CLUSTERS;
     if !is_by_run && n > 0 {
@@ -167,7 +172,7 @@ pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
     }
     let mut data = data(channels, &setup.axis);
     data.group = is_by_run.then(|| data.run.clone());
-    Some(Reduced { runs: wet, masses, data, errors, left_out, is_by_run })
+    Some(Reduced { runs: wet, masses, added_kg, data, errors, left_out, is_by_run })
 }
 
 /// The zeros of few runs: one error each. Of five and more they are in the scatter of the runs.
@@ -190,7 +195,7 @@ fn zeros(load: &str, of_run: &[usize], wet: &[(String, usize, Rows)]) -> SharedE
 
 /// What errors move depends on the coefficients, to first order: these of all rows together.
 struct First {
-    /// μ of the row's body, kg.
+    /// μ by body, kg.
     added_kg: Vec<f64>,
     /// D_I, kg/s.
     linear: f64,
@@ -210,7 +215,7 @@ fn first_fit(channels: &Channels, square: &[f64], of_body: &[usize], bodies: usi
     let names = (0..bodies + 2).map(|j| format!("c{j}")).collect();
     let found = fit(&Problem::single(design, channels.load_n.clone(), names), &Options::default());
     let value = |j: usize| found.as_ref().ok().and_then(|f| f.coefficients[j].value).unwrap_or(0.0);
-    First { added_kg: of_body.iter().map(|b| value(2 + b)).collect(), linear: value(0), quadratic: value(1) }
+    First { added_kg: (0..bodies).map(|b| value(2 + b)).collect(), linear: value(0), quadratic: value(1) }
 }
 
 /// The mass of a body: by its runs in air, f_m = m a, else as it is declared.

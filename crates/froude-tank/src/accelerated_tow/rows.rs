@@ -79,7 +79,7 @@ pub struct Rows {
     pub zero_standard_n: f64,
     /// Degrees of freedom of that.
     pub zero_dof: f64,
-    /// Root mean square of the acceleration at rest, m/s²: its noise.
+    /// Root mean square of the acceleration at rest, or what the step of its channel makes of it, m/s²: its noise.
     pub noise_m_s2: f64,
     /// Times at rest before and after, s of the log: what the zero is the mean of.
     pub rest_s: [Option<[f64; 2]>; 2],
@@ -204,7 +204,8 @@ pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, Accel
     out.zero_n = [zero.at(begins_s), zero.at(ends_s)];
     let at_rest: Vec<f64> =
         all.iter().zip(&motion).filter(|((t, _), _)| zero.is_rest(*t, half)).map(|(_, row)| row[1]).collect();
-    out.noise_m_s2 = root_mean_square(&at_rest);
+    // An encoder that stands on one step at rest shows none of its noise.
+    out.noise_m_s2 = root_mean_square(&at_rest).max(noise_of_step(run, &all[start].1));
     let rms = root_mean_square(&out.acceleration_m_s2);
     if rms < ABOVE_NOISE * out.noise_m_s2 {
         return Err(AcceleratedError::NoAcceleration { run: run.id.to_owned(), rms, noise: out.noise_m_s2 });
@@ -214,6 +215,16 @@ pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, Accel
 
 /// Standard deviation of the window as part of its length, √(⅔ (1/8 − 15/16π²)).
 const SPREAD: f64 = 0.141_448_200_967;
+
+/// Standard deviation of a window's acceleration by the step of the motion's channel, q/√12 in each sample, m/s².
+fn noise_of_step(run: &TowRun<'_>, window: &Window) -> f64 {
+    let (values, weights) = match run.way {
+        Way::Position(x) => (x, &window.bend),
+        Way::Speed(v) => (v, &window.slope),
+    };
+    let step = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
+    if step.is_finite() { step / 12.0_f64.sqrt() * weights.iter().map(|w| w * w).sum::<f64>().sqrt() } else { 0.0 }
+}
 
 /// Root of the mean square; 0 of nothing.
 pub(crate) fn root_mean_square(values: &[f64]) -> f64 {

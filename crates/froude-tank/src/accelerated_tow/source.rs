@@ -25,7 +25,7 @@ pub struct AcceleratedTow;
 const WHY: &str = "drag and added mass are wrong by its size or its sign where one is guessed";
 /// A row whose acceleration is below this part of the largest is one of constant speed.
 const STEADY: f64 = 0.05;
-/// Noise of the acceleration lowers C_A by its part in the mean square; this part is reported.
+/// Noise of the acceleration lowers C_A; this part of it is reported.
 const ATTENUATED: f64 = 1e-3;
 /// Masses by runs in air and by declaration further apart than so many standard uncertainties are reported.
 const APART: f64 = 2.5;
@@ -64,7 +64,13 @@ impl Method for AcceleratedTow {
             "time, position or speed, and force",
             progress,
         )?;
-        let setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let mut setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let late = |log: &ImportedRun| {
+            let of = ["position", "y/position", "speed"].map(|motion| logs::stamps_standard_s(log, [motion, "force"]));
+            of.into_iter().fold(0.0, f64::max)
+        };
+        let clocks_s = logs.iter().map(late).fold(0.0, f64::max);
+        setup.delay_s.standard_uncertainty = setup.delay_s.standard_uncertainty.hypot(clocks_s);
         progress("weighting motion and force");
         let mounted = logs.iter().map(|log| run(log, &setup)).collect::<Result<Vec<_>, _>>()?;
         let mut reduced = reduce(&mounted, &setup).ok_or_else(|| no_mass(source, &setup))?;
@@ -279,14 +285,19 @@ fn driven(reduced: &Reduced, setup: &Setup) -> Option<Finding> {
 /// What the runs show.
 fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec) -> Vec<Finding> {
     let mut out = Vec::new();
-    for (id, _, rows) in &reduced.runs {
-        let part = (rows.noise_m_s2 / root_mean_square(&rows.acceleration_m_s2)).powi(2);
+    for (id, body, rows) in &reduced.runs {
+        let noise = (rows.noise_m_s2 / root_mean_square(&rows.acceleration_m_s2)).powi(2);
+        let (mass, added_kg) = (reduced.masses[*body], reduced.added_kg[*body]);
+        // The same noise stands in m a; a mass weighed by it comes out too small alike.
+        let part =
+            if mass.is_weighed || added_kg <= 0.0 { noise } else { noise * (mass.value_kg + added_kg) / added_kg };
         if part > ATTENUATED {
             let text = format!(
-                "run {id:?}: the noise of its acceleration is {:.2} % of it in the mean square, by which C_A{} comes out too small; write a longer window than {} s in \
-                 [source.accelerated_tow], or a finer encoder",
-                1e2 * part,
+                "run {id:?}: the noise of its acceleration is {:.2} % of it in the mean square, by which C_A{} comes out some {:.2} % too small; write a longer window than {} s in \
+                 [source.accelerated_tow], or take a finer encoder",
+                1e2 * noise,
                 setup.axis,
+                1e2 * part,
                 setup.window_s
             );
             out.push(Finding::new(Severity::Warning, "acceleration-noise", text));
@@ -294,7 +305,9 @@ fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec) -> Vec<F
     }
     for (body, mass) in setup.bodies.iter().zip(&reduced.masses) {
         if let Some(stated) = body.mass_kg.filter(|_| mass.is_weighed) {
-            let apart = (mass.value_kg - stated.value) / mass.standard_kg.hypot(stated.standard_uncertainty);
+            let gains = mass.value_kg * setup.force_relative.hypot(setup.motion_relative);
+            let apart =
+                (mass.value_kg - stated.value) / mass.standard_kg.hypot(stated.standard_uncertainty).hypot(gains);
             if apart.abs() > APART {
                 let text = format!(
                     "the mass of {} is {:.4} ± {:.4} kg by its runs in air and is declared as {:.4} ± {:.4} kg: one of them is wrong, or so is the gain of the force; the runs in air are used",
@@ -308,7 +321,7 @@ fn of_runs(reduced: &Reduced, setup: &Setup, spec: &AcceleratedTowSpec) -> Vec<F
             }
         }
     }
-    if spec.delay_s.is_none() {
+    if spec.delay_s.is_none() && setup.delay_s.standard_uncertainty == 0.0 {
         let text = "no delay of the force behind the motion is declared, and none is taken: a filter of the cell that the encoder does not have moves drag into added mass; write \
                     delay = { value = \"0 ms\", standard = \"2 ms\" } in [source.accelerated_tow]";
         out.push(Finding::new(Severity::Note, "no-delay", text.to_owned()));

@@ -14,7 +14,7 @@ use froude_records::run::clocks::is_own;
 use froude_records::run::marks::Mark;
 use froude_records::run::sensor::Filter;
 use froude_records::run::step::Step;
-use froude_records::run::{FORCED_OSCILLATION, FREE_DECAY, ImportedRun, LOG};
+use froude_records::run::{EXCITED_RESPONSE, FORCED_OSCILLATION, FREE_DECAY, ImportedRun, LOG, ROTATION};
 use froude_records::text::counted;
 use froude_signal::analogue::Analogue;
 use froude_signal::harmonic::Harmonics;
@@ -24,9 +24,9 @@ use indexmap::IndexMap;
 use super::stretches::keep_rows;
 
 /// Methods of a periodic motion.
-const PERIODIC: [&str; 3] = [FORCED_OSCILLATION, FREE_DECAY, "excited_response"];
+const PERIODIC: [&str; 4] = [FORCED_OSCILLATION, FREE_DECAY, ROTATION, EXCITED_RESPONSE];
 /// Channels that show the motion, the first that is there.
-const MOTION: [&str; 4] = ["angle", "position", "y/position", "heave"];
+const MOTION: [&str; 5] = ["reference", "angle", "position", "y/position", "heave"];
 /// A filter that takes more than this part of the signal is said.
 const TAKES: f64 = 0.01;
 /// Fewest rows that are left.

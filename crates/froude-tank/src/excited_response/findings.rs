@@ -127,7 +127,8 @@ fn of_values(at: &AtPeriod, setup: &Setup) -> Vec<Finding> {
                 at.period_s, at.window_s[0], at.window_s[1]
             ),
         ));
-    } else if damping < -2.0 * at.combined[1].standard {
+    }
+    if damping < -2.0 * at.combined[1].standard {
         out.push(warning(
             "negative-damping",
             format!(

@@ -51,11 +51,14 @@ impl Method for ExcitedResponse {
         _: &[&'static str],
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
-        let setup = setup_of(source)?;
+        let mut setup = setup_of(source)?;
         progress("reading the runs");
         let channels = "time, wavemaker, and force or acceleration";
         let Logs { runs: logs, files, findings: mut said } =
             logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels, progress)?;
+        let late = |log: &ImportedRun| log.told.values().map(|told| told.time_standard_s).fold(0.0, f64::max);
+        let clocks_s = logs.iter().map(late).fold(0.0, f64::max);
+        setup.delay_s.standard = setup.delay_s.standard.hypot(clocks_s);
         let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
         progress("fitting the waves");
         let found = fit(&runs, &setup).map_err(MethodError::refused)?;

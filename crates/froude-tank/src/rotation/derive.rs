@@ -182,10 +182,11 @@ impl LawBehind {
                 "one friction coefficient may explain lambda_2 and lambda_3: {both}; drag across the body would need C_D = {across}. The interval is what decides: narrow it before friction is believed"
             ),
             Law::CrossFlow => format!(
-                "friction alone cannot explain lambda_3: {both}. It is drag across the body, with C_D = {across}; use lambda_3 = density*C_D*a*l^4/2, not the friction integral"
+                "one friction coefficient cannot explain lambda_2 and lambda_3: {both}. As drag across the body lambda_3 has C_D = {across}; where that is of the size of a blunt body's, and C_f larger than a skin friction, use \
+                 lambda_3 = density*C_D*a*l^4/2, not the friction integral"
             ),
             Law::MoreThanFriction => format!(
-                "friction alone cannot explain lambda_2: {both}. Something else is linear in the rate: a bearing or seal above the body (subtract a tare), or the drag of slow motion"
+                "one friction coefficient cannot explain lambda_2 and lambda_3: {both}. Something else is linear in the rate: a bearing or seal above the body (subtract a tare), or the drag of slow motion"
             ),
         }
     }
@@ -281,7 +282,11 @@ mod tests {
         let lambdas = parameters(YawInertia::StripTheory, YawDrag::FrictionStrip);
         let mixed = law_behind(&derived(&made([lambdas[0], lambdas[1], across], -0.9), &setup())).unwrap();
         assert_eq!(mixed.law, Law::CrossFlow);
-        assert!(mixed.words().contains("friction alone cannot explain lambda_3"), "{}", mixed.words());
+        assert!(
+            mixed.words().contains("one friction coefficient cannot explain lambda_2 and lambda_3"),
+            "{}",
+            mixed.words()
+        );
         let same = law_behind(&derived(&made(lambdas, -0.9), &setup())).unwrap();
         assert_eq!(same.law, Law::FrictionOrCrossFlow);
         let seal = law_behind(&derived(&made([lambdas[0], 3.0 * lambdas[1], lambdas[2]], -0.9), &setup())).unwrap();
