@@ -108,8 +108,8 @@ fn one_run_gives_drag_and_added_mass_together() {
     let estimate = &record["estimates"][0];
     let names = estimate["type_a"]["names"].as_array().unwrap();
     assert!(names.iter().any(|n| n == "C_Ay") && names.iter().any(|n| n == "D_y_II"), "{names:?}");
-    // One run of some twenty seconds: forty correlation times tell its scatter to a fifth or so.
-    is_as_planned(&plan, estimate, 0.4..2.0);
+    // One run of twenty correlation times: its scatter has some six degrees of freedom, so that u scatters by a third, and Student's factor with it.
+    is_as_planned(&plan, estimate, 0.3..3.0);
     let errors: Vec<&String> = estimate["errors"].as_object().unwrap().keys().collect();
     assert!(errors.iter().any(|key| key.contains("mass of H1LT by runs in air")), "{errors:?}");
 }
