@@ -27,12 +27,15 @@ const FEWEST_SAMPLES: f64 = 8.0;
 const FEWEST_ROWS: usize = 6;
 /// A window moves where its speed or its acceleration exceeds this part of the largest.
 const MOVES: f64 = 0.02;
-/// A row's acceleration must exceed its noise this many times, in the mean square.
+/// The root mean square of the acceleration must exceed that of its noise this many times.
 const ABOVE_NOISE: f64 = 3.0;
 /// A cell that stands at its largest or smallest reading in this part of the moving samples is clipped …
 const CLIPPED: f64 = 0.05;
 /// … where at rest no reading has more than this part of the samples.
 const REPEATS: f64 = 0.1;
+
+/// A step longer than this many medians has ticks missing in it.
+const MISSING: f64 = 1.5;
 
 /// How a run moves, as it was logged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -131,19 +134,22 @@ impl Window {
     }
 }
 
-/// Windows over a whole run, W/3 apart.
+/// Windows over a whole run, W/3 apart in each stretch without missing ticks.
 pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Window)>, AcceleratedError> {
-    let (first, last) = (run.time_s[0], run.time_s[run.time_s.len() - 1]);
-    let step_s = (last - first) / (run.time_s.len() - 1) as f64;
+    let mut steps: Vec<f64> = run.time_s.windows(2).map(|w| w[1] - w[0]).collect();
+    let middle = steps.len() / 2;
+    let step_s = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
     if window_s / step_s < FEWEST_SAMPLES {
         return Err(AcceleratedError::Window { run: run.id.to_owned(), window_s, found: window_s / step_s });
     }
-    let count = ((last - first - window_s) / (window_s / 3.0)).floor();
-    let middles = (0..=count.max(-1.0) as i64).map(|i| first + window_s * (0.5 + i as f64 / 3.0));
-    // Where ticks are missing nothing is weighted: as many samples as its length has, but for one at either end.
-    let is_whole = |w: &Window| w.value.len() as f64 > window_s / step_s - 1.5;
+    let middles = |part: &[f64]| {
+        let (first, last) = (part[0], part[part.len() - 1]);
+        let count = ((last - first - window_s) / (window_s / 3.0)).floor() as i64;
+        (0..=count).map(move |i| first + window_s * (0.5 + i as f64 / 3.0)).collect::<Vec<f64>>()
+    };
     let is_free = |t: &f64| run.marks.iter().all(|mark| !mark.touches(t - 0.5 * window_s, t + 0.5 * window_s));
-    Ok(middles.filter(is_free).map(|t| (t, window(run.time_s, t, window_s))).filter(|(_, w)| is_whole(w)).collect())
+    let parts = run.time_s.chunk_by(|a, b| b - a <= MISSING * step_s);
+    Ok(parts.flat_map(middles).filter(is_free).map(|t| (t, window(run.time_s, t, window_s))).collect())
 }
 
 /// The rows of a run; the force is taken `delay_s` later than the motion.
@@ -153,7 +159,11 @@ pub(crate) fn windows(run: &TowRun<'_>, window_s: f64) -> Result<Vec<(f64, Windo
 /// [`AcceleratedError`]: no motion, no part at rest, a clipped cell, accelerations below their noise.
 pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, AcceleratedError> {
     let too_few = |found| AcceleratedError::NoMotion { run: run.id.to_owned(), found, needed: FEWEST_ROWS, window_s };
-    if run.time_s.len() < 2 || run.force_n.len() != run.time_s.len() {
+    let n = match run.way {
+        Way::Position(x) => x.len(),
+        Way::Speed(v) => v.len(),
+    };
+    if n < 2 || [run.time_s.len(), run.force_n.len()] != [n; 2] {
         return Err(too_few(0));
     }
     let all = windows(run, window_s)?;
@@ -200,6 +210,10 @@ pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, Accel
         });
         out.force_n.push(of_force.of(&of_force.value, run.force_n) - zero.at(*middle_s));
         out.force_slope_n_s.push(of_force.of(&of_force.slope, run.force_n));
+    }
+    // A delay beyond the end of the log leaves none.
+    if out.middle_s.len() < FEWEST_ROWS {
+        return Err(too_few(out.middle_s.len()));
     }
     out.zero_n = [zero.at(begins_s), zero.at(ends_s)];
     let at_rest: Vec<f64> =
@@ -345,6 +359,26 @@ mod tests {
                 assert!((2.0 * a - f).abs() < 1e-3, "{a} {f}");
             }
         }
+    }
+
+    /// A second of ticks is missing in a ramp: no window reaches over it, and the equation holds in the others.
+    #[test]
+    fn windows_do_not_reach_over_missing_ticks() {
+        let t: Vec<f64> = times(1200).into_iter().filter(|t| !(5.0..6.0).contains(t)).collect();
+        let v: Vec<f64> = t.iter().map(|t| (0.1 * (t - 3.0)).clamp(0.0, 0.5)).collect();
+        let f: Vec<f64> = t.iter().map(|t| if (3.0..8.0).contains(t) { 0.2 } else { 0.0 }).collect();
+        let run = TowRun { id: "a", time_s: &t, way: Way::Speed(&v), force_n: &f, marks: &[] };
+        let found = rows(&run, 0.4, 0.0).unwrap();
+        // A window within its half of the gap would have lost samples.
+        assert!(found.middle_s.iter().all(|t| *t < 4.8 + 0.011 || *t > 6.2 - 0.011), "{:?}", found.middle_s);
+        for (a, f) in found.acceleration_m_s2.iter().zip(&found.force_n) {
+            // Corners between samples: a sample of forty, weighted.
+            assert!((2.0 * a - f).abs() < 0.01, "{a} {f}");
+        }
+        // A force that is later than the log is long leaves nothing.
+        assert!(matches!(rows(&run, 0.4, 100.0), Err(AcceleratedError::NoMotion { found: 0, .. })));
+        let short = TowRun { way: Way::Speed(&v[..10]), ..run };
+        assert!(matches!(rows(&short, 0.4, 0.0), Err(AcceleratedError::NoMotion { .. })));
     }
 
     #[test]
