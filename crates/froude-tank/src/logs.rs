@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_identify::dataset::distinct as distinct_texts;
 use froude_identify::method::MethodError;
 use froude_identify::runs::{files, logs_in, recorded_in, refuse_others};
 use froude_identify::source::ReadFile;
@@ -156,6 +157,11 @@ pub(crate) fn add_step(files: &mut [ReadFile], log: &ImportedRun, step: Step) {
     if let Some(file) = files.iter_mut().find(|file| file.path == log.log.path) {
         file.steps.push(step);
     }
+}
+
+/// Configurations of the runs, in order of first appearance.
+pub(crate) fn configurations(logs: &[ImportedRun]) -> Vec<String> {
+    distinct_texts(&logs.iter().map(|log| log.log.meta.configuration.clone()).collect::<Vec<_>>())
 }
 
 /// Standard uncertainty of what lies between the stamps of two channels of a run, s.

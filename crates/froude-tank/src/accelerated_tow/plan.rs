@@ -7,7 +7,7 @@
 //! **Source.** As [`crate::oscillation::forecast`].
 
 use froude_fit::FEWEST_CLUSTERS;
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
 use froude_fit::faer::Mat;
 use froude_fit::series::taper;
 use froude_identify::law::ForceLaw;
@@ -22,23 +22,10 @@ use super::reduce::{Setup, reduce};
 use super::rows::{Rows, window};
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
+use crate::joint::conclude::part;
 use crate::joint::forecast::inverted;
 use crate::noise::correlated;
-
-/// A coefficient with the interval to expect.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Expected {
-    /// Its name.
-    pub name: String,
-    /// SI unit text.
-    pub unit: String,
-    /// The truth.
-    pub value: f64,
-    /// Standard uncertainty and interval.
-    pub combined: Combined,
-    /// The largest error behind it, and its standard uncertainty.
-    pub mostly: (String, f64),
-}
+use crate::steady::plan::Expected;
 
 /// What a plan will determine.
 #[derive(Debug, Clone)]
@@ -228,20 +215,6 @@ fn moved(name: &str, sensitivity: &Mat<f64>, direction: &[f64], dof: f64) -> Par
     let p = sensitivity.nrows();
     let by: Vec<f64> = (0..p).map(|j| (0..direction.len()).map(|i| sensitivity[(j, i)] * direction[i]).sum()).collect();
     part(name, Kind::B, Mat::from_fn(p, p, |i, j| by[i] * by[j]), dof)
-}
-
-fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
-    let p = covariance.nrows();
-    Part {
-        name: name.to_owned(),
-        shared: "campaign",
-        kind,
-        covariance,
-        dof: vec![dof; p],
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    }
 }
 
 /// Everything as declared, without errors: what the twin is driven with.

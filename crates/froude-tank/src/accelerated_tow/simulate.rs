@@ -3,6 +3,7 @@
 //! What is declared with an uncertainty is drawn once for the campaign, about what is declared: masses, delay, the gains of force and motion. Each run
 //! has a zero of its own.
 
+use froude_identify::dataset::{Dataset, distinct};
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{Export, MethodError};
 use froude_identify::simulate::truth;
@@ -64,13 +65,7 @@ impl Simulated {
 /// The planned configurations, in order of first appearance.
 #[must_use]
 pub fn configurations(source: &Source) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    for name in source.accelerated_plan.iter().flat_map(|block| &block.configurations) {
-        if !out.contains(name) {
-            out.push(name.clone());
-        }
-    }
-    out
+    distinct(&source.accelerated_plan.iter().flat_map(|block| block.configurations.clone()).collect::<Vec<_>>())
 }
 
 /// The run matrix of a source.
@@ -149,7 +144,7 @@ impl Truths {
     }
 }
 
-fn row_of(setup: &Setup, body: usize, speed_m_s: f64, acceleration_m_s2: f64) -> froude_identify::dataset::Dataset {
+fn row_of(setup: &Setup, body: usize, speed_m_s: f64, acceleration_m_s2: f64) -> Dataset {
     let of = &setup.bodies[body];
     let channels = Channels {
         run: vec![String::new()],

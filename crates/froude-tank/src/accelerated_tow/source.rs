@@ -64,7 +64,7 @@ impl Method for AcceleratedTow {
             "time, position or speed, and force",
             progress,
         )?;
-        let mut setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+        let mut setup = setup_of(campaign, source, spec, &logs::configurations(&logs))?;
         let late = |log: &ImportedRun| {
             let of = ["position", "y/position", "speed"].map(|motion| logs::stamps_standard_s(log, [motion, "force"]));
             of.into_iter().fold(0.0, f64::max)
@@ -176,16 +176,6 @@ pub(super) fn no_mass(source: &Source, setup: &Setup) -> MethodError {
         names.join(", ")
     );
     MethodError::Undeclared { place: source.place.to_string(), what }
-}
-
-fn configurations(logs: &[ImportedRun]) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    for log in logs {
-        if !out.contains(&log.log.meta.configuration) {
-            out.push(log.log.meta.configuration.clone());
-        }
-    }
-    out
 }
 
 /// Quantities of the budget that are the rig's, and no channel of the rows.

@@ -3,7 +3,7 @@
 //! What is declared with an uncertainty is drawn once for the campaign, about what is declared: radius, masses, density, the gains of angle, force
 //! and stream. Buoyancies and delay are what `[simulate.coefficients]` states, else drawn about what is declared. Each run has a zero of its own.
 
-use froude_identify::dataset::Dataset;
+use froude_identify::dataset::{Dataset, distinct};
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, SensorSpec, Source, Truth};
@@ -66,13 +66,7 @@ impl Simulated {
 /// Names of the planned configurations, in order of first appearance.
 #[must_use]
 pub fn configurations(source: &Source) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    for name in source.oscillation_plan.iter().flat_map(|block| &block.configurations) {
-        if !out.contains(name) {
-            out.push(name.clone());
-        }
-    }
-    out
+    distinct(&source.oscillation_plan.iter().flat_map(|block| block.configurations.clone()).collect::<Vec<_>>())
 }
 
 /// The run matrix of a source.

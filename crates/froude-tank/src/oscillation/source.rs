@@ -79,7 +79,7 @@ fn identified(
     progress("reading the runs");
     let Logs { runs: logs, mut files, mut findings } =
         logs::read_averaging(source.input.path(), FORCED_OSCILLATION, &ROLES, CHANNELS, lengths, progress)?;
-    let mut setup = setup_of(campaign, source, spec, &configurations(&logs))?;
+    let mut setup = setup_of(campaign, source, spec, &logs::configurations(&logs))?;
     let clocks_s = logs.iter().map(|log| logs::stamps_standard_s(log, ["angle", "force"])).fold(0.0, f64::max);
     if let Some(delay) = &mut setup.delay_s {
         // One that is found needs no word of the clocks; of one that is declared their error is an error too.
@@ -116,17 +116,6 @@ fn identified(
     let results = fits.iter().enumerate().map(estimate).collect();
     let summary = (!fits.is_empty()).then(|| page::laws(&fits, chosen));
     Ok(Found { results, summary, blocks, findings: distinct(findings), ..Found::default() })
-}
-
-/// Configurations of the runs, in order of first appearance.
-fn configurations(logs: &[ImportedRun]) -> Vec<String> {
-    let mut out: Vec<String> = Vec::new();
-    for log in logs {
-        if !out.contains(&log.log.meta.configuration) {
-            out.push(log.log.meta.configuration.clone());
-        }
-    }
-    out
 }
 
 fn uncertain(declared: Declared) -> Uncertain {

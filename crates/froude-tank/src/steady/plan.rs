@@ -9,9 +9,8 @@
 //!
 //! **Source.** As [`crate::oscillation::forecast`].
 
-use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::budget::{Combined, Kind, OUTSIDE_95, combine};
 use froude_fit::faer::Mat;
-use froude_fit::faer::prelude::*;
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
 use froude_records::campaign::{BudgetEntry, Campaign, SensorSpec, Shared, Source};
 use froude_records::number;
@@ -19,6 +18,8 @@ use froude_records::page::{DocumentSection, TextTable};
 
 use super::simulate::{Plan, Simulated, loads_at, plan_of, simulated};
 use super::window::window;
+use crate::joint::conclude::part;
+use crate::joint::forecast::inverted;
 
 /// What a taper over a window costs in independent samples ([`froude_fit::series`]).
 const TAPER_COST: f64 = 0.6875 / 0.5625;
@@ -131,15 +132,7 @@ pub(crate) fn linearised(
                 plan.law.name
             ),
         };
-        let scale: Vec<f64> = (0..q).map(|j| gram[(j, j)].sqrt()).collect();
-        let scaled = Mat::from_fn(q, q, |i, j| gram[(i, j)] / (scale[i] * scale[j]));
-        let least = scaled.self_adjoint_eigenvalues(froude_fit::faer::Side::Lower).map_err(|_| undetermined())?;
-        if least.first().is_none_or(|e| *e < 1e-12) {
-            return Err(undetermined());
-        }
-        let solve = scaled.llt(froude_fit::faer::Side::Lower).map_err(|_| undetermined())?;
-        let inverse = solve.solve(Mat::<f64>::identity(q, q));
-        let inverse = Mat::from_fn(q, q, |i, j| inverse[(i, j)] / (scale[i] * scale[j]));
+        let inverse = inverted(&gram).ok_or_else(undetermined)?;
         let spread = Mat::from_fn(n, q, |i, j| variances[i] * weight(i) * design[(i, j)]);
         let scatter = &inverse * (weighed.transpose() * spread) * &inverse;
         let mut parts = vec![part("scatter", Kind::A, scatter, (n as f64 - q as f64).max(1.0))];
@@ -159,20 +152,6 @@ pub(crate) fn linearised(
         }
     }
     Ok(out.into_iter().flatten().collect())
-}
-
-fn part(name: &str, kind: Kind, covariance: Mat<f64>, dof: f64) -> Part {
-    let p = covariance.nrows();
-    Part {
-        name: name.to_owned(),
-        shared: "campaign",
-        kind,
-        covariance,
-        dof: vec![dof; p],
-        shape: Shape::Normal,
-        in_scatter: false,
-        origin: None,
-    }
 }
 
 /// Variance of the observation of a load: of its mean over the window and of the line between the parts at rest at its middle.
