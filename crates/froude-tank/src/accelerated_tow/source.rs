@@ -94,6 +94,12 @@ impl Method for AcceleratedTow {
                         are outside their intervals of zero";
             findings.push(Finding::new(Severity::Warning, "laws-by-rows", text.to_owned()));
         }
+        if let Some(other) = &campaign.identify.covariance {
+            let text = format!(
+                "covariance = {other:?} of [identify] is not used: rows of a run follow each other in time, and their scatter is that of runs, or counts their correlation"
+            );
+            findings.push(Finding::new(Severity::Note, "covariance-of-the-method", text));
+        }
         let observations = Observations {
             data: reduced.data.clone(),
             n_read: reduced.data.rows,
