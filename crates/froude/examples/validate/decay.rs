@@ -196,9 +196,9 @@ fn judge(
         &format!(
             "{words}, {seeds} campaigns of 5 releases, envelope refused in each: intervals of the output error cover"
         ),
-        &format!("95 %, z ≥ −{limit:.2} (1 % family-wise)"),
+        &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
         format!("{}{refused}", each(&|j| format!("{:.2} % (z {:+.2})", 100.0 * counts[j].rate(), z(j)))),
-        verdict(found.len() == seeds && (0..3).all(|j| z(j) >= -limit)),
+        verdict(found.len() == seeds && (0..3).all(|j| z(j).abs() <= limit)),
     );
     let ratio = |j: usize| squares[j].sqrt() / plan.expected[j].combined.standard;
     // The root mean square of as many errors scatters by 1/√(2n).

@@ -116,14 +116,14 @@ fn damping(claims: &mut Claims, root: &Path, shared: &Path) -> Result<(), Box<dy
         each.push((from, to, coefficient(&done, 1.210, "B33")?.value.unwrap_or(f64::NAN)));
     }
     let words: Vec<String> = each.iter().map(|(from, to, b)| format!("{b:.0} from {from} s to {to} s")).collect();
-    // Where the windows of the figures end is not stated.
-    let holds = (each[1].2 - 108.0).abs() < 5.0 && (each[2].2 - 125.0).abs() < 5.0 && each[3].2 > 140.0;
-    claims.holds(
+    // Where the windows of the figures end is not stated: ten seconds are taken, and what differs is said.
+    let is_near = each[1..].iter().zip([108.0, 125.0, 176.0]).all(|((.., b), figure)| (b - figure).abs() < 5.0);
+    claims.add(
         REAL,
         "B33 in waves of 1.210 s by the window, N s/m",
         "108, 125, 176 from 12, 15, 18 s after the start (data README): it follows the window",
         words.join(", "),
-        holds,
+        if is_near { Verdict::Pass } else { Verdict::Finding },
     );
     let Some(done) = identified(root, shared, "# no window")? else { return Ok(()) };
     let is_undetermined = |period: f64| coefficient(&done, period, "B33").map(|b| b.status == Status::Undetermined);
@@ -200,9 +200,9 @@ fn coverage(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dy
         claims.add(
             TWIN,
             &format!("intervals at {words} of correlated noise, {seeds} campaigns of {} runs: cover", planned.len()),
-            &format!("95 %, z ≥ −{limit:.2} (1 % family-wise)"),
+            &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
             each.join(", "),
-            verdict(fits.len() == seeds && cover.iter().all(|(_, c)| z(c) >= -limit)),
+            verdict(fits.len() == seeds && cover.iter().all(|(_, c)| z(c).abs() <= limit)),
         );
         // The root mean square of as many errors scatters by 1/√(2n).
         let allowance = 3.0 / (2.0 * seeds as f64).sqrt();
