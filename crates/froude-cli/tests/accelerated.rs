@@ -1,47 +1,13 @@
 //! Accelerated tows at the verbs: plan, simulate and identify of the example campaign, few runs and many, and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod tank;
 
-fn froude(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
-}
+use tank::{example, froude, json, refused, said, simulated};
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> serde_json::Value {
-    assert_eq!(output.status.code(), Some(0), "{}", said(output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// The example with some text replaced.
-fn example(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut text = std::fs::read_to_string(root.join("examples/mamba-accelerated/campaign.toml")).unwrap();
-    for (from, to) in replaced {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    std::fs::write(folder.path().join("campaign.toml"), text).unwrap();
-    folder
-}
-
-fn simulated(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = example(replaced);
-    let output = froude(folder.path(), &["simulate", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    folder
-}
-
-fn refused(folder: &Path) -> String {
-    let output = froude(folder, &["identify", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
-}
+const EXAMPLE: &str = "mamba-accelerated";
+/// The arguments of what is refused.
+const IDENTIFY: &[&str] = &["identify", "campaign.toml"];
 
 /// Truth within half again of the interval, and the interval as wide as planned within `band`.
 fn is_as_planned(plan: &serde_json::Value, estimate: &serde_json::Value, band: std::ops::Range<f64>) {
@@ -59,7 +25,7 @@ fn is_as_planned(plan: &serde_json::Value, estimate: &serde_json::Value, band: s
 
 #[test]
 fn nine_runs_are_planned_simulated_and_identified() {
-    let folder = example(&[]);
+    let folder = example(EXAMPLE, &[]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     assert_eq!(plan[0]["runs"].as_u64(), Some(9));
     let output = froude(folder.path(), &["simulate", "campaign.toml"]);
@@ -102,7 +68,7 @@ fn one_run_gives_drag_and_added_mass_together() {
         "[simulate]\nseed",
         "[[source.plan]]\nconfigurations = [\"H1LT\"]\nmedium = \"air\"\nspeed = \"0.3 m/s\"\nacceleration = \"0.3 m/s^2\"\nrepeats = 3\n\n[simulate]\nseed",
     );
-    let folder = simulated(&[ONE[0], ONE[1], dry]);
+    let folder = simulated(EXAMPLE, &[ONE[0], ONE[1], dry]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     let record = json(&froude(folder.path(), &["identify", "campaign.toml", "--json"]));
     let estimate = &record["estimates"][0];
@@ -117,7 +83,7 @@ fn one_run_gives_drag_and_added_mass_together() {
 /// An added mass of potential flow as a prior of what the ramps show: C_A = A22/(ρV).
 #[test]
 fn an_added_mass_of_a_record_is_a_prior() {
-    let folder = simulated(&ONE);
+    let folder = simulated(EXAMPLE, &ONE);
     // An ellipsoid of some 1 kg across: 6 × 6 by closed form.
     let body = "[body]\nshape = \"ellipsoid\"\nsemi_axis_x = \"150 mm\"\nsemi_axis_y = \"45 mm\"\nsemi_axis_z = \"45 mm\"\n\n[fluid]\ndensity = \"1000 kg/m^3\"\n";
     std::fs::write(folder.path().join("ellipsoid.toml"), format!("schema = 1\n{body}")).unwrap();
@@ -142,23 +108,23 @@ fn an_added_mass_of_a_record_is_a_prior() {
     let value = added["value"].as_f64().unwrap();
     assert!((value / (a22 / (1000.0 * 1.2723e-3)) - 1.0).abs() < 1e-3, "{value} {a22}");
     with("{ coefficient = \"C_Ay\", record = \"am/estimate.json\", entry = \"A22\", model_form = \"5 %\" }");
-    let error = refused(folder.path());
+    let error = refused(folder.path(), IDENTIFY);
     assert!(error.contains("C_Ay is a pure number and A22 is in kg; write volume"), "{error}");
     with("{ coefficient = \"C_Ay\", record = \"am/estimate.json\", entry = \"A77\", model_form = \"5 %\" }");
-    assert!(refused(folder.path()).contains("is \"A77\", which"), "{}", refused(folder.path()));
+    assert!(refused(folder.path(), IDENTIFY).contains("is \"A77\", which"), "{}", refused(folder.path(), IDENTIFY));
     with("{ coefficient = \"C_Ay\", record = \"none.json\", entry = \"A22\", model_form = \"5 %\" }");
-    assert!(refused(folder.path()).contains("none.json"), "{}", refused(folder.path()));
+    assert!(refused(folder.path(), IDENTIFY).contains("none.json"), "{}", refused(folder.path(), IDENTIFY));
 }
 
 #[test]
 fn what_is_not_declared_is_refused_with_what_to_write() {
-    let folder = simulated(&ONE);
+    let folder = simulated(EXAMPLE, &ONE);
     let path = folder.path().join("campaign.toml");
     let text = std::fs::read_to_string(&path).unwrap();
     let with = |from: &str, to: &str| {
         assert!(text.contains(from), "{from}");
         std::fs::write(&path, text.replace(from, to)).unwrap();
-        refused(folder.path())
+        refused(folder.path(), IDENTIFY)
     };
     let error = with("mass   = {", "# mass   = {");
     assert!(error.contains("the mass below the load cell is not known of H1LT: write mass = { value"), "{error}");
@@ -185,12 +151,12 @@ fn what_is_not_declared_is_refused_with_what_to_write() {
 
 #[test]
 fn a_channel_whose_sign_is_not_declared_and_a_cut_log_are_refused() {
-    let folder = simulated(&ONE);
+    let folder = simulated(EXAMPLE, &ONE);
     let sidecar = folder.path().join("runs/001.toml");
     let text = std::fs::read_to_string(&sidecar).unwrap();
     let unsigned = text.replace("name = \"force\", unit = \"N\", sign = 1", "name = \"force\", unit = \"N\"");
     std::fs::write(&sidecar, unsigned).unwrap();
-    let error = refused(folder.path());
+    let error = refused(folder.path(), IDENTIFY);
     assert!(error.contains("force states no sign; drag and added mass are wrong"), "{error}");
     std::fs::write(&sidecar, text).unwrap();
     // The log begins and ends while it moves.
@@ -200,6 +166,6 @@ fn a_channel_whose_sign_is_not_declared_and_a_cut_log_are_refused() {
     lines.drain(lines.len() - 700..);
     lines.drain(1..600);
     std::fs::write(&log, lines.join("\n") + "\n").unwrap();
-    let error = refused(folder.path());
+    let error = refused(folder.path(), IDENTIFY);
     assert!(error.contains("the zero of the cell is unknown: the body stands still for 0.00 s before"), "{error}");
 }

@@ -1,27 +1,10 @@
 //! Excited response at the verbs: the real section in waves, its twin, and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+mod tank;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn froude(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> serde_json::Value {
-    assert_eq!(output.status.code(), Some(0), "{}", said(output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = froude(folder, arguments);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
-}
+use tank::{froude, json, refused, replace_in, said};
 
 fn example() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/ntnu-section")
@@ -49,12 +32,6 @@ fn written(folder: tempfile::TempDir, name: &str, replaced: &[(&str, &str)]) -> 
     }
     std::fs::write(folder.path().join(name), text).unwrap();
     folder
-}
-
-fn replace_in(path: &Path, from: &str, to: &str) {
-    let text = std::fs::read_to_string(path).unwrap();
-    assert!(text.contains(from), "{text}");
-    std::fs::write(path, text.replace(from, to)).unwrap();
 }
 
 fn messages(record: &serde_json::Value, code: &str) -> Vec<String> {

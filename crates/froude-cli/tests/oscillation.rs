@@ -1,34 +1,11 @@
 //! Forced oscillation at the verbs: plan, simulate and identify of the example campaign, and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod tank;
 
-fn froude(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
-}
+use tank::{example, froude, json, refused, replace_in, said, simulated};
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> serde_json::Value {
-    assert_eq!(output.status.code(), Some(0), "{}", said(output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// The example campaign in a folder of its own, with some text replaced.
-fn example(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut text = std::fs::read_to_string(root.join("examples/mamba-oscillation/campaign.toml")).unwrap();
-    for (from, to) in replaced {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    std::fs::write(folder.path().join("campaign.toml"), text).unwrap();
-    folder
-}
+const EXAMPLE: &str = "mamba-oscillation";
 
 /// Two amplitudes at two frequencies: eight runs.
 const SMALL: [(&str, &str); 2] = [
@@ -36,29 +13,10 @@ const SMALL: [(&str, &str); 2] = [
     ("[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]", "[\"60 deg/s\", \"80 deg/s\"]"),
 ];
 
-fn simulated(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = example(replaced);
-    let output = froude(folder.path(), &["simulate", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    folder
-}
-
-fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = froude(folder, arguments);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
-}
-
-fn replace_in(path: &Path, from: &str, to: &str) {
-    let text = std::fs::read_to_string(path).unwrap();
-    assert!(text.contains(from), "{text}");
-    std::fs::write(path, text.replace(from, to)).unwrap();
-}
-
 /// The plan's interval is the one that the identification then states, to what eight runs let it scatter.
 #[test]
 fn a_campaign_is_planned_simulated_and_identified() {
-    let folder = example(&SMALL);
+    let folder = example(EXAMPLE, &SMALL);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     assert_eq!((plan[0]["runs"].as_u64(), plan[0]["source"].as_str()), (Some(8), Some("circulation tank")));
     // Seven periods of 6 s and of 4.5 s, and a second before each: 4·(43 + 32.5) s.
@@ -101,7 +59,7 @@ fn a_campaign_is_planned_simulated_and_identified() {
 
 #[test]
 fn the_page_shows_the_runs_the_fit_the_spectrum_and_the_budget() {
-    let folder = simulated(&SMALL);
+    let folder = simulated(EXAMPLE, &SMALL);
     let output = froude(folder.path(), &["identify", "campaign.toml"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     let page = std::fs::read_to_string(folder.path().join("campaign-results/report.html")).unwrap();
@@ -118,7 +76,7 @@ fn the_page_shows_the_runs_the_fit_the_spectrum_and_the_budget() {
 
 #[test]
 fn nothing_about_a_run_is_taken_for_granted() {
-    let folder = simulated(&SMALL);
+    let folder = simulated(EXAMPLE, &SMALL);
     let sidecar = folder.path().join("runs/002.toml");
     let identify = || refused(folder.path(), &["identify", "campaign.toml"]);
     replace_in(&sidecar, "unit = \"N\", sign = 1, ", "unit = \"N\", ");
@@ -159,7 +117,7 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
     ] {
         let mut replaced = SMALL.to_vec();
         replaced.push((from, to));
-        let folder = example(&replaced);
+        let folder = example(EXAMPLE, &replaced);
         let text = refused(folder.path(), &["plan", "campaign.toml"]);
         assert!(
             text.contains(expected) && text.contains("campaign.toml") || text.contains("C_A is missing"),
@@ -170,7 +128,7 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
 
 #[test]
 fn a_damaged_log_is_refused_with_its_run() {
-    let folder = simulated(&SMALL);
+    let folder = simulated(EXAMPLE, &SMALL);
     let log = folder.path().join("runs/001.csv");
     let whole = std::fs::read_to_string(&log).unwrap();
     let identify = || refused(folder.path(), &["identify", "campaign.toml"]);
@@ -201,7 +159,7 @@ fn a_damaged_log_is_refused_with_its_run() {
 /// The force of the body on the rig for that of the rig on the body; and a law that is not the true one.
 #[test]
 fn a_wrong_sign_and_a_wrong_law_are_findings() {
-    let folder = simulated(&SMALL);
+    let folder = simulated(EXAMPLE, &SMALL);
     let codes = |record: &serde_json::Value| -> Vec<(String, String)> {
         let text = |f: &serde_json::Value, key: &str| f[key].as_str().unwrap().to_owned();
         record["findings"].as_array().unwrap().iter().map(|f| (text(f, "code"), text(f, "message"))).collect()
@@ -226,7 +184,7 @@ fn a_wrong_sign_and_a_wrong_law_are_findings() {
 
 #[test]
 fn a_folder_of_such_runs_is_inspected_and_no_folder_of_releases() {
-    let folder = simulated(&SMALL);
+    let folder = simulated(EXAMPLE, &SMALL);
     let output = froude(folder.path(), &["inspect", "runs"]);
     let text = String::from_utf8_lossy(&output.stdout).split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(text.contains("forced_oscillation, role test, H1LT, flow 0.2000 m/s"), "{text}");
@@ -247,7 +205,7 @@ fn one_frequency_does_not_tell_added_mass_from_buoyancy() {
         ("buoyancy = {", "# buoyancy = {"),
         ("C_A      = 1.277", "C_A      = 1.277\nB_buoyancy_H1LT = \"3 N\"\nB_buoyancy_H2LT = \"3 N\""),
     ];
-    let folder = example(&replaced);
+    let folder = example(EXAMPLE, &replaced);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     let c_a = plan[0]["expected"].as_array().unwrap().iter().find(|e| e["coefficient"] == "C_A").unwrap();
     assert!(c_a["half_width_95"].as_f64().unwrap() > 0.25 * 1.277, "{c_a}");

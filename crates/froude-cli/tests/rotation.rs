@@ -1,58 +1,16 @@
 //! Rotation at the verbs: plan, simulate and identify of the example campaign, and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod tank;
 
-fn froude(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
-}
+use tank::{example, froude, json, refused, replace_in, said, simulated};
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> serde_json::Value {
-    assert_eq!(output.status.code(), Some(0), "{}", said(output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// The example campaign in a folder of its own, with some text replaced.
-fn example(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut text = std::fs::read_to_string(root.join("examples/mamba-rotation/campaign.toml")).unwrap();
-    for (from, to) in replaced {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    std::fs::write(folder.path().join("campaign.toml"), text).unwrap();
-    folder
-}
-
-fn simulated(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = example(replaced);
-    let output = froude(folder.path(), &["simulate", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    folder
-}
-
-fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = froude(folder, arguments);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
-}
-
-fn replace_in(path: &Path, from: &str, to: &str) {
-    let text = std::fs::read_to_string(path).unwrap();
-    assert!(text.contains(from), "{text}");
-    std::fs::write(path, text.replace(from, to)).unwrap();
-}
+const EXAMPLE: &str = "mamba-rotation";
 
 /// The plan's intervals are those that the identification then states, to what nine runs let them scatter.
 #[test]
 fn a_campaign_is_planned_simulated_and_identified() {
-    let folder = example(&[]);
+    let folder = example(EXAMPLE, &[]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     assert_eq!((plan[0]["runs"].as_u64(), plan[0]["source"].as_str()), (Some(9), Some("turning rig")));
     // Seven periods of 6 s, of 36/7 s and of 4.5 s, and two seconds before each, three times.
@@ -146,7 +104,7 @@ fn what_the_campaign_does_not_declare_is_asked_for() {
         ("periods   = 7", "periods   = 4", "whole cycles"),
         ("method = \"rotation\"", "method = \"steady\"", "write method = \"rotation\""),
     ] {
-        let folder = example(&[(from, to)]);
+        let folder = example(EXAMPLE, &[(from, to)]);
         let text = refused(folder.path(), &["plan", "campaign.toml"]);
         assert!(text.contains(expected), "{from}: {text}");
     }
@@ -159,7 +117,7 @@ fn nothing_about_a_run_is_taken_for_granted() {
         ("[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]", "\"80 deg/s\""),
         ("periods   = 7", "periods   = 7\nrepeats   = 5"),
     ];
-    let folder = simulated(&small);
+    let folder = simulated(EXAMPLE, &small);
     let sidecar = folder.path().join("runs/002.toml");
     let identify = || refused(folder.path(), &["identify", "campaign.toml"]);
     replace_in(&sidecar, "unit = \"N m\", sign = 1, ", "unit = \"N m\", ");

@@ -2,33 +2,24 @@
 //! Parquet and MCAP; and the steps in the record and on the page.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
+mod tank;
+
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use froude::records::run::{ChannelSpec, Frame, Kind, Layout, Meaning, Packing, Recorder, Role, RunMeta, RunStatus};
 use froude::records::table::{Column, ColumnData, Table, prepare_table};
 use froude::records::units::parse_unit;
 use serde_json::Value;
+use tank::{froude, refused, replace_in, said};
 
-fn froude(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+/// The arguments of what is refused.
+const IDENTIFY: &[&str] = &["identify", "campaign.toml"];
 
 fn identified(folder: &Path) -> Value {
     let output = froude(folder, &["identify", "campaign.toml", "--json"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn refused(folder: &Path) -> String {
-    let output = froude(folder, &["identify", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
 }
 
 fn codes(record: &Value) -> Vec<(String, String)> {
@@ -64,12 +55,6 @@ fn coefficient(record: &Value, name: &str) -> f64 {
 fn drag(record: &Value) -> f64 {
     let coefficients = record["estimates"][0]["coefficients"].as_object().unwrap();
     coefficients.values().next().unwrap()["value"].as_f64().unwrap().abs()
-}
-
-fn replace_in(path: &Path, from: &str, to: &str) {
-    let text = std::fs::read_to_string(path).unwrap();
-    assert!(text.contains(from), "{from}: {text}");
-    std::fs::write(path, text.replace(from, to)).unwrap();
 }
 
 const CAMPAIGN: &str = "schema = 1\nname = \"ball\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[[source]]\nname = \"tank\"\nkind = \"towing\"\nruns = \"runs\"\n\
@@ -249,7 +234,7 @@ fn words_of_a_sidecar_that_are_not_known_are_refused_with_the_nearest_and_their_
     let path = folder.path().join("runs/t0.4.toml");
     let refused_with = |to: &str| {
         std::fs::write(&path, to).unwrap();
-        refused(folder.path())
+        refused(folder.path(), IDENTIFY)
     };
     let with = |words: &str| sidecar().replace(FORCE, &FORCE.replace(" }", &format!(", {words} }}")));
     for (text, place, expected) in [
@@ -359,12 +344,12 @@ fn loads_are_turned_from_the_cell_and_made_of_its_bridges() {
     ] {
         std::fs::write(&path, &of_bridges).unwrap();
         replace_in(&path, from, to);
-        let said = refused(tank.path());
+        let said = refused(tank.path(), IDENTIFY);
         assert!(said.contains("t0.4.toml:") && said.contains(expected), "{expected}: {said}");
     }
     let half = format!("{HEAD}[columns]\n{TIME}{SPEED}{}{CELL}", cell_column("cx", "f_x")).replace("90 deg", "80 deg");
     let tank = along(&half, "t,u,cx,cy", &turned);
-    let said = refused(tank.path());
+    let said = refused(tank.path(), IDENTIFY);
     assert!(said.contains("none of f_x can be turned from the frame \"cell\""), "{said}");
 }
 
@@ -407,7 +392,7 @@ fn a_camera_is_brought_onto_the_clock_of_the_log() {
     let stamp = |t: f64| t + offset + skew * t;
     let camera = SWUNG.replace("sensor\", clock = \"log\"", "sensor\", clock = \"camera\"");
     let silent = swings(stamp, |_| 0.0, &camera);
-    let said = refused(silent.path());
+    let said = refused(silent.path(), IDENTIFY);
     assert!(
         said.contains(
             "angle has the clock \"camera\", which cannot be aligned with that of the log: declare [clocks.camera]"
@@ -433,7 +418,7 @@ fn a_camera_is_brought_onto_the_clock_of_the_log() {
     let record = identified(swings(stamp, |_| 0.0, &format!("{camera}{text}")).path());
     assert!((coefficient(&record, "C_A") - 0.8).abs() < C_A_SAME, "{record}");
     let text = clocks.replace("50 ms", "900 s");
-    let said = refused(swings(stamp, |_| 0.0, &format!("{camera}{text}")).path());
+    let said = refused(swings(stamp, |_| 0.0, &format!("{camera}{text}")).path(), IDENTIFY);
     assert!(said.contains("clocks that cannot be aligned: as its sidecar states"), "{said}");
 }
 
@@ -495,7 +480,7 @@ fn cycles_with_a_mark_are_dropped() {
     let dropped = parameter(&step(&record, "1.csv", "window"), "dropped");
     assert!((1.0..=2.0).contains(&dropped), "{dropped}");
     std::fs::write(tank.path().join("runs/1.toml"), mark("8 s", "40 s")).unwrap();
-    let said = refused(tank.path());
+    let said = refused(tank.path(), IDENTIFY);
     assert!(
         said.contains(
             "are left without a mark, and 5 are needed: 1 mark, the first from 8 s to 40 s, dropped by J. Froude"
@@ -591,10 +576,10 @@ fn parquet_and_mcap_are_read_as_csv_is() {
 
     // One run twice, a log that is another's, and one that is not complete.
     write(&runs, "t0.3", &tow(0.3), &std::fs::read_to_string(runs.join("t0.3.toml")).unwrap());
-    assert!(refused(mcap.path()).contains("is one run with"), "{}", refused(mcap.path()));
+    assert!(refused(mcap.path(), IDENTIFY).contains("is one run with"), "{}", refused(mcap.path(), IDENTIFY));
     std::fs::remove_file(runs.join("t0.3.csv")).unwrap();
     std::fs::copy(runs.join("t0.4.mcap"), runs.join("t0.3.mcap")).unwrap();
-    let said = refused(mcap.path());
+    let said = refused(mcap.path(), IDENTIFY);
     assert!(said.contains("t0.3.mcap") && (said.contains("exchanged") || said.contains("SHA-256")), "{said}");
 }
 
@@ -611,7 +596,7 @@ fn a_still_run_longer_ago_than_the_drift_allows_is_refused_with_both_numbers() {
     };
     write(&runs, "still", &tow(0.0), &at("still", "0 s"));
     write(&runs, "test", &moving, &at("test", "1200 s"));
-    let said = refused(folder.path());
+    let said = refused(folder.path(), IDENTIFY);
     assert!(
         said.contains("the nearest still run is 1200 s away")
             && said.contains("2.000e-2 N")

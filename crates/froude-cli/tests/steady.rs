@@ -1,40 +1,20 @@
 //! Steady tows at the verbs: plan, simulate and identify of the example campaign; tares, still runs, streams; and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+mod tank;
+
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::{Command, Output};
+use tank::{froude, json, refused, replace_in, said};
 
-fn froude(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> serde_json::Value {
-    assert_eq!(output.status.code(), Some(0), "{}", said(output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-fn refused(folder: &Path) -> String {
-    let output = froude(folder, &["identify", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
-}
+/// The arguments of what is refused.
+const IDENTIFY: &[&str] = &["identify", "campaign.toml"];
 
 fn example() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     std::fs::copy(root.join("examples/mamba-steady/campaign.toml"), folder.path().join("campaign.toml")).unwrap();
     folder
-}
-
-fn replace_in(path: &Path, from: &str, to: &str) {
-    let text = std::fs::read_to_string(path).unwrap();
-    assert!(text.contains(from), "{from}: {text}");
-    std::fs::write(path, text.replace(from, to)).unwrap();
 }
 
 /// The example is planned, simulated and identified; the truth lies in every interval, and these are as wide as was planned.
@@ -149,7 +129,7 @@ fn the_tare_is_subtracted_at_the_same_speed() {
     assert_eq!(errors.keys().filter(|key| key.contains("tare")).count(), 3, "{errors:?}");
     std::fs::remove_file(folder.path().join("runs/r0.3.csv")).unwrap();
     std::fs::remove_file(folder.path().join("runs/r0.3.toml")).unwrap();
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("no run of the role \"tare\" is at its speed and angle (0.3000 m/s"), "{text}");
 }
 
@@ -190,7 +170,7 @@ fn a_zero_is_drawn_between_still_runs() {
     // 1,200 s at 1 mN/min are 20 mN.
     assert!(text.contains("nearest still run is 1200 s away"), "{text}");
     let none: Vec<Log> = logs().into_iter().filter(|log| log.role == "test").collect();
-    let text = refused(tows(&none).path());
+    let text = refused(tows(&none).path(), IDENTIFY);
     assert!(text.contains("nothing tells the zero of the sensor") && text.contains("seconds at rest"), "{text}");
 }
 
@@ -209,7 +189,7 @@ fn a_body_in_a_stream_has_its_speed_from_its_sidecar() {
     let (towed, _) = coefficient(tows(&three(50.0)).path());
     assert!((value / towed - 1.0).abs() < 1e-3, "{value} {towed}");
     let silent = Log { conditions: "angle = \"0 deg\"".to_owned(), ..held(0.2) };
-    let text = refused(tows(&[silent]).path());
+    let text = refused(tows(&[silent]).path(), IDENTIFY);
     assert!(text.contains("no channel speed or position") && text.contains("[conditions] speed"), "{text}");
 }
 
@@ -218,17 +198,17 @@ fn what_a_run_lacks_is_said_with_its_place() {
     let folder = tows(&three(50.0));
     let sidecar = folder.path().join("runs/t0.2.toml");
     replace_in(&sidecar, "unit = \"N\", sign = 1, frame = \"body\"", "unit = \"N\", frame = \"body\"");
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("t0.2.toml:") && text.contains("f_x states no sign"), "{text}");
     replace_in(&sidecar, "unit = \"N\", frame = \"body\"", "unit = \"N\", sign = 1, frame = \"y\"");
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("f_x is along the axes of \"y\"") && text.contains("frame = \"body\""), "{text}");
     replace_in(&sidecar, "frame = \"y\"", "frame = \"body\"");
     replace_in(&folder.path().join("campaign.toml"), "[source.steady]", "[source.steady]\nshortest = \"20 s\"");
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("no steady window") && text.contains("tolerance, shortest and settle"), "{text}");
     replace_in(&folder.path().join("campaign.toml"), "shortest = \"20 s\"", "shortest = \"20 m\"");
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("campaign.toml:12:") && text.contains("a time"), "{text}");
 }
 

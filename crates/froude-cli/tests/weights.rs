@@ -1,54 +1,20 @@
 //! The weight-driven rig at the verbs: plan, simulate and identify of the example campaign, and what is refused.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod tank;
 
-fn froude(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_froude")).args(arguments).current_dir(folder).output().unwrap()
-}
+use tank::{example, froude, json, refused, said, simulated};
 
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn json(output: &Output) -> serde_json::Value {
-    assert_eq!(output.status.code(), Some(0), "{}", said(output));
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-/// The example with fewer angles, and some text replaced.
-fn example(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let mut text = std::fs::read_to_string(root.join("examples/mamba-weights/campaign.toml")).unwrap();
-    for (from, to) in replaced {
-        assert!(text.contains(from), "{from}");
-        text = text.replace(from, to);
-    }
-    std::fs::write(folder.path().join("campaign.toml"), text).unwrap();
-    folder
-}
-
-fn simulated(replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = example(replaced);
-    let output = froude(folder.path(), &["simulate", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    folder
-}
-
-fn refused(folder: &Path) -> String {
-    let output = froude(folder, &["identify", "campaign.toml"]);
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    said(&output)
-}
+const EXAMPLE: &str = "mamba-weights";
+/// The arguments of what is refused.
+const IDENTIFY: &[&str] = &["identify", "campaign.toml"];
 
 const FEW: (&str, &str) = ("step = \"3 deg\"", "step = \"12 deg\"");
 const HEAVY: (&str, &str) = ("moving_mass = { value", "# moving_mass = { value");
 
 #[test]
 fn a_campaign_is_planned_simulated_and_identified() {
-    let folder = example(&[]);
+    let folder = example(EXAMPLE, &[]);
     let plan = json(&froude(folder.path(), &["plan", "campaign.toml", "--json"]));
     assert_eq!(plan[0]["runs"].as_u64(), Some(78));
     let output = froude(folder.path(), &["simulate", "campaign.toml"]);
@@ -77,10 +43,10 @@ fn a_campaign_is_planned_simulated_and_identified() {
 /// Four kilograms do not become steady in 0.8 m: without their mass such runs are refused, with it they are balanced.
 #[test]
 fn runs_that_are_not_steady_need_the_moving_mass() {
-    let folder = simulated(&[FEW]);
+    let folder = simulated(EXAMPLE, &[FEW]);
     let text = String::from_utf8_lossy(&froude(folder.path(), &["identify", "campaign.toml"]).stdout).into_owned();
     assert!(text.contains("[not-steady]") && text.contains("inertia"), "{text}");
-    let without = simulated(&[FEW, HEAVY, ("\"35 mN\", \"75 mN\", \"125 mN\"", "\"125 mN\"")]);
+    let without = simulated(EXAMPLE, &[FEW, HEAVY, ("\"35 mN\", \"75 mN\", \"125 mN\"", "\"125 mN\"")]);
     let output = froude(without.path(), &["identify", "campaign.toml"]);
     let all = format!("{}{}", String::from_utf8_lossy(&output.stdout), said(&output));
     assert!(all.contains("not steady: the speed changes by") && all.contains("declare moving_mass"), "{all}");
@@ -88,11 +54,10 @@ fn runs_that_are_not_steady_need_the_moving_mass() {
 
 #[test]
 fn a_run_that_has_hardly_begun_is_refused() {
-    let folder = simulated(&[
-        FEW,
-        ("travel = \"0.8 m\"", "travel = \"0.25 m\""),
-        ("window      = \"0.2 m\"", "window      = \"0.1 m\""),
-    ]);
+    let folder = simulated(
+        EXAMPLE,
+        &[FEW, ("travel = \"0.8 m\"", "travel = \"0.25 m\""), ("window      = \"0.2 m\"", "window      = \"0.1 m\"")],
+    );
     let text = String::from_utf8_lossy(&froude(folder.path(), &["identify", "campaign.toml"]).stdout).into_owned();
     let error = said(&froude(folder.path(), &["identify", "campaign.toml"]));
     assert!(
@@ -103,11 +68,11 @@ fn a_run_that_has_hardly_begun_is_refused() {
 
 #[test]
 fn what_a_run_lacks_is_said_with_its_place() {
-    let folder = simulated(&[FEW]);
+    let folder = simulated(EXAMPLE, &[FEW]);
     let sidecar = folder.path().join("runs/001.toml");
     let original = std::fs::read_to_string(&sidecar).unwrap();
     std::fs::write(&sidecar, original.replace("weight = \"0.035 N\"\n", "")).unwrap();
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(
         text.contains("001.csv: the weight that pulls is not stated") && text.contains("[conditions] weight"),
         "{text}"
@@ -117,16 +82,16 @@ fn what_a_run_lacks_is_said_with_its_place() {
         original.replace("name = \"mark\", unit = \"1\", sign = 1", "name = \"mark\", unit = \"1\""),
     )
     .unwrap();
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("001.toml:") && text.contains("mark states no sign"), "{text}");
     std::fs::write(&sidecar, &original).unwrap();
     let campaign = folder.path().join("campaign.toml");
     let declared = std::fs::read_to_string(&campaign).unwrap();
     std::fs::write(&campaign, declared.replace("scale       = {", "# scale = {")).unwrap();
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("its mark is in pixels") && text.contains("scale = { value = \"1.2 mm\""), "{text}");
     std::fs::write(&campaign, declared.replace("value = \"10 mN\", standard = \"1 mN\"", "value = \"500 mN\""))
         .unwrap();
-    let text = refused(folder.path());
+    let text = refused(folder.path(), IDENTIFY);
     assert!(text.contains("is not above the friction of 0.5000 N"), "{text}");
 }

@@ -45,7 +45,19 @@ fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> R
     let file = read_estimates(&from.path)?;
     let named = |e: &&Estimate| from.select.as_ref().is_none_or(|id| *id == e.id);
     let has = |e: &&Estimate| e.coefficients.contains_key(&from.entry);
-    let estimate = file.estimates.iter().filter(named).find(has).ok_or_else(|| {
+    let with: Vec<&Estimate> = file.estimates.iter().filter(named).filter(has).collect();
+    let recommended: Vec<&&Estimate> = with.iter().filter(|e| e.recommended).collect();
+    let estimate = match (recommended.as_slice(), with.as_slice()) {
+        ([one], _) => Some(**one),
+        (_, [one]) => Some(*one),
+        (_, []) => None,
+        _ => {
+            let ids: Vec<&str> = with.iter().map(|e| e.id.as_str()).collect();
+            let problem = format!("is in several estimates; name one with select = \"…\": {}", ids.join(", "));
+            return Err(wrong("entry", problem));
+        }
+    };
+    let estimate = estimate.ok_or_else(|| {
         let there: Vec<String> = file
             .estimates
             .iter()

@@ -56,7 +56,12 @@ impl Method for ExcitedResponse {
         let channels = "time, wavemaker, and force or acceleration";
         let Logs { runs: logs, files, findings: mut said } =
             logs::read(source.input.path(), EXCITED_RESPONSE, &[Role::Held, Role::Free], channels, progress)?;
-        let late = |log: &ImportedRun| log.told.values().map(|told| told.time_standard_s).fold(0.0, f64::max);
+        // A camera beside accelerometers is compared, and its clock is no part of the result.
+        let late = |log: &ImportedRun| {
+            let is_compared = log.log.channels.keys().any(|name| name.starts_with(ACCELERATION));
+            let used = log.told.iter().filter(|(name, _)| !(is_compared && name.as_str() == POSITION));
+            used.map(|(_, told)| told.time_standard_s).fold(0.0, f64::max)
+        };
         let clocks_s = logs.iter().map(late).fold(0.0, f64::max);
         setup.delay_s.standard = setup.delay_s.standard.hypot(clocks_s);
         let runs = logs.iter().map(run).collect::<Result<Vec<_>, _>>()?;
