@@ -151,6 +151,25 @@ fn an_error_of_the_inertia_is_one_of_lambda_1() {
     assert!((value(&fit, "lambda_3") / LAMBDAS[2] - 1.0).abs() < 1e-6);
 }
 
+/// Runs in air find the inertia, whatever was declared as exact; a declared one that is 10 % off, eight standard uncertainties of theirs, is said, and one that is right is not.
+#[test]
+fn an_exact_inertia_that_runs_in_air_contradict_is_said() {
+    let mut planned = gait(7.0);
+    planned.extend(plan(Mounted::BodyInAir, &[30.0, 60.0], &[60.0, 80.0], 7.0));
+    let logged = simulated(&planned, &setup(), &TRUTH, &noise(2e-4), 1);
+    let runs = views(&logged);
+    let contradicted = |declared: f64| {
+        let setup = Setup { inertia_kg_m2: Some(Uncertain::new(declared, 0.0)), ..setup() };
+        let motions = motions(&runs, &setup).unwrap();
+        let fit = fit(&runs, &motions, &setup, &Identify::default()).unwrap();
+        let all = of_fit(&fit, &[], &runs, &motions, &setup);
+        all.into_iter().filter(|f| f.code == "declared-contradicted").map(|f| f.message).collect::<Vec<_>>()
+    };
+    assert_eq!(contradicted(INERTIA), Vec::<String>::new());
+    let text = contradicted(1.1 * INERTIA);
+    assert!(text.len() == 1 && text[0].contains("inertia is declared as 0.00374"), "{text:?}");
+}
+
 /// Turning the axis round changes no coefficient: both angle and torque change their sign.
 #[test]
 fn the_sign_of_the_axis_does_not_matter() {

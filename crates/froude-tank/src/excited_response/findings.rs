@@ -11,6 +11,8 @@ use super::setup::{Setup, WaveRun};
 const SAME_STROKE: f64 = 0.02;
 /// A33 of the two halves of a window may differ by this part of the moving mass with its water, and B33 by this part of itself.
 const HALVES: [f64; 2] = [0.02, 0.05];
+/// Halves differ by more than chance beyond this many standard uncertainties of their difference.
+const BY_CHANCE: f64 = 2.0;
 /// A wavemaker that its fundamental leaves more than this part of is not harmonic.
 const HARMONIC: f64 = 0.1;
 /// A camera's clock that gains or loses less than this is even, s/s.
@@ -98,8 +100,9 @@ fn of_values(at: &AtPeriod, setup: &Setup) -> Vec<Finding> {
     let [added, damping] = at.values;
     let scales = [(setup.mass_kg.value + added).abs(), damping.abs()];
     // Each half has twice the variance of the whole: their difference has twice its standard uncertainty.
-    let by_chance = |j: usize| 2.0 * at.combined[j].type_a;
-    let differ = |j: usize| (at.halves[1][j] - at.halves[0][j]).abs() > by_chance(j).max(HALVES[j] * scales[j]);
+    let of_difference = |j: usize| 2.0 * at.combined[j].type_a;
+    let is_chance = |j: usize, d: f64| d.abs() <= (BY_CHANCE * of_difference(j)).max(HALVES[j] * scales[j]);
+    let differ = |j: usize| !is_chance(j, at.halves[1][j] - at.halves[0][j]);
     let stated = if at.is_declared { 2 } else { 1 };
     for j in (0..stated).filter(|&j| differ(j)) {
         out.push(warning(
@@ -111,7 +114,7 @@ fn of_values(at: &AtPeriod, setup: &Setup) -> Vec<Finding> {
                 NAMES[j],
                 at.halves[0][j],
                 at.halves[1][j],
-                by_chance(j),
+                of_difference(j),
                 at.window_s[0],
                 at.window_s[1],
                 unit = UNITS[j]

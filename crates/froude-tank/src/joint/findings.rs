@@ -120,13 +120,17 @@ pub(crate) fn undetermined(fit: &JointFit, why: &str) -> Option<Finding> {
     })
 }
 
-/// Numbers that are declared and that the runs move by more than chance: name, value and standard uncertainty of each.
+/// Numbers that are declared and that the runs move by more than chance: name, value and standard uncertainty of each. What is declared as exact and found by
+/// runs all the same has no weight in the fit; its own uncertainty there is the measure.
 pub(crate) fn contradicted(fit: &JointFit, declared: &[(String, Uncertain)], check: &str) -> Vec<Finding> {
     let one = |(name, known): &(String, Uncertain)| {
         let unknown = fit.unknown(name)?;
         let (found, combined) = unknown.value.zip(unknown.combined)?;
         // The posterior lies between the two: its variance is smaller than that of the declared one by that of its shift.
-        let shift = (known.standard * known.standard - combined.standard * combined.standard).max(0.0).sqrt();
+        let shift = match known.standard {
+            0.0 => combined.standard,
+            standard => (standard * standard - combined.standard * combined.standard).max(0.0).sqrt(),
+        };
         (shift > 0.0 && (found - known.value).abs() > CONTRADICTS * shift).then(|| {
             warning(
                 "declared-contradicted",

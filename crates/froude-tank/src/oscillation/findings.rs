@@ -9,7 +9,7 @@ use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
-use super::fit::{ADDED, BUOYANCY, DELAY, OscillationFit};
+use super::fit::{ADDED, BUOYANCY, DELAY, MASS, OscillationFit};
 use super::setup::{OscillationRun, Setup};
 use crate::joint::Run;
 use crate::joint::findings::{are_whole, contradicted, few_runs, misfit, of_motion, undetermined, warning};
@@ -84,9 +84,10 @@ pub fn of_fit(fit: &OscillationFit, runs: &[OscillationRun<'_>], motions: &[Moti
         "At one frequency added mass and buoyancy are both in phase with the angle: drive at another frequency, or declare the buoyancy. On one configuration the terms of head and \
          tail are parallel to those of the links",
     ));
-    let of_body = |name: &str| if name.is_empty() { BUOYANCY.to_owned() } else { format!("{BUOYANCY}_{name}") };
-    let mut declared: Vec<(String, Uncertain)> =
-        setup.bodies.iter().filter_map(|body| Some((of_body(&body.name), body.buoyancy_n?))).collect();
+    let of_body = |what: &str, name: &str| if name.is_empty() { what.to_owned() } else { format!("{what}_{name}") };
+    let buoyancy = setup.bodies.iter().filter_map(|body| Some((of_body(BUOYANCY, &body.name), body.buoyancy_n?)));
+    let mass = setup.bodies.iter().map(|body| (of_body(MASS, &body.name), body.mass_kg));
+    let mut declared: Vec<(String, Uncertain)> = buoyancy.chain(mass).collect();
     declared.extend(setup.delay_s.map(|delay| (DELAY.to_owned(), delay)));
     out.extend(contradicted(fit, &declared, "signs and clocks of angle and force"));
     out.extend(few_runs(fit));
