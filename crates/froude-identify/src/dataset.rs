@@ -89,6 +89,16 @@ impl Dataset {
         self.headers.iter().find(is_of).map_or(name, String::as_str)
     }
 
+    /// What to call row `i` in a message: `line 7`, and the run where it has one.
+    #[must_use]
+    pub fn row_name(&self, i: usize) -> String {
+        let line = self.line.get(i).copied().unwrap_or(i + 1);
+        match self.run.get(i).filter(|run| !run.is_empty()) {
+            Some(run) => format!("line {line}, run {run}"),
+            None => format!("line {line}"),
+        }
+    }
+
     /// Velocity of row `i` through the water, m/s, body axes; zero where the table has no motion.
     #[must_use]
     pub fn velocity_m_s(&self, i: usize) -> [f64; 2] {

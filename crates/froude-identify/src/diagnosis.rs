@@ -8,6 +8,7 @@ use froude_records::finding::{Finding, Severity};
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::Kind;
+use crate::outlying::outlying_rows;
 use crate::regression::ModelFit;
 use crate::selection::{Score, aicc};
 use crate::{dissipation, lint};
@@ -99,6 +100,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
         }
     }
     out.extend(uneven_scatter(model, data));
+    out.extend(outlying_rows(model, data));
     if let Some(c) = d.condition_number
         && c > COLLINEAR_ABOVE
         && let Some(pair) = &d.largest_correlation

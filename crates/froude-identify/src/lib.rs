@@ -31,6 +31,7 @@ pub mod law;
 pub mod lint;
 pub mod method;
 pub mod observations;
+mod outlying;
 pub mod page;
 pub mod record;
 pub mod reduce;

@@ -84,11 +84,7 @@ fn implausible_speed(data: &Dataset) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "implausible-speed",
-            format!(
-                "line {}: {:.1} m/s is faster {than}; check the unit of the speed",
-                data.line.get(i).copied().unwrap_or(i + 1),
-                speed[i].abs()
-            ),
+            format!("{}: {:.1} m/s is faster {than}; check the unit of the speed", data.row_name(i), speed[i].abs()),
         )
     })
 }
@@ -120,9 +116,9 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
             Severity::Warning,
             "unphysical-drag-coefficient",
             format!(
-                "line {}: {load} = {f:.3e} N at {:.3} m/s on {reference:.3e} m^2 is C_D = {:.2e}: no body has such a value (shapes range from \
+                "{}: {load} = {f:.3e} N at {:.3} m/s on {reference:.3e} m^2 is C_D = {:.2e}: no body has such a value (shapes range from \
                  0.04 to 2.3); check the units of `{}` and of the speed, and the reference area",
-                data.line.get(i).copied().unwrap_or(i + 1),
+                data.row_name(i),
                 speed[i],
                 area_m2 / reference,
                 data.header(load),
@@ -141,9 +137,9 @@ fn drag_area(data: &Dataset, reference_area_m2: Option<f64>) -> Option<Finding> 
         Severity::Warning,
         "implausible-drag-area",
         format!(
-            "line {}: {load} = {f:.3e} N at {} m/s is the drag of {area_m2:.1e} m^2 (|F|/(½ρU²)), {side} {yardstick}: \
+            "{}: {load} = {f:.3e} N at {} m/s is the drag of {area_m2:.1e} m^2 (|F|/(½ρU²)), {side} {yardstick}: \
              a prefix may be wrong in the unit of `{}`, or in that of the speed",
-            data.line.get(i).copied().unwrap_or(i + 1),
+            data.row_name(i),
             if speed[i].abs() < 0.01 { format!("{:.2e}", speed[i]) } else { format!("{:.3}", speed[i]) },
             data.header(load),
         ),

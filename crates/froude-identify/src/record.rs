@@ -85,7 +85,7 @@ fn scatter_by_load(
     type_a: Option<&TypeA>,
 ) -> (IndexMap<String, Option<f64>>, IndexMap<String, Measured>) {
     let loads = &model.fit.components;
-    if let Scatter::Replicates { .. } | Scatter::Serial = model.scatter {
+    if let Scatter::Replicates { .. } | Scatter::Serial(_) = model.scatter {
         let fewest = type_a.and_then(|a| a.dof.iter().copied().flatten().reduce(f64::min));
         return (loads.iter().map(|c| (c.name.clone(), fewest)).collect(), IndexMap::new());
     }
@@ -214,7 +214,7 @@ fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) 
 /// The independent groups behind a scatter that counts them.
 fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
     match &model.scatter {
-        Scatter::Classical | Scatter::Hc3 | Scatter::Serial => None,
+        Scatter::Classical | Scatter::Hc3 | Scatter::Serial(_) => None,
         Scatter::Cluster => data.group.as_ref().map(|group| {
             let by = if *group == data.run { "run" } else { "group" };
             Clusters { by: by.to_owned(), n: data.clusters() }

@@ -15,6 +15,7 @@ pub mod motion;
 mod noise;
 pub mod oscillation;
 mod reference;
+mod residual_spectrum;
 pub mod rotation;
 pub mod steady;
 pub mod weight_tow;

@@ -27,7 +27,6 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
             ColumnData::Text(_) => None,
         })
     };
-    let line = |i: usize| data.line.get(i).copied().unwrap_or(i + 1);
     let mut findings = Vec::new();
     let has_velocity = read("v_x").is_some() || read("v_y").is_some();
     if has_velocity && let (Some(stated), Some(derived)) = (read("angle"), data.values("angle")) {
@@ -42,9 +41,9 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
                 Severity::Warning,
                 "angle-contradicts-velocity",
                 format!(
-                    "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg (line {}); v_x and v_y are used{}",
+                    "the angle column differs from atan2(-v_y, v_x) by up to {:.2} deg ({}); v_x and v_y are used{}",
                     worst.to_degrees(),
-                    line(row),
+                    data.row_name(row),
                     match (read("v_x"), read("v_y")) {
                         (Some(_), None) =>
                             " (v_y is missing and read as 0): if v_x is the speed of the carriage, name it speed",
@@ -64,8 +63,8 @@ pub fn motion_contradictions(table: &Table, rows: &[usize], data: &Dataset) -> V
                 Severity::Warning,
                 "speed-contradicts-velocity",
                 format!(
-                    "the speed column differs from |v| by up to {worst:.3e} m/s (line {}); v_x and v_y are used",
-                    line(row)
+                    "the speed column differs from |v| by up to {worst:.3e} m/s ({}); v_x and v_y are used",
+                    data.row_name(row)
                 ),
             ));
         }

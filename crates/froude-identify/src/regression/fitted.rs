@@ -29,8 +29,8 @@ pub enum Scatter {
     Hc3,
     /// The residuals, correlated in the groups of the data.
     Cluster,
-    /// The residuals, correlated in time within each run, whose rows stand in even steps ([`fit::serial`]); for one load.
-    Serial,
+    /// The residuals, correlated in time within each run, whose rows are means under such windows ([`fit::serial`]); for one load.
+    Serial(fit::serial::RowWindow),
     /// Replicates that the method left out in turn: all coefficients of the law, or none where nothing tells the scatter.
     Replicates {
         /// The line of the budget.
@@ -44,7 +44,7 @@ impl Scatter {
     /// What the residuals are asked for.
     pub(crate) const fn of_residuals(&self) -> fit::CovarianceKind {
         match self {
-            Self::Classical | Self::Serial | Self::Replicates { .. } => fit::CovarianceKind::Classical,
+            Self::Classical | Self::Serial(_) | Self::Replicates { .. } => fit::CovarianceKind::Classical,
             Self::Hc3 => fit::CovarianceKind::Hc3,
             Self::Cluster => fit::CovarianceKind::Cr3,
         }
@@ -146,7 +146,7 @@ impl ModelFit {
     #[must_use]
     pub fn is_in_time(&self, data: &Dataset) -> bool {
         match self.scatter {
-            Scatter::Serial => true,
+            Scatter::Serial(_) => true,
             Scatter::Cluster => data.group.as_ref() == Some(&data.run) && data.rows >= 2 * data.clusters(),
             Scatter::Classical | Scatter::Hc3 | Scatter::Replicates { .. } => false,
         }

@@ -29,9 +29,9 @@ pub(crate) fn logarithms(
                 Err(IdentifyError::Campaign {
                     place: format!("source {:?}, model {}", settings.source_name, law.name),
                     what: format!(
-                        "a fit in logarithms needs a load that opposes the motion in every row; on line {} \
+                        "a fit in logarithms needs a load that opposes the motion in every row; on {} \
                          {channel} is {v} and the load {f}: leave the row out with `keep`, or use power_law",
-                        data.line.get(i).copied().unwrap_or(i + 1)
+                        data.row_name(i)
                     ),
                 })
             }
@@ -136,8 +136,8 @@ pub(crate) fn weights(law: &ForceLaw, data: &Dataset, weight: Weight) -> Result<
             return Err(IdentifyError::Campaign {
                 place: format!("model {}", law.name),
                 what: format!(
-                    "std_{response} on line {} is {}: a weight needs a standard deviation above zero",
-                    data.line.get(i).copied().unwrap_or(i + 1),
+                    "std_{response} on {} is {}: a weight needs a standard deviation above zero",
+                    data.row_name(i),
                     std[i]
                 ),
             });

@@ -9,6 +9,7 @@
 use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
 use froude_fit::faer::Mat;
+use froude_fit::serial::degrees_of_freedom;
 use froude_fit::series::taper;
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
@@ -19,7 +20,7 @@ use froude_records::run::Declared;
 
 use super::law::names;
 use super::reduce::{Setup, reduce};
-use super::rows::{Rows, window};
+use super::rows::{Rows, row_window, window};
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
 use crate::joint::conclude::part;
@@ -78,8 +79,12 @@ pub fn forecast(
         from = own.end;
     }
     let clusters = reduced.runs.len();
-    let dof = if clusters >= FEWEST_CLUSTERS { clusters as f64 - 1.0 } else { noise.dof(n, p) };
-    let mut parts = vec![part("scatter", Kind::A, scatter, dof)];
+    let run: Vec<usize> =
+        reduced.runs.iter().enumerate().flat_map(|(r, (_, _, rows))| vec![r; rows.middle_s.len()]).collect();
+    let dof =
+        if clusters >= FEWEST_CLUSTERS { vec![clusters as f64 - 1.0; p] } else { noise.dof(&x, &sensitivity, &run) };
+    let fewest = dof.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut parts = vec![Part { dof, ..part("scatter", Kind::A, scatter, fewest) }];
     for (b, mass) in reduced.masses.iter().enumerate().filter(|(_, mass)| mass.is_weighed) {
         let standard = noise.of_mass(&logs, b, mass.value_kg);
         let load = |i: usize| {
@@ -90,7 +95,12 @@ pub fn forecast(
             }
         };
         let direction: Vec<f64> = (0..n).map(|i| standard * load(i)).collect();
-        parts.push(moved(&format!("mass of {} by runs in air", setup.bodies[b].name), &sensitivity, &direction, dof));
+        parts.push(moved(
+            &format!("mass of {} by runs in air", setup.bodies[b].name),
+            &sensitivity,
+            &direction,
+            fewest,
+        ));
     }
     for error in reduced.errors.iter().filter(|e| e.quantity != "zero") {
         let standard = error.covariance[0][0].sqrt();
@@ -189,14 +199,11 @@ impl Noise<'_> {
     }
 
     /// Degrees of freedom of few runs, as [`froude_fit::serial`] counts them.
-    fn dof(&self, n: usize, p: usize) -> f64 {
-        /// What windows that overlap leave of white noise from one to the next.
-        const OVERLAP: f64 = 0.35;
-        let time = self.force.and_then(|s| s.correlation_s).unwrap_or(0.0);
-        let rho = (-self.setup.window_s / 3.0 / time).exp().max(OVERLAP);
-        let n = n as f64;
-        let of_variance = (n * (1.0 - rho * rho) / (1.0 + rho * rho) - p as f64).max(1.0);
-        2.0 / (2.0 / of_variance + (4.0 + 8.0 * rho) / ((1.0 - rho * rho) * n))
+    fn dof(&self, x: &Mat<f64>, sensitivity: &Mat<f64>, run: &[usize]) -> Vec<f64> {
+        let window = row_window();
+        let sample_s = self.setup.window_s / window.weights.len() as f64;
+        let rho = self.force.and_then(|s| s.correlation_s).map_or(0.0, |time| (-sample_s / time).exp());
+        degrees_of_freedom(x, sensitivity, run, &window, rho)
     }
 }
 

@@ -21,7 +21,7 @@ use froude_records::run::Declared;
 
 use super::error::AcceleratedError;
 use super::law::{Channels, data, names};
-use super::rows::{Rows, TowRun, rows};
+use super::rows::{Rows, TowRun, row_window, rows};
 
 /// What is declared of body and rig.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,18 +175,38 @@ pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
     Some(Reduced { runs: wet, masses, added_kg, data, errors, left_out, is_by_run })
 }
 
-/// The zeros of few runs: one error each. Of five and more they are in the scatter of the runs.
+/// What the zeros of runs in air add to the variance of the mass, Σ a f/Σ a², kg².
+fn by_zeros(runs: &[&Rows], squares: f64) -> f64 {
+    let of_part = |rows: &Rows, k: usize| {
+        let moves = |(at_s, a): (&f64, &f64)| rows.by_zero(*at_s)[k] * a / squares;
+        let moved: f64 = rows.middle_s.iter().zip(&rows.acceleration_m_s2).map(moves).sum();
+        (moved * rows.zero_parts[k][1]).powi(2)
+    };
+    runs.iter().flat_map(|rows| (0..rows.zero_parts.len()).map(move |k| of_part(rows, k))).sum()
+}
+
+/// The zeros of few runs: an error of each part at rest, on the line between both. Of five and more runs they are in the scatter of the runs.
 fn zeros(load: &str, of_run: &[usize], wet: &[(String, usize, Rows)]) -> SharedError {
-    let n = wet.len();
-    let row = |r: &usize| (0..n).map(|k| f64::from(u8::from(k == *r))).collect();
-    let square = |r: usize| wet[r].2.zero_standard_n.powi(2);
+    let parts: Vec<(usize, usize, f64)> = (wet.iter().enumerate())
+        .flat_map(|(r, (_, _, rows))| {
+            rows.zero_parts.iter().enumerate().map(move |(k, [_, standard])| (r, k, *standard))
+        })
+        .collect();
+    let middles: Vec<f64> = wet.iter().flat_map(|(_, _, rows)| rows.middle_s.iter().copied()).collect();
+    let row = |(r, at_s): (&usize, &f64)| {
+        let by = wet[*r].2.by_zero(*at_s);
+        parts.iter().map(|(of, k, _)| if of == r { by[*k] } else { 0.0 }).collect()
+    };
+    let square = |i: usize| parts[i].2.powi(2);
     SharedError {
         name: "zeros of the runs".to_owned(),
         key: None,
         quantity: "zero".to_owned(),
         shared: "run",
-        directions: vec![(load.to_owned(), of_run.iter().map(row).collect())],
-        covariance: (0..n).map(|r| (0..n).map(|k| if r == k { square(r) } else { 0.0 }).collect()).collect(),
+        directions: vec![(load.to_owned(), of_run.iter().zip(&middles).map(row).collect())],
+        covariance: (0..parts.len())
+            .map(|i| (0..parts.len()).map(|k| if i == k { square(i) } else { 0.0 }).collect())
+            .collect(),
         dof: wet.iter().map(|(_, _, rows)| rows.zero_dof).fold(f64::INFINITY, f64::min),
         limits: None,
         is_of_each_row: false,
@@ -230,8 +250,9 @@ fn mass(declared: Option<Declared>, dry: &[(usize, Rows)], body: usize) -> Optio
         let residual: Vec<f64> = a.iter().zip(&f).map(|(a, f)| f - value_kg * a).collect();
         let design = Mat::from_fn(a.len(), 1, |i, _| a[i]);
         let sensitivity = Mat::from_fn(1, a.len(), |_, i| a[i] / squares);
-        let found = serial(&design, &sensitivity, &residual, &run)?;
-        Some(Mass { value_kg, standard_kg: found.covariance[(0, 0)].sqrt(), dof: found.dof, is_weighed: true })
+        let found = serial(&design, &sensitivity, &residual, &run, &row_window())?;
+        let standard_kg = (found.covariance[(0, 0)] + by_zeros(&own, squares)).sqrt();
+        Some(Mass { value_kg, standard_kg, dof: found.dof[0], is_weighed: true })
     };
     let as_declared = |m: Declared| Mass {
         value_kg: m.value,

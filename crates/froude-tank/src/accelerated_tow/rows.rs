@@ -15,6 +15,7 @@
 
 use std::f64::consts::TAU;
 
+use froude_fit::serial::RowWindow;
 use froude_fit::series::mean;
 use froude_records::run::marks::Mark;
 
@@ -78,8 +79,10 @@ pub struct Rows {
     pub force_slope_n_s: Vec<f64>,
     /// The zero at the first and the last row, N.
     pub zero_n: [f64; 2],
-    /// Standard uncertainty of that from the scatter at rest, N.
+    /// Standard uncertainty of that in the middle between the parts at rest, from their scatter, N.
     pub zero_standard_n: f64,
+    /// Parts at rest, one or two: their middle, s of the log, and the standard uncertainty of their mean, N.
+    pub zero_parts: Vec<[f64; 2]>,
     /// Degrees of freedom of that.
     pub zero_dof: f64,
     /// Root mean square of the acceleration at rest, or what the step of its channel makes of it, m/s²: its noise.
@@ -126,6 +129,16 @@ pub(crate) fn window(time_s: &[f64], middle_s: f64, window_s: f64) -> Window {
     let shape = |t: &f64| -(omega * t).cos() - (2.0 * omega * t).cos();
     let bend = without(without(at.iter().map(shape).collect(), &|t| t), &|_| 1.0);
     Window { from, value, slope: scaled(slope, 1, 1.0), bend: scaled(bend, 2, 2.0) }
+}
+
+/// Points of a window, for the correlation of rows; their smooth ends make the sums those of integrals.
+const POINTS: usize = 48;
+
+/// The force of a row, as a mean under φ that moves on by W/3.
+#[must_use]
+pub fn row_window() -> RowWindow {
+    let at = |k: usize| (k as f64 + 0.5) / POINTS as f64 - 0.5;
+    RowWindow { weights: (0..POINTS).map(|k| (1.0 + (TAU * at(k)).cos()).powi(2)).collect(), every: POINTS / 3 }
 }
 
 impl Window {
@@ -191,7 +204,13 @@ pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, Accel
     let (begins_s, ends_s) = (all[start].0 - half, all[end].0 + half);
     let zero = zero(run, begins_s, ends_s, window_s)?;
     clipped(run, begins_s, ends_s)?;
-    let mut out = Rows { zero_standard_n: zero.standard_n, zero_dof: zero.dof, rest_s: zero.rest_s, ..Rows::default() };
+    let mut out = Rows {
+        zero_standard_n: zero.standard_n,
+        zero_parts: zero.parts.clone(),
+        zero_dof: zero.dof,
+        rest_s: zero.rest_s,
+        ..Rows::default()
+    };
     for (i, (middle_s, w)) in all.iter().enumerate().take(end + 1).skip(start) {
         let of_force = window(run.time_s, middle_s + delay_s, window_s);
         if of_force.value.len() < w.value.len().saturating_sub(1) {
@@ -240,6 +259,20 @@ fn noise_of_step(run: &TowRun<'_>, window: &Window) -> f64 {
     if step.is_finite() { step / 12.0_f64.sqrt() * weights.iter().map(|w| w * w).sum::<f64>().sqrt() } else { 0.0 }
 }
 
+impl Rows {
+    /// What an error of 1 N in the mean of each part at rest adds to the zero at a time: the line between both.
+    #[must_use]
+    pub fn by_zero(&self, at_s: f64) -> Vec<f64> {
+        match self.zero_parts[..] {
+            [[from, _], [to, _]] => {
+                let second = (at_s - from) / (to - from);
+                vec![1.0 - second, second]
+            }
+            _ => vec![1.0; self.zero_parts.len()],
+        }
+    }
+}
+
 /// Root of the mean square; 0 of nothing.
 pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
     (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
@@ -248,6 +281,7 @@ pub(crate) fn root_mean_square(values: &[f64]) -> f64 {
 /// The zero of a run as a straight line between the parts at rest.
 struct Zero {
     ends: [(f64, f64); 2],
+    parts: Vec<[f64; 2]>,
     standard_n: f64,
     dof: f64,
     rest_s: [Option<[f64; 2]>; 2],
@@ -278,12 +312,15 @@ fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Z
     };
     let rest = |rows: std::ops::Range<usize>| is_enough(&rows).then(|| [t[rows.start], t[rows.end - 1]]);
     let rest_s = [rest(before.clone()), rest(after.clone())];
-    let (ends, standard_n, independent) = match (of(before), of(after)) {
+    let (ends, parts, standard_n, independent) = match (of(before), of(after)) {
         (Some((from, a)), Some((to, b))) => {
             let both = 0.5 * a.standard.hypot(b.standard);
-            ([(from, a.value), (to, b.value)], both, a.effective_n + b.effective_n - 1.0)
+            let parts = vec![[from, a.standard], [to, b.standard]];
+            ([(from, a.value), (to, b.value)], parts, both, a.effective_n + b.effective_n - 1.0)
         }
-        (Some((at, only)), None) | (None, Some((at, only))) => ([(at, only.value); 2], only.standard, only.effective_n),
+        (Some((at, only)), None) | (None, Some((at, only))) => {
+            ([(at, only.value); 2], vec![[at, only.standard]], only.standard, only.effective_n)
+        }
         (None, None) => {
             return Err(AcceleratedError::NoZero {
                 run: run.id.to_owned(),
@@ -293,7 +330,7 @@ fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Z
             });
         }
     };
-    Ok(Zero { ends, standard_n, dof: (independent - 1.0).max(1.0), rest_s })
+    Ok(Zero { ends, parts, standard_n, dof: (independent - 1.0).max(1.0), rest_s })
 }
 
 /// A cell that stands at its largest or smallest reading where it moves. One whose noise is below its step repeats itself at rest, too, and is none.

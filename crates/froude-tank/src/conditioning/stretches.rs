@@ -21,6 +21,7 @@ const FEWEST: usize = 4;
 ///
 /// Nothing is left.
 pub fn cut(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
+    run.findings.extend(astray(&run.log, &run.declared.marks));
     let segments: Vec<Segment> = run.declared.segments.clone();
     for segment in &segments {
         let by = if segment.by.is_empty() { String::new() } else { format!(", by {}", segment.by) };
@@ -87,6 +88,22 @@ pub fn cut(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
         keep_rows(&mut run.log, rows);
     }
     Ok(())
+}
+
+/// Marks beyond the log: a slip of the pen, another clock, or another log's.
+fn astray(log: &RunLog, marks: &[Mark]) -> Option<Finding> {
+    let (from_s, to_s) = (*log.time_s.first()?, *log.time_s.last()?);
+    let beyond: Vec<Mark> = marks.iter().filter(|mark| !mark.touches(from_s, to_s)).cloned().collect();
+    (!beyond.is_empty()).then(|| {
+        let text = format!(
+            "{}: nothing is marked by {}: the log goes from {} s to {} s; correct [[marks]], in seconds of the log's own time",
+            log.path.display(),
+            in_words(&beyond),
+            plain(from_s, 6),
+            plain(to_s, 6)
+        );
+        Finding::new(Severity::Warning, "mark-beyond-log", text)
+    })
 }
 
 fn note(note: &str) -> String {
@@ -177,6 +194,14 @@ mod tests {
 
     fn mark(from_s: f64, to_s: f64) -> Mark {
         Mark { from_s, to_s, why: "outlier".to_owned(), by: "a test".to_owned(), note: String::new() }
+    }
+
+    #[test]
+    fn a_mark_beyond_the_log_is_said() {
+        let log = RunLog { time_s: vec![0.0, 1.0, 2.0], ..RunLog::default() };
+        assert_eq!(astray(&log, &[mark(1.2, 1.4), mark(-1.0, 0.0)]), None);
+        let found = astray(&log, &[mark(1.2, 1.4), mark(120.0, 125.0)]).unwrap();
+        assert!(found.message.contains("1 mark, the first from 120 s to 125 s"), "{}", found.message);
     }
 
     #[test]

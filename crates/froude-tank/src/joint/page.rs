@@ -1,16 +1,14 @@
 //! The parts of a page that follow from a joint fit alone: coefficients, budget, load as measured and as fitted, spectrum of what is left.
 
 use froude_records::number;
-use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series, TextTable};
-use froude_signal::spectrum::density;
+use froude_records::page::{Chart, ChartPanel, Mark, Series, TextTable};
 
 use super::forecast::Expected;
 use super::{Fitted, JointFit, Run};
+use crate::residual_spectrum::{self, Left};
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 6;
-/// Segments that a run is cut into for its spectrum, at least.
-const SEGMENTS: usize = 4;
 
 /// The coefficients with their intervals; `law` names it in the caption.
 pub(crate) fn coefficients(fit: &JointFit, law: &str) -> TextTable {
@@ -90,54 +88,24 @@ pub(crate) fn loads(fit: &JointFit, runs: &[Run<'_>], times_s: &[&[f64]], (name,
     }
 }
 
-/// The spectrum of what the fit leaves, mean over the runs of one length of segment.
+/// The spectrum of what the fit leaves.
 pub(crate) fn spectrum(
     fit: &JointFit,
     runs: &[Run<'_>],
     times_s: &[&[f64]],
     (name, unit): (&str, &str),
 ) -> Option<Chart> {
-    let shortest = runs.iter().map(|run| run.motion.longest().len()).min()?;
-    let segment = (shortest / SEGMENTS).checked_ilog2().map(|bits| 1_usize << bits).filter(|n| *n >= 16)?;
-    let mut sum: Vec<f64> = Vec::new();
-    let mut frequency = Vec::new();
-    for ((run, time_s), fitted) in runs.iter().zip(times_s).zip(&fit.fitted) {
+    let left = runs.iter().zip(times_s).zip(&fit.fitted).map(|((run, time_s), fitted)| {
         let (used, first) = (run.motion.longest(), run.motion.samples().start);
-        let rate_hz = (used.len() - 1) as f64 / (time_s[used.end - 1] - time_s[used.start]);
-        let left: Vec<f64> = used.map(|i| run.load[i] - fitted.load[i - first]).collect();
-        let (f, p) = density(&left, rate_hz, segment).ok()?;
-        if sum.is_empty() {
-            (frequency, sum) = (f, p);
-        } else {
-            sum.iter_mut().zip(&p).for_each(|(a, b)| *a += b);
-        }
-    }
-    let n = runs.len() as f64;
-    let squared = if unit.contains(' ') { format!("({unit})²") } else { format!("{unit}²") };
-    // The mean was taken off: the first line says nothing.
-    let series = Series {
-        name: "residual".to_owned(),
-        mark: Mark::Line,
-        x: frequency[1..].to_vec(),
-        y: sum[1..].iter().map(|p| p / n).collect(),
-        ..Series::default()
-    };
-    Some(Chart {
-        name: "residual-spectrum".to_owned(),
-        title: "Spectrum of the residuals".to_owned(),
-        caption: format!(
-            "Power density of measured less fitted {}, mean over the runs. A line at a multiple of the driven frequency is a term that the law lacks; a rise towards low frequencies is \
-                  slow noise, which the scatter between clusters counts.",
-            name.to_lowercase()
-        ),
-        x_label: "frequency [Hz]".to_owned(),
-        x_scale: Scale::Logarithmic,
-        panels: vec![ChartPanel {
-            y_label: format!("power density [{squared}/Hz]"),
-            y_scale: Scale::Logarithmic,
-            series: vec![series],
-        }],
-    })
+        let values = used.clone().map(|i| run.load[i] - fitted.load[i - first]).collect();
+        Left::of(&time_s[used], values)
+    });
+    let what = format!("measured less fitted {}", name.to_lowercase());
+    residual_spectrum::chart(
+        &left.collect::<Vec<_>>(),
+        (&what, unit),
+        "A line at a multiple of the driven frequency is a term that the law lacks; a rise towards low frequencies is slow noise, which the scatter between clusters counts.",
+    )
 }
 
 /// A time as a person says it.

@@ -6,6 +6,7 @@ use froude_records::run::ImportedRun;
 use froude_records::steady::SteadySpec;
 
 use super::row::Row;
+use crate::residual_spectrum::{self, Left};
 
 /// Runs that are drawn; more would be a page of the same.
 const DRAWN: usize = 6;
@@ -24,7 +25,7 @@ pub fn section(logs: &[ImportedRun], rows: &[Row], spec: &SteadySpec) -> Documen
         title: "Runs and windows".to_owned(),
         paragraphs: vec![paragraph],
         tables: vec![table(logs, rows)],
-        charts: vec![chart(logs, rows)],
+        charts: std::iter::once(chart(logs, rows)).chain(spectra(logs, rows)).collect(),
     }
 }
 
@@ -37,7 +38,7 @@ fn table(logs: &[ImportedRun], rows: &[Row]) -> TextTable {
     let head = ["run", "configuration", "angle [deg]", "window [s]", "speed [m/s]", "scatter of the speed [m/s]"];
     let mut head: Vec<String> = head.map(str::to_owned).to_vec();
     for load in &first.loads {
-        let unit = if load.name.starts_with('m') { "N m" } else { "N" };
+        let unit = unit_of(&load.name);
         head.push(format!("{} [{unit}]", load.name));
         head.push(format!("correlation of {} [s]", load.name));
         head.push(format!("zero of {} [{unit}]", load.name));
@@ -93,7 +94,7 @@ fn chart(logs: &[ImportedRun], rows: &[Row]) -> Chart {
         series.push(line("window", &window.steady, load.read.value));
         let at_rest = [&window.before, &window.after].into_iter().filter(|rows| rows.len() > 1);
         series.extend(at_rest.map(|rows| line("at rest", rows, mean(rows))));
-        let unit = if load.name.starts_with('m') { "N m" } else { "N" };
+        let unit = unit_of(&load.name);
         Some(ChartPanel { y_label: format!("{} of {} [{unit}]", load.name, row.run), series, ..ChartPanel::default() })
     };
     let panels: Vec<ChartPanel> = rows.iter().take(DRAWN).filter_map(panel).collect();
@@ -108,4 +109,30 @@ fn chart(logs: &[ImportedRun], rows: &[Row]) -> Chart {
         panels,
         ..Chart::default()
     }
+}
+
+/// What the mean leaves of each load in the windows.
+fn spectra(logs: &[ImportedRun], rows: &[Row]) -> Vec<Chart> {
+    let loads = rows.first().map_or(&[] as &[_], |row| row.point.loads.as_slice());
+    let chart = |load: &super::point::Load| {
+        let left = rows.iter().filter_map(|row| {
+            let (log, window) = (&log_of(logs, row)?.log, row.point.window.steady.clone());
+            Some(Left::of(&log.time_s[window.clone()], log.channels.get(&load.name)?.values[window].to_vec()))
+        });
+        let found = residual_spectrum::chart(
+            &left.collect::<Vec<_>>(),
+            (&format!("{} about its mean over the steady window", load.name), unit_of(&load.name)),
+            "A line is a vibration of the rig or the shedding of vortices; a rise towards low frequencies is noise that is correlated, which the standard uncertainty of the mean counts.",
+        )?;
+        Some(Chart {
+            name: format!("residual-spectrum-{}", load.name.replace('_', "-")),
+            title: format!("{} of {}", found.title, load.name),
+            ..found
+        })
+    };
+    loads.iter().filter_map(chart).collect()
+}
+
+fn unit_of(load: &str) -> &'static str {
+    if load.starts_with('m') { "N m" } else { "N" }
 }

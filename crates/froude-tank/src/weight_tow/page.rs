@@ -6,6 +6,7 @@ use froude_records::run::ImportedRun;
 use froude_records::weight_tow::WeightTowSpec;
 
 use super::reduce::Reduced;
+use crate::residual_spectrum::{self, Left};
 use crate::steady::row::Row;
 
 /// Runs that are drawn; more would be a page of the same.
@@ -31,7 +32,7 @@ pub fn section(
         title: "Runs and tracks".to_owned(),
         paragraphs: vec![paragraph],
         tables: vec![table(rows, reduced)],
-        charts: vec![chart(rows, reduced, logs, positions)],
+        charts: std::iter::once(chart(rows, reduced, logs, positions)).chain(spectrum(rows, reduced, logs)).collect(),
     }
 }
 
@@ -94,4 +95,18 @@ fn chart(rows: &[Row], reduced: &[Reduced], logs: &[ImportedRun], positions: &[V
         panels,
         ..Chart::default()
     }
+}
+
+/// What the parabola leaves of the tracks.
+fn spectrum(rows: &[Row], reduced: &[Reduced], logs: &[ImportedRun]) -> Option<Chart> {
+    let left = rows.iter().zip(reduced).filter_map(|(row, found)| {
+        let log = logs.iter().find(|log| log.log.meta.id == row.run)?;
+        let window = found.track.window.clone();
+        Some(Left::of(&log.log.time_s[window], found.track.left_m.clone()))
+    });
+    residual_spectrum::chart(
+        &left.collect::<Vec<_>>(),
+        ("position about the parabola over the last part of the way", "m"),
+        "Flat is the noise of the pixels; a line is a camera or a wagon that shakes; a rise towards low frequencies is a track whose errors are correlated, or a speed that a parabola does not follow.",
+    )
 }

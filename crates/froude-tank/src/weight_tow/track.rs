@@ -49,7 +49,9 @@ pub struct Track {
     pub acceleration_m_s2: f64,
     /// Change of the speed over the window, as part of it, with its standard uncertainty.
     pub change: [f64; 2],
-    /// Standard deviation of the track's errors, m.
+    /// What the parabola leaves of the window, m.
+    pub left_m: Vec<f64>,
+    /// Standard deviation of that, m.
     pub noise_m: f64,
     /// Standard uncertainty of the speed by white errors of one metre, 1/s.
     pub per_noise: f64,
@@ -112,6 +114,7 @@ pub fn track(run: &str, time_s: &[f64], position_m: &[f64], window_m: f64) -> Re
         standard_m_s,
         acceleration_m_s2: 2.0 * bend,
         change: [change, change_standard],
+        left_m: left,
         noise_m,
         per_noise: 1.0 / dot(&p1, &p1).sqrt(),
         change_per_noise: 2.0 / dot(&p2, &p2).sqrt() * lasts_s / speed_m_s.abs(),

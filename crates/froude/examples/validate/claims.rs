@@ -15,6 +15,17 @@ pub enum Verdict {
     Skipped,
 }
 
+impl Verdict {
+    /// Of something that must hold where it is judged, and is reported where it is not.
+    pub fn of(is_judged: bool, holds: bool) -> Self {
+        match (is_judged, holds) {
+            (true, true) => Self::Pass,
+            (true, false) => Self::Miss,
+            (false, _) => Self::Measured,
+        }
+    }
+}
+
 /// One line.
 #[derive(Debug, Clone)]
 pub struct Line {
@@ -35,6 +46,8 @@ pub struct Line {
 pub struct Claims {
     /// In order.
     pub lines: Vec<Line>,
+    /// Intervals that were judged in the family of the tank methods.
+    pub tank_intervals: usize,
 }
 
 impl Claims {

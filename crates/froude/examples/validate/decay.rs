@@ -5,7 +5,7 @@ use std::error::Error;
 use std::path::Path;
 
 use froude::fit::budget::Uncertain;
-use froude::fit::coverage::{Count, z_limit};
+use froude::fit::coverage::Count;
 use froude::methods::tank::decay::forecast::{Forecast, forecast, peaks_of};
 use froude::methods::tank::decay::releases::{planned, simulated, truth_of};
 use froude::methods::tank::decay::simulate::Logged;
@@ -18,6 +18,7 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::coverage::normal;
+use crate::family::covers;
 
 const SECTION: &str = "Free decay: releases of the twin, five a campaign";
 
@@ -170,11 +171,7 @@ fn judge(
     plan: &Forecast,
     fits: &[Result<DecayFit, String>],
 ) {
-    let verdict = |holds: bool| match (is_judged, holds) {
-        (true, true) => Verdict::Pass,
-        (true, false) => Verdict::Miss,
-        (false, _) => Verdict::Measured,
-    };
+    let verdict = |holds: bool| Verdict::of(is_judged, holds);
     let found: Vec<&DecayFit> = fits.iter().flatten().collect();
     let (mut counts, mut squares, mut widths) = ([Count::default(); 3], [0.0; 3], [0.0; 3]);
     for fit in &found {
@@ -185,20 +182,19 @@ fn judge(
             widths[j] += interval.map_or(f64::NAN, |[low, high]| 0.5 * (high - low)) / found.len() as f64;
         }
     }
-    let limit = z_limit(0.01, 3);
-    let z = |j: usize| counts[j].z_score(0.95);
     let each = |of: &dyn Fn(usize) -> String| {
         plan.expected.iter().enumerate().map(|(j, e)| format!("{} {}", e.name, of(j))).collect::<Vec<_>>().join(", ")
     };
     let refused = fits.iter().find_map(|fit| fit.as_ref().err()).map_or_else(String::new, |why| format!("; {why}"));
-    claims.add(
+    let named: Vec<(String, Count)> = plan.expected.iter().map(|e| e.name.clone()).zip(counts).collect();
+    covers(
+        claims,
         MAMBA,
         &format!(
-            "{words}, {seeds} campaigns of 5 releases, envelope refused in each: intervals of the output error cover"
+            "{words}, {seeds} campaigns of 5 releases, envelope refused in each{refused}: intervals of the output error cover"
         ),
-        &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
-        format!("{}{refused}", each(&|j| format!("{:.2} % (z {:+.2})", 100.0 * counts[j].rate(), z(j)))),
-        verdict(found.len() == seeds && (0..3).all(|j| z(j).abs() <= limit)),
+        &named,
+        (found.len() == seeds, is_judged),
     );
     let ratio = |j: usize| squares[j].sqrt() / plan.expected[j].combined.standard;
     // The root mean square of as many errors scatters by 1/√(2n).

@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use froude::fit::coverage::{Count, z_limit};
+use froude::fit::coverage::Count;
 use froude::methods::tank::excited_response::plan::forecast;
 use froude::methods::tank::excited_response::simulate::{Simulated, planned, simulated, truth};
 use froude::methods::tank::excited_response::source::setup_of;
@@ -14,6 +14,7 @@ use froude::records::estimate::{Coefficient, Status};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
+use crate::family::covers;
 
 const REAL: &str = "Excited response: a ship section in waves (NTNU)";
 const TWIN: &str = "Excited response: held and free runs by their twin";
@@ -188,21 +189,13 @@ fn coverage(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dy
             ratios.push((name, squares.sqrt() / expected[i].combined[j].standard));
         }
         let is_judged = factor == 1.0;
-        let verdict = |holds: bool| match (is_judged, holds) {
-            (true, true) => Verdict::Pass,
-            (true, false) => Verdict::Miss,
-            (false, _) => Verdict::Measured,
-        };
-        let limit = z_limit(0.01, cover.len());
-        let z = |c: &Count| c.z_score(0.95);
-        let each: Vec<String> =
-            cover.iter().map(|(name, c)| format!("{name} {:.2} % (z {:+.2})", 1e2 * c.rate(), z(c))).collect();
-        claims.add(
+        let verdict = |holds: bool| Verdict::of(is_judged, holds);
+        covers(
+            claims,
             TWIN,
             &format!("intervals at {words} of correlated noise, {seeds} campaigns of {} runs: cover", planned.len()),
-            &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
-            each.join(", "),
-            verdict(fits.len() == seeds && cover.iter().all(|(_, c)| z(c).abs() <= limit)),
+            &cover,
+            (fits.len() == seeds, is_judged),
         );
         // The root mean square of as many errors scatters by 1/√(2n).
         let allowance = 3.0 / (2.0 * seeds as f64).sqrt();

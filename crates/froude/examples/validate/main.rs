@@ -22,6 +22,7 @@ mod dynamic;
 mod eiv;
 mod emps;
 mod excited;
+mod family;
 mod flexible;
 mod hour;
 mod kvlcc2;
@@ -126,6 +127,9 @@ fn main() -> ExitCode {
         if wants("potential") {
             potential::all(claims, &root, full)?;
             potential_laws::all(claims, full)?;
+        }
+        if chosen.is_empty() {
+            family::whole(claims);
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;

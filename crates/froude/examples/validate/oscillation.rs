@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use froude::fit::budget::Uncertain;
-use froude::fit::coverage::{Count, z_limit};
+use froude::fit::coverage::Count;
 use froude::hydro::swing::{Kinematics, Medium, Pivot};
 use froude::methods::tank::oscillation::forecast::{Forecast, forecast};
 use froude::methods::tank::oscillation::simulate::{Planned, Truths, configurations, planned, simulated};
@@ -17,6 +17,7 @@ use froude::records::campaign::{Campaign, Identify, SensorSpec, Source, read_cam
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
+use crate::family::covers;
 
 const SECTION: &str = "Forced oscillation: Table 4 by its twin";
 const C_A: f64 = 1.277;
@@ -349,24 +350,14 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
                 counts[j].add(interval.is_some_and(|[low, high]| (low..=high).contains(&truths[j])));
             }
         }
-        let limit = z_limit(0.01, counts.len());
-        let z = |j: usize| counts[j].z_score(0.95);
-        let each: Vec<String> = (plan.expected.iter().enumerate())
-            .map(|(j, e)| format!("{} {:.2} % (z {:+.2})", e.name, 100.0 * counts[j].rate(), z(j)))
-            .collect();
         let is_judged = factor == 1.0;
-        let holds = fits.len() == seeds && (0..counts.len()).all(|j| z(j).abs() <= limit);
-        let verdict = match (is_judged, holds) {
-            (true, true) => Verdict::Pass,
-            (true, false) => Verdict::Miss,
-            (false, _) => Verdict::Measured,
-        };
-        claims.add(
+        let named: Vec<(String, Count)> = plan.expected.iter().map(|e| e.name.clone()).zip(counts).collect();
+        covers(
+            claims,
             SECTION,
             &format!("intervals at {words} of correlated noise, {seeds} campaigns of 18 runs: cover"),
-            &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
-            each.join(", "),
-            verdict,
+            &named,
+            (fits.len() == seeds, is_judged),
         );
         let errors = |j: usize| fits.iter().filter_map(move |(fit, truths)| Some(fit.unknowns[j].value? - truths[j]));
         let ratios: Vec<f64> = (0..plan.expected.len())
@@ -383,7 +374,7 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             &format!("error of the seeds over the plan's forecast at {words}"),
             &format!("0.9 to 1.1 (± {allowance:.2} for {seeds} seeds)"),
             each.join(", "),
-            if is_judged { if holds { Verdict::Pass } else { Verdict::Miss } } else { Verdict::Measured },
+            Verdict::of(is_judged, holds),
         );
         let width = fits.iter().filter_map(|(fit, _)| fit.unknowns[0].combined).map(|c| c.arms[1]).sum::<f64>()
             / fits.len() as f64;

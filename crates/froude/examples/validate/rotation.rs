@@ -4,7 +4,7 @@ use std::error::Error;
 use std::path::Path;
 
 use froude::fit::budget::Uncertain;
-use froude::fit::coverage::{Count, z_limit};
+use froude::fit::coverage::Count;
 use froude::hydro::link_parameters::{LinkCoefficients, LinkParameters, YawDrag, YawInertia};
 use froude::methods::tank::rotation::derive::C_F_DIFFERENCE;
 use froude::methods::tank::rotation::fit::LAMBDAS;
@@ -16,6 +16,7 @@ use froude::records::campaign::{Identify, SensorSpec, read_campaign};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
+use crate::family::covers;
 
 const SECTION: &str = "Rotation: a link about its own centre by its twin";
 /// C_f^II and C_d^II of the f2 model in the circulation tank, USR Table 9; C_A of the tank, Table 12.
@@ -150,21 +151,14 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
                 count.add(*holds);
             }
         }
-        let (limit, is_judged) = (z_limit(0.01, counts.len()), factor == 1.0);
-        let each: Vec<String> = (names.iter().zip(&counts))
-            .map(|(name, c)| format!("{name} {:.2} % (z {:+.2})", 100.0 * c.rate(), c.z_score(0.95)))
-            .collect();
-        let judged = |holds: bool| match (is_judged, holds) {
-            (true, true) => Verdict::Pass,
-            (true, false) => Verdict::Miss,
-            (false, _) => Verdict::Measured,
-        };
-        claims.add(
+        let is_judged = factor == 1.0;
+        let named: Vec<(String, Count)> = names.iter().map(|name| (*name).to_owned()).zip(counts).collect();
+        covers(
+            claims,
             SECTION,
             &format!("intervals at {words} of correlated noise, {seeds} campaigns of 9 runs: cover"),
-            &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
-            each.join(", "),
-            judged(all.len() == seeds && counts.iter().all(|c| c.z_score(0.95).abs() <= limit)),
+            &named,
+            (all.len() == seeds, is_judged),
         );
         let rms = |j: usize| (all.iter().map(|shown| shown[j].1.powi(2)).sum::<f64>() / all.len() as f64).sqrt();
         let ratios: Vec<f64> = plan.expected.iter().enumerate().map(|(j, e)| rms(j) / e.combined.standard).collect();
@@ -176,7 +170,7 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             &format!("error of the seeds over the plan's forecast at {words}"),
             &format!("0.9 to 1.1 (± {allowance:.2} for {seeds} seeds)"),
             each.join(", "),
-            judged(ratios.iter().all(|r| (0.9 - allowance..=1.1 + allowance).contains(r))),
+            Verdict::of(is_judged, ratios.iter().all(|r| (0.9 - allowance..=1.1 + allowance).contains(r))),
         );
     }
     Ok(())

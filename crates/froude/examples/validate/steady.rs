@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use froude::fit::coverage::{Count, z_limit};
+use froude::fit::coverage::Count;
 use froude::identify::reduce::reduce_table;
 use froude::identify::source::identify_observations;
 use froude::methods::tank::steady::plan::{Expected, expected};
@@ -15,6 +15,7 @@ use froude::records::estimate::Estimate;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
+use crate::family::covers;
 
 const SECTION: &str = "Steady tows: raw series by their twin";
 
@@ -95,24 +96,15 @@ pub fn judged(
             squares[j] += found.map_or(f64::NAN, |(value, _)| (value - truth).powi(2));
         }
     }
-    let limit = z_limit(0.01, counts.len());
-    let z = |j: usize| counts[j].z_score(0.95);
-    let each: Vec<String> = (forecast.iter().enumerate())
-        .map(|(j, e)| format!("{} {:.2} % (z {:+.2})", e.0, 100.0 * counts[j].rate(), z(j)))
-        .collect();
-    let verdict = |holds: bool| match (is_judged, holds) {
-        (true, true) => Verdict::Pass,
-        (true, false) => Verdict::Miss,
-        (false, _) => Verdict::Measured,
-    };
-    let holds = fits.len() == seeds && (0..counts.len()).all(|j| z(j).abs() <= limit);
-    claims.add(
+    let named: Vec<(String, Count)> = forecast.iter().map(|e| e.0.to_owned()).zip(counts).collect();
+    covers(
+        claims,
         section,
         &format!("intervals at {words} of correlated noise, {seeds} campaigns of {runs}: cover"),
-        &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise)"),
-        each.join(", "),
-        verdict(holds),
+        &named,
+        (fits.len() == seeds, is_judged),
     );
+    let verdict = |holds: bool| Verdict::of(is_judged, holds);
     let ratios: Vec<f64> =
         (0..forecast.len()).map(|j| (squares[j] / fits.len() as f64).sqrt() / forecast[j].2).collect();
     // The root mean square of as many errors scatters by 1/√(2n).

@@ -1,0 +1,44 @@
+//! The intervals of the tank methods are judged in one simultaneous test: 1 % family-wise over all of them, whichever part of the page runs.
+//!
+//! Those at the noise that a campaign declares; at ten times the noise they are reported.
+
+use froude::fit::coverage::{Count, z_limit};
+
+use crate::claims::{Claims, Verdict};
+
+/// Intervals that a whole page judges: oscillation 8, rotation 5, decay 6, steady tows 10, weights 10, accelerated tows 6, excited response 6.
+const INTERVALS: usize = 51;
+
+/// A line about intervals that each cover 95 %; `is_whole` where every campaign gave all of them.
+pub fn covers(
+    claims: &mut Claims,
+    section: &'static str,
+    claim: &str,
+    each: &[(String, Count)],
+    (is_whole, is_judged): (bool, bool),
+) {
+    let limit = z_limit(0.01, INTERVALS);
+    let z = |count: &Count| count.z_score(0.95);
+    let words = each.iter().map(|(name, c)| format!("{name} {:.2} % (z {:+.2})", 100.0 * c.rate(), z(c)));
+    claims.add(
+        section,
+        claim,
+        &format!("95 %, |z| ≤ {limit:.2} (1 % family-wise over the {INTERVALS} intervals of the tank methods)"),
+        words.collect::<Vec<_>>().join(", "),
+        Verdict::of(is_judged, is_whole && each.iter().all(|(_, c)| z(c).abs() <= limit)),
+    );
+    claims.tank_intervals += if is_judged { each.len() } else { 0 };
+}
+
+/// The family of a whole page is the one that its limit is of.
+pub fn whole(claims: &mut Claims) {
+    let found = claims.tank_intervals;
+    let claim = "intervals of the tank methods that were judged together";
+    claims.holds(
+        "Forced oscillation: Table 4 by its twin",
+        claim,
+        &INTERVALS.to_string(),
+        found.to_string(),
+        found == INTERVALS,
+    );
+}
