@@ -46,6 +46,7 @@ fn a_campaign_is_planned_simulated_and_identified() {
     }
     let report = std::fs::read_to_string(folder.path().join("campaign-results/report.html")).unwrap();
     assert!(report.contains("Runs and windows") && report.contains("longest stretch whose blocks"));
+    assert!(report.contains("Spectrum of the residuals of f_x") && report.contains("Spectrum of the residuals of f_y"));
 }
 
 /// Drag 50 U² and a rig of 10 U², U of 0.2, 0.3 and 0.4 m/s, a cell that reads 0.3 N of nothing.

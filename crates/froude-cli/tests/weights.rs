@@ -38,6 +38,8 @@ fn a_campaign_is_planned_simulated_and_identified() {
     for shared in ["scale of the picture", "moving mass", "friction of the rig", "law of the drag in the balance"] {
         assert!(errors.iter().any(|key| key.contains(shared)), "{shared}: {errors:?}");
     }
+    let report = std::fs::read_to_string(folder.path().join("campaign-results/report.html")).unwrap();
+    assert!(report.contains("Tracks") && report.contains("Spectrum of the residuals"));
 }
 
 /// Four kilograms do not become steady in 0.8 m: without their mass such runs are refused, with it they are balanced.

@@ -73,46 +73,6 @@ pub fn coverage_factor(confidence: f64, dof: f64) -> f64 {
     x
 }
 
-/// ψ₁(x), the second derivative of ln Γ, for x > 0: the variance of ln χ²_ν is ψ₁(ν/2).
-///
-/// NaN for any other x. By its recurrence up to 10 and its asymptotic series from there on, to 1e-12 of its value (Abramowitz & Stegun 1964, 6.4.6, 6.4.12).
-#[must_use]
-pub fn trigamma(x: f64) -> f64 {
-    if x.is_nan() || x <= 0.0 {
-        return f64::NAN;
-    }
-    let (mut x, mut sum) = (x, 0.0);
-    while x < 10.0 {
-        sum += 1.0 / (x * x);
-        x += 1.0;
-    }
-    let y = 1.0 / (x * x);
-    sum + 1.0 / x
-        + 0.5 * y
-        + y / x * (1.0 / 6.0 - y * (1.0 / 30.0 - y * (1.0 / 42.0 - y * (1.0 / 30.0 - y * 5.0 / 66.0))))
-}
-
-/// Degrees of freedom of a variance whose logarithm has this variance: ν with ψ₁(ν/2) = `variance_of_log`.
-///
-/// Infinite where it is 0 or less.
-#[must_use]
-pub fn dof_of_log_variance(variance_of_log: f64) -> f64 {
-    if variance_of_log.is_nan() || variance_of_log <= 0.0 {
-        return f64::INFINITY;
-    }
-    // ψ₁ lies between 1/x and 1/x + 1/x², and is convex: Newton's steps from the left of the root stay there.
-    let mut x = 1.0 / variance_of_log;
-    for _ in 0..60 {
-        let slope = (trigamma(x * (1.0 + 1e-6)) - trigamma(x * (1.0 - 1e-6))) / (2e-6 * x);
-        let step = (variance_of_log - trigamma(x)) / slope;
-        x += step;
-        if step.abs() < 1e-10 * x {
-            break;
-        }
-    }
-    2.0 * x
-}
-
 /// Two-sided tail probability `P(|T| ≥ |t|)` of Student's t; NaN where `t` is none or `dof` is not positive.
 #[must_use]
 pub fn t_two_sided(t: f64, dof: f64) -> f64 {
@@ -199,18 +159,6 @@ fn beta(a: f64, b: f64, x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_variance_of_the_logarithm_of_a_chi_square_is_that_of_its_degrees_of_freedom() {
-        // ψ₁(1) = π²/6, ψ₁(½) = π²/2.
-        let pi_2 = std::f64::consts::PI.powi(2);
-        assert!((trigamma(1.0) / (pi_2 / 6.0) - 1.0).abs() < 1e-12);
-        assert!((trigamma(0.5) / (pi_2 / 2.0) - 1.0).abs() < 1e-12);
-        for dof in [0.7, 2.0, 5.0, 31.0, 4e4] {
-            assert!((dof_of_log_variance(trigamma(0.5 * dof)) / dof - 1.0).abs() < 1e-8, "{dof}");
-        }
-        assert!(dof_of_log_variance(0.0).is_infinite());
-    }
 
     /// Standard tables, two-sided 95 % (and 99 %), as printed.
     #[test]

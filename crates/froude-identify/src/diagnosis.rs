@@ -99,8 +99,8 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
             ));
         }
     }
-    out.extend(uneven_scatter(model, data));
     out.extend(outlying_rows(model, data));
+    out.extend(uneven_scatter(model, data));
     if let Some(c) = d.condition_number
         && c > COLLINEAR_ABOVE
         && let Some(pair) = &d.largest_correlation
@@ -163,6 +163,12 @@ pub struct Unevenness {
 }
 
 impl Unevenness {
+    /// Of sizes of residuals and speeds, as many of both.
+    pub(crate) fn of(size: &[f64], speed: &[f64]) -> Self {
+        let rho = rank_correlation(size, speed);
+        Self { rho, z: rho * ((size.len() - 1) as f64).sqrt() }
+    }
+
     /// True where equal errors are not what the residuals show.
     #[must_use]
     pub fn contradicts(self) -> bool {
@@ -183,8 +189,7 @@ pub fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Uneven
     let weight = |row: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[row]);
     let size: Vec<f64> = (r * n..(r + 1) * n).map(|row| model.fit.residuals[row].abs() * weight(row).sqrt()).collect();
     let speed: Vec<f64> = speed.iter().map(|u| u.abs()).collect();
-    let rho = rank_correlation(&size, &speed);
-    Some(Unevenness { rho, z: rho * ((n - 1) as f64).sqrt() })
+    Some(Unevenness::of(&size, &speed))
 }
 
 /// Whether |residual| grows with speed.

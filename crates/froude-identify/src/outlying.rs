@@ -4,24 +4,29 @@
 //! t = r √w / (s₍ᵢ₎ √(1 − h)), s₍ᵢ₎² = ((n − p) s² − w r²/(1 − h))/(n − p − 1). It is of Student's t with n − p − 1 degrees of freedom; of n rows one is named
 //! where n P(|T| ≥ |t|) is below 1 %.
 //!
-//! Nothing is left out: whether a row is a mistake is in its log, not in its residual. Not asked where the scatter is uneven (large errors lie at large speeds
-//! then), where rows follow each other in time, and of a sample of the rows.
+//! Nothing is left out: whether a row is a mistake is in its log, not in its residual. A slip at a large speed makes the scatter look uneven, so a row is
+//! named where the scatter is even without it, and not where it is uneven even so (large errors lie at large speeds then). Not asked where rows follow each
+//! other in time, of a sample of the rows, and where σ is not that of the squares: with errors in variables, Huber's loss, and constraints that hold.
 //!
 //! **Source.** Cook & Weisberg (1982), *Residuals and Influence in Regression*, 2.2.2.
 
 use froude_fit::distribution::t_two_sided;
 use froude_records::finding::{Finding, Severity};
+use froude_records::number::{plain, significant};
 
 use crate::dataset::Dataset;
-use crate::diagnosis::{Unevenness, unevenness};
+use crate::diagnosis::{FEWEST_FOR_SCATTER, Unevenness};
 use crate::regression::ModelFit;
 
-/// Chance of naming a row of a campaign in which all are sound.
+/// Chance of naming a row of a load in which all are sound.
 const FALSE_ALARM: f64 = 0.01;
 /// Fewest degrees of freedom of the other rows.
 const FEWEST_DOF: f64 = 4.0;
 /// A fit without error has no scatter to compare with.
 const ROUNDING: f64 = 1e-9;
+
+/// Nearer to 1 than this a row alone determines a coefficient, and has no residual.
+const ALONE: f64 = 1e-8;
 
 /// A row, its residual and that in standard deviations of the others.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,17 +36,18 @@ struct Outlying {
     t: f64,
 }
 
-/// The most outlying row of each component.
+/// The most outlying row of each component that has one.
 pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
     if data.sample.is_some() || model.in_variables || model.is_in_time(data) {
         return Vec::new();
     }
     let mut out = Vec::new();
     for (r, component) in model.law.responses.iter().enumerate() {
-        if unevenness(model, data, component).is_some_and(Unevenness::contradicts) {
+        let Some(found) = outlying(model, data.rows, r) else { continue };
+        if uneven_without(model, data, r, found).is_some_and(Unevenness::contradicts) {
             continue;
         }
-        let Some(Outlying { row, residual, t }) = outlying(model, data.rows, r) else { continue };
+        let Outlying { row, residual, t } = found;
         let unit = if model.law.in_logarithms() {
             ""
         } else if component.starts_with('m') {
@@ -49,15 +55,16 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         } else {
             " N"
         };
+        let at = data.values("speed").map_or_else(String::new, |v| format!(" ({} m/s)", plain(v[row].abs(), 4)));
         out.push(Finding::new(
             Severity::Warning,
             "outlying-row",
             format!(
-                "{}, {component}: {} lies {residual:+.3e}{unit} from the law, {:.1} standard deviations of the other rows; it is used. Look at what was \
+                "{}, {component}: {}{at} lies {}{unit} from the law, {t:.1} standard deviations of the other rows; it is used. Look at what was \
                  recorded, and leave it out (`keep`) for a reason that you can state",
                 model.law.name,
                 data.row_name(row),
-                t.abs()
+                significant(residual, 3),
             ),
         ));
     }
@@ -68,22 +75,43 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
 fn outlying(model: &ModelFit, n: usize, r: usize) -> Option<Outlying> {
     let summary = &model.fit.components[r];
     let sigma = summary.sigma.filter(|_| summary.relative_residual > ROUNDING)?;
+    let squares = summary.dof * sigma * sigma;
     let dof = summary.dof - 1.0;
-    if dof < FEWEST_DOF {
+    if dof < FEWEST_DOF || (squares / summary.rss - 1.0).abs() > ROUNDING.sqrt() {
         return None;
     }
     let of_row = |row: usize| {
         let i = r * n + row;
         let weight = model.problem.weight.as_ref().map_or(1.0, |w| w[i]);
-        let residual = model.fit.residuals[i];
-        let free = 1.0 - model.fit.leverage[i];
-        // A row that alone determines a coefficient has no residual.
+        let (residual, free) = (model.fit.residuals[i], 1.0 - model.fit.leverage[i]);
         let own = weight * residual * residual / free;
-        let others = (summary.dof * sigma * sigma - own) / dof;
-        let t = (own / others).sqrt();
         // Where nothing is left for the others, they fit without it.
-        Outlying { row, residual, t: if others > 0.0 { t } else { f64::INFINITY } }
+        let t = (own * dof / (squares - own).max(ROUNDING * squares)).sqrt();
+        (free > ALONE).then_some(Outlying { row, residual, t })
     };
-    let most = (0..n).map(of_row).filter(|found| !found.t.is_nan()).max_by(|a, b| a.t.total_cmp(&b.t))?;
+    let most = (0..n).filter_map(of_row).filter(|found| !found.t.is_nan()).max_by(|a, b| a.t.total_cmp(&b.t))?;
     (t_two_sided(most.t, dof) * (n as f64) < FALSE_ALARM).then_some(most)
+}
+
+/// How the residuals go with speed in the fit without a row: `r_i + x_i S_k r_k/(1 − h_k)`.
+fn uneven_without(model: &ModelFit, data: &Dataset, r: usize, found: Outlying) -> Option<Unevenness> {
+    let n = data.rows;
+    let speed = data.values("speed").filter(|_| n > FEWEST_FOR_SCATTER)?;
+    let k = r * n + found.row;
+    let pull = found.residual / (1.0 - model.fit.leverage[k]);
+    let moved = |i: usize| {
+        (0..model.problem.design.ncols())
+            .map(|j| model.problem.design[(i, j)] * model.fit.sensitivity[(j, k)] * pull)
+            .sum::<f64>()
+    };
+    let weight = |i: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[i]);
+    let others: Vec<usize> = (0..n).filter(|row| *row != found.row).collect();
+    let size = |row: &usize| {
+        let i = r * n + row;
+        (model.fit.residuals[i] + moved(i)).abs() * weight(i).sqrt()
+    };
+    Some(Unevenness::of(
+        &others.iter().map(size).collect::<Vec<_>>(),
+        &others.iter().map(|row| speed[*row].abs()).collect::<Vec<_>>(),
+    ))
 }

@@ -40,6 +40,7 @@ pub fn condition(run: &mut ImportedRun, method: &str) -> Result<(), MethodError>
         Some(Step::new("read", name, words).with("factor", told.factor, "1").with("sign", told.sign, "1"))
     });
     run.done = read.collect();
+    run.findings.extend(stretches::astray(&run.log, &run.declared.marks));
     resolution::check(run);
     let stamps = align::stamps(run, method);
     clipped::mark(run, &stamps);

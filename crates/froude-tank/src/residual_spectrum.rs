@@ -24,23 +24,25 @@ impl Left {
     }
 }
 
-/// Mean power density over the runs that have the rate of the first; `None` where the shortest has fewer than 4 segments of 16 samples.
+/// Mean power density over the runs that have the rate of the first and 4 segments of 16 samples; `None` where none has.
 ///
 /// `what` stands in the caption, with its unit; `says` is what a reader may take from the shape.
 pub(crate) fn chart(runs: &[Left], what: (&str, &str), says: &str) -> Option<Chart> {
-    let rate_hz = runs.first()?.rate_hz;
-    let alike: Vec<&Left> = runs.iter().filter(|run| (run.rate_hz / rate_hz - 1.0).abs() <= SAME_RATE).collect();
+    let is_whole = |run: &&Left| run.values.len() >= SEGMENTS * FEWEST && run.values.iter().all(|x| x.is_finite());
+    let rate_hz = runs.iter().find(is_whole)?.rate_hz;
+    let is_alike = |run: &&Left| (run.rate_hz / rate_hz - 1.0).abs() <= SAME_RATE;
+    let alike: Vec<&Left> = runs.iter().filter(is_whole).filter(is_alike).collect();
     let shortest = alike.iter().map(|run| run.values.len()).min()?;
     let segment = (shortest / SEGMENTS).checked_ilog2().map(|bits| 1_usize << bits).filter(|n| *n >= FEWEST)?;
     let densities = alike.iter().map(|run| density(&run.values, rate_hz, segment).ok());
     let densities: Vec<(Vec<f64>, Vec<f64>)> = densities.collect::<Option<_>>()?;
     let mean = |k: usize| densities.iter().map(|(_, power)| power[k]).sum::<f64>() / densities.len() as f64;
-    // The mean of a segment was taken off: the first line says nothing.
-    let lines = 1..densities[0].0.len();
+    // The mean of a segment was taken off, and the line at half the rate is one of two sides: both would be steps that are none.
+    let lines = 1..densities[0].0.len() - 1;
     let (name, unit) = what;
     let squared = if unit.contains(' ') { format!("({unit})²") } else { format!("{unit}²") };
     let of = if alike.len() < runs.len() {
-        format!("the {} of {} runs that have the rate of the first", alike.len(), runs.len())
+        format!("the {} of {} runs that are long enough and have one rate", alike.len(), runs.len())
     } else {
         "the runs".to_owned()
     };
@@ -89,7 +91,7 @@ mod tests {
     #[test]
     fn a_run_of_another_rate_is_left_out_and_said() {
         let chart = chart(&[sine(100.0, 1000), sine(50.0, 1000)], ("it", "N m"), "").unwrap();
-        assert!(chart.caption.contains("the 1 of 2 runs that have the rate of the first"), "{}", chart.caption);
+        assert!(chart.caption.contains("the 1 of 2 runs that are long enough and have one rate"), "{}", chart.caption);
         assert_eq!(chart.panels[0].y_label, "power density [(N m)²/Hz]");
         assert!(super::chart(&[sine(100.0, 60)], ("it", "N"), "").is_none());
         assert!(super::chart(&[], ("it", "N"), "").is_none());

@@ -29,8 +29,8 @@ pub enum Scatter {
     Hc3,
     /// The residuals, correlated in the groups of the data.
     Cluster,
-    /// The residuals, correlated in time within each run, whose rows are means under such windows ([`fit::serial`]); for one load.
-    Serial(fit::serial::RowWindow),
+    /// The residuals, correlated in time within each run, with errors of rows that come about so ([`fit::serial`]); for one load.
+    Serial(fit::serial::RowErrors),
     /// Replicates that the method left out in turn: all coefficients of the law, or none where nothing tells the scatter.
     Replicates {
         /// The line of the budget.

@@ -54,7 +54,7 @@ impl Uncertainty {
             Scatter::Replicates { name, sets } => {
                 Some(replicates::together(name, sets).filter(|part| part.dof.len() == p))
             }
-            Scatter::Serial(window) => Some(serial(data, problem, fitted, window)),
+            Scatter::Serial(errors) => Some(serial(data, problem, fitted, errors)),
             Scatter::Classical | Scatter::Hc3 | Scatter::Cluster => None,
         };
         // Where replicates, or rows in time, tell no scatter nothing does: the residuals as if they were independent are not asked.
@@ -85,12 +85,12 @@ impl Uncertainty {
 }
 
 /// The scatter of rows that are correlated in time within each run; `None` where they are too few to tell.
-fn serial(data: &Dataset, problem: &fit::Problem, fitted: &fit::Fit, window: &fit::serial::RowWindow) -> Option<Part> {
+fn serial(data: &Dataset, problem: &fit::Problem, fitted: &fit::Fit, errors: &fit::serial::RowErrors) -> Option<Part> {
     let at = step(fitted);
     let (x, p) = (&problem.design, fitted.coefficients.len());
     let left = |i: usize| problem.response[i] - (0..p).map(|j| x[(i, j)] * at[j]).sum::<f64>();
     let residual: Vec<f64> = (0..problem.response.len()).map(left).collect();
-    let found = fit::serial::serial(x, &fitted.sensitivity, &residual, &labels(&data.run), window)?;
+    let found = fit::serial::serial(x, &fitted.sensitivity, &residual, &labels(&data.run), errors)?;
     Some(Part {
         name: format!(
             "scatter of the rows in time, correlated by {:.2} from one to the next{}",

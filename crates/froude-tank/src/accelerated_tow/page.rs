@@ -195,9 +195,12 @@ fn spectrum(reduced: &Reduced, model: &ModelFit, setup: &Setup) -> Chart {
     Chart {
         name: "residual-spectrum".to_owned(),
         title: "Spectrum of the residuals".to_owned(),
-        caption: "Amplitude of what the law leaves, in the mean square of the runs. A line is a vibration of the rig; a rise towards low frequencies is noise that is correlated, or a law \
-                  that lacks a term."
-            .to_owned(),
+        caption: format!(
+            "Amplitude of what the law leaves, in the mean square of the runs. A line is a vibration of the rig; a rise towards low frequencies is noise that is correlated, or a law \
+             that lacks a term. Rows stand {} s apart: what swings faster than {} Hz stands folded below that.",
+            number::plain(step_s, 3),
+            number::plain(0.5 / step_s, 3)
+        ),
         x_label: "frequency [Hz]".to_owned(),
         panels: vec![ChartPanel { y_label: format!("{load} [N]"), series: vec![series], y_scale: Scale::default() }],
         ..Chart::default()

@@ -9,7 +9,7 @@
 use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
 use froude_fit::faer::Mat;
-use froude_fit::serial::degrees_of_freedom;
+use froude_fit::serial::to_expect;
 use froude_fit::series::taper;
 use froude_identify::law::ForceLaw;
 use froude_identify::method::{ExpectedCoefficient, MethodError, Prospect};
@@ -20,7 +20,7 @@ use froude_records::run::Declared;
 
 use super::law::names;
 use super::reduce::{Setup, reduce};
-use super::rows::{Rows, row_window, window};
+use super::rows::{Rows, row_errors, sample_s, window};
 use super::simulate::{Planned, Simulated, Truths, configurations, planned, simulated};
 use super::source::{declared, no_mass, setup_of};
 use crate::joint::conclude::part;
@@ -81,8 +81,13 @@ pub fn forecast(
     let clusters = reduced.runs.len();
     let run: Vec<usize> =
         reduced.runs.iter().enumerate().flat_map(|(r, (_, _, rows))| vec![r; rows.middle_s.len()]).collect();
-    let dof =
-        if clusters >= FEWEST_CLUSTERS { vec![clusters as f64 - 1.0; p] } else { noise.dof(&x, &sensitivity, &run) };
+    let moved_kg =
+        reduced.masses.iter().zip(&reduced.added_kg).map(|(m, added)| m.value_kg + added).fold(0.0, f64::max);
+    let dof = if clusters >= FEWEST_CLUSTERS {
+        vec![clusters as f64 - 1.0; p]
+    } else {
+        noise.dof(&x, &sensitivity, wet[0], &run, moved_kg).unwrap_or_else(|| vec![1.0; p])
+    };
     let fewest = dof.iter().copied().fold(f64::INFINITY, f64::min);
     let mut parts = vec![Part { dof, ..part("scatter", Kind::A, scatter, fewest) }];
     for (b, mass) in reduced.masses.iter().enumerate().filter(|(_, mass)| mass.is_weighed) {
@@ -198,12 +203,22 @@ impl Noise<'_> {
         variance.sum::<f64>().sqrt()
     }
 
-    /// Degrees of freedom of few runs, as [`froude_fit::serial`] counts them.
-    fn dof(&self, x: &Mat<f64>, sensitivity: &Mat<f64>, run: &[usize]) -> Vec<f64> {
-        let window = row_window();
-        let sample_s = self.setup.window_s / window.weights.len() as f64;
-        let rho = self.force.and_then(|s| s.correlation_s).map_or(0.0, |time| (-sample_s / time).exp());
-        degrees_of_freedom(x, sensitivity, run, &window, rho)
+    /// Degrees of freedom of few runs, as [`froude_fit::serial`] finds them in the middle; `moved_kg` is the mass that an acceleration moves.
+    fn dof(
+        &self,
+        x: &Mat<f64>,
+        sensitivity: &Mat<f64>,
+        log: &Simulated,
+        run: &[usize],
+        moved_kg: f64,
+    ) -> Option<Vec<f64>> {
+        let rate_hz = log.planned.rate_hz;
+        let own = window(&log.trace.time_s, 0.5 * self.setup.window_s + log.trace.time_s[0], self.setup.window_s);
+        let of = |weights: &[f64], sensor| covariance(&[weights.to_vec()], sensor, rate_hz)[(0, 0)].sqrt();
+        let rho =
+            self.force.and_then(|s| s.correlation_s).map_or(0.0, |time| (-sample_s(self.setup.window_s) / time).exp());
+        let errors = row_errors(true, moved_kg * of(&own.bend, self.position));
+        to_expect(x, sensitivity, run, &errors, (rho, of(&own.value, self.force))).map(|found| found.dof)
     }
 }
 

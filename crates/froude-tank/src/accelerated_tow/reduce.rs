@@ -13,7 +13,8 @@
 //! **Units.** SI. **Source.** JCGM 100:2008 (GUM), 5.2.
 
 use froude_fit::faer::Mat;
-use froude_fit::serial::serial;
+use froude_fit::propagate::effective_dof;
+use froude_fit::serial::{RowErrors, serial};
 use froude_fit::{FEWEST_CLUSTERS, Options, Problem, fit};
 use froude_identify::dataset::Dataset;
 use froude_identify::uncertainty::SharedError;
@@ -21,7 +22,7 @@ use froude_records::run::Declared;
 
 use super::error::AcceleratedError;
 use super::law::{Channels, data, names};
-use super::rows::{Rows, TowRun, row_window, rows};
+use super::rows::{Rows, TowRun, row_errors, rows};
 
 /// What is declared of body and rig.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,6 +95,8 @@ pub struct Reduced {
     pub left_out: Vec<AcceleratedError>,
     /// Whether whole runs tell the scatter.
     pub is_by_run: bool,
+    /// How the errors of the rows come about, where they tell it.
+    pub of_rows: RowErrors,
 }
 
 /// Reduces all runs; one that gives no rows is left out. `None` where a body has neither a mass nor a run in air.
@@ -172,7 +175,20 @@ pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
     }
     let mut data = data(channels, &setup.axis);
     data.group = is_by_run.then(|| data.run.clone());
-    Some(Reduced { runs: wet, masses, added_kg, data, errors, left_out, is_by_run })
+    let moved_kg: Vec<f64> = (0..masses.len()).map(|b| masses[b].value_kg + added_kg[b]).collect();
+    let of_rows = by_motion(wet.iter().map(|(_, b, rows)| (moved_kg[*b], rows)));
+    Some(Reduced { runs: wet, masses, added_kg, data, errors, left_out, is_by_run, of_rows })
+}
+
+/// The errors of rows of runs that move so much mass, kg.
+fn by_motion<'a>(runs: impl Iterator<Item = (f64, &'a Rows)>) -> RowErrors {
+    let (mut squares, mut n, mut is_position) = (0.0, 0.0, true);
+    for (moved_kg, rows) in runs {
+        squares += rows.middle_s.len() as f64 * (moved_kg * rows.noise_m_s2).powi(2);
+        n += rows.middle_s.len() as f64;
+        is_position &= rows.is_position;
+    }
+    row_errors(is_position, if n > 0.0 { (squares / n).sqrt() } else { 0.0 })
 }
 
 /// What the zeros of runs in air add to the variance of the mass, Σ a f/Σ a², kg².
@@ -250,9 +266,12 @@ fn mass(declared: Option<Declared>, dry: &[(usize, Rows)], body: usize) -> Optio
         let residual: Vec<f64> = a.iter().zip(&f).map(|(a, f)| f - value_kg * a).collect();
         let design = Mat::from_fn(a.len(), 1, |i, _| a[i]);
         let sensitivity = Mat::from_fn(1, a.len(), |_, i| a[i] / squares);
-        let found = serial(&design, &sensitivity, &residual, &run, &row_window())?;
-        let standard_kg = (found.covariance[(0, 0)] + by_zeros(&own, squares)).sqrt();
-        Some(Mass { value_kg, standard_kg, dof: found.dof[0], is_weighed: true })
+        let errors = by_motion(own.iter().map(|rows| (value_kg, *rows)));
+        let found = serial(&design, &sensitivity, &residual, &run, &errors)?;
+        let (scatter, zeros) = (found.covariance[(0, 0)], by_zeros(&own, squares));
+        let zero_dof = own.iter().map(|rows| rows.zero_dof).fold(f64::INFINITY, f64::min);
+        let dof = effective_dof(&[(scatter, found.dof[0]), (zeros, zero_dof)]);
+        Some(Mass { value_kg, standard_kg: (scatter + zeros).sqrt(), dof, is_weighed: true })
     };
     let as_declared = |m: Declared| Mass {
         value_kg: m.value,

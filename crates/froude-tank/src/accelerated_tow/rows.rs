@@ -15,8 +15,9 @@
 
 use std::f64::consts::TAU;
 
-use froude_fit::serial::RowWindow;
-use froude_fit::series::mean;
+use froude_fit::faer::Mat;
+use froude_fit::serial::{RowErrors, RowWindow, serial};
+use froude_fit::series::{taper, tapered};
 use froude_records::run::marks::Mark;
 
 use super::error::AcceleratedError;
@@ -89,6 +90,8 @@ pub struct Rows {
     pub noise_m_s2: f64,
     /// Times at rest before and after, s of the log: what the zero is the mean of.
     pub rest_s: [Option<[f64; 2]>; 2],
+    /// Whether the motion was logged as a position.
+    pub is_position: bool,
 }
 
 /// Weights of one window over the samples that it touches.
@@ -134,11 +137,18 @@ pub(crate) fn window(time_s: &[f64], middle_s: f64, window_s: f64) -> Window {
 /// Points of a window, for the correlation of rows; their smooth ends make the sums those of integrals.
 const POINTS: usize = 48;
 
-/// The force of a row, as a mean under φ that moves on by W/3.
+/// Time between the points of a window, s.
+pub(crate) fn sample_s(window_s: f64) -> f64 {
+    window_s / POINTS as f64
+}
+
+/// The errors of rows: noise of the force, correlated in time, under φ, and white noise of the motion that makes an error of `standard_n`, under φ″ of a position and φ′ of a speed.
 #[must_use]
-pub fn row_window() -> RowWindow {
-    let at = |k: usize| (k as f64 + 0.5) / POINTS as f64 - 0.5;
-    RowWindow { weights: (0..POINTS).map(|k| (1.0 + (TAU * at(k)).cos()).powi(2)).collect(), every: POINTS / 3 }
+pub fn row_errors(is_position: bool, standard_n: f64) -> RowErrors {
+    let angle = |k: usize| TAU * ((k as f64 + 0.5) / POINTS as f64 - 0.5);
+    let of = |shape: &dyn Fn(f64) -> f64| RowWindow::new((0..POINTS).map(|k| shape(angle(k))).collect(), POINTS / 3);
+    let motion = if is_position { of(&|x| -x.cos() - (2.0 * x).cos()) } else { of(&|x| (1.0 + x.cos()) * x.sin()) };
+    RowErrors { window: of(&|x| (1.0 + x.cos()).powi(2)), white: (standard_n > 0.0).then_some((motion, standard_n)) }
 }
 
 impl Window {
@@ -209,6 +219,7 @@ pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, Accel
         zero_parts: zero.parts.clone(),
         zero_dof: zero.dof,
         rest_s: zero.rest_s,
+        is_position: matches!(run.way, Way::Position(_)),
         ..Rows::default()
     };
     for (i, (middle_s, w)) in all.iter().enumerate().take(end + 1).skip(start) {
@@ -308,19 +319,13 @@ fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Z
     // A single window of rest is as short as a row: two are the least that tells its scatter.
     let is_enough = |rows: &std::ops::Range<usize>| rows.len() as f64 * step_s >= 2.0 * window_s;
     let of = |rows: std::ops::Range<usize>| {
-        is_enough(&rows).then(|| (0.5 * (t[rows.start] + t[rows.end - 1]), mean(&run.force_n[rows], step_s)))
+        is_enough(&rows).then(|| (0.5 * (t[rows.start] + t[rows.end - 1]), &run.force_n[rows]))
     };
     let rest = |rows: std::ops::Range<usize>| is_enough(&rows).then(|| [t[rows.start], t[rows.end - 1]]);
     let rest_s = [rest(before.clone()), rest(after.clone())];
-    let (ends, parts, standard_n, independent) = match (of(before), of(after)) {
-        (Some((from, a)), Some((to, b))) => {
-            let both = 0.5 * a.standard.hypot(b.standard);
-            let parts = vec![[from, a.standard], [to, b.standard]];
-            ([(from, a.value), (to, b.value)], parts, both, a.effective_n + b.effective_n - 1.0)
-        }
-        (Some((at, only)), None) | (None, Some((at, only))) => {
-            ([(at, only.value); 2], vec![[at, only.standard]], only.standard, only.effective_n)
-        }
+    let (ends, rests) = match (of(before), of(after)) {
+        (Some((from, a)), Some((to, b))) => ([(from, tapered(a)), (to, tapered(b))], vec![(from, a), (to, b)]),
+        (Some((at, only)), None) | (None, Some((at, only))) => ([(at, tapered(only)); 2], vec![(at, only)]),
         (None, None) => {
             return Err(AcceleratedError::NoZero {
                 run: run.id.to_owned(),
@@ -330,7 +335,47 @@ fn zero(run: &TowRun<'_>, begins_s: f64, ends_s: f64, window_s: f64) -> Result<Z
             });
         }
     };
-    Ok(Zero { ends, parts, standard_n, dof: (independent - 1.0).max(1.0), rest_s })
+    let (standards, dof) = of_means(&rests.iter().map(|(_, values)| *values).collect::<Vec<_>>());
+    let parts: Vec<[f64; 2]> = rests.iter().zip(standards).map(|((at, _), standard)| [*at, standard]).collect();
+    let squares: f64 = parts.iter().map(|[_, standard]| standard * standard).sum();
+    Ok(Zero { ends, standard_n: squares.sqrt() / parts.len() as f64, parts, dof, rest_s })
+}
+
+/// Blocks that a part at rest is averaged to for the uncertainty of its mean.
+const BLOCKS: usize = 32;
+
+/// Standard uncertainties of the tapered means of parts at rest whose noise is alike, and their degrees of freedom: parts without scatter have none.
+fn of_means(parts: &[&[f64]]) -> (Vec<f64>, f64) {
+    let shortest = parts.iter().map(|part| part.len()).min().unwrap_or(0);
+    let samples = (shortest / BLOCKS).max(1);
+    let blocks: Vec<Vec<f64>> = parts
+        .iter()
+        .map(|part| part.chunks_exact(samples).map(|b| b.iter().sum::<f64>() / samples as f64).collect())
+        .collect();
+    let of: Vec<usize> = blocks.iter().enumerate().flat_map(|(k, b)| vec![k; b.len()]).collect();
+    let design = Mat::from_fn(of.len(), parts.len(), |i, j| f64::from(u8::from(of[i] == j)));
+    let weights: Vec<f64> = blocks
+        .iter()
+        .flat_map(|b| {
+            let all: f64 = taper(b.len()).sum();
+            taper(b.len()).map(move |w| w / all).collect::<Vec<f64>>()
+        })
+        .collect();
+    let sensitivity = Mat::from_fn(parts.len(), of.len(), |j, i| if of[i] == j { weights[i] } else { 0.0 });
+    let flat: Vec<f64> = blocks.concat();
+    let mean = |j: usize| (0..of.len()).map(|i| sensitivity[(j, i)] * flat[i]).sum::<f64>();
+    let means: Vec<f64> = (0..parts.len()).map(mean).collect();
+    let residual: Vec<f64> = flat.iter().zip(&of).map(|(x, j)| x - means[*j]).collect();
+    // A mean over a block is one of as many points: sixteen are an integral to a thousandth.
+    let points = samples.min(16);
+    let errors = RowErrors { window: RowWindow::new(vec![1.0; points], points), white: None };
+    match serial(&design, &sensitivity, &residual, &of, &errors) {
+        Some(found) => {
+            let standard = |j: usize| found.covariance[(j, j)].sqrt();
+            ((0..parts.len()).map(standard).collect(), found.dof.iter().copied().fold(f64::INFINITY, f64::min))
+        }
+        None => (vec![0.0; parts.len()], 1.0),
+    }
 }
 
 /// A cell that stands at its largest or smallest reading where it moves. One whose noise is below its step repeats itself at rest, too, and is none.

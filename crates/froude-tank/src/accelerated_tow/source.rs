@@ -14,7 +14,7 @@ use froude_records::units::Dimension;
 
 use super::law::{asked, names};
 use super::reduce::{Body, Mounted, Reduced, Setup, reduce};
-use super::rows::{TowRun, Way, root_mean_square, row_window};
+use super::rows::{TowRun, Way, root_mean_square};
 use super::{page, plan, simulate};
 use crate::logs::{self, Logs};
 use crate::reference;
@@ -88,7 +88,7 @@ impl Method for AcceleratedTow {
         findings.extend(of_runs(&reduced, &setup, spec));
         findings.extend(driven(&reduced, &setup));
         let laws = asked(campaign, source, &reduced.data, &setup.axis)?;
-        let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(row_window()) };
+        let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(reduced.of_rows.clone()) };
         if laws.len() > 1 {
             let text = "several laws are compared as if the rows of a run were independent, so that a law with more terms wins too easily: trust it where its extra coefficients \
                         are outside their intervals of zero";

@@ -21,7 +21,6 @@ const FEWEST: usize = 4;
 ///
 /// Nothing is left.
 pub fn cut(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
-    run.findings.extend(astray(&run.log, &run.declared.marks));
     let segments: Vec<Segment> = run.declared.segments.clone();
     for segment in &segments {
         let by = if segment.by.is_empty() { String::new() } else { format!(", by {}", segment.by) };
@@ -53,10 +52,12 @@ pub fn cut(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
     let told = run.declared.marks.iter().filter(|mark| mark.why != "clipped" || !mark.by.starts_with("rule: "));
     let steps: Vec<Step> = told
         .map(|mark| {
+            let is_in = run.log.time_s.first().zip(run.log.time_s.last()).is_some_and(|(a, b)| mark.touches(*a, *b));
             let words = format!(
-                "{} s to {} s are not used: {}, by {}{}",
+                "{} s to {} s {}: {}, by {}{}",
                 plain(mark.from_s, 6),
                 plain(mark.to_s, 6),
+                if is_in { "are not used" } else { "lie beyond what is looked at" },
                 mark.why,
                 mark.by,
                 note(&mark.note)
@@ -91,12 +92,12 @@ pub fn cut(run: &mut ImportedRun, method: &str) -> Result<(), MethodError> {
 }
 
 /// Marks beyond the log: a slip of the pen, another clock, or another log's.
-fn astray(log: &RunLog, marks: &[Mark]) -> Option<Finding> {
+pub(super) fn astray(log: &RunLog, marks: &[Mark]) -> Option<Finding> {
     let (from_s, to_s) = (*log.time_s.first()?, *log.time_s.last()?);
     let beyond: Vec<Mark> = marks.iter().filter(|mark| !mark.touches(from_s, to_s)).cloned().collect();
     (!beyond.is_empty()).then(|| {
         let text = format!(
-            "{}: nothing is marked by {}: the log goes from {} s to {} s; correct [[marks]], in seconds of the log's own time",
+            "{}: {} beyond the log, which goes from {} s to {} s: nothing is left out by it; correct [[marks]], in seconds of the log's own time",
             log.path.display(),
             in_words(&beyond),
             plain(from_s, 6),

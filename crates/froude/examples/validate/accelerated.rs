@@ -10,7 +10,6 @@ use froude::identify::source::{Asked, identify_laws};
 use froude::methods::tank::accelerated_tow::law::asked;
 use froude::methods::tank::accelerated_tow::plan::{Forecast, forecast};
 use froude::methods::tank::accelerated_tow::reduce::{Setup, reduce};
-use froude::methods::tank::accelerated_tow::rows::row_window;
 use froude::methods::tank::accelerated_tow::simulate::{
     Planned, Simulated, Truths, configurations, planned, simulated,
 };
@@ -57,7 +56,7 @@ impl Case {
         let mounted: Vec<_> = logs.iter().map(Simulated::view).collect();
         let reduced = reduce(&mounted, &self.setup).ok_or("no mass")?;
         let laws = asked(&self.campaign, &self.source, &reduced.data, &self.setup.axis)?;
-        let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(row_window()) };
+        let scatter = if reduced.is_by_run { Scatter::Cluster } else { Scatter::Serial(reduced.of_rows.clone()) };
         let observations = Observations {
             n_read: reduced.data.rows,
             data: reduced.data,

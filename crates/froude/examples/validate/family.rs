@@ -35,7 +35,7 @@ pub fn whole(claims: &mut Claims) {
     let found = claims.tank_intervals;
     let claim = "intervals of the tank methods that were judged together";
     claims.holds(
-        "Forced oscillation: Table 4 by its twin",
+        "Tank methods: their intervals in one test",
         claim,
         &INTERVALS.to_string(),
         found.to_string(),
