@@ -43,10 +43,12 @@ const MOST_WHITE: f64 = 0.95;
 const STEPS: usize = 8;
 /// A partial correlation below this adds nothing to the whitening.
 const NEGLIGIBLE: f64 = 1e-10;
+/// A point of less than this part of the most likely one's weight is nothing of the mixture.
+const UNLIKELY: f64 = 1e-9;
 /// Outside an interval of 95 %.
 const OUTSIDE: f64 = 0.05;
 /// Halvings of an interval that holds a root.
-const HALVINGS: usize = 60;
+const HALVINGS: usize = 40;
 
 /// How rows are made of samples: means under `weights`, which move on by `every` samples from row to row.
 #[derive(Debug, Clone, PartialEq)]
@@ -274,8 +276,9 @@ fn mixture(
             likelihood: -0.5 * (log_determinants + dof * variance.ln()),
         })
     };
-    let points: Vec<Point> = (0..POINTS).filter_map(point).filter(|p| p.likelihood.is_finite()).collect();
-    let most = points.iter().map(|p| p.likelihood).fold(f64::NEG_INFINITY, f64::max);
+    let all: Vec<Point> = (0..POINTS).filter_map(point).filter(|p| p.likelihood.is_finite()).collect();
+    let most = all.iter().map(|p| p.likelihood).fold(f64::NEG_INFINITY, f64::max);
+    let points: Vec<Point> = all.into_iter().filter(|p| (p.likelihood - most).exp() > UNLIKELY).collect();
     let raw: Vec<f64> = points.iter().map(|p| p.width * (p.likelihood - most).exp()).collect();
     let all: f64 = raw.iter().sum();
     let mean = |of: &dyn Fn(&Point) -> f64| points.iter().zip(&raw).map(|(p, w)| w * of(p)).sum::<f64>() / all;
@@ -327,7 +330,7 @@ fn dof_of_factor(factor: f64) -> f64 {
     if factor <= coverage_factor(1.0 - OUTSIDE, f64::INFINITY) {
         return f64::INFINITY;
     }
-    root(-2.0, 20.0, |log| coverage_factor(1.0 - OUTSIDE, log.exp()) > factor).exp()
+    root(-2.0, 20.0, |log| t_two_sided(factor, log.exp()) > OUTSIDE).exp()
 }
 
 /// S c Sᵀ.
