@@ -39,7 +39,7 @@ const AT_THE_END: f64 = 0.9;
 const BEYOND: f64 = 0.2;
 /// Most that known white noise is of the variance of a row.
 const MOST_WHITE: f64 = 0.95;
-/// Steps for its share, each of which is nearer by the part that it is of the variance.
+/// Most steps for its share; one that changes it by less than a thousandth is the last.
 const STEPS: usize = 8;
 /// A partial correlation below this adds nothing to the whitening.
 const NEGLIGIBLE: f64 = 1e-10;
@@ -515,8 +515,8 @@ mod tests {
                 }
             }
             // 1,000 draws at 95 % have a standard deviation of 0.7 %, taken three times. White noise is the end of the range of ρ: what is told of it there can
-            // only lie above, and the intervals hold 97 %.
-            let high = if rho == 0.0 { 0.99 } else { 0.971 };
+            // only lie above, and the intervals hold 97 %; the same three deviations above that.
+            let high = if rho == 0.0 { 0.986 } else { 0.971 };
             assert!(held.iter().all(|h| (0.929..high).contains(h)), "{rho} {errors:?}: {held:?}");
         }
     }
@@ -544,11 +544,11 @@ mod tests {
             let found = serial(&x, &s, &residual, &run, &errors).unwrap();
             mean.iter_mut().enumerate().for_each(|(j, m)| *m += widths(&found, j) / 400.0);
         }
-        // Widths scatter by a quarter, their mean by a hundredth; the mean of a skew quantity lies beside that at the mean by some hundredths.
+        // Widths scatter by a quarter, their mean by a hundredth; the mean of a skew quantity lies beside that at the mean by as much or twice.
         for j in 0..2 {
-            assert!((widths(&expected, j) / mean[j] - 1.0).abs() < 0.1, "{} {}", widths(&expected, j), mean[j]);
+            assert!((widths(&expected, j) / mean[j] - 1.0).abs() < 0.04, "{} {}", widths(&expected, j), mean[j]);
         }
-        // 2²: the variance of a row.
+        // σ is that of the mixture, whose slow part raises it by some hundredths.
         assert!((expected.sigma / 2.0 - 1.0).abs() < 0.1, "{}", expected.sigma);
     }
 }

@@ -27,7 +27,7 @@ use crate::conditioning::stretches::longest_free;
 const FEWEST_SAMPLES: f64 = 8.0;
 /// Fewest rows of a run.
 const FEWEST_ROWS: usize = 6;
-/// A window moves where its speed or its acceleration exceeds this part of the largest.
+/// A window moves where its speed exceeds this part of the largest.
 const MOVES: f64 = 0.02;
 /// The root mean square of the acceleration must exceed that of its noise this many times.
 const ABOVE_NOISE: f64 = 3.0;
@@ -84,7 +84,7 @@ pub struct Rows {
     pub zero_standard_n: f64,
     /// Parts at rest, one or two: their middle, s of the log, and the standard uncertainty of their mean, N.
     pub zero_parts: Vec<[f64; 2]>,
-    /// Degrees of freedom of that.
+    /// Degrees of freedom of these.
     pub zero_dof: f64,
     /// Root mean square of the acceleration at rest, or what the step of its channel makes of it, m/s²: its noise.
     pub noise_m_s2: f64,
@@ -199,9 +199,8 @@ pub fn rows(run: &TowRun<'_>, window_s: f64, delay_s: f64) -> Result<Rows, Accel
         Way::Speed(v) => w.of(&w.slope, v),
     };
     let motion: Vec<[f64; 2]> = all.iter().map(|(_, w)| [speed_of(w), acceleration_of(w)]).collect();
-    let largest = |k: usize| motion.iter().fold(0.0_f64, |m, row| m.max(row[k].abs()));
-    let top = [largest(0), largest(1)];
-    let moves = |row: &[f64; 2]| row[0].abs() > MOVES * top[0];
+    let top = motion.iter().fold(0.0_f64, |m, row| m.max(row[0].abs()));
+    let moves = |row: &[f64; 2]| row[0].abs() > MOVES * top;
     let (Some(start), Some(end)) = (motion.iter().position(moves), motion.iter().rposition(moves)) else {
         return Err(too_few(0));
     };

@@ -97,11 +97,11 @@ pub(super) fn astray(log: &RunLog, marks: &[Mark]) -> Option<Finding> {
     let beyond: Vec<Mark> = marks.iter().filter(|mark| !mark.touches(from_s, to_s)).cloned().collect();
     (!beyond.is_empty()).then(|| {
         let text = format!(
-            "{}: {} beyond the log, which goes from {} s to {} s: nothing is left out by it; correct [[marks]], in seconds of the log's own time",
+            "{}: beyond the log ({} s to {} s) lies {}: nothing is left out there; correct [[marks]], in seconds of the log's own time",
             log.path.display(),
-            in_words(&beyond),
             plain(from_s, 6),
-            plain(to_s, 6)
+            plain(to_s, 6),
+            in_words(&beyond)
         );
         Finding::new(Severity::Warning, "mark-beyond-log", text)
     })
