@@ -81,9 +81,9 @@ mod tests {
     fn the_area_below_it_is_the_mean_square_and_its_peak_stands_at_the_frequency() {
         let chart = chart(&[sine(100.0, 1000), sine(100.0, 900)], ("a sine", "N"), "").unwrap();
         let series = &chart.panels[0].series[0];
-        // The windowed line has a hundredth of its power in the lines that are left out, at rest and at half the rate.
         let area: f64 = series.y.iter().sum::<f64>() * series.x[0];
-        assert!((area / (0.5 * 0.3 * 0.3) - 1.0).abs() < 0.02, "{area}");
+        // Segments do not hold whole periods, and the lines at rest and at half the rate are left out: NumPy has 2e-4.
+        assert!((area / (0.5 * 0.3 * 0.3) - 1.0).abs() < 1e-3, "{area}");
         let peak = (0..series.y.len()).max_by(|&a, &b| series.y[a].total_cmp(&series.y[b])).unwrap();
         assert!((series.x[peak] - 4.0).abs() <= series.x[0]);
         assert_eq!(chart.panels[0].y_label, "power density [N²/Hz]");
