@@ -103,6 +103,16 @@ impl Cholesky {
         }
     }
 
+    /// `Lᵀ x`.
+    pub(crate) fn transposed_times(&self, x: &[f64]) -> Vec<f64> {
+        (0..x.len()).map(|i| (i..x.len()).map(|k| self.lower[(k, i)] * x[k]).sum()).collect()
+    }
+
+    /// ln det A.
+    pub(crate) fn log_determinant(&self) -> f64 {
+        (0..self.lower.nrows()).map(|i| 2.0 * self.lower[(i, i)].ln()).sum()
+    }
+
     /// `A⁻¹`.
     pub(crate) fn inverse(&self) -> Mat<f64> {
         let n = self.lower.nrows();

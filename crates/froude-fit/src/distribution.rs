@@ -85,6 +85,28 @@ pub fn t_two_sided(t: f64, dof: f64) -> f64 {
     beta(0.5 * dof, 0.5, dof / (dof + t * t))
 }
 
+/// Degrees of freedom at which Student's t has this two-sided 95 % factor; infinite below a normal's.
+#[must_use]
+pub fn dof_of_factor(factor: f64) -> f64 {
+    if factor <= coverage_factor(0.95, f64::INFINITY) {
+        return f64::INFINITY;
+    }
+    root(-2.0, 20.0, |log| t_two_sided(factor, log.exp()) > 0.05).exp()
+}
+
+/// Halvings of an interval that holds a root.
+const HALVINGS: usize = 40;
+
+/// Where a condition ends to hold between two numbers.
+pub(crate) fn root(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (low, high);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
 /// Upper tail probability `P(F ≥ f)` of Fisher's F; NaN where a number of degrees of freedom is not positive or `dof_1` is infinite.
 ///
 /// 1 where `f` is no number: what cannot be computed rejects nothing.

@@ -55,6 +55,7 @@ pub mod distribution;
 mod error;
 mod estimate;
 pub mod factored;
+pub mod jackknife;
 pub mod linear;
 pub mod long_run;
 pub mod nonlinear;

@@ -27,7 +27,7 @@
 use faer::Mat;
 use faer::prelude::*;
 
-use crate::distribution::{coverage_factor, t_two_sided};
+use crate::distribution::{dof_of_factor, root, t_two_sided};
 
 /// A correlation time of more than this part of the longest run is not told from what the law fits.
 const LONGEST: f64 = 0.3;
@@ -47,8 +47,6 @@ const NEGLIGIBLE: f64 = 1e-10;
 const UNLIKELY: f64 = 1e-9;
 /// Outside an interval of 95 %.
 const OUTSIDE: f64 = 0.05;
-/// Halvings of an interval that holds a root.
-const HALVINGS: usize = 40;
 
 /// How rows are made of samples: means under `weights`, which move on by `every` samples from row to row.
 #[derive(Debug, Clone, PartialEq)]
@@ -313,24 +311,6 @@ fn contrasts(columns: &[Vec<f64>], free: usize, run: &[usize], c: &Correlation) 
         |k: usize| dot(&residuals[k], &residuals[k]) - (0..free).map(|a| toward[(a, k)] * solved[(a, k)]).sum::<f64>();
     let of_gram: f64 = (0..free).map(|a| 2.0 * factor.L()[(a, a)].ln()).sum();
     Some((log_determinant + of_gram, (0..residuals.len()).map(of_one).sum()))
-}
-
-/// Where a condition ends to hold between two numbers.
-fn root(low: f64, high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (low, high);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if holds(middle) { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
-}
-
-/// Degrees of freedom with this two-sided 95 % factor of Student's t; infinite below that of a normal.
-fn dof_of_factor(factor: f64) -> f64 {
-    if factor <= coverage_factor(1.0 - OUTSIDE, f64::INFINITY) {
-        return f64::INFINITY;
-    }
-    root(-2.0, 20.0, |log| t_two_sided(factor, log.exp()) > OUTSIDE).exp()
 }
 
 /// S c Sᵀ.

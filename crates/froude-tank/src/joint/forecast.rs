@@ -15,6 +15,7 @@ use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, combine};
 use froude_fit::faer::Mat;
 use froude_fit::faer::prelude::*;
+use froude_fit::jackknife::at_equal_errors;
 use froude_records::campaign::SensorSpec;
 
 use super::conclude::part;
@@ -74,15 +75,19 @@ pub(crate) fn forecast<E: Equation>(
     let is_free = |j: &usize| !excluded.contains(j) && held.iter().all(|(k, _)| k != j);
     let free: Vec<usize> = (0..problem.names.len()).filter(is_free).collect();
     let (p, q) = (free.len(), problem.inputs.len());
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut gram, mut noise, mut errors) = (Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, q));
     let mut tau = 1.0_f64;
+    let by_run = problem.runs.len() >= FEWEST_CLUSTERS;
+    let offsets = if by_run { 0 } else { problem.runs.len() };
+    let mut clusters = Vec::new();
     for (r, run) in problem.runs.iter().enumerate() {
         let Columns { regressors, errors: moved, .. } = problem.columns(r, run.motion.samples(), beta, true)?;
-        let regressors: Vec<Vec<f64>> = free.iter().map(|&j| about_mean(regressors[j].clone())).collect();
+        let raw: Vec<&[f64]> = free.iter().map(|&j| regressors[j].as_slice()).collect();
+        let regressors: Vec<Vec<f64>> = raw.iter().map(|x| about_mean(x.to_vec())).collect();
         let keep = correlation_s.map_or(0.0, |time| (-1.0 / (rates_hz[r] * time)).exp());
         tau = tau.max((1.0 + keep) / (1.0 - keep));
         let smoothed: Vec<Vec<f64>> = regressors.iter().map(|x| correlated(x, keep)).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         for i in 0..p {
             for j in 0..p {
                 gram[(i, j)] += dot(&regressors[i], &regressors[j]);
@@ -91,6 +96,21 @@ pub(crate) fn forecast<E: Equation>(
             for (k, column) in moved.iter().enumerate() {
                 errors[(i, k)] += dot(&regressors[i], column);
             }
+        }
+        // What the fit leaves out in turn: runs about their zero, or cycles with the zero of their run beside.
+        if by_run {
+            clusters.push(Mat::from_fn(p, p, |i, j| dot(&regressors[i], &regressors[j])));
+            continue;
+        }
+        let first = run.motion.samples().start;
+        for rows in &run.motion.cycles {
+            let (rows, ones) = (rows.start - first..rows.end - first, vec![1.0; rows.len()]);
+            let column = |i: usize| match i.checked_sub(p) {
+                None => &raw[i][rows.clone()],
+                Some(of) if of == r => &ones[..],
+                Some(_) => &[],
+            };
+            clusters.push(Mat::from_fn(p + offsets, p + offsets, |i, j| dot(column(i), column(j))));
         }
     }
     // As the fit weighs them; without noise nothing is left to weigh against what is declared.
@@ -105,14 +125,19 @@ pub(crate) fn forecast<E: Equation>(
         whole[(prior.index, prior.index)] += prior.standard.powi(-2);
     }
     let Some(inverse) = inverted(&whole) else { return Ok(None) };
-    let clusters = if problem.runs.len() >= FEWEST_CLUSTERS { problem.runs.len() } else { problem.cycles() };
     // Back among all unknowns: what is held has no uncertainty.
     let n = problem.names.len();
     let place = |j: usize| free.iter().position(|k| *k == j);
     let spread =
         |small: Mat<f64>| Mat::from_fn(n, n, |i, j| place(i).zip(place(j)).map_or(0.0, |(i, j)| small[(i, j)]));
     let scatter = &inverse * Mat::from_fn(p, p, |i, j| noise[(i, j)] / (variance * variance)) * &inverse;
-    let mut parts = vec![part("scatter", Kind::A, spread(scatter), clusters as f64 - 1.0)];
+    let weighed =
+        |i: usize| priors.iter().filter(|(_, p)| p.index == i).map(|(_, p)| variance / p.standard.powi(2)).sum();
+    let at_equal = at_equal_errors(&clusters, &(0..p + offsets).map(weighed).collect::<Vec<f64>>());
+    let equal = clusters.len() as f64 - 1.0;
+    let dof = |j: usize| at_equal.as_ref().zip(place(j)).map_or(equal, |(found, i)| found[i].dof);
+    let scatter = Part { dof: (0..n).map(dof).collect(), ..part("scatter", Kind::A, spread(scatter), equal) };
+    let mut parts = vec![scatter];
     for (name, prior) in &priors {
         let by = |i: usize| inverse[(i, prior.index)] / prior.standard;
         parts.push(part(name, Kind::B, spread(Mat::from_fn(p, p, |i, j| by(i) * by(j))), f64::INFINITY));

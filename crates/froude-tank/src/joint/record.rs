@@ -37,7 +37,7 @@ pub(crate) fn type_a(fit: &JointFit) -> TypeA {
         names: fit.unknowns.iter().map(|u| u.name.clone()).collect(),
         matrix: rows(&scatter.covariance),
         dof: scatter.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
-        kind: format!("CR3, {} {}s", fit.clusters, fit.by),
+        kind: format!("CR3 over its mean at equal errors, {} {}s", fit.clusters, fit.by),
     }
 }
 

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::coverage::normal;
-use crate::family::covers;
+use crate::family::{Bar, covers};
 
 const SECTION: &str = "Free decay: releases of the twin, five a campaign";
 
@@ -195,6 +195,7 @@ fn judge(
         ),
         &named,
         (found.len() == seeds, is_judged),
+        Bar::Exactly,
     );
     let ratio = |j: usize| squares[j].sqrt() / plan.expected[j].combined.standard;
     // The root mean square of as many errors scatters by 1/√(2n).

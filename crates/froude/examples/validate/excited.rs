@@ -14,7 +14,7 @@ use froude::records::estimate::{Coefficient, Status};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::covers;
+use crate::family::{Bar, covers};
 
 const REAL: &str = "Excited response: a ship section in waves (NTNU)";
 const TWIN: &str = "Excited response: held and free runs by their twin";
@@ -196,6 +196,7 @@ fn coverage(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dy
             &format!("intervals at {words} of correlated noise, {seeds} campaigns of {} runs: cover", planned.len()),
             &cover,
             (fits.len() == seeds, is_judged),
+            Bar::Exactly,
         );
         // The root mean square of as many errors scatters by 1/√(2n).
         let allowance = 3.0 / (2.0 * seeds as f64).sqrt();

@@ -17,7 +17,7 @@ use froude::records::campaign::{Campaign, Identify, SensorSpec, Source, read_cam
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::covers;
+use crate::family::{Bar, covers};
 
 const SECTION: &str = "Forced oscillation: Table 4 by its twin";
 const C_A: f64 = 1.277;
@@ -358,6 +358,7 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             &format!("intervals at {words} of correlated noise, {seeds} campaigns of 18 runs: cover"),
             &named,
             (fits.len() == seeds, is_judged),
+            Bar::Exactly,
         );
         let errors = |j: usize| fits.iter().filter_map(move |(fit, truths)| Some(fit.unknowns[j].value? - truths[j]));
         let ratios: Vec<f64> = (0..plan.expected.len())

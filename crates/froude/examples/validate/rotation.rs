@@ -16,7 +16,7 @@ use froude::records::campaign::{Identify, SensorSpec, read_campaign};
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
-use crate::family::covers;
+use crate::family::{Bar, covers};
 
 const SECTION: &str = "Rotation: a link about its own centre by its twin";
 /// C_f^II and C_d^II of the f2 model in the circulation tank, USR Table 9; C_A of the tank, Table 12.
@@ -159,6 +159,7 @@ fn coverage(claims: &mut Claims, case: &Case, seeds: usize) -> Result<(), Box<dy
             &format!("intervals at {words} of correlated noise, {seeds} campaigns of 9 runs: cover"),
             &named,
             (all.len() == seeds, is_judged),
+            Bar::Exactly,
         );
         let rms = |j: usize| (all.iter().map(|shown| shown[j].1.powi(2)).sum::<f64>() / all.len() as f64).sqrt();
         let ratios: Vec<f64> = plan.expected.iter().enumerate().map(|(j, e)| rms(j) / e.combined.standard).collect();
