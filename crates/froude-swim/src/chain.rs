@@ -1,0 +1,76 @@
+//! A chain of links in water: what each weighs, takes along and drags.
+//!
+//! **Frame.** Link axes at the link's centre ([`crate::planar`]). Link 1 is the head, and φ_i = θ_i − θ_{i+1}.
+//! **Units.** SI.
+//!
+//! The fluid's inertia belongs to the motion through the water. Two forms of its load are offered:
+//!
+//! | form | load of the fluid on a link | source |
+//! | --- | --- | --- |
+//! | `Full` | −(A ṁ + m ×* A m) | Kirchhoff's equations, Lamb (1932), §124 |
+//! | `Usr`  | −A ṁ, which leaves out f_x = μ ω v and the Munk moment −μ u v | USR eq. 4 |
+//!
+//! `Full` conserves energy and both momenta of body and fluid, `Usr` the energy only.
+
+use crate::drag::LinkDrag;
+use crate::planar::{Inertia, Load, Motion, turned};
+
+/// Load of the fluid's inertia.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AddedMass {
+    /// With the pair that turning axes make.
+    #[default]
+    Full,
+    /// As the paper prints it.
+    Usr,
+}
+
+/// One link.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// Half of the distance between its joints, m.
+    pub half_length_m: f64,
+    /// Of the body.
+    pub rigid: Inertia,
+    /// Of the water that it takes along.
+    pub added: Inertia,
+    /// Its drag.
+    pub drag: LinkDrag,
+}
+
+/// A swimmer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chain {
+    /// From head to tail; one at least.
+    pub links: Vec<Link>,
+    /// Load of the fluid's inertia.
+    pub added_mass: AddedMass,
+}
+
+impl Chain {
+    /// Number of joints.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.links.len().saturating_sub(1)
+    }
+
+    /// What a link's momenta need where its axes turn, without its drag: p of I ṁ + p.
+    pub(crate) fn bias(&self, link: &Link, motion: Motion) -> Load {
+        let rigid = turned(motion, link.rigid.times(motion));
+        match self.added_mass {
+            AddedMass::Usr => rigid,
+            AddedMass::Full => {
+                let added = turned(motion, link.added.times(motion));
+                [rigid[0] + added[0], rigid[1] + added[1], rigid[2] + added[2]]
+            }
+        }
+    }
+}
+
+impl Link {
+    /// Of body and water.
+    #[must_use]
+    pub fn inertia(&self) -> Inertia {
+        self.rigid.plus(&self.added)
+    }
+}

@@ -1,0 +1,147 @@
+//! A swimmer whose joints follow a gait, over time: where the head goes and what the joints do.
+//!
+//! **State.** Place and heading of the head's centre in the tank, its motion through the water in its own axes, and the integrals of the powers: of the joints Σ τφ̇, its positive part,
+//! its size, and of the drag. Work and loss are integrated as states, so that W − E_loss − ΔE_kinetic is what the integration itself loses.
+//!
+//! **Frame.** A uniform steady current only carries the place along.
+
+use crate::chain::Chain;
+use crate::engine::{Given, Joints, Workspace};
+use crate::gait::{Gait, Shape};
+use crate::planar::Motion;
+
+/// A state; the same numbers are its rates.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct State {
+    /// Centre of the head, m.
+    pub place_m: [f64; 2],
+    /// Its heading, rad.
+    pub heading: f64,
+    /// Its motion through the water.
+    pub head: Motion,
+    /// ∫ Σ τφ̇ dt, J.
+    pub work_j: f64,
+    /// ∫ Σ max(τφ̇, 0) dt, J.
+    pub positive_j: f64,
+    /// ∫ Σ |τφ̇| dt, J.
+    pub absolute_j: f64,
+    /// ∫ of the power that drag takes, J.
+    pub loss_j: f64,
+}
+
+impl State {
+    /// self + h rate.
+    #[must_use]
+    pub fn moved(&self, h: f64, rate: &Self) -> Self {
+        let add = |a: f64, b: f64| a + h * b;
+        Self {
+            place_m: [0, 1].map(|k| add(self.place_m[k], rate.place_m[k])),
+            heading: add(self.heading, rate.heading),
+            head: [0, 1, 2].map(|k| add(self.head[k], rate.head[k])),
+            work_j: add(self.work_j, rate.work_j),
+            positive_j: add(self.positive_j, rate.positive_j),
+            absolute_j: add(self.absolute_j, rate.absolute_j),
+            loss_j: add(self.loss_j, rate.loss_j),
+        }
+    }
+}
+
+/// A swimmer with its gait.
+#[derive(Debug, Clone)]
+pub struct Swimmer<'a> {
+    /// Its links.
+    pub chain: &'a Chain,
+    /// What its joints do.
+    pub gait: &'a Gait,
+    /// Speed of the water over the ground, m/s.
+    pub current_m_s: [f64; 2],
+    /// Memory of the engine.
+    pub work: Workspace,
+    /// Angles of the last evaluation.
+    pub shape: Shape,
+}
+
+impl<'a> Swimmer<'a> {
+    /// In still water.
+    #[must_use]
+    pub fn new(chain: &'a Chain, gait: &'a Gait) -> Self {
+        let (work, shape) = (Workspace::new(chain.links.len()), Shape::straight(chain.joints()));
+        Self { chain, gait, current_m_s: [0.0; 2], work, shape }
+    }
+
+    /// Rates at a time, s; `None` where an inertia is not positive. Torques and motions of the links stand in `work`.
+    pub fn rates(&mut self, time_s: f64, state: &State) -> Option<State> {
+        self.gait.at(time_s, &mut self.shape);
+        let joints = Joints { angle: &self.shape.angle, rate: &self.shape.rate };
+        let head = self.work.evaluate(self.chain, state.head, joints, Given::Acceleration(&self.shape.acceleration))?;
+        let (mut net, mut positive, mut absolute) = (0.0, 0.0, 0.0);
+        for (torque, rate) in self.work.answer.iter().zip(&self.shape.rate) {
+            let power = torque * rate;
+            net += power;
+            positive += power.max(0.0);
+            absolute += power.abs();
+        }
+        let (s, c) = state.heading.sin_cos();
+        let [w, u, v] = state.head;
+        Some(State {
+            place_m: [c * u - s * v + self.current_m_s[0], s * u + c * v + self.current_m_s[1]],
+            heading: w,
+            head,
+            work_j: net,
+            positive_j: positive,
+            absolute_j: absolute,
+            loss_j: self.work.loss_w,
+        })
+    }
+
+    /// One step of Runge and Kutta's fourth order.
+    pub fn step(&mut self, time_s: f64, h: f64, state: &State) -> Option<State> {
+        let k1 = self.rates(time_s, state)?;
+        let k2 = self.rates(time_s + 0.5 * h, &state.moved(0.5 * h, &k1))?;
+        let k3 = self.rates(time_s + 0.5 * h, &state.moved(0.5 * h, &k2))?;
+        let k4 = self.rates(time_s + h, &state.moved(h, &k3))?;
+        Some(state.moved(h / 6.0, &k1).moved(h / 3.0, &k2).moved(h / 3.0, &k3).moved(h / 6.0, &k4))
+    }
+
+    /// Kinetic energy of body and water at the last evaluation, J.
+    #[must_use]
+    pub fn energy_j(&self) -> f64 {
+        self.chain.links.iter().zip(self.work.motions()).map(|(link, m)| link.inertia().energy(*m)).sum()
+    }
+
+    /// Centres and headings of the links in the shape of the last evaluation.
+    pub fn places(&self, state: &State) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
+        let (mut place, mut heading) = (state.place_m, state.heading);
+        let mut before = 0.0;
+        self.chain.links.iter().enumerate().map(move |(i, link)| {
+            if i > 0 {
+                let (s, c) = heading.sin_cos();
+                place = [place[0] - before * c, place[1] - before * s];
+                heading -= self.shape.angle[i - 1];
+                let (s, c) = heading.sin_cos();
+                place = [place[0] - link.half_length_m * c, place[1] - link.half_length_m * s];
+            }
+            before = link.half_length_m;
+            (place, heading)
+        })
+    }
+
+    /// Centre of mass of the body in the shape of the last evaluation, m.
+    #[must_use]
+    pub fn centre_m(&self, state: &State) -> [f64; 2] {
+        let (mut sum, mut mass) = ([0.0; 2], 0.0);
+        for (link, (place, heading)) in self.chain.links.iter().zip(self.places(state)) {
+            let (s, c) = heading.sin_cos();
+            let (m, ahead) = (link.rigid.x, link.rigid.turn_y);
+            sum = [sum[0] + m * place[0] + ahead * c, sum[1] + m * place[1] + ahead * s];
+            mass += m;
+        }
+        sum.map(|x| x / mass)
+    }
+
+    /// The largest torque of the last evaluation, N m.
+    #[must_use]
+    pub fn largest_torque_n_m(&self) -> f64 {
+        self.work.answer.iter().fold(0.0, |m, t| m.max(t.abs()))
+    }
+}

@@ -1,0 +1,117 @@
+//! Mamba's gaits with the coefficients of the paper's three sources, against figures that an independent program computed.
+//!
+//! Ten equal links, half height 58.8 mm, half width 39.4 mm, length 180 mm, in water of 1025 kg/m³; 1.343 kg each, J = m (l²/3 + b²/4), μ = 1.653 kg, λ₁ = μ l²/3, full
+//! added mass; α = 30°, ω = 80°/s, δ = 40°.
+
+#![allow(clippy::unwrap_used)]
+
+use std::f64::consts::PI;
+
+use froude_swim::chain::{AddedMass, Chain, Link};
+use froude_swim::drag::{LinkDrag, Turning};
+use froude_swim::gait::{Envelope, Gait};
+use froude_swim::path::Swimmer;
+use froude_swim::planar::Inertia;
+
+const HALF_HEIGHT: f64 = 0.0588;
+const HALF_WIDTH: f64 = 0.0394;
+const HALF_LENGTH: f64 = 0.09;
+const DENSITY: f64 = 1025.0;
+/// Of U and of each power; the figures themselves are printed to 3 or 4 digits.
+const WITHIN: f64 = 0.003;
+
+/// C_f and C_d of the linear and the square terms.
+struct Set {
+    c_f: [f64; 2],
+    c_d: [f64; 2],
+}
+
+fn chain(set: &Set, strip: bool) -> Chain {
+    let (a, b, l) = (HALF_HEIGHT, HALF_WIDTH, HALF_LENGTH);
+    let (mass, sway) = (1.343, 1.653);
+    let along = 0.5 * DENSITY * PI * 0.5 * (a + b) * 2.0 * l;
+    let across = 0.5 * DENSITY * 2.0 * a * 2.0 * l;
+    let turn = DENSITY * PI * (a + b) * l.powi(3);
+    let friction = Turning::Lumped([turn / 6.0 * set.c_f[0], turn * l / 8.0 * set.c_f[1]]);
+    let link = Link {
+        half_length_m: l,
+        rigid: Inertia::rigid(mass, mass * (l * l / 3.0 + b * b / 4.0), 0.0),
+        added: Inertia { turn: sway * l * l / 3.0, y: sway, ..Inertia::default() },
+        drag: LinkDrag {
+            along: set.c_f.map(|c| along * c),
+            across: set.c_d.map(|c| across * c),
+            turning: if strip { Turning::Strip } else { friction },
+        },
+    };
+    Chain { links: vec![link; 10], added_mass: AddedMass::Full }
+}
+
+fn gait(envelope: Envelope) -> Gait {
+    Gait {
+        amplitude: 30_f64.to_radians(),
+        frequency: 80_f64.to_radians(),
+        phase: 40_f64.to_radians(),
+        turn: 0.0,
+        envelope,
+    }
+}
+
+const F1_CFD: Set = Set { c_f: [0.0046; 2], c_d: [0.1206; 2] };
+const F1_RIG: Set = Set { c_f: [0.0242; 2], c_d: [0.2813; 2] };
+const F1_TANK: Set = Set { c_f: [0.0207; 2], c_d: [0.3268; 2] };
+const F2_CFD: Set = Set { c_f: [0.0, 0.0112], c_d: [0.0374, 0.4063] };
+const F2_RIG: Set = Set { c_f: [0.0042, 0.0693], c_d: [0.0193, 2.2438] };
+const F2_TANK: Set = Set { c_f: [0.0, 0.0544], c_d: [0.0603, 1.8601] };
+
+/// Half of the last printed digit, and what is allowed beside it.
+fn near(found: f64, printed: f64, digit: f64, what: &str) {
+    assert!((found - printed).abs() <= WITHIN * printed + 0.5 * digit, "{what}: {found}, printed {printed}");
+}
+
+/// U m/s, P_net W, P_positive W, J/m.
+#[test]
+fn twelve_gaits_have_the_speed_and_power_of_an_independent_program() {
+    #[rustfmt::skip]
+    let rows = [
+        ("f1 CFD lateral", &F1_CFD, Envelope::Lateral, [0.2078, 0.0854, 0.465, 0.411]),
+        ("f1 CFD eel",     &F1_CFD, Envelope::Eel,     [0.1421, 0.0553, 0.178, 0.389]),
+        ("f2 CFD lateral", &F2_CFD, Envelope::Lateral, [0.2048, 0.0426, 0.444, 0.208]),
+        ("f2 CFD eel",     &F2_CFD, Envelope::Eel,     [0.1599, 0.0248, 0.158, 0.155]),
+        ("f1 rig lateral", &F1_RIG, Envelope::Lateral, [0.1636, 0.3394, 0.651, 2.075]),
+        ("f1 rig eel",     &F1_RIG, Envelope::Eel,     [0.0899, 0.1676, 0.270, 1.864]),
+        ("f2 rig lateral", &F2_RIG, Envelope::Lateral, [0.1600, 0.2251, 0.567, 1.407]),
+        ("f2 rig eel",     &F2_RIG, Envelope::Eel,     [0.1081, 0.0988, 0.207, 0.914]),
+        ("f1 tank lateral", &F1_TANK, Envelope::Lateral, [0.1840, 0.3225, 0.624, 1.753]),
+        ("f1 tank eel",     &F1_TANK, Envelope::Eel,     [0.1107, 0.1773, 0.274, 1.601]),
+        ("f2 tank lateral", &F2_TANK, Envelope::Lateral, [0.1838, 0.1696, 0.518, 0.923]),
+        ("f2 tank eel",     &F2_TANK, Envelope::Eel,     [0.1380, 0.0844, 0.191, 0.612]),
+    ];
+    for (name, set, envelope, [speed, net, positive, cost]) in rows {
+        let (chain, gait) = (chain(set, false), gait(envelope));
+        let found = Swimmer::new(&chain, &gait).periodic(200).unwrap();
+        near(found.speed_m_s, speed, 1e-4, name);
+        near(found.net_w, net, 1e-4, name);
+        near(found.positive_w, positive, 1e-3, name);
+        near(found.net_w / found.speed_m_s, cost, 1e-3, name);
+        // A motion that repeats stores nothing: what the joints put in is what drag takes.
+        assert!((found.loss_w / found.net_w - 1.0).abs() < 1e-6, "{name}: {found:?}");
+    }
+}
+
+/// U, P_net, J/m by strips, lateral.
+#[test]
+fn strips_have_the_figures_of_an_independent_program() {
+    let rows = [
+        (&F2_CFD, [0.2080, 0.0585, 0.281], [1e-4, 1e-4, 1e-3]),
+        (&F2_RIG, [0.1668, 0.285, 1.707], [1e-4, 1e-3, 1e-3]),
+        (&F2_TANK, [0.1899, 0.2237, 1.178], [1e-4, 1e-4, 1e-3]),
+    ];
+    for (set, printed, digits) in rows {
+        let (chain, gait) = (chain(set, true), gait(Envelope::Lateral));
+        let found = Swimmer::new(&chain, &gait).periodic(200).unwrap();
+        let all = [found.speed_m_s, found.net_w, found.net_w / found.speed_m_s];
+        for k in 0..3 {
+            near(all[k], printed[k], digits[k], "strip");
+        }
+    }
+}
