@@ -1,6 +1,7 @@
 //! Drag of one link.
 //!
-//! Along the link −(c₁ u + c₂ u|u|) at its centre. Across it either by strips, whose speed v + xω differs along the link, or at the centre with a torque of turning:
+//! Along the link −(c₁ u + c₂ u|u|), and what flow across it does along it, −(x₁ |v| + x₂ v²) u/√(u² + ε²), which resists where the bracket is positive. Across it
+//! −(c₁ v + c₂ v|v|). Either by strips, whose speed w = v + xω differs along the link, or at the centre with a torque of turning:
 //!
 //! | form | load across and moment | source |
 //! | --- | --- | --- |
@@ -8,7 +9,7 @@
 //! | `Lumped` | −(c₁ v + c₂ v\|v\|), −(λ₂ ω + λ₃ ω\|ω\|) | USR eq. 6 and 7 |
 //!
 //! A strip contains the torque: both together would count it twice. Where w changes its sign within the link, four points are off by at most 2 % of the moment of a
-//! link that turns about its centre.
+//! link that turns about its centre. The papers print what v does along the link for u ≥ 0 only (eq. 12 and 13); a bare sign would jump where a link lies broadside, hence ε.
 
 use crate::planar::{Load, Motion};
 
@@ -19,8 +20,19 @@ pub struct LinkDrag {
     pub along: [f64; 2],
     /// Across it, of the whole link: of v, kg/s, and of v|v|, kg/m.
     pub across: [f64; 2],
+    /// Along it by flow across it; `None` for none.
+    pub cross: Option<Cross>,
     /// How it turns.
     pub turning: Turning,
+}
+
+/// Force along a link by flow across it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cross {
+    /// Of |v|, kg/s, and of v², kg/m, against the motion.
+    pub of_speed: [f64; 2],
+    /// ε, m/s, above zero.
+    pub smooth_m_s: f64,
 }
 
 /// Where the drag across acts.
@@ -41,25 +53,33 @@ const WEIGHTS: [f64; 4] =
 
 impl LinkDrag {
     /// None.
-    pub const NONE: Self = Self { along: [0.0; 2], across: [0.0; 2], turning: Turning::Strip };
+    pub const NONE: Self = Self { along: [0.0; 2], across: [0.0; 2], cross: None, turning: Turning::Strip };
 
     /// Load of the water on a link that moves through it.
     #[must_use]
     pub fn load(&self, half_length_m: f64, [w, u, v]: Motion) -> Load {
         let x = -law(self.along, u);
+        let by_cross = |v: f64| self.cross.map_or(0.0, |cross| cross.force(u, v));
         match self.turning {
-            Turning::Lumped(torque) => [-law(torque, w), x, -law(self.across, v)],
+            Turning::Lumped(torque) => [-law(torque, w), x + by_cross(v), -law(self.across, v)],
             Turning::Strip => {
                 let mut load = [0.0, x, 0.0];
                 for (point, weight) in POINTS.iter().zip(WEIGHTS) {
                     let at = half_length_m * point;
                     let strip = weight * law(self.across, v + at * w);
                     load[0] -= at * strip;
+                    load[1] += weight * by_cross(v + at * w);
                     load[2] -= strip;
                 }
                 load
             }
         }
+    }
+}
+
+impl Cross {
+    fn force(&self, u: f64, v: f64) -> f64 {
+        -(self.of_speed[0] + self.of_speed[1] * v.abs()) * v.abs() * u / u.hypot(self.smooth_m_s)
     }
 }
 
@@ -74,7 +94,7 @@ mod tests {
     /// A link that turns about its centre: ∫ c₂ xω|xω| x dx/2l = c₂ ω|ω| l³/4, and c₁ l²/3.
     #[test]
     fn a_turning_strip_has_the_integrals_of_its_law() {
-        let drag = LinkDrag { along: [0.0; 2], across: [3.0, 7.0], turning: Turning::Strip };
+        let drag = LinkDrag { along: [0.0; 2], across: [3.0, 7.0], cross: None, turning: Turning::Strip };
         let [moment, _, force] = drag.load(0.09, [2.0, 0.0, 0.0]);
         let linear = -3.0 * 2.0 * 0.09_f64.powi(2) / 3.0;
         let quadratic = -7.0 * 4.0 * 0.09_f64.powi(3) / 4.0;
@@ -85,7 +105,7 @@ mod tests {
 
     #[test]
     fn a_strip_that_moves_across_is_the_lumped_one() {
-        let strip = LinkDrag { along: [1.0, 2.0], across: [3.0, 7.0], turning: Turning::Strip };
+        let strip = LinkDrag { along: [1.0, 2.0], across: [3.0, 7.0], cross: None, turning: Turning::Strip };
         let lumped = LinkDrag { turning: Turning::Lumped([0.0; 2]), ..strip };
         let (a, b) = (strip.load(0.09, [0.0, 0.3, -0.2]), lumped.load(0.09, [0.0, 0.3, -0.2]));
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15));

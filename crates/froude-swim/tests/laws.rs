@@ -72,7 +72,7 @@ fn runge_and_kutta_are_of_fourth_order() {
 /// A current carries: relative to the water everything is as without it.
 #[test]
 fn a_swimmer_does_not_know_a_uniform_current() {
-    let drag = LinkDrag { along: [0.1, 0.4], across: [0.2, 15.0], turning: Turning::Strip };
+    let drag = LinkDrag { along: [0.1, 0.4], across: [0.2, 15.0], cross: None, turning: Turning::Strip };
     let chain = Chain { links: vec![link(drag); 5], added_mass: AddedMass::Full };
     let mut rng = Pcg64Mcg::seed_from_u64(9);
     let mut still = Driven::new(&chain, Limp);
@@ -95,7 +95,7 @@ fn a_swimmer_does_not_know_a_uniform_current() {
 /// One link along its axis: M u̇ = −c u², u = u₀/(1 + c u₀ t/M); what it loses is what drag takes.
 #[test]
 fn a_link_that_glides_slows_down_as_its_law_says() {
-    let drag = LinkDrag { along: [0.0, 0.4], across: [0.0; 2], turning: Turning::Strip };
+    let drag = LinkDrag { along: [0.0, 0.4], across: [0.0; 2], cross: None, turning: Turning::Strip };
     let chain = Chain { links: vec![link(drag)], added_mass: AddedMass::Full };
     let mut glider = Driven::new(&chain, Limp);
     let mut state = vec![0.0; glider.size()];

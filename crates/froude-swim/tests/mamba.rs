@@ -8,7 +8,7 @@
 use std::f64::consts::PI;
 
 use froude_swim::chain::{AddedMass, Chain, Link};
-use froude_swim::drag::{LinkDrag, Turning};
+use froude_swim::drag::{Cross, LinkDrag, Turning};
 use froude_swim::gait::{Envelope, Gait};
 use froude_swim::path::Swimmer;
 use froude_swim::planar::Inertia;
@@ -40,6 +40,7 @@ fn chain(set: &Set, strip: bool) -> Chain {
         drag: LinkDrag {
             along: set.c_f.map(|c| along * c),
             across: set.c_d.map(|c| across * c),
+            cross: None,
             turning: if strip { Turning::Strip } else { friction },
         },
     };
@@ -112,6 +113,80 @@ fn strips_have_the_figures_of_an_independent_program() {
         let all = [found.speed_m_s, found.net_w, found.net_w / found.speed_m_s];
         for k in 0..3 {
             near(all[k], printed[k], digits[k], "strip");
+        }
+    }
+}
+
+/// f4 of H8LT in uniform shares: a tenth of the whole robot's force on each module, by the module's own speed.
+struct F4 {
+    c_f: [f64; 2],
+    c_d: [f64; 2],
+    c_f_ends: [f64; 2],
+    c_d_ends: [f64; 2],
+    c_xy: [f64; 2],
+}
+
+const F4_RIG: F4 = F4 {
+    c_f: [0.0152, 0.0045],
+    c_d: [0.0, 1.5249],
+    c_f_ends: [0.0, 0.2498],
+    c_d_ends: [0.0795, 1.8852],
+    c_xy: [0.0870, 0.8704],
+};
+const F4_TANK: F4 = F4 {
+    c_f: [0.0, 0.0133],
+    c_d: [0.0, 1.4272],
+    c_f_ends: [0.0148, 0.2451],
+    c_d_ends: [0.1769, 1.1770],
+    c_xy: [0.0351, 0.4612],
+};
+
+fn h8lt(set: &F4, friction: bool) -> Chain {
+    let (a, b, l) = (HALF_HEIGHT, HALF_WIDTH, HALF_LENGTH);
+    let along = 8.0 * 0.5 * DENSITY * PI * 0.5 * (a + b) * 2.0 * l;
+    let across = 8.0 * 0.5 * DENSITY * 2.0 * a * 2.0 * l;
+    let (ends_x, ends_y) = (0.5 * DENSITY * PI * a * b, 0.5 * DENSITY * (0.011 + 0.008));
+    let share = |k: usize| (along * set.c_f[k] + ends_x * set.c_f_ends[k]) / 10.0;
+    let share_y = |k: usize| (across * set.c_d[k] + ends_y * set.c_d_ends[k]) / 10.0;
+    let turn = DENSITY * PI * (a + b) * l.powi(3);
+    let torque = if friction {
+        // Friction of eight links, shared by ten.
+        [0.8 * turn / 6.0 * set.c_f[0], 0.8 * turn * l / 8.0 * set.c_f[1]]
+    } else {
+        [share_y(0) * l * l / 3.0, share_y(1) * l.powi(3) / 4.0]
+    };
+    let cross = Cross {
+        of_speed: [-DENSITY * a * l * set.c_xy[0] / 10.0, DENSITY * a * l * set.c_xy[1] / 10.0],
+        smooth_m_s: 1e-3,
+    };
+    let mut chain = chain(&F2_CFD, false);
+    for link in &mut chain.links {
+        link.drag = LinkDrag {
+            along: [share(0), share(1)],
+            across: [share_y(0), share_y(1)],
+            cross: Some(cross),
+            turning: Turning::Lumped(torque),
+        };
+    }
+    chain
+}
+
+/// U, P_net, J/m.
+#[test]
+fn f4_in_uniform_shares_has_the_figures_of_an_independent_program() {
+    let rows = [
+        (&F4_RIG, false, [0.1491, 0.1701, 1.141]),
+        (&F4_TANK, false, [0.2005, 0.0842, 0.420]),
+        (&F4_RIG, true, [0.1562 / 1.048, 0.1562, 1.048]),
+        (&F4_TANK, true, [0.0680 / 0.339, 0.0680, 0.339]),
+    ];
+    for (set, friction, printed) in rows {
+        let (chain, gait) = (h8lt(set, friction), gait(Envelope::Lateral));
+        let found = Swimmer::new(&chain, &gait).periodic(400).unwrap();
+        let all = [found.speed_m_s, found.net_w, found.net_w / found.speed_m_s];
+        let digits = [if friction { 1e-3 } else { 1e-4 }, 1e-4, 1e-3];
+        for k in 0..3 {
+            near(all[k], printed[k], digits[k], "f4");
         }
     }
 }

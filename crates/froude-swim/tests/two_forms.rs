@@ -4,7 +4,7 @@
 
 use froude_swim::chain::{AddedMass, Chain, Link};
 use froude_swim::closed_form::{Absolute, motions, places, rates};
-use froude_swim::drag::{LinkDrag, Turning};
+use froude_swim::drag::{Cross, LinkDrag, Turning};
 use froude_swim::engine::{Given, Joints, Workspace};
 use froude_swim::planar::Inertia;
 use rand::{RngExt, SeedableRng};
@@ -26,7 +26,13 @@ fn chain(n: usize, rng: &mut Pcg64Mcg) -> Chain {
             ..Inertia::default()
         };
         let turning = if any(0.0, 1.0) < 0.5 { Turning::Strip } else { Turning::Lumped([1e-3, 2e-3]) };
-        let drag = LinkDrag { along: [any(0.0, 0.2), any(0.0, 2.0)], across: [any(0.0, 0.5), any(0.0, 20.0)], turning };
+        let cross = Cross { of_speed: [any(-0.1, 0.1), any(0.0, 1.0)], smooth_m_s: 1e-2 };
+        let drag = LinkDrag {
+            along: [any(0.0, 0.2), any(0.0, 2.0)],
+            across: [any(0.0, 0.5), any(0.0, 20.0)],
+            cross: Some(cross),
+            turning,
+        };
         let rigid = Inertia::rigid(mass_kg, mass_kg * half_length_m.powi(2) / 3.0, any(-0.02, 0.02));
         Link { half_length_m, rigid, added, drag }
     };
