@@ -8,12 +8,14 @@
 //! | [`engine`]      | accelerations and joint torques in O(n)                              |
 //! | [`closed_form`] | the same in absolute angles, dense: the reference                    |
 //! | [`driven`]        | a swimmer with torques at its joints over time                       |
+//! | [`adaptive`]      | a path to a stated accuracy                                          |
 //! | [`gait`]        | joint angles over time                                               |
 //! | [`path`]          | a swimmer with a gait over time, its work and loss                   |
 //! | [`period`]        | the motion that repeats, its speed, powers and stability             |
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod adaptive;
 pub mod chain;
 pub mod closed_form;
 pub mod drag;

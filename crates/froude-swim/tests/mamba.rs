@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use froude_swim::chain::{AddedMass, Chain, Link};
 use froude_swim::drag::{Cross, LinkDrag, Turning};
 use froude_swim::gait::{Envelope, Gait};
-use froude_swim::path::Swimmer;
+use froude_swim::path::{State, Swimmer};
 use froude_swim::planar::Inertia;
 
 const HALF_HEIGHT: f64 = 0.0588;
@@ -119,26 +119,20 @@ fn strips_have_the_figures_of_an_independent_program() {
 
 /// f4 of H8LT in uniform shares: a tenth of the whole robot's force on each module, by the module's own speed.
 struct F4 {
-    c_f: [f64; 2],
-    c_d: [f64; 2],
-    c_f_ends: [f64; 2],
-    c_d_ends: [f64; 2],
-    c_xy: [f64; 2],
+    links: Set,
+    ends: Set,
+    cross: [f64; 2],
 }
 
 const F4_RIG: F4 = F4 {
-    c_f: [0.0152, 0.0045],
-    c_d: [0.0, 1.5249],
-    c_f_ends: [0.0, 0.2498],
-    c_d_ends: [0.0795, 1.8852],
-    c_xy: [0.0870, 0.8704],
+    links: Set { c_f: [0.0152, 0.0045], c_d: [0.0, 1.5249] },
+    ends: Set { c_f: [0.0, 0.2498], c_d: [0.0795, 1.8852] },
+    cross: [0.0870, 0.8704],
 };
 const F4_TANK: F4 = F4 {
-    c_f: [0.0, 0.0133],
-    c_d: [0.0, 1.4272],
-    c_f_ends: [0.0148, 0.2451],
-    c_d_ends: [0.1769, 1.1770],
-    c_xy: [0.0351, 0.4612],
+    links: Set { c_f: [0.0, 0.0133], c_d: [0.0, 1.4272] },
+    ends: Set { c_f: [0.0148, 0.2451], c_d: [0.1769, 1.1770] },
+    cross: [0.0351, 0.4612],
 };
 
 fn h8lt(set: &F4, friction: bool) -> Chain {
@@ -146,17 +140,17 @@ fn h8lt(set: &F4, friction: bool) -> Chain {
     let along = 8.0 * 0.5 * DENSITY * PI * 0.5 * (a + b) * 2.0 * l;
     let across = 8.0 * 0.5 * DENSITY * 2.0 * a * 2.0 * l;
     let (ends_x, ends_y) = (0.5 * DENSITY * PI * a * b, 0.5 * DENSITY * (0.011 + 0.008));
-    let share = |k: usize| (along * set.c_f[k] + ends_x * set.c_f_ends[k]) / 10.0;
-    let share_y = |k: usize| (across * set.c_d[k] + ends_y * set.c_d_ends[k]) / 10.0;
+    let share = |k: usize| (along * set.links.c_f[k] + ends_x * set.ends.c_f[k]) / 10.0;
+    let share_y = |k: usize| (across * set.links.c_d[k] + ends_y * set.ends.c_d[k]) / 10.0;
     let turn = DENSITY * PI * (a + b) * l.powi(3);
     let torque = if friction {
         // Friction of eight links, shared by ten.
-        [0.8 * turn / 6.0 * set.c_f[0], 0.8 * turn * l / 8.0 * set.c_f[1]]
+        [0.8 * turn / 6.0 * set.links.c_f[0], 0.8 * turn * l / 8.0 * set.links.c_f[1]]
     } else {
         [share_y(0) * l * l / 3.0, share_y(1) * l.powi(3) / 4.0]
     };
     let cross = Cross {
-        of_speed: [-DENSITY * a * l * set.c_xy[0] / 10.0, DENSITY * a * l * set.c_xy[1] / 10.0],
+        of_speed: [-DENSITY * a * l * set.cross[0] / 10.0, DENSITY * a * l * set.cross[1] / 10.0],
         smooth_m_s: 1e-3,
     };
     let mut chain = chain(&F2_CFD, false);
@@ -188,5 +182,27 @@ fn f4_in_uniform_shares_has_the_figures_of_an_independent_program() {
         for k in 0..3 {
             near(all[k], printed[k], digits[k], "f4");
         }
+    }
+}
+
+/// A minute of f2 by the tank: work, loss and kinetic energy close to 1e-10 of the work, and ten times the accuracy moves the place by 10 nm at most.
+#[test]
+fn a_minute_closes_its_energy_and_has_converged() {
+    let (chain, gait) = (chain(&F2_TANK, false), gait(Envelope::Lateral));
+    let times: Vec<f64> = (0..=60).map(f64::from).collect();
+    let mut swimmer = Swimmer::new(&chain, &gait);
+    let energy = |swimmer: &mut Swimmer<'_>, time_s: f64, state: &State| {
+        swimmer.rates(time_s, state).unwrap();
+        swimmer.energy_j()
+    };
+    let start = State::default();
+    let at_start = energy(&mut swimmer, 0.0, &start);
+    let found = swimmer.path(&times, &start, 2e-13).unwrap();
+    let finer = swimmer.path(&times, &start, 2e-14).unwrap();
+    for ((time, state), finer) in times.iter().zip(&found).zip(&finer) {
+        let away = (state.place_m[0] - finer.place_m[0]).hypot(state.place_m[1] - finer.place_m[1]);
+        assert!(away < 1e-8, "{time} s: {away} m");
+        let residual = state.work_j - state.loss_j - (energy(&mut swimmer, *time, state) - at_start);
+        assert!(residual.abs() < 1e-10 * state.absolute_j.max(1.0), "{time} s: {residual} J of {}", state.absolute_j);
     }
 }
