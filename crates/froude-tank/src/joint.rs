@@ -286,6 +286,8 @@ pub struct JointFit {
     pub by: &'static str,
     /// How many of them.
     pub clusters: usize,
+    /// Whether their scatter is divided by its mean at equal errors, and has its degrees of freedom.
+    pub is_scaled: bool,
     /// Samples used.
     pub samples: usize,
     /// n/τ.

@@ -5,8 +5,10 @@ use froude_fit::budget::Uncertain;
 use froude_hydro::swing::{Medium, Pivot};
 use froude_hydro::{Body as Geometry, CrossTerm, DragModel, Link};
 use froude_identify::law::ForceLaw;
-use froude_records::campaign::Identify;
+use froude_records::campaign::{Identify, SensorSpec};
 use froude_rig::oscillation::{OscillationRig, OscillationSensor, OscillationTrace, Swing};
+use froude_tank::oscillation::forecast::forecast;
+use froude_tank::oscillation::simulate::{Planned, Truths};
 use froude_tank::oscillation::{Body, Drag, OscillationFit, OscillationRun, Setup, fit, motions};
 
 const RADIUS_M: f64 = 0.476;
@@ -199,5 +201,73 @@ fn the_sign_of_the_axis_does_not_matter() {
         assert!((x - y).abs() < 1e-9 * (1.0 + x.abs()), "{}: {x} {y}", a.name);
         let (u, w) = (a.combined.unwrap().standard, b.combined.unwrap().standard);
         assert!((u / w - 1.0).abs() < 1e-6, "{}", a.name);
+    }
+}
+
+/// Degrees of freedom are those of the matrix: fit and plan have the same, by runs left out and, of three runs, by cycles. With nothing declared there is no other part.
+#[test]
+fn plan_and_fit_have_the_same_degrees_of_freedom() {
+    let exact = |u: Uncertain| Uncertain::new(u.value, 0.0);
+    let mut setup = setup();
+    (setup.radius_m, setup.delay_s) = (exact(setup.radius_m), None);
+    for body in &mut setup.bodies {
+        (body.mass_kg, body.buoyancy_n) = (exact(body.mass_kg), None);
+    }
+    let sensor = OscillationSensor { force_noise_n: 0.02, ..OscillationSensor::exact() };
+    let all = table_4(Pivot::Stream, sensor, 7.0, 4);
+    // All, and of H1LT the three amplitudes at one frequency, by a law that one configuration determines.
+    let f2 = Drag::new(ForceLaw::drag(DragModel::from_name("f2").unwrap(), geometry(), CrossTerm::AsPrinted)).unwrap();
+    let few: Vec<usize> = vec![0, 4, 8];
+    let noise = SensorSpec {
+        quantity: "force".to_owned(),
+        noise: Some(0.02),
+        resolution: None,
+        drift: None,
+        bias: None,
+        correlation_s: None,
+    };
+    let names = ["C_d_I", "C_d_II", "C_dHT_I", "C_dHT_II"];
+    for (chosen, drag) in [((0..18).collect(), f4()), (few, f2)] {
+        let logged: Vec<&Logged> = chosen.iter().map(|i: &usize| &all[*i]).collect();
+        let runs: Vec<OscillationRun<'_>> = logged.iter().map(|l| runs(std::slice::from_ref(*l)).remove(0)).collect();
+        let mut setup = setup.clone();
+        setup.bodies.truncate(1 + logged.iter().map(|l| l.body).max().unwrap());
+        let found = fit(&runs, &motions(&runs, &setup).unwrap(), &setup, &drag, &Identify::default()).unwrap();
+        let by_run = logged.len() == 18;
+        assert_eq!((found.by, found.is_scaled), (if by_run { "run" } else { "cycle" }, true));
+        let planned: Vec<Planned> = logged
+            .iter()
+            .zip(&chosen)
+            .map(|(l, i)| Planned {
+                id: l.id.clone(),
+                body: l.body,
+                swing: Swing {
+                    medium: Medium::Water,
+                    amplitude_rad: [10.0_f64, 15.0, 20.0][i % 9 / 3].to_radians(),
+                    omega_rad_s: [60.0_f64, 70.0, 80.0][i % 3].to_radians(),
+                    flow_m_s: 0.2,
+                    still_s: 1.0,
+                    periods: 7.0,
+                },
+                rate_hz: 100.0,
+            })
+            .collect();
+        let truth = Truths {
+            added: C_A,
+            law: drag.law.clone(),
+            drag: (drag.law.coefficients.iter())
+                .map(|c| names.iter().position(|n| *n == c.name).map_or(0.0, |j| DRAG[j]))
+                .collect(),
+            buoyancy_n: BUOYANCY_N.iter().map(|b| Some(*b)).take(setup.bodies.len()).collect(),
+            delay_s: Some(0.0),
+        };
+        let plan = forecast(&planned, &setup, &truth, &drag, &[noise.clone()], &Identify::default()).unwrap();
+        // Cycles of one run are nearly alike: the sample at which each is cut, which the noise moves, changes what they tell of the linear drag.
+        let within = if by_run { 0.003 } else { 0.15 };
+        for (j, expected) in plan.expected.iter().enumerate() {
+            let (of_fit, of_plan) = (found.parts[0].dof[j], expected.combined.dof);
+            assert!((of_fit / of_plan - 1.0).abs() < within, "{}: {of_fit} {of_plan}", expected.name);
+            assert!(of_fit < found.clusters as f64 - 1.0 + 1e-6, "{}: {of_fit}", expected.name);
+        }
     }
 }

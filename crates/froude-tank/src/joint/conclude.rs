@@ -16,6 +16,7 @@ use froude_fit::faer::Mat;
 use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_fit::{self as ls, Status};
 
+use super::forecast::inverted;
 use super::solve::{Solved, values};
 use super::{DeclaredError, Equation, JointFit, Problem, Unknown};
 
@@ -47,11 +48,14 @@ impl<E: Equation> Problem<'_, E> {
             |i: usize, j: usize| declared[..of_priors].iter().map(|part| part.covariance[(i, j)]).sum::<f64>();
         let clusters = if by_run { self.runs.len() } else { self.cycles() };
         let by = if by_run { "run" } else { "cycle" };
-        let at_equal = self.at_equal_errors(&condensed.problem, &fit);
-        let ratio = |j: usize| at_equal[j].ratio.sqrt();
+        let told = self.at_equal_errors(&condensed.problem, &fit);
+        let is_scaled = told.is_some();
+        let equal = AtEqualErrors { ratio: 1.0, dof: clusters as f64 - 1.0 };
+        let at_equal = told.unwrap_or_else(|| vec![equal; p]);
         let scatter = Mat::from_fn(p, p, |i, j| {
             let left = fit.covariance[(i, j)] - of_prior(i, j);
-            if i == j { left.max(0.0) / at_equal[j].ratio } else { left / (ratio(i) * ratio(j)) }
+            let both = (at_equal[i].ratio * at_equal[j].ratio).sqrt();
+            if i == j { left.max(0.0) / both } else { left / both }
         });
         let dof = at_equal.iter().map(|a| a.dof).collect();
         let first = Part { shared: by, dof, ..part(&format!("scatter from {by} to {by}"), Kind::A, scatter, 0.0) };
@@ -76,6 +80,7 @@ impl<E: Equation> Problem<'_, E> {
             fitted,
             by,
             clusters,
+            is_scaled,
             samples,
             effective,
             sigma: (squares / samples as f64).sqrt(),
@@ -83,33 +88,44 @@ impl<E: Equation> Problem<'_, E> {
         })
     }
 
-    /// CR3 of the fit at equal errors; what it leaves undetermined, or holds, has that of equal clusters.
-    fn at_equal_errors(&self, problem: &ls::Problem, fit: &ls::Fit) -> Vec<AtEqualErrors> {
-        let all = problem.n_coefficients();
+    /// CR3 of the fit at equal errors; `None` where that cannot be told.
+    fn at_equal_errors(&self, problem: &ls::Problem, fit: &ls::Fit) -> Option<Vec<AtEqualErrors>> {
+        let is = |j: usize, statuses: &[Status]| statuses.contains(&fit.coefficients[j].status);
+        let all = 0..problem.n_coefficients();
+        let is_held = |j: &usize| is(*j, &[Status::Fixed, Status::Excluded]);
+        let (mut free, undetermined): (Vec<usize>, Vec<usize>) =
+            all.filter(|j| !is_held(j)).partition(|j| !is(*j, &[Status::Undetermined]));
+        let named = free.iter().filter(|j| **j < self.names.len()).count();
+        // What is not determined still takes its part of the data: as many of its columns as are independent.
+        for j in undetermined {
+            let tried: Vec<usize> = free.iter().copied().chain([j]).collect();
+            if inverted(&gram(&problem.design, 0..problem.design.nrows(), &tried)).is_some() {
+                free = tried;
+            }
+        }
+        let of = problem.cluster.as_deref()?;
+        let mut from = 0;
+        let mut grams = Vec::new();
+        for rows in of.chunk_by(|a, b| a == b) {
+            grams.push(gram(&problem.design, from..from + rows.len(), &free));
+            from += rows.len();
+        }
+        let variance = fit.components.first()?.sigma?.powi(2);
         let priors = self.known();
-        let is_free =
-            |j: &usize| !matches!(fit.coefficients[*j].status, Status::Fixed | Status::Excluded | Status::Undetermined);
-        let free: Vec<usize> = (0..all).filter(is_free).collect();
-        let of = problem.cluster.as_deref().unwrap_or_default();
-        let grams: Vec<Mat<f64>> = (of.chunk_by(|a, b| a == b))
-            .scan(0, |from, rows| {
-                *from += rows.len();
-                Some(problem.design.subrows(*from - rows.len(), rows.len()))
-            })
-            .map(|x| {
-                Mat::from_fn(free.len(), free.len(), |a, b| {
-                    (0..x.nrows()).map(|i| x[(i, free[a])] * x[(i, free[b])]).sum()
-                })
-            })
-            .collect();
-        let variance = fit.components.first().and_then(|c| c.sigma).unwrap_or(0.0).powi(2);
         let prior =
             |j: &usize| priors.iter().filter(|(_, p)| p.index == *j).map(|(_, p)| variance / p.standard.powi(2)).sum();
-        let found = at_equal_errors(&grams, &free.iter().map(prior).collect::<Vec<f64>>());
-        let equal = AtEqualErrors { ratio: 1.0, dof: grams.len() as f64 - 1.0 };
-        let place = |j: usize| free.iter().position(|k| *k == j);
-        (0..self.names.len()).map(|j| found.as_ref().zip(place(j)).map_or(equal, |(found, i)| found[i])).collect()
+        let found = at_equal_errors(&grams, &free.iter().map(prior).collect::<Vec<f64>>(), named)?;
+        // What is held has no scatter, what is not determined no interval.
+        let none = AtEqualErrors { ratio: 1.0, dof: f64::INFINITY };
+        let of = |j: usize| free[..named].iter().position(|k| *k == j).map_or(none, |i| found[i]);
+        Some((0..self.names.len()).map(of).collect())
     }
+}
+
+/// XᵀX of some rows and columns.
+fn gram(design: &Mat<f64>, rows: std::ops::Range<usize>, columns: &[usize]) -> Mat<f64> {
+    let product = |a: usize, b: usize| rows.clone().map(|i| design[(i, columns[a])] * design[(i, columns[b])]).sum();
+    Mat::from_fn(columns.len(), columns.len(), product)
 }
 
 /// A line of the budget that all coefficients share.

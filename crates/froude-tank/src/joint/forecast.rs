@@ -15,13 +15,16 @@ use froude_fit::FEWEST_CLUSTERS;
 use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, combine};
 use froude_fit::faer::Mat;
 use froude_fit::faer::prelude::*;
-use froude_fit::jackknife::at_equal_errors;
+use froude_fit::jackknife::{AtEqualErrors, at_equal_errors};
 use froude_records::campaign::SensorSpec;
 
 use super::conclude::part;
 use super::solve::Columns;
 use super::{Equation, Problem};
 use crate::noise::correlated;
+
+/// Variance of a load without noise, N² or N² m²: nothing beside that of any sensor, and its inverse still a number.
+const NO_NOISE: f64 = 1e-30;
 
 /// A coefficient with the interval to expect.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,9 +81,7 @@ pub(crate) fn forecast<E: Equation>(
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let (mut gram, mut noise, mut errors) = (Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, p), Mat::<f64>::zeros(p, q));
     let mut tau = 1.0_f64;
-    let by_run = problem.runs.len() >= FEWEST_CLUSTERS;
-    let offsets = if by_run { 0 } else { problem.runs.len() };
-    let mut clusters = Vec::new();
+    let mut cycles = Vec::new();
     for (r, run) in problem.runs.iter().enumerate() {
         let Columns { regressors, errors: moved, .. } = problem.columns(r, run.motion.samples(), beta, true)?;
         let raw: Vec<&[f64]> = free.iter().map(|&j| regressors[j].as_slice()).collect();
@@ -97,24 +98,15 @@ pub(crate) fn forecast<E: Equation>(
                 errors[(i, k)] += dot(&regressors[i], column);
             }
         }
-        // What the fit leaves out in turn: runs about their zero, or cycles with the zero of their run beside.
-        if by_run {
-            clusters.push(Mat::from_fn(p, p, |i, j| dot(&regressors[i], &regressors[j])));
-            continue;
-        }
         let first = run.motion.samples().start;
         for rows in &run.motion.cycles {
             let (rows, ones) = (rows.start - first..rows.end - first, vec![1.0; rows.len()]);
-            let column = |i: usize| match i.checked_sub(p) {
-                None => &raw[i][rows.clone()],
-                Some(of) if of == r => &ones[..],
-                Some(_) => &[],
-            };
-            clusters.push(Mat::from_fn(p + offsets, p + offsets, |i, j| dot(column(i), column(j))));
+            let column = |i: usize| raw.get(i).map_or(&ones[..], |x| &x[rows.clone()]);
+            cycles.push((r, Mat::from_fn(p + 1, p + 1, |i, j| dot(column(i), column(j)))));
         }
     }
     // As the fit weighs them; without noise nothing is left to weigh against what is declared.
-    let variance = (sigma * sigma * tau).max(f64::MIN_POSITIVE);
+    let variance = (sigma * sigma * tau).max(NO_NOISE);
     let mut priors = problem.known();
     for (_, prior) in &mut priors {
         // What is held is no prior any more, so that each stands among the free.
@@ -132,9 +124,15 @@ pub(crate) fn forecast<E: Equation>(
         |small: Mat<f64>| Mat::from_fn(n, n, |i, j| place(i).zip(place(j)).map_or(0.0, |(i, j)| small[(i, j)]));
     let scatter = &inverse * Mat::from_fn(p, p, |i, j| noise[(i, j)] / (variance * variance)) * &inverse;
     let weighed =
-        |i: usize| priors.iter().filter(|(_, p)| p.index == i).map(|(_, p)| variance / p.standard.powi(2)).sum();
-    let at_equal = at_equal_errors(&clusters, &(0..p + offsets).map(weighed).collect::<Vec<f64>>());
-    let equal = clusters.len() as f64 - 1.0;
+        |i: usize| priors.iter().filter(|(_, p)| p.index == i).map(|(_, p)| variance / p.standard.powi(2)).sum::<f64>();
+    let weight: Vec<f64> = (0..p).map(weighed).collect();
+    let by_run = (problem.runs.len() >= FEWEST_CLUSTERS).then(|| of_runs(&cycles, p));
+    let (clusters, at_equal) = match by_run.and_then(|runs| Some((runs.len(), at_equal_errors(&runs, &weight, p)?))) {
+        Some((count, found)) => (count, Some(found)),
+        // As the fit does where one run alone tells a coefficient.
+        None => (cycles.len(), of_cycles(&cycles, &weight)),
+    };
+    let equal = clusters as f64 - 1.0;
     let dof = |j: usize| at_equal.as_ref().zip(place(j)).map_or(equal, |(found, i)| found[i].dof);
     let scatter = Part { dof: (0..n).map(dof).collect(), ..part("scatter", Kind::A, spread(scatter), equal) };
     let mut parts = vec![scatter];
@@ -165,6 +163,27 @@ pub(crate) fn forecast<E: Equation>(
 /// Covariance of the coefficients from all parts.
 pub(crate) fn total(parts: &[Part], n: usize) -> Mat<f64> {
     Mat::from_fn(n, n, |i, j| parts.iter().map(|part| part.covariance[(i, j)]).sum())
+}
+
+/// Sums of the runs about their zero, of those of their cycles, each with the run's number and a last column of ones.
+fn of_runs(cycles: &[(usize, Mat<f64>)], p: usize) -> Vec<Mat<f64>> {
+    let of_run = |cycles: &[(usize, Mat<f64>)]| {
+        let sum = |i: usize, j: usize| cycles.iter().map(|(_, k)| k[(i, j)]).sum::<f64>();
+        Mat::from_fn(p, p, |i, j| sum(i, j) - sum(i, p) * sum(p, j) / sum(p, p))
+    };
+    cycles.chunk_by(|(a, _), (b, _)| a == b).map(of_run).collect()
+}
+
+/// CR3 by cycles at equal errors: each run's zero is a column beside.
+fn of_cycles(cycles: &[(usize, Mat<f64>)], weight: &[f64]) -> Option<Vec<AtEqualErrors>> {
+    let p = weight.len();
+    let runs = cycles.last()?.0 + 1;
+    let placed = |(r, k): &(usize, Mat<f64>)| {
+        let at = |i: usize| if i < p { Some(i) } else { (i == p + r).then_some(p) };
+        Mat::from_fn(p + runs, p + runs, |i, j| at(i).zip(at(j)).map_or(0.0, |(i, j)| k[(i, j)]))
+    };
+    let grams: Vec<Mat<f64>> = cycles.iter().map(placed).collect();
+    at_equal_errors(&grams, &[weight, &vec![0.0; runs]].concat(), p)
 }
 
 fn about_mean(mut column: Vec<f64>) -> Vec<f64> {

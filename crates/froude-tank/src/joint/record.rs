@@ -32,12 +32,13 @@ pub(crate) fn coefficients(fit: &JointFit, is_nuisance: &dyn Fn(&str) -> bool) -
 /// Their scatter.
 pub(crate) fn type_a(fit: &JointFit) -> TypeA {
     let (scatter, n) = (&fit.parts[0], fit.unknowns.len());
+    let scaled = if fit.is_scaled { " over its mean at equal errors" } else { "" };
     let rows = |m: &Mat<f64>| (0..n).map(|i| (0..n).map(|j| m[(i, j)]).collect()).collect();
     TypeA {
         names: fit.unknowns.iter().map(|u| u.name.clone()).collect(),
         matrix: rows(&scatter.covariance),
         dof: scatter.dof.iter().map(|d| Some(*d).filter(|d| d.is_finite())).collect(),
-        kind: format!("CR3 over its mean at equal errors, {} {}s", fit.clusters, fit.by),
+        kind: format!("CR3{scaled}, {} {}s", fit.clusters, fit.by),
     }
 }
 

@@ -237,6 +237,7 @@ mod tests {
             fitted: Vec::new(),
             by: "run",
             clusters: 9,
+            is_scaled: true,
             samples: 0,
             effective: 0.0,
             sigma: 0.0,

@@ -78,7 +78,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             (block.speed_m_s, block.acceleration_m_s2) = (vec![0.3], vec![0.1]);
         }
     })?;
-    // One run tells the correlation of its own noise only: its interval is a mixture over what that may be.
+    // One run tells the correlation of its own noise only: its interval allows for what that may be.
     for (case, runs, bar) in [(&nine, "9 runs", Bar::Exactly), (&one, "1 run", Bar::AtLeast)] {
         for (words, factor) in [("20 mN", 1.0), ("200 mN", 10.0)] {
             let forecast = case.forecast(factor)?;
