@@ -4,6 +4,7 @@
 //! |-----------------|----------------------------------------------------------------------|
 //! | [`planar`]      | motion, load and inertia in the plane                                |
 //! | [`drag`]        | drag of a link, by strips or lumped at its centre                    |
+//! | [`shares`]        | the drag law of a whole robot, shared out among its modules          |
 //! | [`chain`]       | links with their inertia in water                                    |
 //! | [`engine`]      | accelerations and joint torques in O(n)                              |
 //! | [`closed_form`] | the same in absolute angles, dense: the reference                    |
@@ -25,3 +26,4 @@ pub mod gait;
 pub mod path;
 pub mod period;
 pub mod planar;
+pub mod shares;

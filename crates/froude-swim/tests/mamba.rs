@@ -7,11 +7,13 @@
 
 use std::f64::consts::PI;
 
+use froude_hydro::{Body, CrossTerm, DragModel, Setting};
 use froude_swim::chain::{AddedMass, Chain, Link};
-use froude_swim::drag::{Cross, LinkDrag, Turning};
+use froude_swim::drag::{LinkDrag, Turning};
 use froude_swim::gait::{Envelope, Gait};
 use froude_swim::path::{State, Swimmer};
 use froude_swim::planar::Inertia;
+use froude_swim::shares::{Distribution, Torque, shares};
 
 const HALF_HEIGHT: f64 = 0.0588;
 const HALF_WIDTH: f64 = 0.0394;
@@ -117,50 +119,23 @@ fn strips_have_the_figures_of_an_independent_program() {
     }
 }
 
-/// f4 of H8LT in uniform shares: a tenth of the whole robot's force on each module, by the module's own speed.
-struct F4 {
-    links: Set,
-    ends: Set,
-    cross: [f64; 2],
-}
+/// f4 of H8LT by rig and tank, in the order of the model: C_f, C_d, C_fHT, C_dHT, C_XY.
+const F4_RIG: [f64; 10] = [0.0152, 0.0, 0.0045, 1.5249, 0.0, 0.0795, 0.2498, 1.8852, 0.0870, 0.8704];
+const F4_TANK: [f64; 10] = [0.0, 0.0, 0.0133, 1.4272, 0.0148, 0.1769, 0.2451, 1.1770, 0.0351, 0.4612];
 
-const F4_RIG: F4 = F4 {
-    links: Set { c_f: [0.0152, 0.0045], c_d: [0.0, 1.5249] },
-    ends: Set { c_f: [0.0, 0.2498], c_d: [0.0795, 1.8852] },
-    cross: [0.0870, 0.8704],
-};
-const F4_TANK: F4 = F4 {
-    links: Set { c_f: [0.0, 0.0133], c_d: [0.0, 1.4272] },
-    ends: Set { c_f: [0.0148, 0.2451], c_d: [0.1769, 1.1770] },
-    cross: [0.0351, 0.4612],
-};
-
-fn h8lt(set: &F4, friction: bool) -> Chain {
-    let (a, b, l) = (HALF_HEIGHT, HALF_WIDTH, HALF_LENGTH);
-    let along = 8.0 * 0.5 * DENSITY * PI * 0.5 * (a + b) * 2.0 * l;
-    let across = 8.0 * 0.5 * DENSITY * 2.0 * a * 2.0 * l;
-    let (ends_x, ends_y) = (0.5 * DENSITY * PI * a * b, 0.5 * DENSITY * (0.011 + 0.008));
-    let share = |k: usize| (along * set.links.c_f[k] + ends_x * set.ends.c_f[k]) / 10.0;
-    let share_y = |k: usize| (across * set.links.c_d[k] + ends_y * set.ends.c_d[k]) / 10.0;
-    let turn = DENSITY * PI * (a + b) * l.powi(3);
-    let torque = if friction {
-        // Friction of eight links, shared by ten.
-        [0.8 * turn / 6.0 * set.links.c_f[0], 0.8 * turn * l / 8.0 * set.links.c_f[1]]
-    } else {
-        [share_y(0) * l * l / 3.0, share_y(1) * l.powi(3) / 4.0]
+fn h8lt(c: &[f64; 10], torque: Torque) -> Chain {
+    let link = froude_hydro::Link {
+        major_semi_axis_m: HALF_HEIGHT,
+        minor_semi_axis_m: HALF_WIDTH,
+        half_length_m: HALF_LENGTH,
     };
-    let cross = Cross {
-        of_speed: [-DENSITY * a * l * set.cross[0] / 10.0, DENSITY * a * l * set.cross[1] / 10.0],
-        smooth_m_s: 1e-3,
-    };
+    let body = Body { link, head_side_area_m2: 0.011, tail_side_area_m2: 0.008 };
+    let cross_term = CrossTerm::Smooth { epsilon_m_s: 1e-3 };
+    let setting = Setting { cross_term, ..Setting::as_published(body, 8.0, DENSITY) };
     let mut chain = chain(&F2_CFD, false);
-    for link in &mut chain.links {
-        link.drag = LinkDrag {
-            along: [share(0), share(1)],
-            across: [share_y(0), share_y(1)],
-            cross: Some(cross),
-            turning: Turning::Lumped(torque),
-        };
+    for (link, drag) in chain.links.iter_mut().zip(shares(DragModel::F4, &setting, c, (Distribution::Uniform, torque)))
+    {
+        link.drag = drag;
     }
     chain
 }
@@ -169,16 +144,17 @@ fn h8lt(set: &F4, friction: bool) -> Chain {
 #[test]
 fn f4_in_uniform_shares_has_the_figures_of_an_independent_program() {
     let rows = [
-        (&F4_RIG, false, [0.1491, 0.1701, 1.141]),
-        (&F4_TANK, false, [0.2005, 0.0842, 0.420]),
-        (&F4_RIG, true, [0.1562 / 1.048, 0.1562, 1.048]),
-        (&F4_TANK, true, [0.0680 / 0.339, 0.0680, 0.339]),
+        (&F4_RIG, Torque::CrossFlow, [0.1491, 0.1701, 1.141]),
+        (&F4_TANK, Torque::CrossFlow, [0.2005, 0.0842, 0.420]),
+        (&F4_RIG, Torque::Friction, [0.1562 / 1.048, 0.1562, 1.048]),
+        (&F4_TANK, Torque::Friction, [0.0680 / 0.339, 0.0680, 0.339]),
     ];
-    for (set, friction, printed) in rows {
-        let (chain, gait) = (h8lt(set, friction), gait(Envelope::Lateral));
+    for (set, torque, printed) in rows {
+        let (chain, gait) = (h8lt(set, torque), gait(Envelope::Lateral));
         let found = Swimmer::new(&chain, &gait).periodic(400).unwrap();
         let all = [found.speed_m_s, found.net_w, found.net_w / found.speed_m_s];
-        let digits = [if friction { 1e-3 } else { 1e-4 }, 1e-4, 1e-3];
+        // Where the program prints J/m and W only, the speed is their quotient.
+        let digits = [if torque == Torque::Friction { 1e-3 } else { 1e-4 }, 1e-4, 1e-3];
         for k in 0..3 {
             near(all[k], printed[k], digits[k], "f4");
         }
@@ -205,4 +181,28 @@ fn a_minute_closes_its_energy_and_has_converged() {
         let residual = state.work_j - state.loss_j - (energy(&mut swimmer, *time, state) - at_start);
         assert!(residual.abs() < 1e-10 * state.absolute_j.max(1.0), "{time} s: {residual} J of {}", state.absolute_j);
     }
+}
+
+/// J/m of f1, f2 and f4 of the tank by strips: 4.3 times between laws.
+#[test]
+fn the_tank_s_laws_by_strips_have_the_cost_of_an_independent_program() {
+    let chains = [chain(&F1_TANK, true), chain(&F2_TANK, true), h8lt(&F4_TANK, Torque::Strip)];
+    for (chain, cost) in chains.iter().zip([2.062, 1.178, 0.478]) {
+        let gait = gait(Envelope::Lateral);
+        let found = Swimmer::new(chain, &gait).periodic(400).unwrap();
+        near(found.net_w / found.speed_m_s, cost, 1e-3, "strip");
+    }
+}
+
+/// Without linear terms nothing has a scale of speed: U ∝ ω, P ∝ ω³ and the cost ∝ ω².
+#[test]
+fn a_square_law_scales_with_the_frequency() {
+    let square = Set { c_f: [0.0, 0.0544], c_d: [0.0, 1.8601] };
+    let chain = chain(&square, true);
+    let slow = gait(Envelope::Lateral);
+    let fast = Gait { frequency: 2.0 * slow.frequency, ..slow.clone() };
+    let (slow, fast) =
+        (Swimmer::new(&chain, &slow).periodic(200).unwrap(), Swimmer::new(&chain, &fast).periodic(200).unwrap());
+    assert!((fast.speed_m_s / slow.speed_m_s / 2.0 - 1.0).abs() < 1e-10, "{} {}", fast.speed_m_s, slow.speed_m_s);
+    assert!((fast.net_w / slow.net_w / 8.0 - 1.0).abs() < 1e-10, "{} {}", fast.net_w, slow.net_w);
 }
