@@ -1,6 +1,6 @@
 //! Drag of one link.
 //!
-//! Along the link −(c₁ u + c₂ u|u|), and what flow across it does along it, −(x₁ |v| + x₂ v²) u/√(u² + ε²), which resists where the bracket is positive. Across it
+//! Along the link −(c₁ u + c₂ u|u|), and what flow across it does along it, −(x₁ |v| + x₂ v²) u/√(u² + ε²), which resists where the bracket is positive, both at its centre. Across it
 //! −(c₁ v + c₂ v|v|). Either by strips, whose speed w = v + xω differs along the link, or at the centre with a torque of turning:
 //!
 //! | form | load across and moment | source |
@@ -58,17 +58,15 @@ impl LinkDrag {
     /// Load of the water on a link that moves through it.
     #[must_use]
     pub fn load(&self, half_length_m: f64, [w, u, v]: Motion) -> Load {
-        let x = -law(self.along, u);
-        let by_cross = |v: f64| self.cross.map_or(0.0, |cross| cross.force(u, v));
+        let x = self.cross.map_or(0.0, |cross| cross.force(u, v)) - law(self.along, u);
         match self.turning {
-            Turning::Lumped(torque) => [-law(torque, w), x + by_cross(v), -law(self.across, v)],
+            Turning::Lumped(torque) => [-law(torque, w), x, -law(self.across, v)],
             Turning::Strip => {
                 let mut load = [0.0, x, 0.0];
                 for (point, weight) in POINTS.iter().zip(WEIGHTS) {
                     let at = half_length_m * point;
                     let strip = weight * law(self.across, v + at * w);
                     load[0] -= at * strip;
-                    load[1] += weight * by_cross(v + at * w);
                     load[2] -= strip;
                 }
                 load
