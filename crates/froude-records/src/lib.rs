@@ -55,6 +55,7 @@ pub mod plausible;
 mod prior_record;
 mod raw_column;
 pub mod read;
+pub mod robot;
 pub mod rotation;
 pub mod run;
 pub mod scale;

@@ -15,12 +15,11 @@ use froude::methods::tank::accelerated_tow::simulate::{
 };
 use froude::methods::tank::accelerated_tow::source::{declared, setup_of, without_rig};
 use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
-use froude::records::estimate::Estimate;
 use rayon::prelude::*;
 
 use crate::claims::Claims;
 use crate::family::Bar;
-use crate::steady::judged;
+use crate::steady::{Fitted, judged};
 
 const SECTION: &str = "Accelerated tow: drag and added mass in one run, by its twin";
 
@@ -52,7 +51,7 @@ impl Case {
         Ok(forecast(&self.planned, &self.setup, &self.truth, &self.sensors(factor), &self.source)?)
     }
 
-    fn one(&self, factor: f64, seed: u64) -> Result<Estimate, Box<dyn Error + Send + Sync>> {
+    fn one(&self, factor: f64, seed: u64) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
         let logs = simulated(&self.planned, &self.setup, &self.truth, &self.sensors(factor), seed).ok_or("no mass")?;
         let mounted: Vec<_> = logs.iter().map(Simulated::view).collect();
         let reduced = reduce(&mounted, &self.setup).ok_or("no mass")?;
@@ -67,7 +66,7 @@ impl Case {
         };
         let asked = Asked { method: "accelerated_tow", laws, scatter, choice: Choice::Selection, has_budget: true };
         let mut result = identify_laws(&self.campaign, &without_rig(&self.source), observations, asked, &|_| {})?;
-        Ok(result.estimates.remove(0))
+        Ok(result.estimates.remove(0).coefficients)
     }
 }
 
@@ -84,7 +83,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
             let forecast = case.forecast(factor)?;
             let expected: Vec<(&str, f64, f64)> =
                 forecast.expected.iter().map(|e| (e.name.as_str(), e.value, e.combined.standard)).collect();
-            let fits: Vec<Estimate> =
+            let fits: Vec<Fitted> =
                 (0..seeds).into_par_iter().filter_map(|seed| case.one(factor, 1 + seed as u64).ok()).collect();
             judged(claims, SECTION, &expected, &fits, (words, runs, factor == 1.0, seeds), bar);
             if factor == 1.0 {
@@ -96,10 +95,10 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
 }
 
 /// Correlation of drag and added mass: forecast, and that of the seeds.
-fn correlation(claims: &mut Claims, forecast: &Forecast, fits: &[Estimate], runs: &str) {
+fn correlation(claims: &mut Claims, forecast: &Forecast, fits: &[Fitted], runs: &str) {
     let names: Vec<&str> = forecast.expected.iter().map(|e| e.name.as_str()).collect();
     let Some(added) = names.iter().position(|n| n.starts_with("C_A")) else { return };
-    let value = |fit: &Estimate, k: usize| fit.coefficients.get(names[k]).and_then(|c| c.value).unwrap_or(f64::NAN);
+    let value = |fit: &Fitted, k: usize| fit.get(names[k]).and_then(|c| c.value).unwrap_or(f64::NAN);
     let n = fits.len() as f64;
     let mean: Vec<f64> = (0..names.len()).map(|k| fits.iter().map(|f| value(f, k)).sum::<f64>() / n).collect();
     let product =

@@ -11,11 +11,15 @@ use froude::methods::tank::steady::row::{Row, table};
 use froude::methods::tank::steady::simulate::{Plan, plan_of, simulated};
 use froude::methods::tank::steady::{SteadyError, point};
 use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
-use froude::records::estimate::Estimate;
+use froude::records::estimate::Coefficient;
+use indexmap::IndexMap;
 use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::family::{Bar, covers};
+
+/// The coefficients of a fit: of twenty thousand, nothing else is kept.
+pub type Fitted = IndexMap<String, Coefficient>;
 
 const SECTION: &str = "Steady tows: raw series by their twin";
 
@@ -31,7 +35,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: usize) -> Result<(), Box<dyn
         };
         let sensors: Vec<SensorSpec> = sensors.iter().map(louder).collect();
         let forecast = expected(&plan, &source, &sensors)?;
-        let fits: Vec<Estimate> = (0..seeds)
+        let fits: Vec<Fitted> = (0..seeds)
             .into_par_iter()
             .filter_map(|seed| one(&campaign, &source, &plan, &sensors, seed as u64).ok())
             .collect();
@@ -47,7 +51,7 @@ fn one(
     plan: &Plan,
     sensors: &[SensorSpec],
     seed: u64,
-) -> Result<Estimate, Box<dyn Error + Send + Sync>> {
+) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
     let spec = source.steady.unwrap_or_default();
     let logged = simulated(plan, source, sensors, &source.uncertainty, 1 + seed);
     let rows = logged.iter().map(|run| {
@@ -62,7 +66,7 @@ fn one(
     let rows: Vec<Row> = rows.collect::<Result<_, SteadyError>>()?;
     let observations = reduce_table(campaign, source, &table(source.input.path(), &rows), Vec::new())?;
     let mut result = identify_observations(campaign, source, observations, "steady", &|_| {})?;
-    Ok(result.estimates.remove(0))
+    Ok(result.estimates.remove(0).coefficients)
 }
 
 /// Coverage of the intervals, and the errors of the seeds beside the forecast.
@@ -70,7 +74,7 @@ pub fn judge(
     claims: &mut Claims,
     section: &'static str,
     forecast: &[Expected],
-    fits: &[Estimate],
+    fits: &[Fitted],
     (words, runs, is_judged, seeds): (&str, &str, bool, usize),
 ) {
     let expected: Vec<(&str, f64, f64)> =
@@ -86,11 +90,11 @@ pub fn judged(
     claims: &mut Claims,
     section: &'static str,
     forecast: &[(&str, f64, f64)],
-    fits: &[Estimate],
+    fits: &[Fitted],
     (words, runs, is_judged, seeds): (&str, &str, bool, usize),
     bar: Bar,
 ) {
-    let of = |fit: &Estimate, name: &str| fit.coefficients.get(name).and_then(|c| Some((c.value?, c.interval_95?)));
+    let of = |fit: &Fitted, name: &str| fit.get(name).and_then(|c| Some((c.value?, c.interval_95?)));
     let mut counts = vec![Count::default(); forecast.len()];
     let (mut squares, mut widths) = (vec![0.0; forecast.len()], vec![0.0; forecast.len()]);
     for fit in fits {

@@ -20,7 +20,6 @@ use froude::methods::tank::weight_tow::reduce::{Reduced, reduce};
 use froude::methods::tank::weight_tow::simulate::{Weights, simulated, weights_of};
 use froude::methods::tank::weight_tow::source::{shared, with_track};
 use froude::records::campaign::{Campaign, SensorSpec, Source, read_campaign};
-use froude::records::estimate::Estimate;
 use froude::records::run::Declared;
 use froude::records::units::Dimension;
 use froude::records::weight_tow::WeightTowSpec;
@@ -28,7 +27,7 @@ use rayon::prelude::*;
 
 use crate::claims::{Claims, Verdict};
 use crate::coverage::{normal, problem_of};
-use crate::steady::judge;
+use crate::steady::{Fitted, judge};
 
 const SECTION: &str = "Weight-driven rig: tracks in pixels by their twin";
 
@@ -53,7 +52,7 @@ impl Case {
         self.campaign.simulate.as_ref().map_or(&[], |s| &s.sensors)
     }
 
-    fn one(&self, sensors: &[SensorSpec], seed: u64) -> Result<Estimate, Box<dyn Error + Send + Sync>> {
+    fn one(&self, sensors: &[SensorSpec], seed: u64) -> Result<Fitted, Box<dyn Error + Send + Sync>> {
         let logged = simulated(&self.weights, &self.spec, sensors, &self.source.uncertainty, 1 + seed);
         let mut rows = Vec::new();
         let mut reduced: Vec<Reduced> = Vec::new();
@@ -72,10 +71,10 @@ impl Case {
         let mut observations = reduce_table(&self.campaign, &own, &table(own.input.path(), &rows), Vec::new())?;
         observations.shared_errors.extend(shared(&reduced, &observations.data.loads()));
         let mut result = identify_observations(&self.campaign, &own, observations, "weight_tow", &|_| {})?;
-        Ok(result.estimates.remove(0))
+        Ok(result.estimates.remove(0).coefficients)
     }
 
-    fn fits(&self, sensors: &[SensorSpec], seeds: usize) -> Vec<Estimate> {
+    fn fits(&self, sensors: &[SensorSpec], seeds: usize) -> Vec<Fitted> {
         (0..seeds).into_par_iter().filter_map(|seed| self.one(sensors, seed as u64).ok()).collect()
     }
 
