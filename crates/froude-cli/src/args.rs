@@ -104,6 +104,11 @@ pub enum Verb {
         after_help = "Examples:\n  froude added-mass hull.stl --density '1025 kg/m^3'\n  froude added-mass robot.toml --links 1..9"
     )]
     AddedMass(Box<AddedMassArgs>),
+    /// Swim a robot of modules with a gait: speed, powers, cost of transport, torques and stability of the motion that repeats.
+    #[command(
+        after_help = "Example: froude swim robot.toml --gait lateral --amplitude '30 deg' --frequency '80 deg/s' --phase '40 deg'"
+    )]
+    Swim(SwimArgs),
     /// Characterise a towing carriage: calibrate, identify and tune it, and find drag from its motor current.
     #[command(after_help = "Example: froude carriage drag campaign-runs")]
     Carriage {
@@ -186,6 +191,43 @@ pub struct Experiment {
     /// Confirm the operator's steps without asking, on the twin only; otherwise a person confirms them at the terminal.
     #[arg(long)]
     pub yes: bool,
+}
+
+/// What `froude swim` takes.
+#[derive(Debug, clap::Args)]
+pub struct SwimArgs {
+    /// The robot (.toml): modules, drag and added mass by records.
+    pub robot: PathBuf,
+    /// How the amplitude goes along the body: alike at all joints, or growing to the tail.
+    #[arg(long, value_enum, default_value = "lateral")]
+    pub gait: GaitKind,
+    /// Amplitude of a joint (of the eel: of a joint behind the tail).
+    #[arg(long, value_name = "ANGLE")]
+    pub amplitude: String,
+    /// Angular frequency, or cycles: '80 deg/s', '0.22 Hz'.
+    #[arg(long, value_name = "FREQUENCY")]
+    pub frequency: String,
+    /// Phase from joint to joint.
+    #[arg(long, value_name = "ANGLE")]
+    pub phase: String,
+    /// Mean angle of every joint: turns.
+    #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]
+    pub turn: String,
+    /// Folder of trajectory.parquet; without it nothing is written.
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Periods of the trajectory.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub periods: u32,
+}
+
+/// How the amplitude of a gait goes along the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum GaitKind {
+    /// Alike at all joints.
+    Lateral,
+    /// i/(n+1) at joint i of n modules, from the head.
+    Eel,
 }
 
 /// What `froude added-mass` takes.

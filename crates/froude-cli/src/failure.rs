@@ -62,6 +62,19 @@ pub enum Failure {
         source: UnitError,
     },
 
+    /// An option that is no such quantity.
+    #[error("{option} {text:?} {problem}; write {example}")]
+    Quantity {
+        /// The option.
+        option: &'static str,
+        /// What was written.
+        text: String,
+        /// What is wrong with it.
+        problem: String,
+        /// How to write it.
+        example: &'static str,
+    },
+
     /// Runs that state no rig.
     #[error("the runs do not state which rig they come from")]
     NoRig,

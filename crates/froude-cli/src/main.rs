@@ -16,6 +16,7 @@ mod out;
 mod print;
 mod side_by_side;
 mod stage;
+mod swim;
 
 use std::process::ExitCode;
 
@@ -101,6 +102,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
             let input = args.input.clone();
             added_mass::added_mass(*args, cli.json).map_err(|error| mistaken::ADDED_MASS.explain(error, &[input]))?;
         }
+        Verb::Swim(args) => swim::swim(args, cli.json)?,
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
     Ok(())

@@ -13,6 +13,8 @@
 //! | [`gait`]        | joint angles over time                                               |
 //! | [`path`]          | a swimmer with a gait over time, its work and loss                   |
 //! | [`period`]        | the motion that repeats, its speed, powers and stability             |
+//! | [`robot`]         | a chain from a robot file and the records that it names              |
+//! | [`swim`]          | what a gait comes to                                                 |
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
@@ -26,4 +28,6 @@ pub mod gait;
 pub mod path;
 pub mod period;
 pub mod planar;
+pub mod robot;
 pub mod shares;
+pub mod swim;

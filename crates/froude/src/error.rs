@@ -59,6 +59,14 @@ pub enum Error {
     #[error(transparent)]
     Runner(#[from] froude_rig::campaign::runner::RunnerError),
 
+    /// A robot file gives no robot.
+    #[error(transparent)]
+    Robot(#[from] froude_swim::robot::RobotError),
+
+    /// A gait has no answer.
+    #[error(transparent)]
+    Swim(#[from] froude_swim::swim::SwimError),
+
     /// The report could not be drawn.
     #[error(transparent)]
     Report(#[from] froude_report::ReportError),
@@ -211,7 +219,9 @@ impl Error {
             | Self::OfAnotherMethod { .. }
             | Self::Drag(_)
             | Self::Servo(_)
-            | Self::Tuning(_) => true,
+            | Self::Tuning(_)
+            | Self::Robot(_)
+            | Self::Swim(_) => true,
             Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
         }
     }

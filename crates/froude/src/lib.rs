@@ -21,6 +21,7 @@ pub use froude_panel as panel;
 pub use froude_records as records;
 pub use froude_report as report;
 pub use froude_rig as rig;
+pub use froude_swim as swimmer;
 
 /// The methods that make estimates of sources, by what they are measured with.
 pub mod methods {
@@ -40,6 +41,7 @@ pub mod plan;
 mod registry;
 pub mod results;
 mod steps_page;
+pub mod swim;
 pub mod twin;
 
 /// What most programs need.

@@ -1,0 +1,18 @@
+//! Robot files: any text gives a chain of two modules at least, with positive masses, or an error that names the file.
+#![no_main]
+
+use std::path::Path;
+
+use froude_records::robot::parse_robot;
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|text: &str| {
+    // A record that exists, so that what follows it is read too.
+    match parse_robot(Path::new("/proc/self/robot.toml"), text) {
+        Ok(robot) => {
+            assert!((2..=1_000).contains(&robot.modules.len()));
+            assert!(robot.modules.iter().all(|m| m.mass_kg > 0.0 && m.inertia_kg_m2 > 0.0 && m.ahead_m.is_finite()));
+        }
+        Err(error) => assert!(error.to_string().starts_with("/proc/self/robot.toml"), "{error}"),
+    }
+});
