@@ -261,7 +261,8 @@ fn plan_and_fit_have_the_same_degrees_of_freedom() {
             buoyancy_n: BUOYANCY_N.iter().map(|b| Some(*b)).take(setup.bodies.len()).collect(),
             delay_s: Some(0.0),
         };
-        let plan = forecast(&planned, &setup, &truth, &drag, &[noise.clone()], &Identify::default()).unwrap();
+        let plan =
+            forecast(&planned, &setup, &truth, &drag, std::slice::from_ref(&noise), &Identify::default()).unwrap();
         // Cycles of one run are nearly alike: the sample at which each is cut, which the noise moves, changes what they tell of the linear drag.
         let within = if by_run { 0.003 } else { 0.15 };
         for (j, expected) in plan.expected.iter().enumerate() {
