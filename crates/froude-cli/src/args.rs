@@ -201,14 +201,14 @@ pub struct SwimArgs {
     /// How the amplitude goes along the body: alike at all joints, or growing to the tail.
     #[arg(long, value_enum, default_value = "lateral")]
     pub gait: GaitKind,
-    /// Amplitude of a joint (of the eel: of a joint behind the tail).
-    #[arg(long, value_name = "ANGLE")]
+    /// Amplitude of a joint; of the eel that of joint n+1, one behind the last.
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     pub amplitude: String,
-    /// Angular frequency, or cycles: '80 deg/s', '0.22 Hz'.
-    #[arg(long, value_name = "FREQUENCY")]
+    /// Angular frequency, or cycles a second: '80 deg/s', '0.22 Hz'.
+    #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true)]
     pub frequency: String,
     /// Phase from joint to joint.
-    #[arg(long, value_name = "ANGLE")]
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
     pub phase: String,
     /// Mean angle of every joint: turns.
     #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]

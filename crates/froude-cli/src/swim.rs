@@ -41,6 +41,11 @@ fn frequency(text: &str) -> Result<f64, Failure> {
     let example = "an angular speed or a frequency with its unit: '80 deg/s' or '0.22 Hz'";
     let found = quantity("--frequency", text, Dimension::ANGULAR_SPEED, example)?;
     let is_cycles = parse_quantity(text).is_ok_and(|q| q.unit.text.ends_with("Hz"));
+    // One over a second is either.
+    if !is_cycles && !["deg", "rad", "rev", "rpm"].iter().any(|angle| text.contains(angle)) {
+        let problem = "does not say whether it counts radians or cycles".to_owned();
+        return Err(Failure::Quantity { option: "--frequency", text: text.to_owned(), problem, example });
+    }
     let found = if is_cycles { std::f64::consts::TAU * found } else { found };
     if found > 0.0 && found.is_finite() {
         return Ok(found);

@@ -95,6 +95,15 @@ fn what_does_not_fit_is_said_with_numbers() {
     assert!(wide.contains("100 deg at joint 1") && wide.contains("90 deg"), "{wide}");
     let bare = refused(&example(), &["--amplitude", "30", "--frequency", "80 deg/s", "--phase", "40 deg"]);
     assert!(bare.contains("--amplitude \"30\" has no unit"), "{bare}");
+    // Slips of a unit: a chain of 180 m, and a link that takes tons along.
+    for (from, to) in [("\"90 mm\"", "\"9 m\""), ("\"1.653 kg\"", "\"1653 kg\"")] {
+        let slipped = refused(&changed(folder.path(), from, to), &GAIT);
+        assert!(slipped.contains("a slip of a unit"), "{slipped}");
+    }
+    let tall = swum(&changed(folder.path(), "\"58.8 mm\"", "\"588 mm\""), &[]);
+    assert!(tall["remarks"].to_string().contains("half height is 58.80 mm, and a module's is 588.0 mm"), "{tall}");
+    let still = refused(&example(), &["--amplitude", "0 deg", "--frequency", "80 deg/s", "--phase", "40 deg"]);
+    assert!(still.contains("does not swim"), "{still}");
     let none = changed(folder.path(), "restricted/f2", "restricted/f7");
     let none = refused(&none, &GAIT);
     assert!(none.contains("f7") && none.contains("circulation_tank_restricted/f4"), "{none}");

@@ -203,7 +203,7 @@ pub fn parse_robot(path: &Path, text: &str) -> Result<RobotFile, RecordError> {
     for section in root.sections("module")? {
         let (module, times) = module(&section)?;
         if modules.len() + times > MOST_MODULES as usize {
-            let problem = format!("makes {} modules; a chain has {MOST_MODULES} at most", modules.len() + times);
+            let problem = format!("makes more than {MOST_MODULES} modules; a chain has {MOST_MODULES} at most");
             return Err(RecordError::Value { place: section.place(), key: "count".to_owned(), problem });
         }
         modules.extend(std::iter::repeat_n(module, times));
@@ -243,6 +243,10 @@ fn from_record(source: Source<'_>, s: &Section<'_>) -> Result<FromRecord, Record
         s.text("record")?.ok_or_else(|| s.missing("record", "name the estimate record: record = \"tank.json\""))?;
     let path = source.relative(written);
     let place = s.place();
+    if path.is_dir() {
+        let problem = format!("is the folder {}; name the record in it", path.display());
+        return Err(RecordError::Value { place, key: "record".to_owned(), problem });
+    }
     if !path.is_file() {
         return Err(RecordError::MissingFile { place, key: "record".to_owned(), path });
     }

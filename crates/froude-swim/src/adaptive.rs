@@ -25,7 +25,7 @@ pub enum PathError {
     },
     /// The step control gave up.
     #[error(
-        "the path could not be followed beyond {time_s} s to a tolerance of {tolerance:e}: {found}; take a larger one, or softer joints"
+        "the path could not be followed beyond {time_s} s to a tolerance of {tolerance:e}: {found}; take a larger one"
     )]
     Steps {
         /// Time, s.

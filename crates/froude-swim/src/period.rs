@@ -2,7 +2,8 @@
 //!
 //! Nothing in the water depends on where the swimmer is and where it heads, so that the map of the head's own motion (ω, u, v) over a period has three
 //! numbers. Newton's method on it finds the one that repeats; the eigenvalues of its derivative are the Floquet multipliers, and one beyond 1 is a gait that leaves its own path. Speed is
-//! that of the centre of mass through the water from the beginning of a period to its end (chord), divided by the period.
+//! that of the centre of mass through the water from the beginning of a period, t = 0, to its end (chord), divided by the period: of a gait that turns it depends on where the
+//! period begins, and it is nothing after a full turn.
 //!
 //! **Units.** SI. **Source.** Nayfeh & Balachandran (1995), *Applied Nonlinear Dynamics*, 3.2 and 5.3.
 
@@ -28,6 +29,8 @@ pub struct Periodic {
     pub head: Motion,
     /// Speed through the water, m/s.
     pub speed_m_s: f64,
+    /// Way of the centre of mass in a period, m, in axes in which the head begins along x.
+    pub way_m: [f64; 2],
     /// Turn in a period, rad.
     pub turn: f64,
     /// Mean of Σ τφ̇, W.
@@ -49,6 +52,7 @@ pub struct Periodic {
 impl Swimmer<'_> {
     /// The periodic motion in `steps` steps a period; `None` where there is none within reach or an inertia is not positive.
     pub fn periodic(&mut self, steps: usize) -> Option<Periodic> {
+        let steps = steps.max(1);
         let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum::<f64>();
         let speed = length / self.chain.links.len() as f64 / self.gait.period_s();
         let scale = [speed / length, speed, speed];
@@ -59,6 +63,9 @@ impl Swimmer<'_> {
         for _ in 0..MOST_STEPS {
             let here = self.over(head, steps)?;
             let away = [0, 1, 2].map(|k| here.end.head[k] - head[k]);
+            if away.iter().any(|a| !a.is_finite()) {
+                return None;
+            }
             let residual = (0..3).map(|k| (away[k] / scale[k]).abs()).fold(0.0, f64::max);
             let derivative = self.derivative(head, &here.end.head, scale, steps)?;
             if residual < REPEATS {
@@ -75,7 +82,7 @@ impl Swimmer<'_> {
 
     fn told(&self, head: Motion, here: &Over, derivative: &Mat<f64>, residual: f64) -> Periodic {
         let period = self.gait.period_s();
-        let mut multipliers = [0.0; 3];
+        let mut multipliers = [f64::NAN; 3];
         if let Ok(found) = derivative.eigenvalues() {
             for (size, value) in multipliers.iter_mut().zip(found) {
                 *size = value.norm();
@@ -84,6 +91,7 @@ impl Swimmer<'_> {
         multipliers.sort_by(|a, b| b.total_cmp(a));
         Periodic {
             head,
+            way_m: here.way_m,
             speed_m_s: here.way_m[0].hypot(here.way_m[1]) / period,
             turn: here.end.heading,
             net_w: here.end.work_j / period,

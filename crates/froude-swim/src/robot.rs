@@ -55,6 +55,36 @@ pub enum RobotError {
         /// The coefficient.
         name: String,
     },
+    /// Torques of a friction that the law does not tell.
+    #[error("{id} is {law}, which has no friction of links: write torque = \"cross_flow\", or drag = \"strip\"")]
+    NoFriction {
+        /// The estimate.
+        id: String,
+        /// Its law.
+        law: String,
+    },
+    /// An added mass that is none.
+    #[error("{}: C_A of {id} is {value}; an added mass is above zero", .path.display())]
+    NotPositive {
+        /// The record.
+        path: PathBuf,
+        /// The estimate.
+        id: String,
+        /// C_A.
+        value: f64,
+    },
+    /// An estimate without an added mass that a link has.
+    #[error(
+        "{}: {id} has no C_A. The added mass of a link comes from C_A with the volume of a link that it refers to (forced oscillation, accelerated tow), or is written in numbers: \
+         added_mass = {{ sway = \"1.65 kg\", yaw = \"4.5e-3 kg m^2\" }}",
+        .path.display()
+    )]
+    NoAdded {
+        /// The record.
+        path: PathBuf,
+        /// The estimate.
+        id: String,
+    },
     /// Coefficients without what they refer to.
     #[error("{}: {id} does not say the {what} that its {of}; without it the numbers mean nothing", .path.display())]
     RefersTo {
@@ -76,6 +106,8 @@ pub struct Robot {
     pub chain: Chain,
     /// Ids of the estimates of drag and, where it comes from one, of added mass.
     pub estimates: (String, Option<String>),
+    /// The link that its coefficients of drag refer to.
+    pub refers_to: Section,
     /// Speeds at which the drag was fitted, m/s, as far as the record says.
     pub speed_m_s: Option<[f64; 2]>,
     /// Angles to the flow at which it was fitted, rad, as far as the record says.
@@ -104,6 +136,9 @@ impl Robot {
             DragForm::CrossFlow => Torque::CrossFlow,
             DragForm::Lumped => Torque::None,
         };
+        if torque == Torque::Friction && model == DragModel::F6 {
+            return Err(RobotError::NoFriction { id: drag.id.clone(), law: drag.law.name.clone() });
+        }
         let drags = shares(model, &setting, &coefficients, (distribution, torque));
         let (added, added_id) = added(file)?;
         let links = file.modules.iter().zip(drags).map(|(module, drag)| {
@@ -126,6 +161,7 @@ impl Robot {
         Ok(Self {
             chain: Chain { links: links.collect(), added_mass },
             estimates: (drag.id.clone(), added_id),
+            refers_to: setting.body.link,
             speed_m_s: range("speed"),
             angle_rad: range("angle"),
             mass_kg,
@@ -204,9 +240,11 @@ fn added(file: &RobotFile) -> Result<(Result<[f64; 3], f64>, Option<String>), Ro
     let e = &record.estimates[at];
     let coefficient = |name: &str| e.coefficients.get(name).and_then(|c: &Coefficient| c.value);
     let Some(c_a) = coefficient("C_A").or_else(|| coefficient("C_Ay")) else {
-        let name = "C_A".to_owned();
-        return Err(RobotError::Undetermined { path: from.path.clone(), id: e.id.clone(), name });
+        return Err(RobotError::NoAdded { path: from.path.clone(), id: e.id.clone() });
     };
+    if c_a.is_nan() || c_a <= 0.0 {
+        return Err(RobotError::NotPositive { path: from.path.clone(), id: e.id.clone(), value: c_a });
+    }
     let volume = measure(from, e, "link_volume", "C_A refers to, of a link")?;
     Ok((Err(file.density_kg_m3 * volume * c_a), Some(e.id.clone())))
 }

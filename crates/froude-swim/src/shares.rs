@@ -3,7 +3,7 @@
 //! | distribution | who has what | what it keeps |
 //! | --- | --- | --- |
 //! | `Uniform` | every module the n-th part of every term | if the whole takes power from the body at every speed, so does each module |
-//! | `ByOrigin` | terms of links (k G_T, k G_N) the links, those of head and tail (G_HT) half each, those of all modules every module alike; cross terms (G_XY) every module alike, since the law does not say whose they are | what the law means; single modules may gain power |
+//! | `ByOrigin` | terms of links (k G_T, k G_N) the links, those of head and tail (G_HT) by their side areas across and half each along, those of all modules every module alike; cross terms (G_XY) every module alike, since the law does not say whose they are | what the law means; single modules may gain power |
 //!
 //! Turning about a module's centre is told apart from the drag across it by `Torque`: strips (no torque of its own), strips of the friction along it as USR eq. 8 prints them,
 //! λ₂ = c₁ l²/3 and λ₃ = c₂ l³/4 with c of the skin friction of links (terms with G_T), or the same of the drag across.
@@ -50,15 +50,24 @@ pub fn shares(
     (distribution, torque): (Distribution, Torque),
 ) -> Vec<LinkDrag> {
     let modules = setting.n_links.round() as usize + 2;
-    (0..modules).map(|i| share(model, setting, coefficients, torque, |of| part(distribution, of, i, modules))).collect()
+    (0..modules).map(|i| share(model, setting, coefficients, torque, |of| part(distribution, of, i, setting))).collect()
 }
 
 /// What module i has of a term.
-fn part(distribution: Distribution, of: Factor, i: usize, modules: usize) -> f64 {
+fn part(distribution: Distribution, of: Factor, i: usize, setting: &Setting) -> f64 {
+    let modules = setting.n_links.round() as usize + 2;
+    let (head, both) = (setting.body.head_side_area_m2, setting.body.head_tail_side_area_m2());
     let is_end = i == 0 || i + 1 == modules;
     match (distribution, of) {
         (Distribution::ByOrigin, Factor::LinksGT | Factor::LinksGN) if is_end => 0.0,
         (Distribution::ByOrigin, Factor::LinksGT | Factor::LinksGN) => 1.0 / (modules - 2) as f64,
+        (Distribution::ByOrigin, Factor::GHTy) if is_end && both > 0.0 => {
+            if i == 0 {
+                head / both
+            } else {
+                1.0 - head / both
+            }
+        }
         (Distribution::ByOrigin, Factor::GHTx | Factor::GHTy) => {
             if is_end {
                 0.5

@@ -8,7 +8,7 @@
 //! | cost of transport | net power over speed, J/m, and over m g U |
 //! | extrapolated loss | share of the drag's power where a link's speed or angle to the flow lies outside of what its coefficients were fitted at |
 //!
-//! Positive over net power is between 1.5 and 10 in the gaits of the papers: neither is "the power".
+//! Positive over net power is between 1.5 and 10.4 in the gaits of the papers: neither is "the power".
 //!
 //! **Units.** SI.
 
@@ -23,6 +23,12 @@ use crate::shares::gains;
 pub const STEPS: usize = 400;
 /// Of powers, between which a period is one that repeats.
 const BALANCED: f64 = 1e-4;
+/// Most numbers of a trajectory: 800 MB.
+const MOST_NUMBERS: f64 = 1e8;
+/// A gait that moves a swimmer by less than this part of its length in a period does not swim.
+const STILL: f64 = 1e-9;
+/// A gain of less than this part of the net power is none.
+const NO_GAIN: f64 = 1e-3;
 /// m/s².
 const GRAVITY: f64 = 9.80665;
 
@@ -35,7 +41,7 @@ pub enum SwimError {
     Inertia,
     /// A gait that the joints do not allow.
     #[error(
-        "the gait asks for {asked} at joint {joint}, and the joints allow {allowed}: a smaller amplitude or frequency stays within"
+        "the gait asks for {asked} at joint {joint}, and the joints allow {allowed}: take a smaller amplitude or, for a rate, a lower frequency"
     )]
     Limit {
         /// The joint, from the head.
@@ -47,9 +53,29 @@ pub enum SwimError {
     },
     /// No motion repeats itself.
     #[error(
-        "no motion of this gait repeats itself from period to period within reach; a smaller amplitude, a lower frequency or more drag settles it"
+        "no motion of this gait repeats itself from period to period within reach; check its lengths, masses and added masses, where a slip of a unit does this; else take a smaller amplitude, or a frequency at which the drag settles it"
     )]
     NotPeriodic,
+    /// Nothing moves.
+    #[error(
+        "the gait does not swim: its speed is {speed_m_s:e} m/s; give it an amplitude, and a phase from joint to joint"
+    )]
+    Still {
+        /// m/s.
+        speed_m_s: f64,
+    },
+    /// A trajectory that no memory holds.
+    #[error(
+        "{periods} periods of {joints} joints are {numbers:e} numbers; a trajectory has {MOST_NUMBERS:e} at most: ask for fewer --periods"
+    )]
+    TooLong {
+        /// Periods.
+        periods: usize,
+        /// Joints.
+        joints: usize,
+        /// Numbers of the trajectory.
+        numbers: f64,
+    },
 }
 
 /// What a gait comes to.
@@ -59,6 +85,8 @@ pub struct Swim {
     pub periodic: Periodic,
     /// Net power over speed, J/m.
     pub cost_j_m: f64,
+    /// Positive power over speed, J/m.
+    pub cost_positive_j_m: f64,
     /// Net power over m g U.
     pub cost: f64,
     /// Largest rate of a joint, rad/s.
@@ -67,7 +95,7 @@ pub struct Swim {
     pub extrapolated: [Option<f64>; 2],
     /// Half of the loss is at smaller angles to the flow, rad.
     pub median_angle_rad: f64,
-    /// Largest power that a module gains from still water at the speeds reached, W, with its number from the head.
+    /// Largest power that a module gains from still water at the speeds reached, W, with its number from the head; less than a thousandth of the net power is none.
     pub gain_w: Option<(usize, f64)>,
 }
 
@@ -93,7 +121,13 @@ impl Robot {
             return Err(SwimError::Inertia);
         }
         let periodic = swimmer.periodic(STEPS).ok_or(SwimError::NotPeriodic)?;
-        if (periodic.loss_w / periodic.net_w - 1.0).abs() > BALANCED {
+        let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
+        if periodic.speed_m_s * gait.period_s() < STILL * length {
+            return Err(SwimError::Still { speed_m_s: periodic.speed_m_s });
+        }
+        // What is no number is not balanced either.
+        let is_balanced = (periodic.loss_w / periodic.net_w - 1.0).abs() <= BALANCED;
+        if !is_balanced {
             return Err(SwimError::NotPeriodic);
         }
         let losses = self.losses(&mut swimmer, periodic.head).ok_or(SwimError::Inertia)?;
@@ -102,12 +136,19 @@ impl Robot {
             losses.iter().filter(|l| is_outside(l)).map(|l| l.power_w).fold(0.0, |sum, power| sum + power) / all
         };
         let beyond = |range: Option<[f64; 2]>, of: &dyn Fn(&Loss) -> f64| {
-            range.map(|[low, high]| share(&|l| !(low..=high).contains(&of(l))))
+            range.map(|range| {
+                let [low, high] = folded(range);
+                share(&|l| !(low..=high).contains(&of(l)))
+            })
         };
         let fastest = losses.iter().map(|l| l.speed_m_s).fold(0.0, f64::max);
-        let gain = |(i, link): (usize, &crate::chain::Link)| Some((i + 1, gains(&link.drag, fastest)?.0));
+        let gain = |(i, link): (usize, &crate::chain::Link)| {
+            let (power, _) = gains(&link.drag, fastest)?;
+            (power > NO_GAIN * periodic.net_w).then_some((i + 1, power))
+        };
         Ok(Swim {
             cost_j_m: periodic.net_w / periodic.speed_m_s,
+            cost_positive_j_m: periodic.positive_w / periodic.speed_m_s,
             cost: periodic.net_w / (self.mass_kg * GRAVITY * periodic.speed_m_s),
             rate_rad_s: (1..=self.chain.joints())
                 .map(|i| size(gait, i, self.chain.joints()) * gait.frequency)
@@ -132,7 +173,8 @@ impl Robot {
                     speed_m_s: u.hypot(v),
                     // Fore and aft, and port and starboard, are alike.
                     angle_rad: v.abs().atan2(u.abs()),
-                    power_w: -dot(link.drag.load(link.half_length_m, *motion), *motion),
+                    // A link that gains is told apart.
+                    power_w: (-dot(link.drag.load(link.half_length_m, *motion), *motion)).max(0.0),
                 });
             }
             state = swimmer.step(i as f64 * h, h, &state)?;
@@ -147,6 +189,12 @@ struct Loss {
     speed_m_s: f64,
     angle_rad: f64,
     power_w: f64,
+}
+
+/// A range of sizes: of −39° to −10° that of 10° to 39°.
+fn folded([low, high]: [f64; 2]) -> [f64; 2] {
+    let least = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
+    [least, low.abs().max(high.abs())]
 }
 
 /// The angle below which half of the loss is.
@@ -213,24 +261,34 @@ pub struct Moment {
 }
 
 impl Robot {
-    /// The trajectory over so many periods from the motion that repeats, so many moments a period, in a current.
-    #[must_use]
+    /// The trajectory over so many periods from the motion that repeats, so many moments a period, in a current. Its first period leads along x.
+    ///
+    /// # Errors
+    ///
+    /// [`SwimError`]: more numbers than a memory holds, an inertia that is not positive.
     pub fn trajectory(
         &self,
         gait: &Gait,
-        head: Motion,
+        periodic: &Periodic,
         (periods, moments): (usize, usize),
         current_m_s: [f64; 2],
-    ) -> Option<Vec<Moment>> {
+    ) -> Result<Vec<Moment>, SwimError> {
+        let joints = self.chain.joints();
+        let numbers = periods as f64 * moments as f64 * (5 * joints + 20) as f64;
+        if numbers > MOST_NUMBERS {
+            return Err(SwimError::TooLong { periods, joints, numbers });
+        }
         let mut swimmer = Swimmer::new(&self.chain, gait);
         swimmer.current_m_s = current_m_s;
+        let moments = moments.max(1);
         let each = STEPS.div_ceil(moments);
         let h = gait.period_s() / (each * moments) as f64;
-        let mut state = State { head, ..State::default() };
+        let [x, y] = periodic.way_m;
+        let mut state = State { head: periodic.head, heading: -y.atan2(x), ..State::default() };
         let mut out = Vec::new();
         for i in 0..=periods * moments {
             let time_s = (i * each) as f64 * h;
-            let rates = swimmer.rates(time_s, &state)?;
+            let rates = swimmer.rates(time_s, &state).ok_or(SwimError::Inertia)?;
             out.push(Moment {
                 time_s,
                 state,
@@ -241,9 +299,9 @@ impl Robot {
                 energy_j: swimmer.energy_j(),
             });
             for k in 0..each {
-                state = swimmer.step((i * each + k) as f64 * h, h, &state)?;
+                state = swimmer.step((i * each + k) as f64 * h, h, &state).ok_or(SwimError::Inertia)?;
             }
         }
-        Some(out)
+        Ok(out)
     }
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use froude_records::number::{count, degrees, fixed, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::parquet_table::write_parquet;
-use froude_records::robot::{RobotFile, read_robot};
+use froude_records::robot::{ModuleFile, RobotFile, read_robot};
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::units::{Dimension, Unit, parse_unit};
 use froude_swim::gait::Gait;
@@ -36,6 +36,8 @@ pub struct Swum {
     pub swim: Swim,
     /// The robot.
     pub robot: Robot,
+    /// Half height, half width and half length of its modules, m.
+    pub sections: Vec<[f64; 3]>,
     /// The torque that joints allow, N m.
     pub torque_limit_n_m: Option<f64>,
     /// The trajectory, where it was asked for.
@@ -46,6 +48,8 @@ pub struct Swum {
 const MOMENTS: usize = 100;
 /// A body is neutral when it weighs less than this part of itself in water.
 const NEUTRAL: f64 = 0.005;
+/// Lengths that differ by less than this part are the same.
+const SAME: f64 = 0.01;
 
 /// Swims.
 ///
@@ -61,14 +65,14 @@ pub fn swim(job: &Job) -> Result<Swum, Error> {
         Some(out) => Some(trajectory(&file, &robot, job, &swim, out)?),
         None => None,
     };
-    Ok(Swum { name: file.name, swim, robot, torque_limit_n_m: file.joint.torque_n_m, written })
+    let section = |m: &ModuleFile| [m.link.major_semi_axis_m, m.link.minor_semi_axis_m, m.link.half_length_m];
+    let sections = file.modules.iter().map(section).collect();
+    Ok(Swum { name: file.name, swim, robot, sections, torque_limit_n_m: file.joint.torque_n_m, written })
 }
 
 fn trajectory(file: &RobotFile, robot: &Robot, job: &Job, swim: &Swim, out: &Path) -> Result<PathBuf, Error> {
-    let (periods, head) = (job.periods, swim.periodic.head);
-    let moments = robot
-        .trajectory(&job.gait, head, (periods, MOMENTS), file.current_m_s)
-        .ok_or(froude_swim::swim::SwimError::Inertia)?;
+    let whole = (job.periods, MOMENTS);
+    let moments = robot.trajectory(&job.gait, &swim.periodic, whole, file.current_m_s)?;
     std::fs::create_dir_all(out).map_err(|source| Error::Output { path: out.to_owned(), source })?;
     let path = out.join("trajectory.parquet");
     write_parquet(&table(&moments, &path), &path)?;
@@ -122,6 +126,7 @@ impl Swum {
         let rows = vec![
             row("speed", significant(p.speed_m_s, 4), "m/s"),
             row("cost of transport", significant(s.cost_j_m, 4), "J/m"),
+            row("the same by positive power", significant(s.cost_positive_j_m, 4), "J/m"),
             row("cost of transport over m g U", significant(s.cost, 3), "1"),
             row("net power: what the water takes", significant(p.net_w, 4), "W"),
             row("positive power: drives without recovery", significant(p.positive_w, 4), "W"),
@@ -153,11 +158,14 @@ impl Swum {
         let mut out = Vec::new();
         if p.multipliers[0] > 1.0 {
             out.push(format!(
-                "unstable: a small turn grows by {} from period to period, and the swimmer leaves this motion",
+                "unstable: a small deviation grows by a factor of {} from period to period, and the swimmer leaves this motion",
                 significant(p.multipliers[0], 3)
             ));
         }
         for (share, what) in s.extrapolated.iter().zip(["speed", "angle to the flow"]) {
+            if share.is_none() {
+                out.push(format!("the record does not say at what {what} its drag was fitted: how far it is stretched here is not known"));
+            }
             if let Some(share) = share.filter(|share| *share > 0.0) {
                 out.push(format!(
                     "extrapolated: {} of the loss is of links whose {what} lies outside of what the drag was fitted at",
@@ -168,7 +176,7 @@ impl Swum {
         out.push(format!("half of the loss is at angles to the flow below {}", degrees(s.median_angle_rad)));
         if let Some((module, power)) = s.gain_w {
             out.push(format!(
-                "not dissipative: module {module} gains up to {} W from still water at the speeds reached; choose distribution = \"uniform\", or a law that takes power at every speed",
+                "not dissipative: module {module} gains up to {} W from still water at speeds up to those reached; choose a law that takes power at every speed or, where it is by-origin, distribution = \"uniform\"",
                 significant(power, 2)
             ));
         }
@@ -178,6 +186,27 @@ impl Swum {
                 significant(p.torque_n_m, 3),
                 significant(limit, 3)
             ));
+        }
+        if let Some(id) = &self.robot.estimates.1 {
+            out.push(format!(
+                "C_A of {id} refers to links without head and tail; here every module has the added mass of a link"
+            ));
+        }
+        if self.robot.heavy_kg.is_none() {
+            out.push("not every module states its volume: whether the robot is neutral is not known".to_owned());
+        }
+        let of = &self.robot.refers_to;
+        let of = [of.major_semi_axis_m, of.minor_semi_axis_m, of.half_length_m];
+        let words = ["half height", "half width", "half length"];
+        for (k, name) in words.iter().enumerate() {
+            let other = self.sections.iter().map(|s| s[k]).find(|own| (own / of[k] - 1.0).abs() > SAME);
+            if let Some(own) = other {
+                out.push(format!(
+                    "the drag refers to a link whose {name} is {} mm, and a module's is {} mm: its forces are those of the link that was measured",
+                    significant(1e3 * of[k], 4),
+                    significant(1e3 * own, 4)
+                ));
+            }
         }
         if let Some(heavy) = self.robot.heavy_kg.filter(|heavy| heavy.abs() > NEUTRAL * self.robot.mass_kg) {
             let way = if heavy > 0.0 { "heavier" } else { "lighter" };
@@ -201,6 +230,7 @@ impl Swum {
             "added_mass": self.robot.estimates.1,
             "speed_m_s": p.speed_m_s,
             "cost_of_transport_j_m": s.cost_j_m,
+            "cost_of_transport_positive_j_m": s.cost_positive_j_m,
             "cost_of_transport": s.cost,
             "power_net_w": p.net_w,
             "power_positive_w": p.positive_w,
