@@ -144,6 +144,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
                 type_b: known.then_some(expanded / COVERAGE),
                 interval_95: known.then_some([value - expanded, value + expanded]),
                 effective_dof: None,
+                unconstrained: None,
             },
         );
     }

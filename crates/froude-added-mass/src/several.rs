@@ -441,6 +441,7 @@ fn record(
                     type_b: known.then_some(0.5 * u),
                     interval_95: known.then_some([a - u, a + u]),
                     effective_dof: None,
+                    unconstrained: None,
                 },
             );
         }

@@ -108,7 +108,23 @@ pub enum Verb {
     #[command(
         after_help = "Example: froude swim robot.toml --gait lateral --amplitude '30 deg' --frequency '80 deg/s' --phase '40 deg'"
     )]
-    Swim(SwimArgs),
+    Swim(Box<SwimArgs>),
+    /// Look at a robot before it swims: masses, volumes, trim, added mass and drag of each module, and what does not fit together.
+    #[command(after_help = "Example: froude robot inspect robot.toml")]
+    Robot {
+        /// What to do.
+        #[command(subcommand)]
+        job: RobotJob,
+    },
+    /// Compute the flow about a body: a campaign of OpenFOAM cases, planned, run on this machine or a Slurm cluster, and collected for identify.
+    #[command(
+        after_help = "Examples:\n  froude cfd plan campaign.toml\n  froude cfd run campaign.toml --jobs 2\n  froude identify campaign.toml"
+    )]
+    Cfd {
+        /// What to do.
+        #[command(subcommand)]
+        job: CfdJob,
+    },
     /// Characterise a towing carriage: calibrate, identify and tune it, and find drag from its motor current.
     #[command(after_help = "Example: froude carriage drag campaign-runs")]
     Carriage {
@@ -119,6 +135,116 @@ pub enum Verb {
     /// Print the JSON Schema of estimate.json.
     #[command(after_help = "Example: froude schema > estimate.schema.json")]
     Schema,
+}
+
+/// A campaign with computed cases.
+#[derive(Debug, clap::Args)]
+pub struct CfdCampaign {
+    /// The campaign, with a source of `kind = "cfd"` that names a folder for its `cases`.
+    pub campaign: PathBuf,
+    /// Which source, where several have cases.
+    #[arg(long)]
+    pub source: Option<String>,
+}
+
+/// What computes a campaign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum EngineName {
+    /// This machine, one processor a case.
+    Local,
+    /// This machine, several processors a case.
+    Mpi,
+    /// A Slurm cluster that shares this folder.
+    Slurm,
+}
+
+/// What `froude cfd` does.
+#[derive(Debug, Subcommand)]
+pub enum CfdJob {
+    /// Make the meshes and write the cases, with their cells, hours and disk; nothing runs.
+    #[command(after_help = "Example: froude cfd plan campaign.toml")]
+    Plan {
+        /// Which campaign.
+        #[command(flatten)]
+        of: CfdCampaign,
+        /// Cases side by side, for the hours [default: one for each processor].
+        #[arg(long, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+        jobs: Option<usize>,
+    },
+    /// Compute what has no result yet; run again, it goes on where it was, however it ended.
+    #[command(
+        after_help = "Examples:\n  froude cfd run campaign.toml --jobs 2\n  froude cfd run campaign.toml --engine slurm --time 60"
+    )]
+    Run {
+        /// Which campaign.
+        #[command(flatten)]
+        of: CfdCampaign,
+        /// What computes.
+        #[arg(long, value_enum, default_value_t = EngineName::Local)]
+        engine: EngineName,
+        /// Cases side by side [default: one for each processor; all that Slurm grants; one with --engine mpi].
+        #[arg(long, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+        jobs: Option<usize>,
+        /// Processors of a case [default: 2 with --engine mpi, else 1].
+        #[arg(long, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1024))]
+        ranks: Option<usize>,
+        /// Minutes of work in a task of Slurm.
+        #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..))]
+        batch: u16,
+        /// Time limit of a task of Slurm, minutes [default: four times what it is expected to take].
+        #[arg(long)]
+        time: Option<u32>,
+        /// Memory of a task of Slurm, MiB.
+        #[arg(long)]
+        memory: Option<u64>,
+        /// Partition of Slurm.
+        #[arg(long)]
+        partition: Option<String>,
+    },
+    /// Show how far a campaign is: a row per case, those that fail first.
+    #[command(after_help = "Example: froude cfd status campaign.toml")]
+    Status {
+        /// Which campaign.
+        #[command(flatten)]
+        of: CfdCampaign,
+    },
+    /// Write the table of computed forces, which identify reads by itself too.
+    #[command(after_help = "Example: froude cfd collect campaign.toml")]
+    Collect {
+        /// Which campaign.
+        #[command(flatten)]
+        of: CfdCampaign,
+    },
+    /// Put cases that failed or diverged back among those to compute.
+    #[command(after_help = "Example: froude cfd retry campaign.toml H3LT-u0.4-a30")]
+    Retry {
+        /// Which campaign.
+        #[command(flatten)]
+        of: CfdCampaign,
+        /// Names of cases [default: all that failed or diverged].
+        cases: Vec<String>,
+    },
+    /// Compute single cases, each by its folder: what a queue of any kind runs.
+    #[command(after_help = "Example: froude cfd case cases/cases/H3LT-u0.4-a30")]
+    Case {
+        /// Folders of cases.
+        #[arg(required = true)]
+        folders: Vec<PathBuf>,
+        /// Processors of a case.
+        #[arg(long, default_value_t = 1, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1024))]
+        ranks: usize,
+    },
+}
+
+/// What `froude robot` does.
+#[derive(Debug, Subcommand)]
+pub enum RobotJob {
+    /// Show masses, volumes, trim, added mass and drag of each module, the forces of the whole, and what does not fit together.
+    #[command(after_help = "Example: froude robot inspect robot.toml")]
+    Inspect {
+        /// The robot (.toml, or .urdf with a .toml of the same name for the water).
+        robot: PathBuf,
+    },
 }
 
 /// What `froude carriage` does.
@@ -194,40 +320,64 @@ pub struct Experiment {
 }
 
 /// What `froude swim` takes.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Clone, clap::Args)]
 pub struct SwimArgs {
-    /// The robot (.toml): modules, drag and added mass by records.
+    /// The robot (.toml): modules, drag and added mass by records; or a .urdf with a .toml of the same name for the water.
     pub robot: PathBuf,
-    /// How the amplitude goes along the body: alike at all joints, or growing to the tail.
-    #[arg(long, value_enum, default_value = "lateral")]
-    pub gait: GaitKind,
-    /// Amplitude of a joint; of the eel that of joint n+1, one behind the last.
+    /// lateral: the amplitude alike at all joints; eel: growing to the tail; or a gait file (.toml).
+    #[arg(long, value_name = "KIND|FILE", default_value = "lateral")]
+    pub gait: String,
+    /// Amplitude of a joint; of the eel that of joint n+1, one behind the last. Stands before that of a gait file, like the next three.
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
-    pub amplitude: String,
+    pub amplitude: Option<String>,
     /// Angular frequency, or cycles a second: '80 deg/s', '0.22 Hz'.
     #[arg(long, value_name = "FREQUENCY", allow_hyphen_values = true)]
-    pub frequency: String,
+    pub frequency: Option<String>,
     /// Phase from joint to joint.
     #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
-    pub phase: String,
-    /// Mean angle of every joint: turns.
-    #[arg(long, value_name = "ANGLE", default_value = "0 deg", allow_hyphen_values = true)]
-    pub turn: String,
-    /// Folder of trajectory.parquet; without it nothing is written.
+    pub phase: Option<String>,
+    /// Mean angle of every joint: turns [default: 0 deg].
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true)]
+    pub turn: Option<String>,
+    /// Amplitude of the joints that pitch, of a robot of three dimensions [default: 0 deg].
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, conflicts_with_all = ["sweep", "track"])]
+    pub pitch_amplitude: Option<String>,
+    /// By how much the wave of the joints that pitch is ahead of that of the others: at 90 deg the body is a helix [default: 90 deg].
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, conflicts_with_all = ["sweep", "track"])]
+    pub pitch_ahead: Option<String>,
+    /// Mean angle of every joint that pitches: bow up or down [default: 0 deg].
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, conflicts_with_all = ["sweep", "track"])]
+    pub pitch_turn: Option<String>,
+    /// Recorded joint angles instead of a gait: a table (.csv, .parquet) with time and phi_1, phi_2, … from the head.
+    #[arg(long, value_name = "TABLE", conflicts_with_all = ["gait", "amplitude", "frequency", "phase", "turn", "periods"])]
+    pub track: Option<PathBuf>,
+    /// Many gaits instead of one: 'amplitude=10..50 deg:9, phase=10..80 deg:8'; also frequency and turn. Writes sweep.parquet; started again after a kill it goes on.
+    #[arg(long, value_name = "RANGES", requires = "out", conflicts_with_all = ["track", "periods"])]
+    pub sweep: Option<String>,
+    /// Gaits of the ranges of --sweep that no other beats in both: two of speed, power, cost. Refines between the grid's points and writes front.parquet.
+    #[arg(long, value_name = "A,B", requires = "sweep", value_delimiter = ',', num_args = 1, value_parser = ["speed", "power", "cost"])]
+    pub optimise: Vec<String>,
+    /// Draw the coefficients so many times from the covariance of their record: 95 % intervals of speed, powers and cost; in a sweep, a row for each draw.
+    #[arg(long, value_name = "N", conflicts_with = "track", value_parser = clap::value_parser!(u32).range(100..=100_000))]
+    pub draws: Option<u32>,
+    /// Seed of the draws: the same gives the same.
+    #[arg(long, default_value_t = 1, requires = "draws")]
+    pub seed: u64,
+    /// What speed and cost of transport owe to each coefficient, and which to measure next.
+    #[arg(long, conflicts_with_all = ["track", "sweep"])]
+    pub sensitivity: bool,
+    /// Motor of the joints (.toml): largest torque over speed, efficiency.
+    #[arg(long, value_name = "FILE")]
+    pub motor: Option<PathBuf>,
+    /// The longest step in time, of a loop that drives servos: '2 ms' [default: as short as waves, drag and servos need].
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
+    pub step: Option<String>,
+    /// Folder of trajectory.parquet, report.html, animation.html and result.json, or of sweep.parquet; without it nothing is written. The trajectory begins with the motion that repeats or, where the robot file has a section of its start, there.
     #[arg(long)]
     pub out: Option<PathBuf>,
     /// Periods of the trajectory.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub periods: u32,
-}
-
-/// How the amplitude of a gait goes along the body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum GaitKind {
-    /// Alike at all joints.
-    Lateral,
-    /// i/(n+1) at joint i of n modules, from the head.
-    Eel,
 }
 
 /// What `froude added-mass` takes.

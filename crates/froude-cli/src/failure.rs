@@ -26,6 +26,17 @@ pub enum Failure {
         instead: String,
     },
 
+    /// What the program needs of the system is not to be had.
+    #[error("the system does not give what is needed: {0}")]
+    Program(std::io::Error),
+
+    /// Stopped as asked.
+    #[error("stopped as asked, nothing is lost: froude cfd run {} goes on where it was", .again.display())]
+    Cancelled {
+        /// The campaign.
+        again: PathBuf,
+    },
+
     /// An option that is called otherwise now.
     #[error("{old} is now {new}: write {instead}")]
     Renamed {
@@ -60,6 +71,15 @@ pub enum Failure {
         text: String,
         /// What is wrong with it.
         source: UnitError,
+    },
+
+    /// A gait without one of its numbers.
+    #[error("a gait has {option}: write {option} '{example}', or name a gait file: --gait gait.toml")]
+    NoGait {
+        /// The option.
+        option: &'static str,
+        /// A value.
+        example: &'static str,
     },
 
     /// An option that is no such quantity.

@@ -9,6 +9,7 @@ mod added_mass;
 mod args;
 mod carriage;
 mod cells;
+mod cfd;
 mod failure;
 mod last_word;
 mod mistaken;
@@ -20,11 +21,12 @@ mod swim;
 
 use std::process::ExitCode;
 
-use args::{Cli, Verb};
+use args::{Cli, RobotJob, Verb};
 use clap::Parser;
 use failure::Failure;
 use froude::pipeline::{self, Input, Job};
 use froude::records::text::counted;
+use froude::swim::look::look;
 use froude::{demo, inspect, plan, twin};
 
 fn main() -> ExitCode {
@@ -97,12 +99,20 @@ fn run(cli: Cli) -> Result<(), Failure> {
             }
         }
         Verb::Run { campaign, out, check, yes } => carriage::run(campaign, out, check, yes, cli.json)?,
+        Verb::Cfd { job } => cfd::job(job, cli.json)?,
         Verb::Carriage { job } => carriage::job(job, cli.json)?,
         Verb::AddedMass(args) => {
             let input = args.input.clone();
             added_mass::added_mass(*args, cli.json).map_err(|error| mistaken::ADDED_MASS.explain(error, &[input]))?;
         }
-        Verb::Swim(args) => swim::swim(args, cli.json)?,
+        Verb::Swim(args) => swim::swim(*args, cli.json)?,
+        Verb::Robot { job: RobotJob::Inspect { robot } } => {
+            let found = look(&robot).map_err(|error| mistaken::ROBOT.explain(error, &[robot]))?;
+            if cli.json {
+                return print::json(&found.as_json());
+            }
+            print::summary(&found.section());
+        }
         Verb::Schema => out::say!("{}", froude::records::schema::ESTIMATE_JSON_SCHEMA.trim_end()),
     }
     Ok(())

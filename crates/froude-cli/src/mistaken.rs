@@ -15,6 +15,7 @@ pub enum Kind {
     /// Any other campaign.
     Campaign,
     Body,
+    Robot,
     TableSidecar,
     RunSidecar,
     Run,
@@ -72,6 +73,9 @@ pub const ADDED_MASS: Takes = Takes {
     words: "a body file (.toml) or a closed mesh (.stl, .obj, …)",
 };
 
+pub const ROBOT: Takes =
+    Takes { verb: "robot inspect", kinds: &[Kind::Robot], words: "a robot file (.toml, or .urdf with a sidecar)" };
+
 impl Takes {
     /// The same error, or what was named instead of what the verb takes.
     pub fn explain(&self, error: impl Into<Failure>, paths: &[PathBuf]) -> Failure {
@@ -113,6 +117,7 @@ impl Takes {
             Kind::Drive => format!("To drive it: froude run {shown}"),
             Kind::Campaign => format!("To fit it: froude identify {shown}"),
             Kind::Body | Kind::Mesh => format!("To compute with it: froude added-mass {shown}"),
+            Kind::Robot => format!("To see what is in it: froude robot inspect {shown}"),
             Kind::TableSidecar => {
                 let tables = ["csv", "parquet"].map(|extension| path.with_extension(extension));
                 let table = tables.iter().find(|table| table.exists()).unwrap_or(&tables[0]).display();
@@ -148,6 +153,7 @@ impl Kind {
         match self {
             Self::Drive | Self::Campaign => "a campaign",
             Self::Body => "a body file",
+            Self::Robot => "a robot file",
             Self::TableSidecar => "the sidecar of a table",
             Self::RunSidecar => "the sidecar of a run",
             Self::Run => "a run",
@@ -193,6 +199,7 @@ fn kind_of(path: &Path) -> Option<Kind> {
         "json" => Some(Kind::Record),
         "mcap" => Some(Kind::Run),
         "stl" | "obj" | "ply" | "gdf" | "dat" | "msh" => Some(Kind::Mesh),
+        "urdf" => Some(Kind::Robot),
         "toml" => kind_of_toml(path),
         _ => None,
     }
@@ -221,6 +228,8 @@ fn kind_of_toml(path: &Path) -> Option<Kind> {
         Kind::RunSidecar
     } else if has_section("rig") {
         Kind::Drive
+    } else if has_section("module") && has_section("fluid") {
+        Kind::Robot
     } else if has_section("source") {
         Kind::Campaign
     } else if has_section("columns") || has_section("constants") {

@@ -79,6 +79,36 @@ impl Spinner {
         self.0.set_message(visible(&step.into()).into_owned());
     }
 
+    /// Does something that writes lines of its own.
+    pub fn suspend(&self, write: impl FnOnce()) {
+        self.0.suspend(write);
+    }
+
+    pub fn finish_and_clear(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// How much of a long work is done, on standard error; silent where that is no terminal.
+pub struct Bar(ProgressBar);
+
+impl Bar {
+    /// Of things that are counted in the plural.
+    pub fn of(what: &str) -> Self {
+        let bar = ProgressBar::new(0);
+        let template = format!("{{bar:30}} {{pos}} of {{len}} {what}, {{eta}} left");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(std::time::Duration::from_millis(200));
+        Self(bar)
+    }
+
+    pub fn is_at(&self, done: usize, all: usize) {
+        self.0.set_length(all as u64);
+        self.0.set_position(done as u64);
+    }
+
     pub fn finish_and_clear(&self) {
         self.0.finish_and_clear();
     }

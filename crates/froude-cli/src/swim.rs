@@ -1,61 +1,140 @@
 //! `froude swim`: parse, call, print.
 
+mod sweep;
+
+use std::path::PathBuf;
+
+use froude::records::gait_file::angular_frequency;
 use froude::records::units::{Dimension, parse_quantity};
-use froude::swim::{Job, swim as run};
+use froude::swim::uncertain::{Drawing, Uncertain, uncertain};
+use froude::swim::{Answer, Job, Moves, Pitching, Typed, swim_anywhere};
 use froude::swimmer::gait::{Envelope, Gait};
 
-use crate::args::{GaitKind, SwimArgs};
+use crate::args::SwimArgs;
 use crate::failure::Failure;
-use crate::out::say;
+use crate::out::{Bar, say};
 use crate::print;
 
 pub fn swim(args: SwimArgs, json: bool) -> Result<(), Failure> {
-    let gait = Gait {
-        amplitude: angle("--amplitude", &args.amplitude)?,
-        frequency: frequency(&args.frequency)?,
-        phase: angle("--phase", &args.phase)?,
-        turn: angle("--turn", &args.turn)?,
-        envelope: match args.gait {
-            GaitKind::Lateral => Envelope::Lateral,
-            GaitKind::Eel => Envelope::Eel,
-        },
-    };
-    let job = Job { robot: args.robot, gait, out: args.out, periods: args.periods as usize };
-    let swum = run(&job)?;
-    if json {
-        return print::json(&swum.as_json());
+    if let Some(ranges) = &args.sweep {
+        return sweep::sweep(ranges, &args, json);
     }
-    print::summary(&swum.section());
-    if let Some(path) = &swum.written {
-        say!("\ntrajectory {}", path.display());
+    let (moves, drawing) = (moves(&args)?, drawing(&args));
+    let pitching = pitching(&args)?;
+    let mut job = Job {
+        robot: args.robot,
+        moves,
+        motor: args.motor,
+        step_s: args.step.as_deref().map(step).transpose()?,
+        out: args.out,
+        periods: args.periods as usize,
+        date: Some(crate::today()),
+        uncertain: None,
+    };
+    if drawing.is_some() || args.sensitivity {
+        let bar = Bar::of("draws");
+        let found = uncertain(&job, drawing, args.sensitivity, &|done, all| bar.is_at(done, all));
+        bar.finish_and_clear();
+        job.uncertain = Some(found?);
+    }
+    let (answer, section, written) = match swim_anywhere(&job, &pitching)? {
+        Answer::Plane(swum) => {
+            let written = swum.written.iter();
+            let written = written.flat_map(|w| {
+                [
+                    ("report", &w.report),
+                    ("animation", &w.animation),
+                    ("trajectory", &w.trajectory),
+                    ("record", &w.record),
+                ]
+            });
+            (swum.as_json(), swum.section(), written.map(|(what, path)| (what, path.clone())).collect::<Vec<_>>())
+        }
+        Answer::Space(swum) => {
+            let written = swum.written.iter();
+            let written =
+                written.flat_map(|w| [("report", &w.report), ("trajectory", &w.trajectory), ("record", &w.record)]);
+            (swum.as_json(), swum.section(), written.map(|(what, path)| (what, path.clone())).collect())
+        }
+    };
+    if json {
+        return print::json(&answer);
+    }
+    print::summary(&section);
+    for section in job.uncertain.iter().flat_map(Uncertain::sections) {
+        print::summary(&section);
+    }
+    if !written.is_empty() {
+        say!("");
+    }
+    for (what, path) in written {
+        say!("{what:<10} {}", path.display());
     }
     Ok(())
+}
+
+/// The wave of the joints that pitch; what is left out says nothing.
+fn pitching(args: &SwimArgs) -> Result<Pitching, Failure> {
+    let angle_of = |option, text: &Option<String>| text.as_deref().map(|text| angle(option, text)).transpose();
+    Ok(Pitching {
+        amplitude_rad: angle_of("--pitch-amplitude", &args.pitch_amplitude)?,
+        ahead_rad: angle_of("--pitch-ahead", &args.pitch_ahead)?,
+        turn_rad: angle_of("--pitch-turn", &args.pitch_turn)?,
+    })
+}
+
+fn moves(args: &SwimArgs) -> Result<Moves, Failure> {
+    if let Some(track) = &args.track {
+        return Ok(Moves::Track(track.clone()));
+    }
+    let angle_of = |option, text: &Option<String>| text.as_deref().map(|text| angle(option, text)).transpose();
+    let typed = Typed {
+        amplitude_rad: angle_of("--amplitude", &args.amplitude)?,
+        frequency_rad_s: args.frequency.as_deref().map(frequency).transpose()?,
+        phase_rad: angle_of("--phase", &args.phase)?,
+        turn_rad: angle_of("--turn", &args.turn)?,
+    };
+    let envelope = match args.gait.as_str() {
+        "lateral" => Envelope::Lateral,
+        "eel" => Envelope::Eel,
+        file => return Ok(Moves::File { path: PathBuf::from(file), typed }),
+    };
+    let need = |given: Option<f64>, option, example| given.ok_or(Failure::NoGait { option, example });
+    Ok(Moves::Wave(Gait {
+        amplitude: need(typed.amplitude_rad, "--amplitude", "30 deg")?,
+        frequency: need(typed.frequency_rad_s, "--frequency", "80 deg/s")?,
+        phase: need(typed.phase_rad, "--phase", "40 deg")?,
+        turn: typed.turn_rad.unwrap_or(0.0),
+        envelope,
+    }))
+}
+
+/// What is to be drawn.
+fn drawing(args: &SwimArgs) -> Option<Drawing> {
+    args.draws.map(|n| Drawing { n: n as usize, seed: args.seed })
 }
 
 fn angle(option: &'static str, text: &str) -> Result<f64, Failure> {
     quantity(option, text, Dimension::ANGLE, "an angle with its unit: '30 deg'")
 }
 
-/// rad/s, from an angular speed or from cycles a second.
-fn frequency(text: &str) -> Result<f64, Failure> {
-    let example = "an angular speed or a frequency with its unit: '80 deg/s' or '0.22 Hz'";
-    let found = quantity("--frequency", text, Dimension::ANGULAR_SPEED, example)?;
-    let is_cycles = parse_quantity(text).is_ok_and(|q| q.unit.text.ends_with("Hz"));
-    // One over a second is either.
-    if !is_cycles && !["deg", "rad", "rev", "rpm"].iter().any(|angle| text.contains(angle)) {
-        let problem = "does not say whether it counts radians or cycles".to_owned();
-        return Err(Failure::Quantity { option: "--frequency", text: text.to_owned(), problem, example });
-    }
-    let found = if is_cycles { std::f64::consts::TAU * found } else { found };
+/// s, above zero.
+fn step(text: &str) -> Result<f64, Failure> {
+    let (option, example) = ("--step", "a time with its unit: '2 ms'");
+    let found = quantity(option, text, Dimension::TIME, example)?;
     if found > 0.0 && found.is_finite() {
         return Ok(found);
     }
-    Err(Failure::Quantity {
-        option: "--frequency",
-        text: text.to_owned(),
-        problem: "is not above zero".to_owned(),
-        example,
-    })
+    Err(Failure::Quantity { option, text: text.to_owned(), problem: "is not above zero".to_owned(), example })
+}
+
+/// rad/s, from an angular speed or from cycles a second.
+fn frequency(text: &str) -> Result<f64, Failure> {
+    let (option, example) = ("--frequency", "an angular speed or a frequency with its unit: '80 deg/s' or '0.22 Hz'");
+    quantity(option, text, Dimension::ANGULAR_SPEED, example)?;
+    let wrong = |problem| Failure::Quantity { option, text: text.to_owned(), problem, example };
+    let quantity = parse_quantity(text).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+    angular_frequency(&quantity).map_err(wrong)
 }
 
 fn quantity(option: &'static str, text: &str, dimension: Dimension, example: &'static str) -> Result<f64, Failure> {

@@ -63,8 +63,17 @@ fn the_example_swims_as_an_independent_program_has_it() {
 #[test]
 fn a_trajectory_closes_its_energy_and_a_current_carries_it() {
     let folder = tempfile::tempdir().unwrap();
-    let still = swum(&example(), &["--out", text(folder.path())]);
-    let table = read_table(&folder.path().join("trajectory.parquet"), None).unwrap();
+    let out = folder.path().join("still");
+    let still = swum(&example(), &["--out", text(&out)]);
+    let table = read_table(&out.join("trajectory.parquet"), None).unwrap();
+    // What the terminal says, the record holds too; the page stands by itself.
+    let record: Value = serde_json::from_slice(&std::fs::read(out.join("result.json")).unwrap()).unwrap();
+    assert_eq!(record, still);
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    for part in ["0.1899", "Figure 6", "angle to the flow [deg]", "torque [N m]"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(!page.contains("http://") || page.matches("http://").count() == page.matches("http://www.w3.org").count());
     let last = |name: &str, dimension: Dimension| *table.number(name, dimension).unwrap().last().unwrap();
     let energy = Dimension::new(2, 1, -2);
     let (time, place) = (last("time", Dimension::TIME), last("x", Dimension::LENGTH));
@@ -109,4 +118,158 @@ fn what_does_not_fit_is_said_with_numbers() {
     assert!(none.contains("f7") && none.contains("circulation_tank_restricted/f4"), "{none}");
     let twice = refused(&changed(folder.path(), "= \"strip\"", "= \"strip\"\ntorque = \"friction\""), &GAIT);
     assert!(twice.contains("robot.toml:19:10") && twice.contains("count it twice"), "{twice}");
+}
+
+const SERVO: &str = "limit = \"90 deg\"\nkp = \"40 N m/rad\"\nkd = \"1 N m s/rad\"\nefficiency = 0.6\nfriction = { viscous = \"0.02 N m s/rad\" }";
+
+/// Servos come near the exact gait, take more from the battery than they give, and refuse a step beyond 2.785 over the largest eigenvalue of k_d and inertia with the one that would do.
+#[test]
+fn servos_swim_and_refuse_a_step_that_is_not_stable() {
+    let folder = tempfile::tempdir().unwrap();
+    let exact = swum(&example(), &[]);
+    let robot = changed(folder.path(), "limit = \"90 deg\"", SERVO);
+    let out = folder.path().join("servo");
+    let found = swum(&robot, &["--out", text(&out)]);
+    assert!((number(&found, "speed_m_s") / number(&exact, "speed_m_s") - 1.0).abs() < 0.05, "{found}");
+    let balance = number(&found, "power_loss_w") + number(&found, "power_friction_w");
+    assert!((balance / number(&found, "power_net_w") - 1.0).abs() < 1e-4, "{found}");
+    // Nothing goes back to the battery.
+    let electric = number(&found, "power_positive_w") / 0.6;
+    assert!((number(&found, "power_electric_w") / electric - 1.0).abs() < 1e-12, "{found}");
+    let table = read_table(&out.join("trajectory.parquet"), None).unwrap();
+    let residuals = table.number("energy_residual", Dimension::new(2, 1, -2)).unwrap();
+    let last = *table.number("time", Dimension::TIME).unwrap().last().unwrap();
+    assert!(residuals.iter().all(|r| r.abs() < 1e-6 * number(&found, "power_net_w") * last), "{residuals:?}");
+
+    // A limit below what they reach is said.
+    let narrow = changed(
+        folder.path(),
+        "limit = \"90 deg\"",
+        &SERVO.replace("90 deg", "30.5 deg").replace("= \"1 N m s", "= \"0.1 N m s"),
+    );
+    let beyond = swum(&narrow, &[]);
+    assert!(beyond["remarks"].to_string().contains("beyond the joints: servos take a joint to"), "{beyond}");
+    changed(folder.path(), "limit = \"90 deg\"", SERVO);
+
+    let servo = &found["servo"];
+    let (eigenvalue, longest) = (number(servo, "damping_eigenvalue_per_s"), number(servo, "longest_stable_step_s"));
+    let slow = refused(&robot, &[&GAIT[..], &["--step", "50 ms"]].concat());
+    let by_damping = format!("2.785/{eigenvalue:.6}");
+    assert!(slow.contains("0.05 s is not stable") && slow.contains(&by_damping), "{slow}");
+    let would_do = slow.split("--step '").nth(1).unwrap().split('\'').next().unwrap();
+    let taken = swum(&robot, &["--step", would_do]);
+    assert!((number(&taken, "speed_m_s") / number(&found, "speed_m_s") - 1.0).abs() < 1e-3, "{taken}");
+    assert!(would_do.trim_end_matches(" s").parse::<f64>().unwrap() <= longest * 1.001, "{would_do}");
+}
+
+/// A curve that gives what the gait needs allows it up to a frequency at which it needs all of it; a weak one is said to be beyond, with how far.
+#[test]
+fn a_motor_says_how_fast_a_gait_may_be() {
+    let folder = tempfile::tempdir().unwrap();
+    let motor = folder.path().join("motor.toml");
+    let write =
+        |curve: &str| std::fs::write(&motor, format!("schema = 1\ncurve = {curve}\nefficiency = 0.5\n")).unwrap();
+    write("[[\"0 rpm\", \"3 N m\"], [\"60 rpm\", \"0 N m\"]]");
+    let found = swum(&example(), &["--motor", text(&motor)]);
+    assert!(number(&found, "motor_share_peak") < 1.0, "{found}");
+    let fastest = format!("{} rad/s", number(&found, "motor_fastest_rad_s"));
+    let args =
+        ["--amplitude", "30 deg", "--frequency", &fastest, "--phase", "40 deg", "--motor", text(&motor), "--json"];
+    let output = froude(&[&["swim", text(&example())], &args[..]].concat());
+    let at_most: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!((number(&at_most, "motor_share_peak") - 1.0).abs() < 0.01, "{at_most}");
+    write("[[\"0 rpm\", \"0.1 N m\"], [\"60 rpm\", \"0 N m\"]]");
+    let weak = swum(&example(), &["--motor", text(&motor)]);
+    assert!(weak["remarks"].to_string().contains("beyond the motors"), "{weak}");
+    write("[[\"0 rpm\", \"0.1 N m\"]]");
+    let none = refused(&example(), &[&GAIT[..], &["--motor", text(&motor)]].concat());
+    assert!(none.contains("motor.toml:2:9") && none.contains("two at least"), "{none}");
+}
+
+/// A gait file is what was typed; a trajectory that starts elsewhere begins there; its joint angles, recorded, swim the same way again.
+#[test]
+fn gait_files_starts_and_recordings_swim() {
+    let folder = tempfile::tempdir().unwrap();
+    let gait = folder.path().join("gait.toml");
+    let wave = "schema = 1\nkind = \"lateral\"\namplitude = \"30 deg\"\nfrequency = \"80 deg/s\"\n";
+    std::fs::write(&gait, format!("{wave}phase = \"40 deg\"\nramp = \"3 s\"\n")).unwrap();
+    let start = "[start]\nplace = [\"1 m\", \"2 m\"]\nheading = \"90 deg\"\n[joint]";
+    let robot = changed(folder.path(), "[joint]", start);
+    let args = |more: &[&str]| -> Value {
+        let output = froude(&[&["swim", text(&robot), "--json"], more].concat());
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let out = folder.path().join("from-rest");
+    let found = args(&["--gait", text(&gait), "--out", text(&out), "--periods", "3"]);
+    assert_eq!(found["speed_m_s"], swum(&example(), &[])["speed_m_s"]);
+    let table = read_table(&out.join("trajectory.parquet"), None).unwrap();
+    let column = |name: &str, dimension| table.number(name, dimension).unwrap().to_vec();
+    let (heading, phi) = (column("heading", Dimension::ANGLE), column("phi_1", Dimension::ANGLE));
+    assert_eq!((heading[0], phi[0]), (std::f64::consts::FRAC_PI_2, 0.0));
+    // Nine modules behind the head, which is at y = 2 m and looks along y.
+    assert!((column("y", Dimension::LENGTH)[0] - (2.0 - 4.5 * 0.18)).abs() < 1e-12);
+    let track = args(&["--track", text(&out.join("trajectory.parquet"))]);
+    let end = |name| *column(name, Dimension::LENGTH).last().unwrap() - column(name, Dimension::LENGTH)[0];
+    let speed = end("x").hypot(end("y")) / number(&track, "length_s");
+    assert!((number(&track, "speed_m_s") / speed - 1.0).abs() < 1e-4, "{track} {speed}");
+
+    let none = refused(&robot, &["--gait", text(&gait), "--amplitude", "100 deg"]);
+    assert!(none.contains("100 deg at joint 1"), "{none}");
+    let missing = refused(&robot, &["--amplitude", "30 deg", "--phase", "40 deg"]);
+    assert!(missing.contains("--frequency '80 deg/s'"), "{missing}");
+    std::fs::write(&gait, wave).unwrap();
+    let missing = refused(&robot, &["--gait", text(&gait)]);
+    assert!(missing.contains("gait.toml has no phase") || missing.contains("gait.toml: has no phase"), "{missing}");
+    std::fs::write(&gait, format!("{wave}phase = \"1 deg\"\n").replace("lateral\"", "envelope\"\nenvelope = [1, 2]"))
+        .unwrap();
+    let few = refused(&robot, &["--gait", text(&gait)]);
+    assert!(few.contains("2 factors") && few.contains("9 joints"), "{few}");
+}
+
+/// The page's own numbers, in metres and newtons: neighbours meet at their joint, the centre of mass goes as the trajectory has it, and the drag of a motion that repeats has no mean.
+#[test]
+fn an_animation_is_to_scale_and_loads_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let named = changed(folder.path(), "\"Mamba, ten links\"", "\"</script><b>{{DATA}}\"");
+    let out = folder.path().join("out");
+    swum(&named, &["--out", text(&out)]);
+    let page = std::fs::read_to_string(out.join("animation.html")).unwrap();
+    assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    for far in ["http:", "https:", "src=", "href=", "@import", "url(", "fetch("] {
+        assert!(!page.contains(far), "{far}");
+    }
+    assert!(page.contains("default-src 'none'") && page.contains("&lt;/script&gt;") && !page.contains("<b>"));
+    let data = page.split("type=\"application/json\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: Value = serde_json::from_str(data).unwrap();
+    let unit = number(&data, "length_unit_m");
+    let list = |key: &str, frame: usize| -> Vec<f64> {
+        data[key][frame].as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect()
+    };
+    let table = read_table(&out.join("trajectory.parquet"), None).unwrap();
+    let (x, y) = (table.number("x", Dimension::LENGTH).unwrap(), table.number("y", Dimension::LENGTH).unwrap());
+    assert_eq!(data["centre"].as_array().unwrap().len(), x.len());
+    for frame in [0, 37, 500] {
+        let (place, heading, centre) = (list("place", frame), list("heading_mrad", frame), list("centre", frame));
+        // Half a unit of each number.
+        assert!((centre[0] * unit - x[frame]).hypot(centre[1] * unit - y[frame]) < unit);
+        let end = |i: usize, way: f64| {
+            let (s, c) = (heading[i] * 1e-3).sin_cos();
+            [place[2 * i] * unit + way * 0.09 * c, place[2 * i + 1] * unit + way * 0.09 * s]
+        };
+        for i in 0..9 {
+            let (aft, fore) = (end(i, -1.0), end(i + 1, 1.0));
+            // Two units of places, and half a milliradian of 90 mm twice.
+            assert!((aft[0] - fore[0]).hypot(aft[1] - fore[1]) < 2.0 * unit + 9e-5, "{i}: {aft:?} {fore:?}");
+        }
+    }
+    // Over periods that repeat, drag and what takes the water along leave no mean force: the mean drag is a small part of its largest.
+    let parts = |axis: usize| -> (f64, f64) {
+        let sums = (0..100).map(|frame| list("force", frame).iter().skip(axis).step_by(2).sum::<f64>());
+        sums.fold((0.0, 0.0), |(sum, most), f| (sum + f / 100.0, f64::max(most, f.abs())))
+    };
+    for axis in 0..2 {
+        let (mean, most) = parts(axis);
+        assert!(mean.abs() < 0.01 * most, "axis {axis}: {mean} of {most}");
+    }
 }

@@ -182,6 +182,7 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
                 label: labels.get(&spec.name).cloned(),
                 nuisance: j >= model.law.coefficients.len(),
                 value: fitted.value.map(|_| model.coefficients[j]),
+                unconstrained: apart(fitted.unconstrained, fitted.value, combined.map(|c| c.standard)),
                 unit: spec.unit.clone(),
                 status,
                 standard_uncertainty: combined.map(|c| c.standard),
@@ -193,6 +194,12 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
             (spec.name.clone(), coefficient)
         })
         .collect()
+}
+
+/// An estimate without bounds where it is another than the one within them, by more than rounding.
+fn apart(unconstrained: Option<f64>, value: Option<f64>, standard: Option<f64>) -> Option<f64> {
+    let (u, v) = (unconstrained?, value?);
+    ((u - v).abs() > 1e-9 * standard?).then_some(u)
 }
 
 /// The law with the motion that it reads and the loads that it gives.

@@ -85,8 +85,9 @@ pub struct Piece {
 }
 
 impl Piece {
-    /// Section at a part of the way, 0 to 1.
-    fn at(&self, t: f64) -> Section {
+    /// Section at a part of the way, 0 to 1: along x where it is straight, of the angle where it is elliptic.
+    #[must_use]
+    pub fn at(&self, t: f64) -> Section {
         let [a, b] = self.ends;
         let mix = |p: f64, q: f64, t: f64| p + (q - p) * t;
         let (along, across) = match self.curve {

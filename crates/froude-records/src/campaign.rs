@@ -14,6 +14,7 @@ use indexmap::IndexMap;
 use crate::accelerated_tow::{AcceleratedPlan, AcceleratedTowSpec};
 use crate::added_mass_options::GivenOption;
 use crate::carriage::CarriageCampaign;
+use crate::cfd::CfdSpec;
 use crate::decay::{DecayPlan, DecaySpec};
 use crate::error::{Place, RecordError};
 use crate::excited_response::{ExcitedPlan, ExcitedSpec};
@@ -144,6 +145,8 @@ pub struct Source {
     pub weight_tow: Option<WeightTowSpec>,
     /// Its body that speeds up.
     pub accelerated_tow: Option<AcceleratedTowSpec>,
+    /// How its flow is computed.
+    pub cfd: Option<CfdSpec>,
     /// What is asked of its mesh.
     pub added_mass: Vec<GivenOption>,
     /// What is to be run.
@@ -357,6 +360,8 @@ pub struct PlanBlock {
     pub speed_m_s: Vec<f64>,
     /// Angles; 0 when not given.
     pub angle_rad: Vec<f64>,
+    /// Angles out of the horizontal plane, of computations; 0 when not given.
+    pub pitch_rad: Vec<f64>,
     /// How often each point is run; 1 when not given.
     pub repeats: usize,
 }
@@ -574,11 +579,11 @@ impl Campaign {
         }
     }
 
-    /// A table with a plan may still have to be simulated or run; everything else must be there.
+    /// A table with a plan may still have to be simulated or run, and cases to be computed; everything else must be there.
     pub(crate) fn check_files(&self) -> Result<(), RecordError> {
         for source in &self.sources {
             let key = match source.input {
-                Input::Table(_) if !source.plan.is_empty() => continue,
+                Input::Table(_) | Input::Cases(_) if !source.plan.is_empty() => continue,
                 Input::Runs { .. } if source.plans_runs() => continue,
                 Input::Table(_) => "table",
                 Input::Record { .. } => "record",
@@ -644,6 +649,7 @@ impl Source {
             weight_plan: Vec::new(),
             accelerated_tow: None,
             accelerated_plan: Vec::new(),
+            cfd: None,
             decay_plan: Vec::new(),
             oscillation_plan: Vec::new(),
             rotation_plan: Vec::new(),

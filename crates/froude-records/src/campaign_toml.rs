@@ -16,6 +16,7 @@ use crate::campaign::{
     PriorRecord, PriorSpec, RangeBlock, SensorSpec, Shared, Simulate, Source, SourceKind, Tank, Tare, Truth, UserModel,
 };
 use crate::carriage_toml::carriage;
+use crate::cfd::cfd;
 use crate::decay::{decay, decay_plan};
 use crate::error::RecordError;
 use crate::excited_response::{excited, excited_plan};
@@ -169,6 +170,7 @@ const SOURCE_KEYS: &[&str] = &[
     "accelerated_tow",
     EXCITED_RESPONSE,
     "added_mass",
+    "cfd",
     "plan",
 ];
 
@@ -240,6 +242,11 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
             "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
         return Err(s.wrong("added_mass", value, problem));
     }
+    if let (Some(value), false) = (s.get("cfd"), matches!(input, Input::Cases(_))) {
+        let problem =
+            "says how a flow is computed, but the source names no cases: write cases = \"cases\", the folder for them";
+        return Err(s.wrong("cfd", value, problem));
+    }
     if let (Some(value), false) = (s.get("decay"), is_decay) {
         let problem = "describes a free decay, but no method of the source is one of free decay: write method = \"decay_output_error\"";
         return Err(s.wrong("decay", value, problem));
@@ -278,10 +285,11 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
         excited_plan: blocks_of(Some(EXCITED_RESPONSE)).iter().map(excited_plan).collect::<Result<_, _>>()?,
         weight_tow: s.section(WEIGHT_TOW)?.map(|s| weight_tow(&s)).transpose()?,
         weight_plan: blocks_of(Some(WEIGHT_TOW)).iter().map(weight_plan).collect::<Result<_, _>>()?,
+        cfd: s.section("cfd")?.map(|s| cfd(&s)).transpose()?,
         accelerated_tow: s.section(ACCELERATED_TOW)?.map(|s| accelerated_tow(&s)).transpose()?,
         accelerated_plan: blocks_of(Some(ACCELERATED_TOW)).iter().map(accelerated_plan).collect::<Result<_, _>>()?,
         steady: s.section(STEADY)?.map(|s| steady(&s)).transpose()?,
-        plan: blocks_of(None).iter().map(plan_block).collect::<Result<_, _>>()?,
+        plan: blocks_of(None).iter().map(|b| plan_block(b, &input)).collect::<Result<_, _>>()?,
         oscillation_plan: blocks_of(Some(FORCED_OSCILLATION)).iter().map(oscillation_plan).collect::<Result<_, _>>()?,
         place: INPUTS
             .into_iter()
@@ -373,8 +381,10 @@ fn positive_number(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, Re
     }
 }
 
-fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
-    s.only(&["configurations", "speed", "angle", "repeats"])?;
+fn plan_block(s: &Section<'_>, input: &Input) -> Result<PlanBlock, RecordError> {
+    let is_computed = matches!(input, Input::Cases(_));
+    // A computation that is repeated says nothing new.
+    s.only(&["configurations", "speed", "angle", if is_computed { "pitch" } else { "repeats" }])?;
     let speed =
         s.get("speed").ok_or_else(|| s.missing("speed", "write \"0.1 m/s\", a list, or { start, stop, step }"))?;
     // A body without links has no configuration to name.
@@ -386,9 +396,11 @@ fn plan_block(s: &Section<'_>) -> Result<PlanBlock, RecordError> {
         configurations,
         speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
         angle_rad: s.get("angle").map_or(Ok(vec![0.0]), |v| series(s, "angle", v, Dimension::ONE))?,
+        pitch_rad: s.get("pitch").map_or(Ok(vec![0.0]), |v| series(s, "pitch", v, Dimension::ONE))?,
         repeats: count(s, "repeats", 10_000)?.unwrap_or(1),
     };
-    at_most(s, &[out.configurations.len(), out.speed_m_s.len(), out.angle_rad.len(), out.repeats], MOST_OBSERVATIONS)?;
+    let angles = out.angle_rad.len().saturating_mul(out.pitch_rad.len());
+    at_most(s, &[out.configurations.len(), out.speed_m_s.len(), angles, out.repeats], MOST_OBSERVATIONS)?;
     Ok(out)
 }
 

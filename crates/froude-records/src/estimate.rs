@@ -109,6 +109,9 @@ pub struct Coefficient {
     pub label: Option<String>,
     /// Value in `unit`; null when undetermined.
     pub value: Option<f64>,
+    /// Estimate without bounds and inequalities, about which the covariance is stated; null where it is the value.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unconstrained: Option<f64>,
     /// SI unit text, `1` for a pure number.
     pub unit: String,
     /// What became of it.

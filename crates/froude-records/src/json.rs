@@ -436,6 +436,7 @@ fn numbers_of_coefficient(name: &str, coefficient: &Coefficient, see: &mut dyn F
     let Coefficient {
         label: _,
         value,
+        unconstrained,
         unit: _,
         status: _,
         nuisance: _,
@@ -447,6 +448,7 @@ fn numbers_of_coefficient(name: &str, coefficient: &Coefficient, see: &mut dyn F
     } = coefficient;
     let named = [
         ("value", value),
+        ("unconstrained", unconstrained),
         ("standard_uncertainty", standard_uncertainty),
         ("type_a", type_a),
         ("type_b", type_b),

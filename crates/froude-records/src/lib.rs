@@ -5,7 +5,7 @@
 //!
 //! | file            | module                                     |
 //! |-----------------|--------------------------------------------|
-//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`], its options of added mass [`added_mass_options`] |
+//! | campaign (TOML) | [`campaign`]; its rig and carriage [`carriage`], its options of added mass [`added_mass_options`]; its computed flows [`cfd`] |
 //! | table (CSV)     | [`csv_table`], in memory; [`fast_csv`], streamed |
 //! | table (Parquet) | [`parquet_table`]                          |
 //! | body (TOML)     | [`body`]                                   |
@@ -28,6 +28,7 @@ mod campaign_file;
 mod campaign_toml;
 pub mod carriage;
 mod carriage_toml;
+pub mod cfd;
 mod checksum;
 pub mod chunks;
 pub mod comparison;
@@ -39,12 +40,14 @@ pub mod excited_response;
 pub mod fast_csv;
 pub mod finding;
 pub mod folder;
+pub mod gait_file;
 pub mod hash;
 mod header;
 pub mod json;
 pub mod keep;
 pub mod manifest;
 pub mod memory;
+pub mod motor_file;
 pub mod nearest;
 pub mod number;
 pub mod oscillation;

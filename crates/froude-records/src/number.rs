@@ -474,6 +474,7 @@ mod tests {
             type_b: None,
             interval_95: None,
             effective_dof: None,
+            unconstrained: None,
         };
         assert_eq!(coefficient(&c), MISSING);
         assert_eq!(coefficient_expanded(&c), MISSING);

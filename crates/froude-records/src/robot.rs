@@ -30,31 +30,60 @@
 //! center_of_mass = "0 mm"            # ahead of its centre
 //! volume = "1.31e-3 m^3"             # may be left out; with it, what it weighs in water is said
 //!
-//! [joint]
+//! [joint]                            # or [[joint]] with between or index, of some of them
 //! limit = "90 deg"                   # may be left out, each of them
 //! rate = "120 deg/s"
 //! torque = "3 N m"
+//! kp = "40 N m/rad"                  # with kd: servos that follow the gait; without, joints follow it exactly
+//! kd = "1 N m s/rad"
+//! friction = { viscous = "0.05 N m s/rad", coulomb = "0.1 N m" }   # of joints with servos
+//! efficiency = 0.6                   # from the battery to the joint
+//! regeneration = 0                   # the part of what braking gives that goes back
+//!
+//! [start]                            # where a trajectory begins; without, with the motion that repeats
+//! place = ["0 m", "0 m"]             # of the head's centre in the tank
+//! heading = "0 deg"
+//! velocity = ["0 m/s", "0 m/s"]      # of the head through the water, along and across it
+//! turn_rate = "0 deg/s"
 //! ```
+//!
+//! What three dimensions need beside it stands in `robot/spatial.rs`, joints one by one in `robot/joints.rs`.
 //!
 //! Modules stand from head to tail. The words of the sections are those of a campaign.
 
 use std::path::{Path, PathBuf};
+
+mod joint;
+mod joints;
+mod spatial;
+#[cfg(test)]
+mod spatial_tests;
+mod start;
+mod urdf;
 
 use froude_hydro::Link;
 
 use crate::body::need;
 use crate::error::{Place, RecordError, read_bytes, utf8};
 use crate::plausible;
-use crate::section::{Section, Source, found, parse};
+use crate::section::{self, Section, Source, found};
 use crate::section_values::{count, one_of};
 use crate::units::Dimension;
+pub(crate) use joint::part;
+pub use joint::{FrictionFile, JointFile, ServoFile};
+pub use joints::JointAxis;
+use joints::joints;
+pub use spatial::{AddedFile, MOTIONS, SpatialModel, SpatialModule, negative};
+pub use start::StartFile;
+use start::start;
+pub use urdf::{UrdfLink, parse_urdf};
 
 /// Largest robot file.
 const LIMIT: u64 = 1 << 20;
 /// Most modules of a chain.
 const MOST_MODULES: u64 = 1_000;
-/// kg m².
-const INERTIA: Dimension = Dimension::new(2, 1, 0);
+/// What an added mass is written as.
+const ADDED_ADVICE: &str = "write added_mass = { sway = \"1.65 kg\", yaw = \"4.5e-3 kg m^2\" } of a link, or { record = \"tank.json\", select = \"tank/f4\" } with C_A";
 
 /// A swimmer.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,12 +98,20 @@ pub struct RobotFile {
     pub modules: Vec<ModuleFile>,
     /// Where its drag comes from.
     pub drag: FromRecord,
-    /// Where its added mass comes from.
-    pub added_mass: AddedFrom,
+    /// Added mass of a module that has none of its own.
+    pub added_mass: AddedFile,
     /// How it is modelled.
     pub model: ModelFile,
-    /// What its joints allow.
+    /// The same for three dimensions.
+    pub spatial: SpatialModel,
+    /// What its joints allow, and what drives them, where they have nothing of their own.
     pub joint: JointFile,
+    /// Each of them, from the head.
+    pub joints: Vec<JointFile>,
+    /// What each turns about.
+    pub axes: Vec<JointAxis>,
+    /// Where a trajectory begins; `None`: with the motion that repeats.
+    pub start: Option<StartFile>,
 }
 
 /// One module.
@@ -92,6 +129,8 @@ pub struct ModuleFile {
     pub ahead_m: f64,
     /// What it displaces, m³.
     pub volume_m3: Option<f64>,
+    /// What the plane does not see.
+    pub spatial: SpatialModule,
 }
 
 /// An estimate in a record.
@@ -103,15 +142,6 @@ pub struct FromRecord {
     pub select: Option<String>,
     /// Where the robot file names it.
     pub place: Place,
-}
-
-/// Added mass of a module.
-#[derive(Debug, Clone, PartialEq)]
-pub enum AddedFrom {
-    /// C_A of a record, with the volume that it refers to.
-    Record(FromRecord),
-    /// Alike for all modules: surge and sway, kg, yaw about the centre, kg m².
-    Declared([f64; 3]),
 }
 
 /// Load of the fluid's inertia.
@@ -149,17 +179,6 @@ pub struct ModelFile {
     pub smooth_m_s: f64,
 }
 
-/// `[joint]`: limits, where they are declared.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct JointFile {
-    /// Largest angle to either side, rad.
-    pub limit_rad: Option<f64>,
-    /// Largest rate, rad/s.
-    pub rate_rad_s: Option<f64>,
-    /// Largest torque, N m.
-    pub torque_n_m: Option<f64>,
-}
-
 /// Reads a robot file.
 ///
 /// # Errors
@@ -167,7 +186,30 @@ pub struct JointFile {
 /// [`RecordError`] with line and column: not TOML, a key that is missing or unknown, a quantity of another kind, strips together with a torque, fewer than two modules.
 pub fn read_robot(path: &Path) -> Result<RobotFile, RecordError> {
     let bytes = read_bytes(path, LIMIT, "a robot")?;
-    parse_robot(path, utf8(path, &bytes)?)
+    if !is_urdf(path) {
+        return parse_robot(path, utf8(path, &bytes)?);
+    }
+    let chain = parse_urdf(path, utf8(path, &bytes)?)?;
+    let sidecar = sidecar_of_urdf(path);
+    if !sidecar.is_file() {
+        let problem =
+            format!("says nothing of the water: write {}, a robot file without what the URDF has", sidecar.display());
+        return Err(RecordError::Syntax { place: Place::whole(path), problem });
+    }
+    let bytes = read_bytes(&sidecar, LIMIT, "a robot")?;
+    parse(&sidecar, utf8(&sidecar, &bytes)?, Some(&chain))
+}
+
+/// Whether a robot is described by a URDF.
+#[must_use]
+pub fn is_urdf(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("urdf"))
+}
+
+/// What says the rest of it: the `.toml` of the same name.
+#[must_use]
+pub fn sidecar_of_urdf(path: &Path) -> PathBuf {
+    path.with_extension("toml")
 }
 
 /// The same from text.
@@ -176,11 +218,24 @@ pub fn read_robot(path: &Path) -> Result<RobotFile, RecordError> {
 ///
 /// As [`read_robot`].
 pub fn parse_robot(path: &Path, text: &str) -> Result<RobotFile, RecordError> {
+    parse(path, text, None)
+}
+
+/// The sidecar of a URDF, whose links are known.
+///
+/// # Errors
+///
+/// As [`read_robot`].
+pub fn parse_sidecar_of_urdf(path: &Path, text: &str, chain: &[UrdfLink]) -> Result<RobotFile, RecordError> {
+    parse(path, text, Some(chain))
+}
+
+fn parse(path: &Path, text: &str, chain: Option<&[UrdfLink]>) -> Result<RobotFile, RecordError> {
     let source = Source { path, text };
-    let document = parse(source)?;
+    let document = section::parse(source)?;
     let root = Section::new(source, "", document.get_ref(), 0);
     root.schema("robot")?;
-    root.only(&["schema", "name", "cite", "fluid", "coefficients", "model", "module", "joint"])?;
+    root.only(&["schema", "name", "cite", "fluid", "coefficients", "model", "module", "joint", "start"])?;
     let name = root.text("name")?.unwrap_or("robot").to_owned();
     let (density_kg_m3, current_m_s) = fluid(&root)?;
     let coefficients = root.section("coefficients")?.ok_or_else(|| {
@@ -194,14 +249,49 @@ pub fn parse_robot(path: &Path, text: &str) -> Result<RobotFile, RecordError> {
         .section("drag")?
         .ok_or_else(|| coefficients.missing("drag", "write drag = { record = \"tank.json\", select = \"tank/f2\" }"))?;
     let drag = from_record(source, &drag)?;
-    let added_mass = added_mass(source, &coefficients)?;
-    let model = match root.section("model")? {
-        Some(section) => model(&section)?,
-        None => ModelFile { added_mass: AddedForm::Full, drag: DragForm::Strip, is_by_origin: false, smooth_m_s: 1e-3 },
+    let (model, spatial) = match root.section("model")? {
+        Some(section) => (model(&section)?, spatial::model(&section)?),
+        None => (
+            ModelFile { added_mass: AddedForm::Full, drag: DragForm::Strip, is_by_origin: false, smooth_m_s: 1e-3 },
+            SpatialModel::default(),
+        ),
     };
+    let added_mass = added_mass(source, &coefficients, spatial.is_3d)?;
+    if let (Some(_), true) = (chain, spatial.is_3d) {
+        return Err(root.missing("model", "a URDF is read as a chain in a plane: write space = \"planar\" in [model]"));
+    }
+    let modules = match chain {
+        Some(chain) => urdf::modules(&root, chain)?,
+        None => modules(source, &root, spatial.is_3d)?,
+    };
+    let names: Vec<&str> = modules.iter().map(|m| m.name.as_str()).collect();
+    let (joint, mut joints, axes) = joints(&root, &names, spatial.is_3d)?;
+    for (own, link) in joints.iter_mut().zip(chain.unwrap_or_default()) {
+        own.limit_rad = own.limit_rad.or(link.joint.limit_rad);
+        own.rate_rad_s = own.rate_rad_s.or(link.joint.rate_rad_s);
+        own.torque_n_m = own.torque_n_m.or(link.joint.torque_n_m);
+    }
+    let start = root.section("start")?.map(|s| start(&s)).transpose()?;
+    Ok(RobotFile {
+        name,
+        density_kg_m3,
+        current_m_s,
+        modules,
+        drag,
+        added_mass,
+        model,
+        spatial,
+        joint,
+        joints,
+        axes,
+        start,
+    })
+}
+
+fn modules(source: Source<'_>, root: &Section<'_>, is_3d: bool) -> Result<Vec<ModuleFile>, RecordError> {
     let mut modules = Vec::new();
     for section in root.sections("module")? {
-        let (module, times) = module(&section)?;
+        let (module, times) = module(source, &section, is_3d)?;
         if modules.len() + times > MOST_MODULES as usize {
             let problem = format!("makes more than {MOST_MODULES} modules; a chain has {MOST_MODULES} at most");
             return Err(RecordError::Value { place: section.place(), key: "count".to_owned(), problem });
@@ -213,8 +303,7 @@ pub fn parse_robot(path: &Path, text: &str) -> Result<RobotFile, RecordError> {
             "a chain has two modules at least: describe each kind in a [[module]], with count = 10 for ten of it";
         return Err(root.missing("module", advice));
     }
-    let joint = root.section("joint")?.map(|s| joint(&s)).transpose()?.unwrap_or_default();
-    Ok(RobotFile { name, density_kg_m3, current_m_s, modules, drag, added_mass, model, joint })
+    Ok(modules)
 }
 
 fn fluid(root: &Section<'_>) -> Result<(f64, [f64; 2]), RecordError> {
@@ -225,16 +314,23 @@ fn fluid(root: &Section<'_>) -> Result<(f64, [f64; 2]), RecordError> {
     if let (Some(value), Some(problem)) = (fluid.get("density"), plausible::density_of_displaced_water(density)) {
         return Err(fluid.wrong("density", value, format!("is {}, which {problem}", found(value))));
     }
-    let Some(value) = fluid.get("current") else { return Ok((density, [0.0; 2])) };
+    let current = pair(&fluid, "current", Dimension::SPEED, "two speeds: [\"0.1 m/s\", \"0 m/s\"]")?;
+    Ok((density, current.unwrap_or_default()))
+}
+
+/// Two quantities in a list.
+fn pair(
+    s: &Section<'_>,
+    key: &'static str,
+    dimension: Dimension,
+    expected: &str,
+) -> Result<Option<[f64; 2]>, RecordError> {
+    let Some(value) = s.get(key) else { return Ok(None) };
     let Some([x, y]) = value.get_ref().as_array().map(|list| &list[..]) else {
-        return Err(fluid.wrong(
-            "current",
-            value,
-            format!("is {}; expected two speeds: [\"0.1 m/s\", \"0 m/s\"]", found(value)),
-        ));
+        return Err(s.wrong(key, value, format!("is {}; expected {expected}", found(value))));
     };
-    let speed = |v| fluid.as_quantity_of("current", v, Dimension::SPEED);
-    Ok((density, [speed(x)?, speed(y)?]))
+    let quantity = |v| s.as_quantity_of(key, v, dimension);
+    Ok(Some([quantity(x)?, quantity(y)?]))
 }
 
 fn from_record(source: Source<'_>, s: &Section<'_>) -> Result<FromRecord, RecordError> {
@@ -253,27 +349,13 @@ fn from_record(source: Source<'_>, s: &Section<'_>) -> Result<FromRecord, Record
     Ok(FromRecord { path, select: s.text("select")?.map(str::to_owned), place })
 }
 
-fn added_mass(source: Source<'_>, coefficients: &Section<'_>) -> Result<AddedFrom, RecordError> {
-    let advice = "write added_mass = { sway = \"1.65 kg\", yaw = \"4.5e-3 kg m^2\" } of a link, or { record = \"tank.json\", select = \"tank/f4\" } with C_A";
-    let s = coefficients.section("added_mass")?.ok_or_else(|| coefficients.missing("added_mass", advice))?;
-    if s.get("record").is_some() {
-        return Ok(AddedFrom::Record(from_record(source, &s)?));
-    }
-    s.only(&["surge", "sway", "yaw"])?;
-    let positive = |key, dimension| s.positive(key, dimension)?.ok_or_else(|| s.missing(key, advice));
-    let sway = positive("sway", Dimension::MASS)?;
-    let yaw = positive("yaw", INERTIA)?;
-    let surge = s.quantity("surge", Dimension::MASS)?.unwrap_or(0.0);
-    match s.get("surge") {
-        Some(value) if surge < 0.0 => {
-            Err(s.wrong("surge", value, format!("is {}; an added mass is zero or more", found(value))))
-        }
-        _ => Ok(AddedFrom::Declared([surge, sway, yaw])),
-    }
+fn added_mass(source: Source<'_>, coefficients: &Section<'_>, is_3d: bool) -> Result<AddedFile, RecordError> {
+    let s = coefficients.section("added_mass")?.ok_or_else(|| coefficients.missing("added_mass", ADDED_ADVICE))?;
+    spatial::added(source, &s, is_3d)
 }
 
 fn model(s: &Section<'_>) -> Result<ModelFile, RecordError> {
-    s.only(&["added_mass", "drag", "torque", "distribution", "epsilon"])?;
+    s.only(&["added_mass", "drag", "torque", "distribution", "epsilon", "space", "heave_drag", "roll_drag"])?;
     let added_mass =
         one_of(s, "added_mass", &["full", "usr"], &[AddedForm::Full, AddedForm::Usr])?.unwrap_or(AddedForm::Full);
     let is_strip = one_of(s, "drag", &["strip", "lumped"], &[true, false])?.unwrap_or(true);
@@ -295,10 +377,20 @@ fn model(s: &Section<'_>) -> Result<ModelFile, RecordError> {
     };
     let is_by_origin = one_of(s, "distribution", &["uniform", "by-origin"], &[false, true])?.unwrap_or(false);
     let smooth_m_s = s.positive("epsilon", Dimension::SPEED)?.unwrap_or(1e-3);
+    if one_of(s, "space", &["planar", "3d"], &[false, true])? == Some(true) {
+        if let (AddedForm::Usr, Some(value)) = (added_mass, s.get("added_mass")) {
+            let problem = "is \"usr\", which is printed for the plane only; three dimensions have \"full\"";
+            return Err(s.wrong("added_mass", value, problem));
+        }
+        if let (false, Some(value)) = (is_strip, s.get("drag")) {
+            let problem = "is \"lumped\", and three dimensions have strips only: write \"strip\", or leave it out";
+            return Err(s.wrong("drag", value, problem));
+        }
+    }
     Ok(ModelFile { added_mass, drag, is_by_origin, smooth_m_s })
 }
 
-fn module(s: &Section<'_>) -> Result<(ModuleFile, usize), RecordError> {
+fn module(source: Source<'_>, s: &Section<'_>, is_3d: bool) -> Result<(ModuleFile, usize), RecordError> {
     s.only(&[
         "name",
         "count",
@@ -308,6 +400,8 @@ fn module(s: &Section<'_>) -> Result<(ModuleFile, usize), RecordError> {
         "mass",
         "inertia",
         "center_of_mass",
+        "center_of_buoyancy",
+        "added_mass",
         "volume",
     ])?;
     let link = Link {
@@ -316,34 +410,37 @@ fn module(s: &Section<'_>) -> Result<(ModuleFile, usize), RecordError> {
         half_length_m: need(s, "half_length")?,
     };
     let mass_kg = s.positive("mass", Dimension::MASS)?.ok_or_else(|| s.missing("mass", "write mass = \"1.343 kg\""))?;
-    let (l, b) = (link.half_length_m, link.minor_semi_axis_m);
-    let inertia_kg_m2 = s.positive("inertia", INERTIA)?.unwrap_or(mass_kg * (l * l / 3.0 + b * b / 4.0));
-    let ahead_m = s.quantity("center_of_mass", Dimension::LENGTH)?.unwrap_or(0.0);
+    let Link { major_semi_axis_m: a, minor_semi_axis_m: b, half_length_m: l } = link;
+    // A solid elliptic cylinder.
+    let turn = |across: f64| mass_kg * (l * l / 3.0 + across * across / 4.0);
+    let inertia_kg_m2 = spatial::inertia(s, [mass_kg * (a * a + b * b) / 4.0, turn(a), turn(b)])?;
+    let centre_of_mass_m = spatial::place(s, "center_of_mass", [l, b, a])?.unwrap_or_default();
+    let centre_of_buoyancy_m = spatial::place(s, "center_of_buoyancy", [l, b, a])?.unwrap_or_default();
     if let Some(value) = s.get("center_of_mass")
-        && ahead_m.abs() > l
+        && !is_3d
+        && centre_of_mass_m[1] != 0.0
     {
-        let problem =
-            format!("is {}, which lies outside of the module: from its centre it reaches {l} m", found(value));
+        let problem = format!(
+            "lies {} m to starboard, which the model of the plane does not have: write 0 mm, or space = \"3d\" in [model]",
+            centre_of_mass_m[1]
+        );
         return Err(s.wrong("center_of_mass", value, problem));
     }
+    let volume_m3 = s.positive("volume", Dimension::VOLUME)?;
+    if is_3d && volume_m3.is_none() {
+        return Err(s.missing("volume", "three dimensions need what a module displaces: volume = \"1.31e-3 m^3\""));
+    }
+    let added = s.section("added_mass")?.map(|own| spatial::added(source, &own, is_3d)).transpose()?;
     let module = ModuleFile {
         name: s.text("name")?.unwrap_or("module").to_owned(),
         link,
         mass_kg,
-        inertia_kg_m2,
-        ahead_m,
-        volume_m3: s.positive("volume", Dimension::VOLUME)?,
+        inertia_kg_m2: inertia_kg_m2[2],
+        ahead_m: centre_of_mass_m[0],
+        volume_m3,
+        spatial: SpatialModule { centre_of_mass_m, centre_of_buoyancy_m, inertia_kg_m2, added },
     };
     Ok((module, count(s, "count", MOST_MODULES)?.unwrap_or(1)))
-}
-
-fn joint(s: &Section<'_>) -> Result<JointFile, RecordError> {
-    s.only(&["limit", "rate", "torque"])?;
-    Ok(JointFile {
-        limit_rad: s.positive("limit", Dimension::ANGLE)?,
-        rate_rad_s: s.positive("rate", Dimension::ANGULAR_SPEED)?,
-        torque_n_m: s.positive("torque", Dimension::MOMENT)?,
-    })
 }
 
 #[cfg(test)]
@@ -389,12 +486,27 @@ torque = "3 N m"
     fn a_robot_is_read() {
         let robot = read(ROBOT).unwrap();
         assert_eq!((robot.modules.len(), robot.current_m_s), (10, [0.1, 0.0]));
-        assert_eq!(robot.added_mass, AddedFrom::Declared([0.0, 1.653, 4.463e-3]));
+        let AddedFile::Declared(added) = robot.added_mass else { panic!("{:?}", robot.added_mass) };
+        assert_eq!([0, 1, 2, 5].map(|k| added[k][k]), [0.0, 1.653, 0.0, 4.463e-3]);
         assert_eq!(robot.drag.select.as_deref(), Some("tank/f2"));
         assert_eq!(robot.modules[9].ahead_m, 0.005);
         let (l, b) = (0.09_f64, 0.0394_f64);
         assert!((robot.modules[0].inertia_kg_m2 - 1.343 * (l * l / 3.0 + b * b / 4.0)).abs() < 1e-15);
         assert_eq!((robot.joint.limit_rad, robot.joint.rate_rad_s), (Some(std::f64::consts::FRAC_PI_2), None));
+    }
+
+    #[test]
+    fn servos_and_a_start_are_read() {
+        let servo = "kp = \"40 N m/rad\"\nkd = \"1 N m s/rad\"\nefficiency = 0.6\nregeneration = 0.2\nfriction = { viscous = \"0.05 N m s/rad\" }";
+        let start = "[start]\nplace = [\"1 m\", \"-2 m\"]\nheading = \"90 deg\"\nturn_rate = \"1 rad/s\"";
+        let robot = read(&ROBOT.replace("torque = \"3 N m\"", &format!("{servo}\n{start}"))).unwrap();
+        let drives = robot.joint.servo.unwrap();
+        assert_eq!((drives.stiffness_n_m, drives.damping_n_m_s), (40.0, 1.0));
+        assert_eq!(drives.friction, FrictionFile { viscous_n_m_s: 0.05, dry_n_m: 0.0 });
+        assert_eq!((robot.joint.efficiency, robot.joint.regeneration), (Some(0.6), 0.2));
+        let start = robot.start.unwrap();
+        assert_eq!((start.place_m, start.motion), ([1.0, -2.0], [1.0, 0.0, 0.0]));
+        assert_eq!(start.heading_rad, std::f64::consts::FRAC_PI_2);
     }
 
     #[test]
@@ -413,5 +525,12 @@ torque = "3 N m"
         assert!(refused("sway = \"1.653 kg\", ", "").contains("sway"));
         assert!(refused("record = \"Cargo.toml\"", "record = \"none.json\"").contains("none.json"));
         assert!(refused("\"1025 kg/m^3\"", "\"1.025 kg/m^3\"").contains("density"));
+        let alone = refused("torque = \"3 N m\"", "kp = \"40 N m/rad\"");
+        assert!(alone.contains("kd") && alone.starts_with("robot.toml:27:1"), "{alone}");
+        let exact = refused("torque = \"3 N m\"", "friction = { coulomb = \"0.1 N m\" }");
+        assert!(exact.starts_with("robot.toml:29:12") && exact.contains("kp"), "{exact}");
+        assert!(refused("torque = \"3 N m\"", "efficiency = 1.2").contains("above zero and at most 1"));
+        let place = refused("torque = \"3 N m\"", "[start]\nplace = [\"0 m\"]");
+        assert!(place.starts_with("robot.toml:30:9") && place.contains("two lengths"), "{place}");
     }
 }

@@ -29,6 +29,7 @@ fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
         type_b: Some(0.0),
         interval_95: Some([-0.2, 0.3]),
         effective_dof: Some(7.5),
+        unconstrained: None,
     }
 }
 

@@ -120,7 +120,7 @@ impl Drawn<'_> {
 }
 
 /// A number on its axis.
-fn on(scale: Scale, x: f64) -> f64 {
+pub(crate) fn on(scale: Scale, x: f64) -> f64 {
     match scale {
         Scale::Linear => x,
         Scale::Logarithmic if x > 0.0 => x.log10(),
@@ -129,7 +129,7 @@ fn on(scale: Scale, x: f64) -> f64 {
 }
 
 /// Round ticks; in decades 1, 2, 5 where there are few of them.
-fn ticks(span: Span, scale: Scale, wanted: usize) -> Ticks {
+pub(crate) fn ticks(span: Span, scale: Scale, wanted: usize) -> Ticks {
     match scale {
         Scale::Linear => span.ticks(wanted),
         Scale::Logarithmic => {
@@ -146,7 +146,7 @@ fn ticks(span: Span, scale: Scale, wanted: usize) -> Ticks {
     }
 }
 
-fn label(ticks: &Ticks, scale: Scale, place: f64) -> Rich {
+pub(crate) fn label(ticks: &Ticks, scale: Scale, place: f64) -> Rich {
     match scale {
         Scale::Linear => Rich::plain(&ticks.label(place)),
         Scale::Logarithmic if (-3.0..4.0).contains(&place) => {

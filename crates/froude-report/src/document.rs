@@ -11,6 +11,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::chart;
 use crate::findings::findings_by_severity;
 use crate::input::ReportError;
+use crate::map::Map;
 use crate::style::{POLICY, STYLE};
 use crate::tables::Tables;
 
@@ -27,6 +28,8 @@ pub struct Document {
     pub date: Option<String>,
     /// Sections in order; the first is the summary.
     pub sections: Vec<DocumentSection>,
+    /// Maps, behind the sections.
+    pub maps: Vec<Map>,
     /// What the checks found.
     pub findings: Vec<Finding>,
 }
@@ -44,12 +47,14 @@ impl Document {
         for (i, section) in self.sections.iter().enumerate() {
             body.push(section_markup(i, section, &mut tables, &mut figure)?);
         }
+        let maps = self.maps.iter().map(Map::svg).collect::<Result<Vec<_>, _>>()?;
         let findings = findings_by_severity(&self.findings, &mut tables);
         let contents = html! {
             ol {
                 @for (i, section) in self.sections.iter().enumerate() {
                     li { a href={ "#section-" (i + 1) } { span { (i + 1) } (section.title) } }
                 }
+                @if !maps.is_empty() { li { a href="#maps" { span {} "Maps" } } }
                 @if !self.findings.is_empty() { li { a href="#findings" { span {} "Findings" } } }
             }
         };
@@ -61,6 +66,17 @@ impl Document {
                 @if let Some(date) = &self.date { p class="meta" { span { (date) } } }
             }
             @for part in &body { (part) }
+            @if !maps.is_empty() {
+                section {
+                    h2 id="maps" { "Maps" }
+                    @for (map, svg) in self.maps.iter().zip(&maps) {
+                        figure {
+                            (PreEscaped(svg))
+                            figcaption { b { "Figure " (count(&mut figure)) ". " } (map.caption) }
+                        }
+                    }
+                }
+            }
             @if !self.findings.is_empty() {
                 section { h2 id="findings" { "Findings" } (findings) }
             }

@@ -32,6 +32,7 @@ pub mod document;
 mod figures;
 mod findings;
 mod input;
+pub mod map;
 mod page;
 mod plot;
 mod statistics;

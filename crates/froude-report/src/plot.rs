@@ -46,7 +46,12 @@ const RAMP: [(f64, f64, f64); 5] =
 
 /// Colour of the `index`th of `n` ordered things.
 pub(crate) fn level_ink(index: usize, n: usize) -> Ink {
-    let t = if n < 2 { 0.25 } else { index.min(n - 1) as f64 / (n - 1) as f64 };
+    ramp(if n < 2 { 0.25 } else { index.min(n - 1) as f64 / (n - 1) as f64 })
+}
+
+/// Colour of a place from 0 to 1 on the ramp.
+pub(crate) fn ramp(t: f64) -> Ink {
+    let t = t.clamp(0.0, 1.0);
     let place = t * (RAMP.len() - 1) as f64;
     let low = (place.floor() as usize).min(RAMP.len() - 2);
     let part = place - low as f64;

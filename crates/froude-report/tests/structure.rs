@@ -148,6 +148,7 @@ fn coefficient(value: Option<f64>, status: Status) -> Coefficient {
         type_b: None,
         interval_95: None,
         effective_dof: None,
+        unconstrained: None,
     }
 }
 

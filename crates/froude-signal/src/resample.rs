@@ -10,13 +10,15 @@
 //!
 //! de Boor (1978), *A Practical Guide to Splines*, ch. IV.
 
+use std::borrow::Cow;
+
 use crate::error::{SignalError, all_finite};
 
-/// A cubic spline.
+/// A cubic spline, of a record that it borrows or owns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline<'a> {
-    time_s: &'a [f64],
-    record: &'a [f64],
+    time_s: Cow<'a, [f64]>,
+    record: Cow<'a, [f64]>,
     /// First derivative at each sample.
     slope: Vec<f64>,
 }
@@ -27,7 +29,8 @@ impl<'a> Spline<'a> {
     /// # Errors
     ///
     /// [`SignalError::Length`], [`SignalError::TooShort`], [`SignalError::NotFinite`], [`SignalError::NotIncreasing`].
-    pub fn through(time_s: &'a [f64], record: &'a [f64]) -> Result<Self, SignalError> {
+    pub fn through(time_s: impl Into<Cow<'a, [f64]>>, record: impl Into<Cow<'a, [f64]>>) -> Result<Self, SignalError> {
+        let (time_s, record) = (time_s.into(), record.into());
         let n = time_s.len();
         if record.len() != n {
             return Err(SignalError::Length { what: "the record", found: record.len(), expected: n });
@@ -35,8 +38,8 @@ impl<'a> Spline<'a> {
         if n < 4 {
             return Err(SignalError::TooShort { what: "a cubic spline", needed: 3, found: n });
         }
-        all_finite(time_s)?;
-        all_finite(record)?;
+        all_finite(&time_s)?;
+        all_finite(&record)?;
         if let Some(index) = time_s.windows(2).position(|w| w[1] <= w[0]) {
             return Err(SignalError::NotIncreasing { index: index + 1 });
         }
@@ -70,6 +73,12 @@ impl<'a> Spline<'a> {
     /// The value at a time; `None` outside of the record.
     #[must_use]
     pub fn at(&self, time_s: f64) -> Option<f64> {
+        self.with_derivatives_at(time_s).map(|[value, ..]| value)
+    }
+
+    /// The value at a time with its first and second derivative; `None` outside of the record.
+    #[must_use]
+    pub fn with_derivatives_at(&self, time_s: f64) -> Option<[f64; 3]> {
         let last = self.time_s.len() - 1;
         if !(self.time_s[0]..=self.time_s[last]).contains(&time_s) {
             return None;
@@ -81,7 +90,11 @@ impl<'a> Spline<'a> {
         let (s0, s1) = (self.slope[i], self.slope[i + 1]);
         let c2 = (3.0 * d - 2.0 * s0 - s1) * h;
         let c3 = (s0 + s1 - 2.0 * d) * h;
-        Some(self.record[i] + u * (s0 * h + u * (c2 + u * c3)))
+        Some([
+            self.record[i] + u * (s0 * h + u * (c2 + u * c3)),
+            s0 + u * (2.0 * c2 + 3.0 * u * c3) / h,
+            (2.0 * c2 + 6.0 * u * c3) / (h * h),
+        ])
     }
 }
 

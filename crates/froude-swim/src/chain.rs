@@ -54,7 +54,43 @@ impl Chain {
         self.links.len().saturating_sub(1)
     }
 
+    /// Centres and headings of the links, of a head at a place, m, with a heading, rad, and joints at these angles.
+    pub fn places(&self, place_m: [f64; 2], heading: f64, angle: &[f64]) -> impl Iterator<Item = ([f64; 2], f64)> {
+        let (mut place, mut heading, mut before) = (place_m, heading, 0.0);
+        self.links.iter().enumerate().map(move |(i, link)| {
+            if i > 0 {
+                let (s, c) = heading.sin_cos();
+                place = [place[0] - before * c, place[1] - before * s];
+                heading -= angle[i - 1];
+                let (s, c) = heading.sin_cos();
+                place = [place[0] - link.half_length_m * c, place[1] - link.half_length_m * s];
+            }
+            before = link.half_length_m;
+            (place, heading)
+        })
+    }
+
+    /// Centre of mass of the body with such a head and such angles, m.
+    #[must_use]
+    pub fn centre_m(&self, place_m: [f64; 2], heading: f64, angle: &[f64]) -> [f64; 2] {
+        let (mut sum, mut mass) = ([0.0; 2], 0.0);
+        for (link, (place, heading)) in self.links.iter().zip(self.places(place_m, heading, angle)) {
+            let (s, c) = heading.sin_cos();
+            let (m, ahead) = (link.rigid.x, link.rigid.turn_y);
+            sum = [sum[0] + m * place[0] + ahead * c, sum[1] + m * place[1] + ahead * s];
+            mass += m;
+        }
+        sum.map(|x| x / mass)
+    }
+
+    /// Kinetic energy of body and water, J.
+    #[must_use]
+    pub fn energy_j(&self, motions: &[Motion]) -> f64 {
+        self.links.iter().zip(motions).map(|(link, m)| link.inertia().energy(*m)).sum()
+    }
+
     /// What a link's momenta need where its axes turn, without its drag: p of I ṁ + p.
+    #[inline(always)]
     pub(crate) fn bias(&self, link: &Link, motion: Motion) -> Load {
         let rigid = turned(motion, link.rigid.times(motion));
         match self.added_mass {
@@ -70,6 +106,7 @@ impl Chain {
 impl Link {
     /// Of body and water.
     #[must_use]
+    #[inline(always)]
     pub fn inertia(&self) -> Inertia {
         self.rigid.plus(&self.added)
     }

@@ -9,7 +9,7 @@
 //!
 //! # Source
 //!
-//! Kelasidi, Pettersen & Gravdahl (2014), MED, 1472 (the form, for equal links); USR eq. 1 to 8.
+//! USR eq. 1 to 8 (for equal links, in the form of its reference 8); our derivation for links that differ.
 
 use faer::Mat;
 use faer::prelude::*;

@@ -45,10 +45,10 @@ pub enum Turning {
 }
 
 /// Gauss's points on −1 to 1 …
-const POINTS: [f64; 4] =
+pub(crate) const POINTS: [f64; 4] =
     [-0.861_136_311_594_052_6, -0.339_981_043_584_856_26, 0.339_981_043_584_856_26, 0.861_136_311_594_052_6];
 /// … and half of their weights.
-const WEIGHTS: [f64; 4] =
+pub(crate) const WEIGHTS: [f64; 4] =
     [0.173_927_422_568_726_93, 0.326_072_577_431_273_07, 0.326_072_577_431_273_07, 0.173_927_422_568_726_93];
 
 impl LinkDrag {
@@ -57,30 +57,36 @@ impl LinkDrag {
 
     /// Load of the water on a link that moves through it.
     #[must_use]
+    #[inline(always)]
     pub fn load(&self, half_length_m: f64, [w, u, v]: Motion) -> Load {
         let x = self.cross.map_or(0.0, |cross| cross.force(u, v)) - law(self.along, u);
         match self.turning {
             Turning::Lumped(torque) => [-law(torque, w), x, -law(self.across, v)],
             Turning::Strip => {
-                let mut load = [0.0, x, 0.0];
-                for (point, weight) in POINTS.iter().zip(WEIGHTS) {
-                    let at = half_length_m * point;
-                    let strip = weight * law(self.across, v + at * w);
-                    load[0] -= at * strip;
-                    load[2] -= strip;
-                }
-                load
+                let at = POINTS.map(|point| half_length_m * point);
+                let strips: [f64; 4] = std::array::from_fn(|k| WEIGHTS[k] * law(self.across, v + at[k] * w));
+                let moment = (at[0] * strips[0] + at[1] * strips[1]) + (at[2] * strips[2] + at[3] * strips[3]);
+                [-moment, x, -((strips[0] + strips[1]) + (strips[2] + strips[3]))]
             }
         }
+    }
+
+    /// Power that still water gives a link that moves without turning, W; drag keeps it below zero.
+    #[must_use]
+    pub fn power_w(&self, [u, v]: [f64; 2]) -> f64 {
+        let along = self.cross.map_or(0.0, |cross| cross.force(u, v)) - law(self.along, u);
+        along * u - law(self.across, v) * v
     }
 }
 
 impl Cross {
-    fn force(&self, u: f64, v: f64) -> f64 {
+    #[inline(always)]
+    pub(crate) fn force(&self, u: f64, v: f64) -> f64 {
         -(self.of_speed[0] + self.of_speed[1] * v.abs()) * v.abs() * u / u.hypot(self.smooth_m_s)
     }
 }
 
+#[inline(always)]
 fn law([linear, quadratic]: [f64; 2], speed: f64) -> f64 {
     (linear + quadratic * speed.abs()) * speed
 }

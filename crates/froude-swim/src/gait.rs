@@ -2,7 +2,19 @@
 //!
 //! φ_i = α g_i sin(ωt − (i−1)δ) + γ, joints counted from the head: the lateral undulation has g = 1, the eel's grows to the tail.
 //!
-//! **Units.** rad, rad/s, s. **Source.** USR eq. 25; Kelasidi et al. (2014) (the eel's envelope, i/(n+1) from the head).
+//! **Units.** rad, rad/s, s. **Source.** The common lateral undulation and eel-like motion of snake robots; the USR paper prints no gait.
+
+/// What the joints do over time.
+pub trait Course: std::fmt::Debug + Sync {
+    /// Puts the angles of all joints at a time, s, with their derivatives into `shape`.
+    fn at(&self, time_s: f64, shape: &mut Shape);
+
+    /// After how long it repeats itself, s; of a recording, how long it is.
+    fn period_s(&self) -> f64;
+
+    /// Largest angle, rad, and rate, rad/s, of a joint, counted from 0 at the head, of so many.
+    fn extremes(&self, joint: usize, joints: usize) -> [f64; 2];
+}
 
 /// How the amplitude goes along the body.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,27 +62,45 @@ impl Shape {
 }
 
 impl Gait {
-    /// T, s.
+    /// A wave about straight joints.
     #[must_use]
-    pub fn period_s(&self) -> f64 {
-        std::f64::consts::TAU / self.frequency
+    pub fn wave(amplitude: f64, frequency: f64, phase: f64, envelope: Envelope) -> Self {
+        Self { amplitude, frequency, phase, turn: 0.0, envelope }
     }
 
-    /// The shape at a time, s.
-    pub fn at(&self, time_s: f64, shape: &mut Shape) {
+    /// Amplitude α g of a joint, counted from 0 at the head, of so many, rad.
+    #[must_use]
+    pub fn size(&self, joint: usize, joints: usize) -> f64 {
+        let factor = match &self.envelope {
+            Envelope::Lateral => 1.0,
+            // Joint i of 1 … n − 1, n links.
+            Envelope::Eel => (joint + 1) as f64 / (joints + 2) as f64,
+            Envelope::Factors(each) => each.get(joint).copied().unwrap_or(0.0),
+        };
+        self.amplitude * factor
+    }
+}
+
+impl Course for Gait {
+    fn at(&self, time_s: f64, shape: &mut Shape) {
         let joints = shape.angle.len();
+        // The phase turns from joint to joint: one sine and cosine for all.
+        let ((mut sin, mut cos), (s, c)) = ((self.frequency * time_s).sin_cos(), self.phase.sin_cos());
         for i in 0..joints {
-            let size = self.amplitude
-                * match &self.envelope {
-                    Envelope::Lateral => 1.0,
-                    // Joint i of 1 … n − 1, n links.
-                    Envelope::Eel => (i + 1) as f64 / (joints + 2) as f64,
-                    Envelope::Factors(each) => each.get(i).copied().unwrap_or(0.0),
-                };
-            let (sin, cos) = (self.frequency * time_s - i as f64 * self.phase).sin_cos();
+            let size = self.size(i, joints);
             shape.angle[i] = size * sin + self.turn;
             shape.rate[i] = size * self.frequency * cos;
             shape.acceleration[i] = -size * self.frequency * self.frequency * sin;
+            (sin, cos) = (sin * c - cos * s, cos * c + sin * s);
         }
+    }
+
+    fn period_s(&self) -> f64 {
+        std::f64::consts::TAU / self.frequency
+    }
+
+    fn extremes(&self, joint: usize, joints: usize) -> [f64; 2] {
+        let size = self.size(joint, joints).abs();
+        [size + self.turn.abs(), size * self.frequency.abs()]
     }
 }

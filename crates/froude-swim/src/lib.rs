@@ -6,28 +6,66 @@
 //! | [`drag`]        | drag of a link, by strips or lumped at its centre                    |
 //! | [`shares`]        | the drag law of a whole robot, shared out among its modules          |
 //! | [`chain`]       | links with their inertia in water                                    |
+//! | [`blueprint`]     | a robot for any coefficients of its records                          |
+//! | [`draws`]         | coefficients drawn from their covariance                             |
+//! | [`sensitivity`]   | what speed and cost owe to each coefficient                          |
 //! | [`engine`]      | accelerations and joint torques in O(n)                              |
 //! | [`closed_form`] | the same in absolute angles, dense: the reference                    |
 //! | [`driven`]        | a swimmer with torques at its joints over time                       |
+//! | [`drive`]         | servos, motors and friction of the joints                            |
+//! | [`joints`]          | what joints allow, and what drives them                              |
+//! | [`stability`]       | how long a step may be                                               |
 //! | [`adaptive`]      | a path to a stated accuracy                                          |
+//! | [`front`]         | gaits that no other beats in both of two objectives                  |
 //! | [`gait`]        | joint angles over time                                               |
+//! | [`course`]        | joint angles that were recorded, or grow from straight               |
+//! | [`head`]          | the head's motion over a period of a gait, four at a time            |
 //! | [`path`]          | a swimmer with a gait over time, its work and loss                   |
 //! | [`period`]        | the motion that repeats, its speed, powers and stability             |
+//! | [`driven_period`]   | the same where servos drive the joints                               |
+//! | [`moving`]          | a swimmer under way, step by step                                    |
 //! | [`robot`]         | a chain from a robot file and the records that it names              |
 //! | [`swim`]          | what a gait comes to                                                 |
+//! | [`sweep`]         | many gaits, a row of numbers each                                    |
+//! | [`spatial`]       | the same in three dimensions, with weight and buoyancy               |
+//! | [`trajectory`]      | the way of a swimmer, moment by moment                               |
+//! | [`track`]           | what a recording of joint angles comes to                            |
+//! | [`seen`]            | what links lose and joints need on their way                         |
 
+// What a kernel calls must become part of it, or it is compiled plainly (froude-lanes).
+#![allow(clippy::inline_always)]
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
 pub mod adaptive;
+mod added;
+pub mod blueprint;
 pub mod chain;
 pub mod closed_form;
+pub mod course;
 pub mod drag;
+mod drag_lanes;
+pub mod draws;
+pub mod drive;
 pub mod driven;
+pub mod driven_period;
 pub mod engine;
+pub mod front;
 pub mod gait;
+pub mod head;
+pub mod joints;
+mod losses;
+pub mod moving;
 pub mod path;
 pub mod period;
 pub mod planar;
 pub mod robot;
+pub mod seen;
+pub mod sensitivity;
 pub mod shares;
+mod sine;
+pub mod spatial;
+pub mod stability;
+pub mod sweep;
 pub mod swim;
+pub mod track;
+pub mod trajectory;

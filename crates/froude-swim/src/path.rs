@@ -8,7 +8,7 @@
 use crate::adaptive::{PathError, path};
 use crate::chain::Chain;
 use crate::engine::{Given, Joints, Workspace};
-use crate::gait::{Gait, Shape};
+use crate::gait::{Course, Shape};
 use crate::planar::Motion;
 
 /// A state; the same numbers are its rates.
@@ -74,7 +74,7 @@ pub struct Swimmer<'a> {
     /// Its links.
     pub chain: &'a Chain,
     /// What its joints do.
-    pub gait: &'a Gait,
+    pub gait: &'a dyn Course,
     /// Speed of the water over the ground, m/s.
     pub current_m_s: [f64; 2],
     /// Memory of the engine.
@@ -86,8 +86,8 @@ pub struct Swimmer<'a> {
 impl<'a> Swimmer<'a> {
     /// In still water.
     #[must_use]
-    pub fn new(chain: &'a Chain, gait: &'a Gait) -> Self {
-        let (work, shape) = (Workspace::new(chain.links.len()), Shape::straight(chain.joints()));
+    pub fn new(chain: &'a Chain, gait: &'a dyn Course) -> Self {
+        let (work, shape) = (Workspace::new(chain), Shape::straight(chain.joints()));
         Self { chain, gait, current_m_s: [0.0; 2], work, shape }
     }
 
@@ -95,7 +95,7 @@ impl<'a> Swimmer<'a> {
     pub fn rates(&mut self, time_s: f64, state: &State) -> Option<State> {
         self.gait.at(time_s, &mut self.shape);
         let joints = Joints { angle: &self.shape.angle, rate: &self.shape.rate };
-        let head = self.work.evaluate(self.chain, state.head, joints, Given::Acceleration(&self.shape.acceleration))?;
+        let head = self.work.evaluate(state.head, joints, Given::Acceleration(&self.shape.acceleration))?;
         let (mut net, mut positive, mut absolute) = (0.0, 0.0, 0.0);
         for (torque, rate) in self.work.answer.iter().zip(&self.shape.rate) {
             let power = torque * rate;
@@ -119,10 +119,15 @@ impl<'a> Swimmer<'a> {
     /// One step of Runge and Kutta's fourth order.
     pub fn step(&mut self, time_s: f64, h: f64, state: &State) -> Option<State> {
         let k1 = self.rates(time_s, state)?;
-        let k2 = self.rates(time_s + 0.5 * h, &state.moved(0.5 * h, &k1))?;
+        self.step_from(&k1, time_s, h, state)
+    }
+
+    /// The same with the rates at its beginning.
+    pub fn step_from(&mut self, k1: &State, time_s: f64, h: f64, state: &State) -> Option<State> {
+        let k2 = self.rates(time_s + 0.5 * h, &state.moved(0.5 * h, k1))?;
         let k3 = self.rates(time_s + 0.5 * h, &state.moved(0.5 * h, &k2))?;
         let k4 = self.rates(time_s + h, &state.moved(h, &k3))?;
-        Some(state.moved(h / 6.0, &k1).moved(h / 3.0, &k2).moved(h / 3.0, &k3).moved(h / 6.0, &k4))
+        Some(state.moved(h / 6.0, k1).moved(h / 3.0, &k2).moved(h / 3.0, &k3).moved(h / 6.0, &k4))
     }
 
     /// States at `times_s`, which grow, from `start` at the first of them, to a relative tolerance of each step.
@@ -143,42 +148,12 @@ impl<'a> Swimmer<'a> {
     /// Kinetic energy of body and water at the last evaluation, J.
     #[must_use]
     pub fn energy_j(&self) -> f64 {
-        self.chain.links.iter().zip(self.work.motions()).map(|(link, m)| link.inertia().energy(*m)).sum()
-    }
-
-    /// Centres and headings of the links in the shape of the last evaluation.
-    pub fn places(&self, state: &State) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
-        let (mut place, mut heading) = (state.place_m, state.heading);
-        let mut before = 0.0;
-        self.chain.links.iter().enumerate().map(move |(i, link)| {
-            if i > 0 {
-                let (s, c) = heading.sin_cos();
-                place = [place[0] - before * c, place[1] - before * s];
-                heading -= self.shape.angle[i - 1];
-                let (s, c) = heading.sin_cos();
-                place = [place[0] - link.half_length_m * c, place[1] - link.half_length_m * s];
-            }
-            before = link.half_length_m;
-            (place, heading)
-        })
+        self.chain.energy_j(self.work.motions())
     }
 
     /// Centre of mass of the body in the shape of the last evaluation, m.
     #[must_use]
     pub fn centre_m(&self, state: &State) -> [f64; 2] {
-        let (mut sum, mut mass) = ([0.0; 2], 0.0);
-        for (link, (place, heading)) in self.chain.links.iter().zip(self.places(state)) {
-            let (s, c) = heading.sin_cos();
-            let (m, ahead) = (link.rigid.x, link.rigid.turn_y);
-            sum = [sum[0] + m * place[0] + ahead * c, sum[1] + m * place[1] + ahead * s];
-            mass += m;
-        }
-        sum.map(|x| x / mass)
-    }
-
-    /// The largest torque of the last evaluation, N m.
-    #[must_use]
-    pub fn largest_torque_n_m(&self) -> f64 {
-        self.work.answer.iter().fold(0.0, |m, t| m.max(t.abs()))
+        self.chain.centre_m(state.place_m, state.heading, &self.shape.angle)
     }
 }

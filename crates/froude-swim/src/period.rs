@@ -5,22 +5,25 @@
 //! that of the centre of mass through the water from the beginning of a period, t = 0, to its end (chord), divided by the period: of a gait that turns it depends on where the
 //! period begins, and it is nothing after a full turn.
 //!
-//! **Units.** SI. **Source.** Nayfeh & Balachandran (1995), *Applied Nonlinear Dynamics*, 3.2 and 5.3.
+//! **Units.** SI. **Source.** Nayfeh & Balachandran (1995), *Applied Nonlinear Dynamics*, ch. 3 (stability of periodic solutions) and 6 (shooting).
 
 use faer::Mat;
 use faer::prelude::*;
 
+use crate::chain::Chain;
+use crate::head::{COARSE, HeadMap, SIDE_BY_SIDE};
+use crate::moving::{Exact, Instant, Passage, go};
 use crate::path::{State, Swimmer};
 use crate::planar::Motion;
 
 /// Periods that a swimmer is let go before Newton's method.
-const TRANSIENT: usize = 3;
+pub(crate) const TRANSIENT: usize = 3;
 /// Steps of Newton's method.
-const MOST_STEPS: usize = 30;
+pub(crate) const MOST_STEPS: usize = 30;
 /// A motion repeats itself when each part is met to this, of the speed of a link length in a period.
-const REPEATS: f64 = 1e-9;
+pub(crate) const REPEATS: f64 = 1e-9;
 /// Step of the differences of the map, of the same speed.
-const STEP: f64 = 1e-5;
+pub(crate) const STEP: f64 = 1e-5;
 
 /// What a period of a gait does.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,106 +44,134 @@ pub struct Periodic {
     pub absolute_w: f64,
     /// Mean of what drag takes, W.
     pub loss_w: f64,
-    /// Largest torque, N m.
-    pub torque_n_m: f64,
-    /// Sizes of the Floquet multipliers, the largest first.
+    /// Mean of what friction of the joints takes, W.
+    pub friction_w: f64,
+    /// φ, rad, and φ̇, rad/s, of each joint at the beginning of a period, where servos drive them.
+    pub joints: Vec<[f64; 2]>,
+    /// Sizes of the Floquet multipliers, the three largest.
     pub multipliers: [f64; 3],
     /// By how much the motion does not repeat, relative.
     pub residual: f64,
+    /// Periods that were followed in the search and in measuring; those side by side count once.
+    pub periods: usize,
+}
+
+impl Periodic {
+    /// Of the motion that was found, from a period of it.
+    pub(crate) fn of(period_s: f64, head: Motion, joints: Vec<[f64; 2]>, passage: &Passage, map: &Repeats) -> Self {
+        let [x, y] = passage.way_m;
+        let end = &passage.end;
+        Self {
+            head,
+            joints,
+            way_m: passage.way_m,
+            speed_m_s: x.hypot(y) / period_s,
+            turn: end.heading,
+            net_w: end.work_j / period_s,
+            positive_w: end.positive_j / period_s,
+            absolute_w: end.absolute_j / period_s,
+            loss_w: end.loss_j / period_s,
+            friction_w: passage.friction_j / period_s,
+            multipliers: map.multipliers(),
+            residual: map.residual,
+            periods: map.periods + 1,
+        }
+    }
+}
+
+/// How well a motion repeats, and the derivative of the map there.
+pub(crate) struct Repeats {
+    pub(crate) derivative: Mat<f64>,
+    pub(crate) residual: f64,
+    /// Periods that the search took.
+    pub(crate) periods: usize,
+}
+
+impl Repeats {
+    fn multipliers(&self) -> [f64; 3] {
+        let mut sizes: Vec<f64> =
+            self.derivative.eigenvalues().map_or_else(|_| Vec::new(), |all| all.iter().map(|s| s.norm()).collect());
+        sizes.sort_by(|a, b| b.total_cmp(a));
+        std::array::from_fn(|k| sizes.get(k).copied().unwrap_or(f64::NAN))
+    }
 }
 
 impl Swimmer<'_> {
     /// The periodic motion in `steps` steps a period; `None` where there is none within reach or an inertia is not positive.
-    pub fn periodic(&mut self, steps: usize) -> Option<Periodic> {
-        let steps = steps.max(1);
-        let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum::<f64>();
-        let speed = length / self.chain.links.len() as f64 / self.gait.period_s();
-        let scale = [speed / length, speed, speed];
+    #[must_use]
+    pub fn periodic(&self, steps: usize) -> Option<Periodic> {
+        self.periodic_seen(steps, &mut |_| ())
+    }
+
+    /// The same, seen at the beginning of each step of a period.
+    pub fn periodic_seen(&self, steps: usize, see: &mut dyn FnMut(&Instant<'_>)) -> Option<Periodic> {
+        let steps = steps.max(1).next_multiple_of(COARSE);
+        let period = self.gait.period_s();
+        let scale = scale(self.chain, period);
+        let map = HeadMap::new(self.chain, self.gait, period, steps)?;
+        // Steps four times as long lead to where the exact ones begin; where they diverge, they were too long.
         let mut head = [0.0; 3];
         for _ in 0..TRANSIENT {
-            head = self.over(head, steps)?.end.head;
+            [head, ..] = map.over(&[head; SIDE_BY_SIDE], COARSE);
         }
-        for _ in 0..MOST_STEPS {
-            let here = self.over(head, steps)?;
-            let away = [0, 1, 2].map(|k| here.end.head[k] - head[k]);
-            if away.iter().any(|a| !a.is_finite()) {
-                return None;
-            }
-            let residual = (0..3).map(|k| (away[k] / scale[k]).abs()).fold(0.0, f64::max);
-            let derivative = self.derivative(head, &here.end.head, scale, steps)?;
-            if residual < REPEATS {
-                return Some(self.told(head, &here, &derivative, residual));
-            }
-            let left = Mat::from_fn(3, 3, |i, j| f64::from(u8::from(i == j)) - derivative[(i, j)]);
-            let step = left.partial_piv_lu().solve(Mat::from_fn(3, 1, |i, _| away[i]));
-            for k in 0..3 {
-                head[k] += step[(k, 0)];
-            }
-        }
-        None
-    }
-
-    fn told(&self, head: Motion, here: &Over, derivative: &Mat<f64>, residual: f64) -> Periodic {
-        let period = self.gait.period_s();
-        let mut multipliers = [f64::NAN; 3];
-        if let Ok(found) = derivative.eigenvalues() {
-            for (size, value) in multipliers.iter_mut().zip(found) {
-                *size = value.norm();
-            }
-        }
-        multipliers.sort_by(|a, b| b.total_cmp(a));
-        Periodic {
-            head,
-            way_m: here.way_m,
-            speed_m_s: here.way_m[0].hypot(here.way_m[1]) / period,
-            turn: here.end.heading,
-            net_w: here.end.work_j / period,
-            positive_w: here.end.positive_j / period,
-            absolute_w: here.end.absolute_j / period,
-            loss_w: here.end.loss_j / period,
-            torque_n_m: here.torque_n_m,
-            multipliers,
-            residual,
-        }
-    }
-
-    /// One period from a motion of the head, heading along x.
-    fn over(&mut self, head: Motion, steps: usize) -> Option<Over> {
-        let h = self.gait.period_s() / steps as f64;
-        let current = std::mem::take(&mut self.current_m_s);
-        let mut state = State { head, ..State::default() };
-        self.rates(0.0, &state)?;
-        let from = self.centre_m(&state);
-        let mut torque_n_m = 0.0_f64;
-        for i in 0..steps {
-            state = self.step(i as f64 * h, h, &state)?;
-            torque_n_m = torque_n_m.max(self.largest_torque_n_m());
-        }
-        self.rates(0.0, &state)?;
-        let to = self.centre_m(&state);
-        self.current_m_s = current;
-        Some(Over { end: state, way_m: [to[0] - from[0], to[1] - from[1]], torque_n_m })
-    }
-
-    /// ∂ of the map by the head's motion, by differences to one side.
-    fn derivative(&mut self, head: Motion, end: &Motion, scale: Motion, steps: usize) -> Option<Mat<f64>> {
-        let mut out = Mat::zeros(3, 3);
-        for j in 0..3 {
-            let h = STEP * scale[j];
-            let mut moved = head;
-            moved[j] += h;
-            let there = self.over(moved, steps)?.end.head;
-            for i in 0..3 {
-                out[(i, j)] = (there[i] - end[i]) / h;
-            }
-        }
-        Some(out)
+        let mut periods = TRANSIENT;
+        let coarse = newton(&map, head, scale, (COARSE, 1e3 * REPEATS), &mut periods);
+        let start = coarse.map_or([0.0; 3], |found| found.head);
+        let found = newton(&map, start, scale, (1, REPEATS), &mut periods)?;
+        let swimmer = Swimmer { current_m_s: [0.0; 2], ..self.clone() };
+        let mut moving = Exact::new(swimmer, State { head: found.head, ..State::default() });
+        let passage = go(&mut moving, period / steps as f64, steps, see)?;
+        Some(Periodic::of(period, found.head, Vec::new(), &passage, &found.repeats))
     }
 }
 
-/// A period.
-struct Over {
-    end: State,
-    way_m: [f64; 2],
-    torque_n_m: f64,
+/// Speeds of a head by which its motions are measured: a link length in a period.
+pub(crate) fn scale(chain: &Chain, period_s: f64) -> Motion {
+    let length: f64 = chain.links.iter().map(|link| 2.0 * link.half_length_m).sum::<f64>();
+    let speed = length / chain.links.len() as f64 / period_s;
+    [speed / length, speed, speed]
+}
+
+/// A fixed point of the map.
+struct Fixed {
+    head: Motion,
+    repeats: Repeats,
+}
+
+/// Newton's method on the map, in one step of so many, until it repeats to a part of `scale`; it counts the periods.
+fn newton(
+    map: &HeadMap,
+    mut head: Motion,
+    scale: Motion,
+    (one_of, within): (usize, f64),
+    periods: &mut usize,
+) -> Option<Fixed> {
+    for _ in 0..MOST_STEPS {
+        *periods += 1;
+        let (end, derivative) = differentiated(map, head, scale, one_of);
+        let away = [0, 1, 2].map(|k| end[k] - head[k]);
+        if away.iter().any(|a| !a.is_finite()) {
+            return None;
+        }
+        let residual = (0..3).map(|k| (away[k] / scale[k]).abs()).fold(0.0, f64::max);
+        if residual < within {
+            return Some(Fixed { head, repeats: Repeats { derivative, residual, periods: *periods } });
+        }
+        let left = Mat::from_fn(3, 3, |i, j| f64::from(u8::from(i == j)) - derivative[(i, j)]);
+        let step = left.partial_piv_lu().solve(Mat::from_fn(3, 1, |i, _| away[i]));
+        for k in 0..3 {
+            head[k] += step[(k, 0)];
+        }
+    }
+    None
+}
+
+/// The end of a period, with its derivative by the head's motion: differences to one side.
+fn differentiated(map: &HeadMap, head: Motion, scale: Motion, one_of: usize) -> (Motion, Mat<f64>) {
+    let mut starts = [head; SIDE_BY_SIDE];
+    for j in 0..3 {
+        starts[j + 1][j] += STEP * scale[j];
+    }
+    let [end, moved @ ..] = map.over(&starts, one_of);
+    (end, Mat::from_fn(3, 3, |i, j| (moved[j][i] - end[i]) / (STEP * scale[j])))
 }

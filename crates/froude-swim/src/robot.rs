@@ -1,7 +1,7 @@
 //! A chain from a robot file and the records that it names.
 //!
 //! **Drag.** A record's law f1 to f6 with the geometry that its coefficients refer to, in the robot's water: forces go with ρ. It is shared out among the robot's modules ([`crate::shares`]).
-//! **Added mass.** Declared per module, or μ = ρ V C_A with the volume of a link that the record's C_A refers to and λ₁ = μ l²/3 (strips). C_A alone says nothing: 1.2674 of the
+//! **Added mass.** Of each module (`added`): declared, a matrix of potential flow, or μ = ρ V C_A with the volume of a link that the record's C_A refers to and λ₁ = μ l²/3 (strips). C_A alone says nothing: 1.2674 of the
 //! paper belongs to 1.2723e-3 m³ and 1.653 kg, and not to πa²·2l, which would give 2.54 kg.
 //!
 //! **Source.** USR eq. 4 and 8 to 15.
@@ -10,13 +10,12 @@ use std::path::PathBuf;
 
 use froude_hydro::{Body, CrossTerm, DragModel, Link as Section, Setting};
 use froude_records::RecordError;
-use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Range};
+use froude_records::estimate::{Estimate, EstimateFile};
 use froude_records::json::read_estimates;
-use froude_records::robot::{AddedForm, AddedFrom, DragForm, FromRecord, RobotFile};
+use froude_records::robot::{FromRecord, RobotFile};
 
-use crate::chain::{AddedMass, Chain, Link};
-use crate::planar::Inertia;
-use crate::shares::{Distribution, Torque, shares};
+use crate::blueprint::Blueprint;
+use crate::chain::Chain;
 
 /// Why a robot does not swim.
 #[derive(Debug, thiserror::Error)]
@@ -85,6 +84,29 @@ pub enum RobotError {
         /// The estimate.
         id: String,
     },
+    /// A robot of three dimensions.
+    #[error(
+        "the robot is of three dimensions (space = \"3d\" in [model]), and this is of the plane: write space = \"planar\""
+    )]
+    Space,
+    /// An added mass of sway for three dimensions.
+    #[error(
+        "{id} has C_A, which is of sway alone, and three dimensions need the added mass of all six motions: write them in numbers, or name the record of froude added-mass of one module"
+    )]
+    SwayAlone {
+        /// The estimate.
+        id: String,
+    },
+    /// A matrix that is none of a module.
+    #[error("{}: the added mass of {id} {problem}", .path.display())]
+    Matrix {
+        /// The record.
+        path: PathBuf,
+        /// The estimate.
+        id: String,
+        /// What is wrong, and what to do.
+        problem: String,
+    },
     /// Coefficients without what they refer to.
     #[error("{}: {id} does not say the {what} that its {of}; without it the numbers mean nothing", .path.display())]
     RefersTo {
@@ -106,6 +128,8 @@ pub struct Robot {
     pub chain: Chain,
     /// Ids of the estimates of drag and, where it comes from one, of added mass.
     pub estimates: (String, Option<String>),
+    /// Whether its added mass is that of a link by C_A.
+    pub is_by_link: bool,
     /// The link that its coefficients of drag refer to.
     pub refers_to: Section,
     /// Speeds at which the drag was fitted, m/s, as far as the record says.
@@ -125,53 +149,20 @@ impl Robot {
     ///
     /// [`RobotError`]: records that cannot be read, estimates that are none of a robot, numbers without what they refer to.
     pub fn of(file: &RobotFile) -> Result<Self, RobotError> {
-        let (record, at) = selected(&file.drag)?;
-        let drag = &record.estimates[at];
-        let setting = setting(file, drag)?;
-        let (model, coefficients) = law(&file.drag, drag)?;
-        let distribution = if file.model.is_by_origin { Distribution::ByOrigin } else { Distribution::Uniform };
-        let torque = match file.model.drag {
-            DragForm::Strip => Torque::Strip,
-            DragForm::Friction => Torque::Friction,
-            DragForm::CrossFlow => Torque::CrossFlow,
-            DragForm::Lumped => Torque::None,
-        };
-        if torque == Torque::Friction && model == DragModel::F6 {
-            return Err(RobotError::NoFriction { id: drag.id.clone(), law: drag.law.name.clone() });
+        if file.spatial.is_3d {
+            return Err(RobotError::Space);
         }
-        let drags = shares(model, &setting, &coefficients, (distribution, torque));
-        let (added, added_id) = added(file)?;
-        let links = file.modules.iter().zip(drags).map(|(module, drag)| {
-            let l = module.link.half_length_m;
-            let [surge, sway, yaw] = added.unwrap_or_else(|per_link| [0.0, per_link, per_link * l * l / 3.0]);
-            Link {
-                half_length_m: l,
-                rigid: Inertia::rigid(module.mass_kg, module.inertia_kg_m2, module.ahead_m),
-                added: Inertia { turn: yaw, x: surge, y: sway, ..Inertia::default() },
-                drag,
-            }
-        });
-        let added_mass = match file.model.added_mass {
-            AddedForm::Full => AddedMass::Full,
-            AddedForm::Usr => AddedMass::Usr,
-        };
-        let mass_kg = file.modules.iter().map(|m| m.mass_kg).sum();
-        let displaced: Option<f64> = file.modules.iter().map(|m| Some(m.volume_m3? * file.density_kg_m3)).sum();
-        let range = |key: &str| drag.validity.get(key).map(|Range { low, high, .. }| [*low, *high]);
-        Ok(Self {
-            chain: Chain { links: links.collect(), added_mass },
-            estimates: (drag.id.clone(), added_id),
-            refers_to: setting.body.link,
-            speed_m_s: range("speed"),
-            angle_rad: range("angle"),
-            mass_kg,
-            heavy_kg: displaced.map(|displaced| mass_kg - displaced),
-        })
+        Self::in_plane(file)
+    }
+
+    /// The same of a file of three dimensions too: what the plane sees of it.
+    pub(crate) fn in_plane(file: &RobotFile) -> Result<Self, RobotError> {
+        Ok(Blueprint::of(file)?.estimated())
     }
 }
 
 /// The record that is named, and which of its estimates.
-fn selected(from: &FromRecord) -> Result<(EstimateFile, usize), RobotError> {
+pub(crate) fn selected(from: &FromRecord) -> Result<(EstimateFile, usize), RobotError> {
     let file = read_estimates(&from.path)?;
     let at = match &from.select {
         Some(id) => file.estimates.iter().position(|e| e.id == *id),
@@ -193,14 +184,14 @@ fn selected(from: &FromRecord) -> Result<(EstimateFile, usize), RobotError> {
     Ok((file, at))
 }
 
-fn measure(from: &FromRecord, e: &Estimate, key: &str, of: &'static str) -> Result<f64, RobotError> {
+pub(crate) fn measure(from: &FromRecord, e: &Estimate, key: &str, of: &'static str) -> Result<f64, RobotError> {
     let missing =
         || RobotError::RefersTo { path: from.path.clone(), id: e.id.clone(), what: key.replace('_', " "), of };
     e.refers_to.get(key).map(|m| m.value).ok_or_else(missing)
 }
 
 /// What the coefficients of drag refer to, in the robot's water.
-fn setting(file: &RobotFile, e: &Estimate) -> Result<Setting, RobotError> {
+pub(crate) fn setting(file: &RobotFile, e: &Estimate) -> Result<Setting, RobotError> {
     let get = |key| measure(&file.drag, e, key, "coefficients of drag refer to");
     let link = Section {
         major_semi_axis_m: get("major_semi_axis")?,
@@ -216,7 +207,7 @@ fn setting(file: &RobotFile, e: &Estimate) -> Result<Setting, RobotError> {
     })
 }
 
-fn law(from: &FromRecord, e: &Estimate) -> Result<(DragModel, Vec<f64>), RobotError> {
+pub(crate) fn law(from: &FromRecord, e: &Estimate) -> Result<(DragModel, Vec<f64>), RobotError> {
     let Some(model) = DragModel::from_name(&e.law.name) else {
         return Err(RobotError::Law { path: from.path.clone(), id: e.id.clone(), law: e.law.name.clone() });
     };
@@ -228,23 +219,4 @@ fn law(from: &FromRecord, e: &Estimate) -> Result<(DragModel, Vec<f64>), RobotEr
         })
     };
     Ok((model, model.coefficients().iter().map(|c| value(c.name)).collect::<Result<_, _>>()?))
-}
-
-/// Surge, sway and yaw of a module as declared, or the sway of a link by its record.
-fn added(file: &RobotFile) -> Result<(Result<[f64; 3], f64>, Option<String>), RobotError> {
-    let from = match &file.added_mass {
-        AddedFrom::Declared(all) => return Ok((Ok(*all), None)),
-        AddedFrom::Record(from) => from,
-    };
-    let (record, at) = selected(from)?;
-    let e = &record.estimates[at];
-    let coefficient = |name: &str| e.coefficients.get(name).and_then(|c: &Coefficient| c.value);
-    let Some(c_a) = coefficient("C_A").or_else(|| coefficient("C_Ay")) else {
-        return Err(RobotError::NoAdded { path: from.path.clone(), id: e.id.clone() });
-    };
-    if c_a.is_nan() || c_a <= 0.0 {
-        return Err(RobotError::NotPositive { path: from.path.clone(), id: e.id.clone(), value: c_a });
-    }
-    let volume = measure(from, e, "link_volume", "C_A refers to, of a link")?;
-    Ok((Err(file.density_kg_m3 * volume * c_a), Some(e.id.clone())))
 }

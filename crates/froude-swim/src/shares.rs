@@ -132,16 +132,16 @@ fn share(
 
 /// The largest power that a module gains from still water, over its velocities up to a range, m/s, with the velocity: `None` where it gains none.
 ///
-/// A grid is no proof between its points.
+/// A grid is no proof between its points. A law none of whose terms pushes needs none.
 #[must_use]
 pub fn gains(drag: &LinkDrag, range_m_s: f64) -> Option<(f64, [f64; 2])> {
-    let plain = LinkDrag { turning: Turning::Lumped([0.0; 2]), ..*drag };
+    let cross = drag.cross.map_or([0.0; 2], |cross| cross.of_speed);
+    if [drag.along, drag.across, cross].concat().iter().all(|c| *c >= 0.0) {
+        return None;
+    }
     froude_hydro::dissipation::VelocityGrid::over(range_m_s)
         .points()
-        .map(|[u, v]| {
-            let [_, x, y] = plain.load(0.0, [0.0, u, v]);
-            (x * u + y * v, [u, v])
-        })
+        .map(|velocity| (drag.power_w(velocity), velocity))
         .filter(|(power, _)| *power > 0.0)
         .max_by(|a, b| a.0.total_cmp(&b.0))
 }

@@ -1,4 +1,4 @@
-//! What a robot's gait comes to: speed, powers, cost, torques, stability, and how far its coefficients are stretched.
+//! What a robot's gait comes to: speed, powers, cost, torques, stability, and how much of the loss lies outside of the fit.
 //!
 //! | quantity | what it is |
 //! | --- | --- |
@@ -12,25 +12,36 @@
 //!
 //! **Units.** SI.
 
-use crate::gait::{Envelope, Gait, Shape};
+use crate::drive::Servo;
+use crate::driven::Driven;
+use froude_hydro::similarity::GRAVITY_M_S2;
+
+use crate::gait::{Course, Gait};
+use crate::head::COARSE;
+use crate::joints::Drives;
 use crate::path::{State, Swimmer};
 use crate::period::Periodic;
-use crate::planar::{Motion, dot};
 use crate::robot::Robot;
+use crate::seen::{Needs, Seen};
 use crate::shares::gains;
+use crate::stability::{REAL_LIMIT, Stiffness, stiffness};
 
-/// Steps of a period.
+/// Steps of a period, at least.
 pub const STEPS: usize = 400;
+/// A step is at most this part of the longest that is stable about shapes at rest.
+const SHORTER: f64 = 0.5;
+/// Most links times steps of a period.
+const MOST_LINK_STEPS: f64 = 4e6;
 /// Of powers, between which a period is one that repeats.
-const BALANCED: f64 = 1e-4;
-/// Most numbers of a trajectory: 800 MB.
-const MOST_NUMBERS: f64 = 1e8;
+pub(crate) const BALANCED: f64 = 1e-4;
+/// Doublings and halvings of a frequency.
+const MOST_DOUBLINGS: usize = 20;
+/// Of the highest frequency.
+const FOUND: f64 = 1e-3;
 /// A gait that moves a swimmer by less than this part of its length in a period does not swim.
-const STILL: f64 = 1e-9;
+pub(crate) const STILL: f64 = 1e-9;
 /// A gain of less than this part of the net power is none.
 const NO_GAIN: f64 = 1e-3;
-/// m/s².
-const GRAVITY: f64 = 9.80665;
 
 /// Why a gait has no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -56,6 +67,14 @@ pub enum SwimError {
         "no motion of this gait repeats itself from period to period within reach; check its lengths, masses and added masses, where a slip of a unit does this; else take a smaller amplitude, or a frequency at which the drag settles it"
     )]
     NotPeriodic,
+    /// No motion repeats itself in three dimensions.
+    #[error(
+        "no motion of this gait repeats itself from period to period within reach, roll and pitch among it; the mass lies {righting_mm:.2} mm below the buoyancy, and where that is little nothing rights the body: lower center_of_mass or raise center_of_buoyancy; else take a smaller amplitude, or check lengths, masses and added masses for a slip of a unit"
+    )]
+    Restless {
+        /// mm.
+        righting_mm: f64,
+    },
     /// Nothing moves.
     #[error(
         "the gait does not swim: its speed is {speed_m_s:e} m/s; give it an amplitude, and a phase from joint to joint"
@@ -64,13 +83,51 @@ pub enum SwimError {
         /// m/s.
         speed_m_s: f64,
     },
+    /// A step that the servos do not allow.
+    #[error(
+        "a step of {asked_s} s is not stable: the largest eigenvalue of k_d over the inertia of the joints (friction in k_d) is {damping_per_s:.6} 1/s, which by itself allows 2.785/{damping_per_s:.6} = {by_damping_s:.3e} s; with k_p the limit is {longest_s:.3e} s: take --step '{would_do_s:.6} s', which is half of it and divides the period, or a smaller kd"
+    )]
+    Step {
+        /// What was asked for, s.
+        asked_s: f64,
+        /// λ, 1/s.
+        damping_per_s: f64,
+        /// 2.785/λ, s.
+        by_damping_s: f64,
+        /// The longest that is stable, s.
+        longest_s: f64,
+        /// About half of it, which divides the period, s.
+        would_do_s: f64,
+    },
+    /// A gait whose period has too many steps.
+    #[error(
+        "a period of {period_s:e} s needs steps of {step_s:e} s at most ({why}), which are more than {most:e} for this chain: take a higher frequency or, for servos, a smaller kd"
+    )]
+    TooSlow {
+        /// s.
+        period_s: f64,
+        /// The longest step, s.
+        step_s: f64,
+        /// What limits it.
+        why: &'static str,
+        /// Most steps.
+        most: f64,
+    },
+    /// A motion that grows beyond all numbers.
+    #[error(
+        "the motion diverges in steps of {step_s:e} s: take a shorter --step, and check lengths, masses and added masses for a slip of a unit"
+    )]
+    Diverged {
+        /// s.
+        step_s: f64,
+    },
     /// A trajectory that no memory holds.
     #[error(
-        "{periods} periods of {joints} joints are {numbers:e} numbers; a trajectory has {MOST_NUMBERS:e} at most: ask for fewer --periods"
+        "{moments} moments of {joints} joints are {numbers:e} numbers; a trajectory has 1e8 at most: ask for fewer --periods"
     )]
     TooLong {
-        /// Periods.
-        periods: usize,
+        /// Moments.
+        moments: usize,
         /// Joints.
         joints: usize,
         /// Numbers of the trajectory.
@@ -89,142 +146,154 @@ pub struct Swim {
     pub cost_positive_j_m: f64,
     /// Net power over m g U.
     pub cost: f64,
-    /// Largest rate of a joint, rad/s.
-    pub rate_rad_s: f64,
+    /// What motors take from the battery, W; `None` where their efficiency is not stated.
+    pub electric_w: Option<f64>,
+    /// What the joints need.
+    pub needs: Needs,
+    /// Steps of the period.
+    pub steps: usize,
+    /// What servos ask of a step; `None` where the joints follow exactly.
+    pub stiffness: Option<Stiffness>,
     /// Share of the loss outside of the fitted speeds, and outside of the fitted angles; `None` where the record does not say them.
     pub extrapolated: [Option<f64>; 2],
+    /// Share of the loss by the forces along the links.
+    pub along: f64,
     /// Half of the loss is at smaller angles to the flow, rad.
     pub median_angle_rad: f64,
     /// Largest power that a module gains from still water at the speeds reached, W, with its number from the head; less than a thousandth of the net power is none.
     pub gain_w: Option<(usize, f64)>,
 }
 
-/// Limits of the joints, where they are declared.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Limits {
-    /// Largest angle, rad.
-    pub angle_rad: Option<f64>,
-    /// Largest rate, rad/s.
-    pub rate_rad_s: Option<f64>,
-}
-
 impl Robot {
-    /// Swims a gait to the motion that repeats.
+    /// Swims a gait to the motion that repeats, in steps of `step_s` at most where it is given.
     ///
     /// # Errors
     ///
-    /// [`SwimError`]: joints beyond their limits, no motion that repeats, an inertia that is not positive.
-    pub fn swim(&self, gait: &Gait, limits: Limits) -> Result<Swim, SwimError> {
-        within(gait, self.chain.joints(), limits)?;
+    /// [`SwimError`]: joints beyond their limits, no motion that repeats, an inertia that is not positive, a step that is not stable.
+    pub fn swim(&self, gait: &dyn Course, drives: &Drives, step_s: Option<f64>) -> Result<Swim, SwimError> {
+        within(gait, drives)?;
         let mut swimmer = Swimmer::new(&self.chain, gait);
         if swimmer.rates(0.0, &State::default()).is_none() {
             return Err(SwimError::Inertia);
         }
-        let periodic = swimmer.periodic(STEPS).ok_or(SwimError::NotPeriodic)?;
+        let (steps, stiffness) = self.steps(gait, drives, step_s)?;
+        let mut seen = Seen::new(self, drives, gait);
+        let mut see = |now: &crate::moving::Instant<'_>| seen.see(now);
+        let found = if drives.following.is_empty() {
+            swimmer.periodic_seen(steps, &mut see)
+        } else {
+            // Where joints follow exactly is where the search begins.
+            let head = swimmer.periodic(STEPS).map_or([0.0; 3], |exact| exact.head);
+            let servo = Servo::new(gait, &drives.following, &drives.motor);
+            Driven::new(&self.chain, servo).periodic_seen(head, steps, &mut see)
+        };
+        let periodic = found.ok_or(SwimError::NotPeriodic)?;
         let length: f64 = self.chain.links.iter().map(|link| 2.0 * link.half_length_m).sum();
         if periodic.speed_m_s * gait.period_s() < STILL * length {
             return Err(SwimError::Still { speed_m_s: periodic.speed_m_s });
         }
         // What is no number is not balanced either.
-        let is_balanced = (periodic.loss_w / periodic.net_w - 1.0).abs() <= BALANCED;
+        let is_balanced = ((periodic.loss_w + periodic.friction_w) / periodic.net_w - 1.0).abs() <= BALANCED;
         if !is_balanced {
             return Err(SwimError::NotPeriodic);
         }
-        let losses = self.losses(&mut swimmer, periodic.head).ok_or(SwimError::Inertia)?;
-        let all: f64 = losses.iter().map(|l| l.power_w).sum();
-        let share = |is_outside: &dyn Fn(&Loss) -> bool| {
-            losses.iter().filter(|l| is_outside(l)).map(|l| l.power_w).fold(0.0, |sum, power| sum + power) / all
-        };
-        let beyond = |range: Option<[f64; 2]>, of: &dyn Fn(&Loss) -> f64| {
-            range.map(|range| {
-                let [low, high] = folded(range);
-                share(&|l| !(low..=high).contains(&of(l)))
-            })
-        };
-        let fastest = losses.iter().map(|l| l.speed_m_s).fold(0.0, f64::max);
-        let gain = |(i, link): (usize, &crate::chain::Link)| {
-            let (power, _) = gains(&link.drag, fastest)?;
-            (power > NO_GAIN * periodic.net_w).then_some((i + 1, power))
-        };
         Ok(Swim {
             cost_j_m: periodic.net_w / periodic.speed_m_s,
             cost_positive_j_m: periodic.positive_w / periodic.speed_m_s,
-            cost: periodic.net_w / (self.mass_kg * GRAVITY * periodic.speed_m_s),
-            rate_rad_s: (1..=self.chain.joints())
-                .map(|i| size(gait, i, self.chain.joints()) * gait.frequency)
-                .fold(0.0, f64::max),
-            extrapolated: [beyond(self.speed_m_s, &|l| l.speed_m_s), beyond(self.angle_rad, &|l| l.angle_rad)],
-            median_angle_rad: median(losses.clone()),
-            gain_w: self.chain.links.iter().enumerate().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1)),
+            cost: periodic.net_w / (self.mass_kg * GRAVITY_M_S2 * periodic.speed_m_s),
+            electric_w: drives.motor.electric_w(periodic.positive_w, periodic.absolute_w - periodic.positive_w),
+            needs: seen.needs(),
+            steps,
+            stiffness,
+            extrapolated: seen.extrapolated(),
+            along: seen.losses().along(),
+            median_angle_rad: seen.losses().median_angle_rad(),
+            gain_w: self.gain(seen.losses().fastest_m_s(), NO_GAIN * periodic.net_w),
             periodic,
         })
     }
 
-    /// What each link loses over the period, at each step.
-    fn losses(&self, swimmer: &mut Swimmer<'_>, head: Motion) -> Option<Vec<Loss>> {
-        let h = swimmer.gait.period_s() / STEPS as f64;
-        let mut state = State { head, ..State::default() };
-        let mut out = Vec::new();
-        for i in 0..STEPS {
-            swimmer.rates(i as f64 * h, &state)?;
-            for (link, motion) in self.chain.links.iter().zip(swimmer.work.motions()) {
-                let [_, u, v] = *motion;
-                out.push(Loss {
-                    speed_m_s: u.hypot(v),
-                    // Fore and aft, and port and starboard, are alike.
-                    angle_rad: v.abs().atan2(u.abs()),
-                    // A link that gains is told apart.
-                    power_w: (-dot(link.drag.load(link.half_length_m, *motion), *motion)).max(0.0),
-                });
-            }
-            state = swimmer.step(i as f64 * h, h, &state)?;
+    /// The module that gains the most power from still water at speeds up to one, counted from 1, where it is above `least_w`.
+    pub(crate) fn gain(&self, fastest_m_s: f64, least_w: f64) -> Option<(usize, f64)> {
+        let gain = |(i, link): (usize, &crate::chain::Link)| {
+            let (power, _) = gains(&link.drag, fastest_m_s)?;
+            (power > least_w).then_some((i + 1, power))
+        };
+        self.chain.links.iter().enumerate().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Steps of a course's time: enough for its waves, the drag and the servos.
+    pub(crate) fn steps(
+        &self,
+        course: &dyn Course,
+        drives: &Drives,
+        step_s: Option<f64>,
+    ) -> Result<(usize, Option<Stiffness>), SwimError> {
+        let period_s = course.period_s();
+        let stiffness = match &drives.following[..] {
+            [] => None,
+            following => Some(stiffness(&self.chain, course, following).ok_or(SwimError::Inertia)?),
+        };
+        // The search for the motion that repeats begins with longer steps.
+        let settled_s = REAL_LIMIT / (COARSE as f64 * self.chain.settles_per_s());
+        let (longest_s, why) = match stiffness {
+            Some(s) if s.longest_step_s < settled_s => (s.longest_step_s, "servos"),
+            _ => (settled_s, "linear drag settles it many times within a period"),
+        };
+        if let (Some(asked_s), Some(s)) = (step_s.filter(|asked| *asked > longest_s), stiffness) {
+            return Err(SwimError::Step {
+                asked_s,
+                damping_per_s: s.damping_per_s,
+                by_damping_s: REAL_LIMIT / s.damping_per_s,
+                longest_s,
+                would_do_s: period_s / (period_s / (SHORTER * longest_s)).ceil(),
+            });
         }
-        Some(out)
+        let step_s = step_s.unwrap_or((period_s / STEPS as f64).min(SHORTER * longest_s));
+        let steps = (period_s / step_s).ceil();
+        let most = MOST_LINK_STEPS / self.chain.links.len() as f64;
+        if steps > most {
+            return Err(SwimError::TooSlow { period_s, step_s, why, most });
+        }
+        Ok((steps as usize, stiffness))
+    }
+
+    /// The highest frequency, rad/s, at which motors give what a gait of joints that follow exactly needs; `None` where they have no curve or give none of it.
+    ///
+    /// Torques grow with the frequency: it is sought between doubled and halved ones, to a thousandth.
+    #[must_use]
+    pub fn fastest(&self, gait: &Gait, drives: &Drives) -> Option<f64> {
+        if drives.motor.curve.is_empty() || !drives.following.is_empty() {
+            return None;
+        }
+        let free = Drives { motor: drives.motor.clone(), ..Drives::free(self.chain.joints()) };
+        let gives = |frequency: f64| {
+            let gait = Gait { frequency, ..gait.clone() };
+            self.swim(&gait, &free, None).is_ok_and(|swim| swim.needs.share <= 1.0)
+        };
+        let (mut low, mut high) = (gait.frequency, gait.frequency);
+        let mut tries = 0..MOST_DOUBLINGS;
+        while gives(high) {
+            (low, high) = (high, 2.0 * high);
+            tries.next()?;
+        }
+        while !gives(low) {
+            (low, high) = (0.5 * low, low);
+            tries.next()?;
+        }
+        while high / low > 1.0 + FOUND {
+            let middle = (low * high).sqrt();
+            if gives(middle) { low = middle } else { high = middle }
+        }
+        Some(low)
     }
 }
 
-/// A link at a moment.
-#[derive(Debug, Clone, Copy)]
-struct Loss {
-    speed_m_s: f64,
-    angle_rad: f64,
-    power_w: f64,
-}
-
-/// A range of sizes: of −39° to −10° that of 10° to 39°.
-fn folded([low, high]: [f64; 2]) -> [f64; 2] {
-    let least = if low <= 0.0 && high >= 0.0 { 0.0 } else { low.abs().min(high.abs()) };
-    [least, low.abs().max(high.abs())]
-}
-
-/// The angle below which half of the loss is.
-fn median(mut losses: Vec<Loss>) -> f64 {
-    losses.sort_by(|a, b| a.angle_rad.total_cmp(&b.angle_rad));
-    let half = 0.5 * losses.iter().map(|l| l.power_w).sum::<f64>();
-    let mut sum = 0.0;
-    losses
-        .iter()
-        .find_map(|l| {
-            sum += l.power_w;
-            (sum >= half).then_some(l.angle_rad)
-        })
-        .unwrap_or(0.0)
-}
-
-/// Amplitude of a joint, rad.
-fn size(gait: &Gait, joint: usize, joints: usize) -> f64 {
-    gait.amplitude.abs()
-        * match &gait.envelope {
-            Envelope::Lateral => 1.0,
-            Envelope::Eel => joint as f64 / (joints + 2) as f64,
-            Envelope::Factors(each) => each.get(joint - 1).copied().unwrap_or(0.0).abs(),
-        }
-}
-
-fn within(gait: &Gait, joints: usize, limits: Limits) -> Result<(), SwimError> {
-    for joint in 1..=joints {
-        let angle = size(gait, joint, joints) + gait.turn.abs();
-        let rate = size(gait, joint, joints) * gait.frequency.abs();
+/// Whether a course stays within the limits of the joints.
+pub(crate) fn within(gait: &dyn Course, drives: &Drives) -> Result<(), SwimError> {
+    let joints = drives.limits.len();
+    for (joint, limits) in (1..).zip(&drives.limits) {
+        let [angle, rate] = gait.extremes(joint - 1, joints);
         let degrees = |x: f64| format!("{:.4}", x.to_degrees()).trim_end_matches('0').trim_end_matches('.').to_owned();
         let refused = |asked, allowed, unit: &str| SwimError::Limit {
             joint,
@@ -239,69 +308,4 @@ fn within(gait: &Gait, joints: usize, limits: Limits) -> Result<(), SwimError> {
         }
     }
     Ok(())
-}
-
-/// A moment of a trajectory.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Moment {
-    /// s.
-    pub time_s: f64,
-    /// The state.
-    pub state: State,
-    /// Centre of mass, m.
-    pub centre_m: [f64; 2],
-    /// Angles of the joints.
-    pub shape: Shape,
-    /// Torques, N m.
-    pub torque_n_m: Vec<f64>,
-    /// Powers: net, positive, of the drag, W.
-    pub power_w: [f64; 3],
-    /// Kinetic energy of body and water, J.
-    pub energy_j: f64,
-}
-
-impl Robot {
-    /// The trajectory over so many periods from the motion that repeats, so many moments a period, in a current. Its first period leads along x.
-    ///
-    /// # Errors
-    ///
-    /// [`SwimError`]: more numbers than a memory holds, an inertia that is not positive.
-    pub fn trajectory(
-        &self,
-        gait: &Gait,
-        periodic: &Periodic,
-        (periods, moments): (usize, usize),
-        current_m_s: [f64; 2],
-    ) -> Result<Vec<Moment>, SwimError> {
-        let joints = self.chain.joints();
-        let numbers = periods as f64 * moments as f64 * (5 * joints + 20) as f64;
-        if numbers > MOST_NUMBERS {
-            return Err(SwimError::TooLong { periods, joints, numbers });
-        }
-        let mut swimmer = Swimmer::new(&self.chain, gait);
-        swimmer.current_m_s = current_m_s;
-        let moments = moments.max(1);
-        let each = STEPS.div_ceil(moments);
-        let h = gait.period_s() / (each * moments) as f64;
-        let [x, y] = periodic.way_m;
-        let mut state = State { head: periodic.head, heading: -y.atan2(x), ..State::default() };
-        let mut out = Vec::new();
-        for i in 0..=periods * moments {
-            let time_s = (i * each) as f64 * h;
-            let rates = swimmer.rates(time_s, &state).ok_or(SwimError::Inertia)?;
-            out.push(Moment {
-                time_s,
-                state,
-                centre_m: swimmer.centre_m(&state),
-                shape: swimmer.shape.clone(),
-                torque_n_m: swimmer.work.answer.clone(),
-                power_w: [rates.work_j, rates.positive_j, rates.loss_j],
-                energy_j: swimmer.energy_j(),
-            });
-            for k in 0..each {
-                state = swimmer.step((i * each + k) as f64 * h, h, &state).ok_or(SwimError::Inertia)?;
-            }
-        }
-        Ok(out)
-    }
 }

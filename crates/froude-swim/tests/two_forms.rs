@@ -59,8 +59,8 @@ fn the_engine_has_the_accelerations_of_the_closed_form() {
         let (angle, rate) = (between(&state.heading), between(&state.turn_rate));
         let joints = Joints { angle: &angle, rate: &rate };
         let head = motions(&g, &state)[0];
-        let mut work = Workspace::new(n);
-        let found = work.evaluate(&chain, head, joints, Given::Torque(&torque)).unwrap();
+        let mut work = Workspace::new(&chain);
+        let found = work.evaluate(head, joints, Given::Torque(&torque)).unwrap();
         let acceleration = between(&expected.turn);
         let largest = expected.turn.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
         let near = |a: f64, b: f64, what: &str| {
@@ -81,7 +81,7 @@ fn the_engine_has_the_accelerations_of_the_closed_form() {
         near(c * u - s * v + x, expected.velocity[0], "x");
         near(s * u + c * v - y, expected.velocity[1], "y");
         // Prescribed, the same accelerations need the same torques.
-        let again = work.evaluate(&chain, head, joints, Given::Acceleration(&acceleration)).unwrap();
+        let again = work.evaluate(head, joints, Given::Acceleration(&acceleration)).unwrap();
         near(again[0], found[0], "head, prescribed");
         for (a, b) in work.answer.iter().zip(&torque) {
             near(*a, *b, "torque");

@@ -63,6 +63,30 @@ pub enum Error {
     #[error(transparent)]
     Robot(#[from] froude_swim::robot::RobotError),
 
+    /// A file of the joints' motion does not fit the robot.
+    #[error(transparent)]
+    SwimInput(#[from] crate::swim::SwimInput),
+
+    /// A campaign of flow computations cannot be used.
+    #[error(transparent)]
+    CfdInput(#[from] crate::cfd::CfdInput),
+
+    /// The folder of computed cases cannot be worked with.
+    #[error(transparent)]
+    CfdStore(#[from] froude_cfd::store_error::StoreError),
+
+    /// OpenFOAM cannot be run.
+    #[error(transparent)]
+    OpenFoam(#[from] froude_cfd::openfoam::OpenFoamError),
+
+    /// A sweep does not begin.
+    #[error(transparent)]
+    Sweep(#[from] crate::swim::sweep::SweepError),
+
+    /// Nothing can be drawn.
+    #[error(transparent)]
+    Draws(#[from] froude_swim::draws::DrawError),
+
     /// A gait has no answer.
     #[error(transparent)]
     Swim(#[from] froude_swim::swim::SwimError),
@@ -221,8 +245,13 @@ impl Error {
             | Self::Servo(_)
             | Self::Tuning(_)
             | Self::Robot(_)
+            | Self::SwimInput(_)
+            | Self::CfdInput(_)
+            | Self::CfdStore(_)
+            | Self::Sweep(_)
+            | Self::Draws(_)
             | Self::Swim(_) => true,
-            Self::Runner(_) | Self::Report(_) | Self::Output { .. } => false,
+            Self::Runner(_) | Self::OpenFoam(_) | Self::Report(_) | Self::Output { .. } => false,
         }
     }
 

@@ -32,6 +32,7 @@ pub mod methods {
 
 mod campaign_page;
 pub mod carriage;
+pub mod cfd;
 pub mod demo;
 mod error;
 pub mod inspect;

@@ -13,6 +13,7 @@ use froude_records::nearest::meant;
 use froude_records::run::is_servo_log;
 
 use crate::Error;
+use crate::cfd::Computed;
 use crate::pipeline::Purpose;
 use crate::registry::METHODS;
 
@@ -47,6 +48,7 @@ pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>
                 .to_owned(),
         )),
         Input::Mesh(_) => Ok(vec![(&AddedMass, AddedMass.names().to_vec())]),
+        Input::Cases(_) => Ok(vec![(&Computed, Computed.names().to_vec())]),
         _ => Ok(vec![(&Table, vec!["table"])]),
     }
 }

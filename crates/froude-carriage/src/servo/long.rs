@@ -546,9 +546,12 @@ mod tests {
             let e: Vec<f64> = (0..y.len()).map(|i| y[i] - coefficients[0] * x[0][i] - coefficients[1] * x[1][i]).collect();
             let scores: Vec<Vec<f64>> = x.iter().map(|x| x.iter().zip(&e).map(|(x, e)| x * e).collect()).collect();
             let expected = froude_fit::long_run::covariance_of_sum(&[&scores[0], &scores[1]], lag);
+            // A reference from few rows that are nearly parallel is large, and what is left of it after its part is
+            // taken off again has its roundings: 60² products of scores of this size.
+            let size = 1.0 + windows.reference.iter().flatten().map(|r| r.abs()).sum::<f64>();
+            let rounding = 3600.0 * f64::EPSILON * size * size;
             for (a, b) in found.iter().zip(&expected) {
-                // Some 60² products of numbers of the order of one.
-                prop_assert!((a - b).abs() < 1e-12, "{} {}", a, b);
+                prop_assert!((a - b).abs() < rounding, "{} {} within {}", a, b, rounding);
             }
         }
     }

@@ -262,6 +262,7 @@ fn coefficient(c: &ServoCoefficient, dof: Option<f64>) -> Coefficient {
         type_b: None,
         interval_95: Some(c.interval).filter(|ends| ends.iter().all(|x| x.is_finite())),
         effective_dof: dof,
+        unconstrained: None,
     }
 }
 

@@ -47,6 +47,7 @@ pub(super) fn of_response(
             type_b: None,
             interval_95: value.zip(half).map(|(x, half)| [x - half, x + half]),
             effective_dof: own.and_then(|(_, dof)| finite(dof)),
+            unconstrained: None,
         };
         (name.to_owned(), coefficient)
     });

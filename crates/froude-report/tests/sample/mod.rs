@@ -91,6 +91,7 @@ fn coefficient(value: f64, relative: f64, name: &str) -> Coefficient {
             type_b: None,
             interval_95: Some([0.0, 0.0117]),
             effective_dof: None,
+            unconstrained: None,
         };
     }
     let u = (value.abs() * relative).max(0.0008);
@@ -105,6 +106,7 @@ fn coefficient(value: f64, relative: f64, name: &str) -> Coefficient {
         type_b: Some(u * 0.6),
         interval_95: Some([(value - 2.01 * u).max(0.0), value + 2.01 * u]),
         effective_dof: Some(57.3),
+        unconstrained: None,
     }
 }
 

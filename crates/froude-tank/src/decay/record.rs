@@ -131,6 +131,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
             type_b: combined.map(|c| c.type_b),
             interval_95: combined.map(|c| c.interval(value)),
             effective_dof: combined.map(|c| c.dof).filter(|d| d.is_finite()),
+            unconstrained: None,
         };
         (fit.names[j].clone(), coefficient)
     });

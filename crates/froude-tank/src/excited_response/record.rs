@@ -54,6 +54,7 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
             type_b: of(combined.type_b),
             interval_95: is_stated.then(|| combined.interval(at.values[j])),
             effective_dof: of(combined.dof).filter(|d| d.is_finite()),
+            unconstrained: None,
         };
         (NAMES[j].to_owned(), coefficient)
     };

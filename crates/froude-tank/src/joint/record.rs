@@ -23,6 +23,7 @@ pub(crate) fn coefficients(fit: &JointFit, is_nuisance: &dyn Fn(&str) -> bool) -
             type_b: u.combined.map(|c| c.type_b),
             interval_95: u.value.zip(u.combined).map(|(value, c)| c.interval(value)),
             effective_dof: u.combined.map(|c| c.dof).filter(|d| d.is_finite()),
+            unconstrained: None,
         };
         (u.name.clone(), coefficient)
     };

@@ -109,6 +109,7 @@ pub fn weights_of(campaign: &Campaign, source: &Source) -> Result<Weights, Metho
         configurations: b.configurations.clone(),
         speed_m_s: b.weight_n.clone(),
         angle_rad: b.angle_rad.clone(),
+        pitch_rad: vec![0.0],
         repeats: b.repeats,
     };
     let mut own = source.clone();

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, clocks,
 //! dynamic, potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -34,6 +34,9 @@ mod rotation;
 mod snake;
 mod steady;
 mod sweeps;
+mod swim;
+mod swim_coverage;
+mod swim_sources;
 mod two_mass_rig;
 mod weights;
 
@@ -61,6 +64,7 @@ fn main() -> ExitCode {
     let full = arguments.iter().any(|a| a == "--full");
     let chosen: Vec<&String> = arguments.iter().filter(|a| !a.starts_with("--")).collect();
     let wants = |part: &str| chosen.is_empty() || chosen.iter().any(|c| *c == part);
+    let is_part = arguments.iter().any(|a| a == "--page");
     let repetitions = if full { FULL_REPETITIONS } else { SHORT_REPETITIONS };
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let shared = std::env::var_os("FROUDE_SHARED_DATA").map_or_else(|| root.join("../shared/data"), PathBuf::from);
@@ -118,6 +122,14 @@ fn main() -> ExitCode {
         if wants("excited") {
             excited::all(claims, &root, &shared, if full { 2_000 } else { 40 })?;
         }
+        if wants("swim") {
+            swim::all(claims, &root)?;
+            let pages = root.join("book/src");
+            swim_sources::all(claims, &root, (full && (chosen.is_empty() || is_part)).then_some(pages.as_path()))?;
+        }
+        if wants("swim-coverage") {
+            swim_coverage::all(claims, &root, if full { 200 } else { 10 })?;
+        }
         if wants("clocks") {
             clocks::all(claims, &shared)?;
         }
@@ -141,7 +153,6 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     print!("{}", claims.text());
-    let is_part = arguments.iter().any(|a| a == "--page");
     if full && (chosen.is_empty() || is_part) {
         let page = root.join("book/src/validation.md");
         let mut text = claims.page(repetitions);

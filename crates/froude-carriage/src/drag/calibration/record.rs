@@ -63,6 +63,7 @@ pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
         type_b: Some(from_weights.hypot(c.from_pulley)),
         interval_95: Some(c.interval_95),
         effective_dof: finite(k.dof),
+        unconstrained: None,
     };
     let efficiency = Derived {
         formula: format!("{FORCE_PER_VOLT}/{:e} N/V", k.value / c.efficiency.value),
@@ -122,6 +123,7 @@ pub fn declared(source: &str, setup: &DragSetup) -> Estimate {
         type_b: Some(standard),
         interval_95: None,
         effective_dof: None,
+        unconstrained: None,
     };
     estimate(&format!("{source}, declared"), "declared", "the constants of the drive as declared", coefficient)
 }

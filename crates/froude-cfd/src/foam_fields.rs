@@ -1,0 +1,95 @@
+//! Fields at the start of a case, and the conditions at its boundary: the folder `0`.
+//!
+//! Walls take any y+: k, omega and the eddy viscosity have conditions that blend the viscous sublayer with the wall's law. Open water is in- and outflow in one, by the sign of the flux, so that one mesh serves every angle.
+
+use crate::case::{Case, Model};
+use crate::dictionary::{Dictionary, vector};
+use crate::foam_mesh::{FoamMesh, FoamPatch};
+
+/// A field: its name, and the file's content without the header.
+pub struct Field {
+    /// `U`, `p`, `k`, `omega`, `nut`.
+    pub name: &'static str,
+    /// `volVectorField`, `volScalarField`.
+    pub class: &'static str,
+    dimensions: &'static str,
+    inflow: String,
+    wall: Dictionary,
+    open: Dictionary,
+}
+
+/// The fields that a case starts with.
+///
+/// The turbulence of the inflow is `k = 3/2 (I U)²` and `ω = k/ν_t`.
+#[must_use]
+pub fn fields(case: &Case) -> Vec<Field> {
+    let inflow = format!("uniform {}", vector(case.flow.velocity_m_s().map(|v| 0.0 - v)));
+    let of_type = |kind: &str| Dictionary::default().with("type", kind);
+    let mut fields = vec![
+        Field {
+            name: "U",
+            class: "volVectorField",
+            dimensions: "[0 1 -1 0 0 0 0]",
+            wall: of_type("noSlip"),
+            open: of_type("freestreamVelocity").with("freestreamValue", inflow.as_str()),
+            inflow,
+        },
+        Field {
+            name: "p",
+            class: "volScalarField",
+            dimensions: "[0 2 -2 0 0 0 0]",
+            inflow: "uniform 0".to_owned(),
+            wall: of_type("zeroGradient"),
+            open: of_type("freestreamPressure").with("freestreamValue", "uniform 0"),
+        },
+    ];
+    if let Model::Sst { intensity, viscosity_ratio } = case.model {
+        let k = 1.5 * (intensity * case.flow.speed_m_s).powi(2);
+        let nut = viscosity_ratio * case.water.viscosity_m2_s;
+        let uniform = |value: f64| format!("uniform {value:e}");
+        let scalar = |name, dimensions, value: f64, wall: Dictionary| Field {
+            name,
+            class: "volScalarField",
+            dimensions,
+            inflow: uniform(value),
+            wall,
+            open: of_type("inletOutlet").with("inletValue", uniform(value)).with("value", uniform(value)),
+        };
+        let k_wall = of_type("kLowReWallFunction").with("value", uniform(k));
+        fields.push(scalar("k", "[0 2 -2 0 0 0 0]", k, k_wall));
+        let omega_wall = of_type("omegaWallFunction").with("blended", "true").with("value", uniform(k / nut));
+        fields.push(scalar("omega", "[0 0 -1 0 0 0 0]", k / nut, omega_wall));
+        let nut_wall = of_type("nutUSpaldingWallFunction").with("value", "uniform 0");
+        fields.push(Field {
+            open: of_type("calculated").with("value", uniform(nut)),
+            ..scalar("nut", "[0 2 -1 0 0 0 0]", nut, nut_wall)
+        });
+    }
+    fields
+}
+
+impl Field {
+    /// The file of a start from the inflow.
+    #[must_use]
+    pub fn file(&self, mesh: &FoamMesh) -> String {
+        let start =
+            Dictionary::default().with("dimensions", self.dimensions).with("internalField", self.inflow.as_str());
+        format!("{}{}", start.file(self.class, self.name), self.boundary(mesh))
+    }
+
+    /// The entry `boundaryField`.
+    #[must_use]
+    pub fn boundary(&self, mesh: &FoamMesh) -> String {
+        let condition = |patch: &FoamPatch| {
+            if patch.is_wall() {
+                self.wall.clone()
+            } else if patch.is_open() {
+                self.open.clone()
+            } else {
+                Dictionary::default().with("type", patch.kind.as_str())
+            }
+        };
+        let patches = mesh.patches.iter().fold(Dictionary::default(), |all, p| all.with(&p.name, condition(p)));
+        Dictionary::default().with("boundaryField", patches).text()
+    }
+}

@@ -1,0 +1,97 @@
+//! CFD campaigns: bodies become volume meshes, settings become cases of OpenFOAM, and cases become forces with a numerical uncertainty.
+//!
+//! **Frame.** SNAME axes of the body: x forward, y to starboard, z down. The body stands still in the case, and the water comes towards it: at the angle α the body's velocity through the water is `U (cos α, −sin α, 0)`, the inflow its opposite.
+//! **Units.** SI, radians.
+//!
+//! | module | content |
+//! | --- | --- |
+//! | [`body`] | bodies by their dimensions: shape, lengths, grid |
+//! | [`case`] | all that a case is: its file, and the hash that says which cases are the same |
+//! | [`change`] | a plan over what a campaign's folder holds |
+//! | [`collect`] | the table of results |
+//! | [`cost`] | what cases cost, measured and assumed |
+//! | [`cylinder`] | a circular cylinder in two dimensions, for validation |
+//! | [`dictionary`] | dictionaries of OpenFOAM, written |
+//! | [`engine`] | what works through a campaign |
+//! | [`evidence`] | files that a result stands on, by their checksums |
+//! | [`family`] | families of similar O-grids, each finer by √2 |
+//! | [`foam_case`] | a case's folder as OpenFOAM wants it, with its [start and boundary](foam_fields), its [schemes](foam_system), its [mesh](foam_mesh) |
+//! | [`foam_solver`] | OpenFOAM as the solver of a campaign |
+//! | [`grid_error`] | how far a result is from that of infinitely many cells |
+//! | [`history`] | forces and moments of each iteration, read |
+//! | [`judge`] | converged, oscillating, diverged or failed: on forces, over a [`window`] |
+//! | [`layers`] | layers from a wall outwards, each thicker than the one before |
+//! | [`lock`] | one coordinator a campaign, one worker a case |
+//! | [`matrix`] | the run matrix of a campaign as cases, with the case that each starts from |
+//! | [`meridian`] | the meridian of a body of elliptic sections, and where a mesh cuts it |
+//! | [`mesh_error`] | why there is no mesh |
+//! | [`o_grid`] | O-grids around bodies of elliptic sections |
+//! | [`openfoam`] | where it is, which it is, running its programs |
+//! | [`orphans`] | solvers that outlived their coordinator |
+//! | [`outcome`] | what a case came to: its forces, how far they are known, and why it ended |
+//! | [`plate`] | a flat plate in two dimensions, for validation |
+//! | [`poly_mesh`] | a volume mesh as OpenFOAM has it |
+//! | [`poly_mesh_files`] | a mesh as the files of OpenFOAM, in a folder that its content names |
+//! | [`process`] | processes by more than their number |
+//! | [`quality`] | how good a mesh is, by the measures of `checkMesh` |
+//! | [`result`] | results of attempts, and the one that counts |
+//! | [`retry`] | cases that are to be computed again |
+//! | [`snappy`] | meshes of any closed surface by snappyHexMesh |
+//! | [`solve`] | a whole case, from its folder to its outcome |
+//! | [`solver_log`] | residuals, time of processors, errors, the largest speed, y+ |
+//! | [`status`] | how far a campaign is |
+//! | [`store`] | the folder of a campaign |
+//! | [`store_error`] | why that cannot be worked with |
+//! | [`transient`] | a case in time |
+//! | [`warm`] | starting from another case's last fields, scaled |
+//! | [`work`] | one case, done once |
+//!
+//! Not here: what the forces say of coefficients (`froude-identify`), potential flow (`froude-panel`).
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
+
+mod attempt;
+mod block;
+pub mod body;
+pub mod case;
+pub mod change;
+pub mod collect;
+pub mod cost;
+pub mod cylinder;
+pub mod dictionary;
+pub mod engine;
+pub mod evidence;
+pub mod family;
+pub mod foam_case;
+pub mod foam_fields;
+pub mod foam_mesh;
+pub mod foam_solver;
+pub mod foam_system;
+pub mod grid_error;
+pub mod history;
+pub mod judge;
+pub mod layers;
+pub mod lock;
+pub mod matrix;
+pub mod meridian;
+pub mod mesh_error;
+pub mod o_grid;
+pub mod openfoam;
+pub mod orphans;
+pub mod outcome;
+pub mod plate;
+pub mod poly_mesh;
+pub mod poly_mesh_files;
+pub mod process;
+pub mod quality;
+pub mod result;
+pub mod retry;
+pub mod snappy;
+pub mod solve;
+pub mod solver_log;
+pub mod status;
+pub mod store;
+pub mod store_error;
+pub mod transient;
+pub mod warm;
+pub mod window;
+pub mod work;

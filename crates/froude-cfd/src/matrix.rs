@@ -1,0 +1,233 @@
+//! The run matrix of a campaign as cases: which settings, by which model, and from which case each starts.
+//!
+//! **Chains.** Cases of one configuration and model lie on a comb. Those at angle 0 go from the fastest to the slowest, each from the one before; at every speed the other angles go up from there. A chain is one job after another, the chains of different combs and of different speeds are independent. Fields are scaled by the ratio of speeds (Reynolds similarity, which holds nearly).
+//! **Cold repeats.** Of every `1/cold` cases that start warm one is computed once more from the inflow, under the same name with `-cold`: how far its forces lie from the warm ones' is the hysteresis.
+//! **Model.** By the Reynolds number of the width, Re = U W/ν: laminar below one bound, with and without a model of turbulence between that and another, as campaigns say (`[source.cfd]`). The two are limits and no interval.
+
+use froude_records::campaign::Source;
+use froude_records::cfd::CfdSpec;
+
+use crate::case::{Case, Flow, Model, Reference, Stop, Water};
+
+/// Turbulence of the inflow: intensity 1 %, ν_t/ν = 1.
+pub const SST: Model = Model::Sst { intensity: 0.01, viscosity_ratio: 1.0 };
+/// Largest drift of a converged force over a window, of ½ρU²A: head on a slender body has some fortieth of that, of which this is 0.4 %.
+const DRIFT: f64 = 1e-4;
+/// Largest spread, likewise.
+const SPREAD: f64 = 1e-3;
+/// Two speeds or angles closer than this part of a step are one.
+const SAME: f64 = 1e-9;
+
+/// A configuration with its mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Meshed {
+    /// `HkLT`, or the name of the body.
+    pub configuration: String,
+    /// Folder of its mesh under `meshes/`.
+    pub mesh: String,
+    /// Lengths of the body.
+    pub reference: Reference,
+}
+
+/// A point of the matrix.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Point {
+    speed_m_s: f64,
+    angle_rad: f64,
+    pitch_rad: f64,
+}
+
+/// All cases of a source for its configurations, in the order in which they may run: each behind the one it starts from.
+#[must_use]
+pub fn cases(source: &Source, spec: &CfdSpec, water: Water, meshed: &[Meshed]) -> Vec<Case> {
+    let mut out = Vec::new();
+    for body in meshed {
+        let points = points(source, &body.configuration);
+        for is_laminar in [false, true] {
+            let of_model = |p: &&Point| {
+                models(spec, p.speed_m_s * body.reference.width_m / water.viscosity_m2_s)[usize::from(is_laminar)]
+            };
+            let chosen: Vec<Point> = points.iter().filter(of_model).copied().collect();
+            let comb = Comb { spec, water, body, model: if is_laminar { Model::Laminar } else { SST } };
+            out.extend(comb.cases(&chosen));
+        }
+    }
+    with_cold(out, spec.cold)
+}
+
+/// Whether a case of a Reynolds number is computed with and without a model of turbulence.
+fn models(spec: &CfdSpec, reynolds: f64) -> [bool; 2] {
+    let is_between = !spec.is_laminar && (spec.laminar_below..spec.both_below).contains(&reynolds);
+    let is_laminar = spec.is_laminar || reynolds < spec.laminar_below;
+    [!is_laminar, is_laminar || is_between]
+}
+
+/// Speeds down, angles up within each; each point once.
+fn points(source: &Source, configuration: &str) -> Vec<Point> {
+    let of_it = source.plan.iter().filter(|b| b.configurations.iter().any(|c| c == configuration));
+    let mut all: Vec<Point> = of_it
+        .flat_map(|block| {
+            block.speed_m_s.iter().flat_map(move |&speed_m_s| {
+                block.angle_rad.iter().flat_map(move |&angle_rad| {
+                    block.pitch_rad.iter().map(move |&pitch_rad| Point { speed_m_s, angle_rad, pitch_rad })
+                })
+            })
+        })
+        .collect();
+    all.sort_by(|a, b| {
+        let angles = a.pitch_rad.total_cmp(&b.pitch_rad).then(a.angle_rad.total_cmp(&b.angle_rad));
+        b.speed_m_s.total_cmp(&a.speed_m_s).then(angles)
+    });
+    let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs()).max(SAME);
+    all.dedup_by(|a, b| {
+        is_same(a.speed_m_s, b.speed_m_s) && is_same(a.angle_rad, b.angle_rad) && is_same(a.pitch_rad, b.pitch_rad)
+    });
+    all
+}
+
+/// The cases of a configuration and a model.
+struct Comb<'a> {
+    spec: &'a CfdSpec,
+    water: Water,
+    body: &'a Meshed,
+    model: Model,
+}
+
+impl Comb<'_> {
+    fn cases(&self, points: &[Point]) -> Vec<Case> {
+        let is_head_on = |p: &&Point| p.angle_rad == 0.0 && p.pitch_rad == 0.0;
+        let (head_on, others): (Vec<&Point>, Vec<&Point>) = points.iter().partition(is_head_on);
+        let mut out = Vec::with_capacity(points.len());
+        let mut before: Option<String> = None;
+        for point in &head_on {
+            let case = self.case(point, before.take());
+            before = Some(case.id.clone());
+            out.push(case);
+        }
+        let mut last: Option<(Point, String)> = None;
+        for point in others {
+            let along = last.take().filter(|(p, _)| p.speed_m_s == point.speed_m_s && p.pitch_rad == point.pitch_rad);
+            let root = || head_on.iter().find(|p| p.speed_m_s == point.speed_m_s).map(|p| self.id(p));
+            let case = self.case(point, along.map(|(_, id)| id).or_else(root));
+            last = Some((*point, case.id.clone()));
+            out.push(case);
+        }
+        out
+    }
+
+    fn id(&self, point: &Point) -> String {
+        let model = if self.model == Model::Laminar { "-laminar" } else { "" };
+        let angle = |letter: &str, rad: f64| format!("-{letter}{}", shortest(rad.to_degrees()));
+        let pitch = if point.pitch_rad == 0.0 { String::new() } else { angle("p", point.pitch_rad) };
+        let name = if self.body.configuration.is_empty() { "body" } else { &self.body.configuration };
+        format!("{name}-u{}{}{pitch}{model}", shortest(point.speed_m_s), angle("a", point.angle_rad))
+    }
+
+    fn case(&self, point: &Point, start_from: Option<String>) -> Case {
+        let Point { speed_m_s, angle_rad, pitch_rad } = *point;
+        Case {
+            id: self.id(point),
+            configuration: self.body.configuration.clone(),
+            mesh: self.body.mesh.clone(),
+            is_half: self.spec.is_half,
+            flow: Flow { speed_m_s, angle_rad, pitch_rad },
+            water: self.water,
+            model: self.model,
+            stop: Stop { iterations: self.spec.iterations, window: self.spec.window, drift: DRIFT, spread: SPREAD },
+            reference: self.body.reference,
+            start_from,
+        }
+    }
+}
+
+/// A number with the digits that tell it from its neighbours in a plan: a thousandth of a unit.
+fn shortest(x: f64) -> String {
+    let rounded = (x * 1e3).round() / 1e3;
+    // Zero has no sign.
+    format!("{}", rounded + 0.0)
+}
+
+/// The cases with the repeats of some of them from the inflow.
+fn with_cold(cases: Vec<Case>, part: f64) -> Vec<Case> {
+    let mut out = Vec::with_capacity(cases.len());
+    let mut due = 0.0;
+    for case in cases {
+        due += if case.start_from.is_some() { part } else { 0.0 };
+        let cold = (due >= 1.0).then(|| Case { id: format!("{}-cold", case.id), start_from: None, ..case.clone() });
+        due -= if cold.is_some() { 1.0 } else { 0.0 };
+        out.push(case);
+        out.extend(cold);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    use froude_records::campaign::parse_campaign;
+
+    use super::*;
+
+    const REFERENCE: Reference = Reference { length_m: 0.6, width_m: 0.08, area_m2: 0.05, point_m: [0.0; 3] };
+    const WATER: Water = Water { density_kg_m3: 1025.0, viscosity_m2_s: 1.19e-6 };
+
+    fn of(plan: &str, spec: &str) -> Vec<Case> {
+        let text = format!(
+            "schema = 1\nname = \"a\"\n[[source]]\nname = \"flow\"\nkind = \"cfd\"\ncases = \"cases\"\n[source.cfd]\n{spec}\n{plan}"
+        );
+        let source = parse_campaign(Path::new("campaign.toml"), &text).unwrap().sources.remove(0);
+        let spec = source.cfd.clone().unwrap();
+        let meshed = ["H1LT", "H2LT"].map(|c| Meshed {
+            configuration: c.to_owned(),
+            mesh: format!("mesh of {c}"),
+            reference: REFERENCE,
+        });
+        cases(&source, &spec, WATER, &meshed)
+    }
+
+    /// Table 2 of the USR paper: 174 settings of each configuration.
+    const TABLE_2: &str = "[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nspeed = { start = \"0.02 m/s\", stop = \"1 m/s\", step = \"0.02 m/s\" }\n\
+         [[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nspeed = [\"0.1 m/s\", \"0.2 m/s\", \"0.3 m/s\", \"0.4 m/s\"]\nangle = { start = \"0 deg\", stop = \"90 deg\", step = \"3 deg\" }\n";
+
+    #[test]
+    fn the_matrix_of_the_paper_has_each_setting_once_behind_the_one_it_starts_from() {
+        let cases = of(TABLE_2, "cold = 0");
+        // 50 speeds ahead and 30 more angles at four of them.
+        assert_eq!(cases.len(), 2 * (50 + 4 * 30));
+        let mut seen = BTreeSet::new();
+        for case in &cases {
+            assert!(case.start_from.as_ref().is_none_or(|from| seen.contains(from)), "{case:?}");
+            assert!(seen.insert(case.id.clone()), "{} is there twice", case.id);
+        }
+        assert_eq!(cases.iter().filter(|c| c.start_from.is_none()).count(), 2);
+        let at = |id: &str| cases.iter().find(|c| c.id == id).unwrap();
+        assert_eq!(at("H2LT-u0.3-a3").start_from.as_deref(), Some("H2LT-u0.3-a0"));
+        assert_eq!(at("H2LT-u0.3-a90").start_from.as_deref(), Some("H2LT-u0.3-a87"));
+        assert_eq!(at("H2LT-u0.02-a0").start_from.as_deref(), Some("H2LT-u0.04-a0"));
+    }
+
+    #[test]
+    fn a_tenth_is_repeated_from_the_inflow_and_is_the_same_case() {
+        let cases = of(TABLE_2, "");
+        let cold: Vec<&Case> = cases.iter().filter(|c| c.id.ends_with("-cold")).collect();
+        assert_eq!(cold.len(), 33);
+        for case in cold {
+            let warm = cases.iter().find(|c| format!("{}-cold", c.id) == case.id).unwrap();
+            assert_eq!((case.hash(), &case.start_from), (warm.hash(), &None));
+        }
+    }
+
+    /// Re = U W/ν: 2000 at 0.02975 m/s.
+    #[test]
+    fn slow_cases_are_laminar_and_those_between_are_both() {
+        let plan = "[[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = [\"0.02 m/s\", \"0.1 m/s\", \"0.2 m/s\"]\n";
+        let ids = |spec: &str| of(plan, spec).into_iter().map(|c| c.id).collect::<Vec<_>>();
+        assert_eq!(
+            ids("cold = 0\nlaminar_below = 2000\nboth_below = 10000"),
+            ["H1LT-u0.2-a0", "H1LT-u0.1-a0", "H1LT-u0.1-a0-laminar", "H1LT-u0.02-a0-laminar"]
+        );
+        assert_eq!(ids("cold = 0\nmodel = \"laminar\"").len(), 3);
+    }
+}

@@ -1,0 +1,218 @@
+//! `[source.cfd]`: how the flow about a body is computed.
+//!
+//! ```toml
+//! [source.cfd]
+//! body          = "body.toml"       # a body file, or a closed surface mesh
+//! mesh          = "coarse"          # coarse, medium, fine, or { stations, layers, azimuth, first_layer }
+//! radius        = 3.0               # of the domain, in lengths of the body; left out: 3, and 25 widths at least
+//! domain        = "half"            # half: cut at the body's plane of symmetry z = 0; full
+//! model         = "sst"             # sst, laminar
+//! laminar_below = 2000              # Reynolds number U W/ν of the width, below which a case is laminar whatever the model
+//! both_below    = 10000             # below it a case is computed by both models
+//! iterations    = 600               # at most
+//! window        = 60                # iterations that forces are judged over
+//! cold          = 0.1               # part of the cases that are repeated from the inflow
+//! ```
+
+use std::path::PathBuf;
+
+use toml::de::DeValue;
+
+use crate::error::RecordError;
+use crate::section::Section;
+use crate::section_values::{count, one_of};
+use crate::units::Dimension;
+
+/// Most cells in one direction.
+const MOST_CELLS: u64 = 2000;
+/// Most cells of a mesh.
+const MOST_CELLS_IN_ALL: usize = 20_000_000;
+/// Most iterations of a case.
+const MOST_ITERATIONS: u64 = 100_000;
+
+/// How the flow about a body is computed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CfdSpec {
+    /// A body file or a surface mesh; `None`: the campaign's own body.
+    pub body: Option<PathBuf>,
+    /// Cells about it.
+    pub mesh: MeshSpec,
+    /// Radius of the domain over the body's length \[-\]; `None`: 3, and 25 widths at least.
+    pub radius: Option<f64>,
+    /// Whether the domain ends at the plane of symmetry z = 0.
+    pub is_half: bool,
+    /// Whether no model of turbulence is used.
+    pub is_laminar: bool,
+    /// Reynolds number of the width below which no case has one \[-\].
+    pub laminar_below: f64,
+    /// Reynolds number below which a case is computed with and without \[-\].
+    pub both_below: f64,
+    /// Most iterations of a case.
+    pub iterations: usize,
+    /// Iterations that forces are judged over.
+    pub window: usize,
+    /// Part of the cases that are repeated from the inflow.
+    pub cold: f64,
+}
+
+/// Cells of an O-grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshSpec {
+    /// Along the meridian, from tip to tip.
+    pub stations: usize,
+    /// From the wall to the far field.
+    pub layers: usize,
+    /// Over half a turn.
+    pub azimuth: usize,
+    /// Height of the layer at the wall, m; the others grow so that they reach the far field.
+    pub first_layer_m: f64,
+}
+
+impl MeshSpec {
+    /// 22,400 cells.
+    pub const COARSE: Self = Self { stations: 40, layers: 35, azimuth: 16, first_layer_m: 1.2e-4 };
+    /// 92,160 cells.
+    pub const MEDIUM: Self = Self { stations: 60, layers: 48, azimuth: 32, first_layer_m: 1.0e-4 };
+    /// 263,712 cells.
+    pub const FINE: Self = Self { stations: 82, layers: 67, azimuth: 48, first_layer_m: 7e-5 };
+
+    /// Cells over half a turn.
+    #[must_use]
+    pub const fn cells(self) -> usize {
+        self.stations * self.layers * self.azimuth
+    }
+}
+
+impl Default for CfdSpec {
+    fn default() -> Self {
+        Self {
+            body: None,
+            mesh: MeshSpec::COARSE,
+            radius: None,
+            is_half: true,
+            is_laminar: false,
+            laminar_below: 0.0,
+            both_below: 0.0,
+            iterations: 600,
+            window: 60,
+            cold: 0.1,
+        }
+    }
+}
+
+/// Reads `[source.cfd]`.
+pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
+    s.only(&[
+        "body",
+        "mesh",
+        "radius",
+        "domain",
+        "model",
+        "laminar_below",
+        "both_below",
+        "iterations",
+        "window",
+        "cold",
+    ])?;
+    let usual = CfdSpec::default();
+    let number = |key: &'static str, low: f64, high: f64| -> Result<Option<f64>, RecordError> {
+        match (s.number(key)?, s.get(key)) {
+            (Some(x), Some(value)) if !(low..=high).contains(&x) => {
+                Err(s.wrong(key, value, format!("is {x}; expected a number from {low} to {high}")))
+            }
+            (x, _) => Ok(x),
+        }
+    };
+    let out = CfdSpec {
+        body: s.text("body")?.map(|text| s.source.relative(text)),
+        mesh: mesh(s)?.unwrap_or(usual.mesh),
+        radius: number("radius", 1.0, 1000.0)?,
+        is_half: one_of(s, "domain", &["half", "full"], &[true, false])?.unwrap_or(usual.is_half),
+        is_laminar: one_of(s, "model", &["sst", "laminar"], &[false, true])?.unwrap_or(usual.is_laminar),
+        laminar_below: number("laminar_below", 0.0, 1e7)?.unwrap_or(usual.laminar_below),
+        both_below: number("both_below", 0.0, 1e7)?.unwrap_or(usual.both_below),
+        iterations: count(s, "iterations", MOST_ITERATIONS)?.unwrap_or(usual.iterations),
+        window: count(s, "window", MOST_ITERATIONS)?.unwrap_or(usual.window),
+        cold: number("cold", 0.0, 1.0)?.unwrap_or(usual.cold),
+    };
+    if let Some(value) = s.get("window").or(s.get("iterations")).filter(|_| 2 * out.window > out.iterations) {
+        let problem = format!(
+            "leaves no room: forces are judged over {} iterations of at most {}; a window is half of them or less",
+            out.window, out.iterations
+        );
+        return Err(s.wrong("window", value, problem));
+    }
+    Ok(out)
+}
+
+fn mesh(s: &Section<'_>) -> Result<Option<MeshSpec>, RecordError> {
+    let Some(value) = s.get("mesh") else { return Ok(None) };
+    if matches!(value.get_ref(), DeValue::String(_)) {
+        let named = [MeshSpec::COARSE, MeshSpec::MEDIUM, MeshSpec::FINE];
+        return one_of(s, "mesh", &["coarse", "medium", "fine"], &named);
+    }
+    let m = s.as_section("mesh", value)?;
+    m.only(&["stations", "layers", "azimuth", "first_layer"])?;
+    let need = |key: &'static str| m.missing(key, "an O-grid needs stations, layers, azimuth and first_layer");
+    let first_layer_m = m.positive("first_layer", Dimension::LENGTH)?.ok_or_else(|| need("first_layer"))?;
+    let cells = |key: &'static str| -> Result<usize, RecordError> {
+        let n = count(&m, key, MOST_CELLS)?.ok_or_else(|| need(key))?;
+        match m.get(key) {
+            Some(value) if n < 4 => Err(m.wrong(key, value, format!("is {n}; expected 4 or more"))),
+            _ => Ok(n),
+        }
+    };
+    let spec =
+        MeshSpec { stations: cells("stations")?, layers: cells("layers")?, azimuth: cells("azimuth")?, first_layer_m };
+    if spec.cells() > MOST_CELLS_IN_ALL {
+        let problem = format!("and layers and azimuth make {} cells; at most {MOST_CELLS_IN_ALL}", spec.cells());
+        return Err(m.wrong("stations", m.get("stations").unwrap_or(value), problem));
+    }
+    Ok(Some(spec))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::campaign::{Campaign, parse_campaign};
+
+    const CAMPAIGN: &str = "schema = 1\nname = \"a\"\n\n[[source]]\nname = \"flow\"\nkind = \"cfd\"\ncases = \"cases\"\n\
+         [source.cfd]\nbody = \"body.toml\"\nmesh = \"medium\"\ndomain = \"full\"\n\
+         [[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = \"0.4 m/s\"\nangle = [\"0 deg\", \"90 deg\"]\npitch = \"10 deg\"\n";
+
+    fn parse(from: &str, to: &str) -> Result<Campaign, String> {
+        assert!(CAMPAIGN.contains(from), "{from}");
+        parse_campaign(Path::new("lab/campaign.toml"), &CAMPAIGN.replacen(from, to, 1)).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn a_campaign_says_how_its_flow_is_computed() {
+        let source = parse("", "").unwrap().sources.remove(0);
+        let spec = source.cfd.unwrap();
+        assert_eq!(spec.body.as_deref(), Some(Path::new("lab/body.toml")));
+        assert_eq!((spec.mesh, spec.is_half), (MeshSpec::MEDIUM, false));
+        assert_eq!(spec.mesh.cells(), 92_160);
+        assert!((source.plan[0].pitch_rad[0] - 10_f64.to_radians()).abs() < 1e-15);
+        let own = "mesh = { stations = 20, layers = 18, azimuth = 8, first_layer = \"0.2 mm\" }";
+        let spec = parse("mesh = \"medium\"", own).unwrap().sources.remove(0).cfd.unwrap();
+        assert_eq!((spec.mesh.cells(), spec.mesh.first_layer_m), (2880, 2e-4));
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_where_it_stands() {
+        for (from, to, said) in [
+            ("\"medium\"", "\"meduim\"", "medium"),
+            ("\"full\"", "\"full\"\nwindow = 400", "no room"),
+            ("\"full\"", "\"full\"\nradius = 0.2", "from 1 to 1000"),
+            ("\"medium\"", "{ stations = 20, layers = 18, azimuth = 8 }", "first_layer"),
+            ("\"medium\"", "{ stations = 2000, layers = 2000, azimuth = 8, first_layer = \"1 mm\" }", "32000000"),
+            ("cases = \"cases\"", "table = \"t.csv\"", "names no cases"),
+            ("pitch", "repeats", "repeats"),
+        ] {
+            let found = parse(from, to).unwrap_err();
+            assert!(found.contains(said) && found.contains("campaign.toml"), "{to}: {found}");
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! `[joint]`: what the joints of a robot allow, and what drives them.
+
+use crate::error::RecordError;
+use crate::section::{Section, found};
+use crate::units::Dimension;
+
+/// N m s: a moment over an angular speed.
+const DAMPING: Dimension = Dimension::new(2, 1, -1);
+
+/// Limits where they are declared, and drives.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct JointFile {
+    /// Largest angle to either side, rad.
+    pub limit_rad: Option<f64>,
+    /// Largest rate, rad/s.
+    pub rate_rad_s: Option<f64>,
+    /// Largest torque, N m.
+    pub torque_n_m: Option<f64>,
+    /// How a joint follows its gait; `None`: exactly.
+    pub servo: Option<ServoFile>,
+    /// From the battery to the joint.
+    pub efficiency: Option<f64>,
+    /// The part of what braking gives that goes back to the battery.
+    pub regeneration: f64,
+}
+
+/// A servo.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ServoFile {
+    /// k_p, N m.
+    pub stiffness_n_m: f64,
+    /// k_d, N m s.
+    pub damping_n_m_s: f64,
+    /// What resists it.
+    pub friction: FrictionFile,
+}
+
+/// Friction of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FrictionFile {
+    /// N m s.
+    pub viscous_n_m_s: f64,
+    /// N m.
+    pub dry_n_m: f64,
+}
+
+/// Keys that all joints may have together, …
+const SHARED: [&str; 2] = ["efficiency", "regeneration"];
+/// … and each its own.
+const OWN: [&str; 6] = ["limit", "rate", "torque", "kp", "kd", "friction"];
+
+/// What stands in a table, and else what all joints have; with the keys of the table that say which joints it is of.
+pub(super) fn joint(
+    s: &Section<'_>,
+    which: &[&'static str],
+    all: Option<&JointFile>,
+) -> Result<JointFile, RecordError> {
+    let shared = if all.is_none() { &SHARED[..] } else { &[] };
+    let known: Vec<&'static str> = OWN.iter().chain(shared).chain(which).copied().collect();
+    s.only(&known)?;
+    let all = all.copied().unwrap_or_default();
+    let efficiency = part(s, "efficiency")?;
+    if let (Some(value), Some(0.0)) = (s.get("efficiency"), efficiency) {
+        return Err(s.wrong("efficiency", value, "is 0; an efficiency is above zero and at most 1"));
+    }
+    Ok(JointFile {
+        limit_rad: s.positive("limit", Dimension::ANGLE)?.or(all.limit_rad),
+        rate_rad_s: s.positive("rate", Dimension::ANGULAR_SPEED)?.or(all.rate_rad_s),
+        torque_n_m: s.positive("torque", Dimension::MOMENT)?.or(all.torque_n_m),
+        servo: servo(s)?.or(all.servo),
+        efficiency: efficiency.or(all.efficiency),
+        regeneration: part(s, "regeneration")?.unwrap_or(all.regeneration),
+    })
+}
+
+fn servo(s: &Section<'_>) -> Result<Option<ServoFile>, RecordError> {
+    let (stiffness, damping) = (s.positive("kp", Dimension::MOMENT)?, s.positive("kd", DAMPING)?);
+    let (stiffness_n_m, damping_n_m_s) = match (stiffness, damping, s.get("friction")) {
+        (Some(stiffness), Some(damping), _) => (stiffness, damping),
+        (Some(_), None, _) => return Err(s.missing("kd", "a servo has both: write kd = \"1 N m s/rad\"")),
+        (None, Some(_), _) => return Err(s.missing("kp", "a servo has both: write kp = \"40 N m/rad\"")),
+        (None, None, None) => return Ok(None),
+        (None, None, Some(value)) => {
+            let problem = "is of joints with servos, and here they follow the gait exactly: write kp and kd as well, or leave it out";
+            return Err(s.wrong("friction", value, problem));
+        }
+    };
+    let friction = match s.section("friction")? {
+        None => FrictionFile::default(),
+        Some(friction) => {
+            friction.only(&["viscous", "coulomb"])?;
+            let viscous_n_m_s = not_negative(&friction, "viscous", DAMPING)?;
+            FrictionFile { viscous_n_m_s, dry_n_m: not_negative(&friction, "coulomb", Dimension::MOMENT)? }
+        }
+    };
+    Ok(Some(ServoFile { stiffness_n_m, damping_n_m_s, friction }))
+}
+
+fn not_negative(s: &Section<'_>, key: &'static str, dimension: Dimension) -> Result<f64, RecordError> {
+    let number = s.quantity(key, dimension)?.unwrap_or(0.0);
+    match s.get(key) {
+        Some(value) if number < 0.0 => {
+            Err(s.wrong(key, value, format!("is {}; friction is zero or more", found(value))))
+        }
+        _ => Ok(number),
+    }
+}
+
+/// From 0 to 1.
+pub(crate) fn part(s: &Section<'_>, key: &'static str) -> Result<Option<f64>, RecordError> {
+    let number = s.number(key)?;
+    match (s.get(key), number) {
+        (Some(value), Some(number)) if !(0.0..=1.0).contains(&number) => {
+            let least = if key == "efficiency" { "above zero and" } else { "zero or more and" };
+            Err(s.wrong(key, value, format!("is {number}; expected a part of one, {least} at most 1")))
+        }
+        _ => Ok(number),
+    }
+}

@@ -1,0 +1,254 @@
+//! A map of one quantity over two: a cell for each pair, coloured from dark to light, with a bar that says what a colour is.
+//!
+//! Cells without a number are hatched, so that "no answer" is not mistaken for a small one. The colours run from dark blue to ochre with rising lightness, and are told apart without red and green, and in grey.
+
+use froude_records::page::Scale;
+
+use crate::canvas::{Align, Canvas, Ink, WHITE};
+use crate::chart::{label, on, ticks};
+use crate::input::ReportError;
+use crate::plot::{LABEL_SIZE, MUTED, Panel, RULE, Span, TEXT, TICK_SIZE, WIDTH, ramp};
+use crate::symbol::Rich;
+
+/// Most cells along an axis that are drawn; of more, evenly chosen ones.
+const MOST: usize = 120;
+const LEFT: f64 = 74.0;
+const TOP: f64 = 14.0;
+const HEIGHT: f64 = 380.0;
+/// Between the map and its bar, and the bar.
+const GAP: f64 = 26.0;
+const BAR: f64 = 18.0;
+/// For the bar's numbers and name.
+const RIGHT: f64 = 84.0;
+const BAR_PARTS: usize = 100;
+/// By how much a cell goes under its neighbours, so that nothing shines through.
+const OVER: f64 = 0.7;
+/// Between the lines of a hatched cell.
+const HATCH: f64 = 7.0;
+const HATCHED: Ink = Ink::new(0xb4_bc_c2);
+
+/// A map.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Map {
+    /// Stem of the file's name.
+    pub name: String,
+    /// Title, for readers who do not see the picture.
+    pub title: String,
+    /// Caption below the figure.
+    pub caption: String,
+    /// Label of the abscissa, unit included.
+    pub x_label: String,
+    /// Label of the ordinate, unit included.
+    pub y_label: String,
+    /// Name of what is shown, unit included.
+    pub value_label: String,
+    /// How its colours run.
+    pub value_scale: Scale,
+    /// Abscissae, rising.
+    pub x: Vec<f64>,
+    /// Ordinates, rising.
+    pub y: Vec<f64>,
+    /// A row per ordinate, a column per abscissa; what is no number, or has no place on the scale, is hatched.
+    pub values: Vec<f64>,
+    /// Column and row of the cell that is marked, with its name.
+    pub best: Option<(usize, usize, String)>,
+}
+
+impl Map {
+    /// The map as SVG.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Figure`] when the numbers are not those of its axes, or the drawing library refuses it.
+    pub fn svg(&self) -> Result<String, ReportError> {
+        let refused = |reason: String| ReportError::Figure { figure: self.title.clone(), reason };
+        if self.values.len() != self.x.len() * self.y.len() {
+            let (n, x, y) = (self.values.len(), self.x.len(), self.y.len());
+            return Err(refused(format!("{n} numbers for {x} × {y} cells")));
+        }
+        self.canvas().svg(&crate::figures::drawing::slug(&self.name), &self.title, &self.caption).map_err(refused)
+    }
+
+    fn canvas(&self) -> Canvas {
+        let mut canvas = Canvas::new(WIDTH, TOP + HEIGHT + 52.0);
+        let (x, y) = (chosen(self.x.len()), chosen(self.y.len()));
+        let edges = |of: &[f64], which: &[usize]| edges(&which.iter().map(|i| of[*i]).collect::<Vec<_>>());
+        let (x_edges, y_edges) = (edges(&self.x, &x), edges(&self.y, &y));
+        let all = |edges: &[f64]| Span::of(edges.iter().copied()).unwrap_or(Span { low: 0.0, high: 1.0 });
+        let frame = Panel {
+            left: LEFT,
+            top: TOP,
+            width: WIDTH - LEFT - GAP - BAR - RIGHT,
+            height: HEIGHT,
+            x: all(&x_edges),
+            y: all(&y_edges),
+        };
+        let value = |v: f64| on(self.value_scale, v);
+        let shown = Span::of(self.values.iter().map(|v| value(*v)).filter(|v| v.is_finite()));
+        let range = shown.unwrap_or(Span { low: 0.0, high: 1.0 });
+        for (row, j) in y.iter().enumerate() {
+            for (column, i) in x.iter().enumerate() {
+                // What is drawn later covers what lies over.
+                let corner = (frame.at_x(x_edges[column]), frame.at_y(y_edges[row + 1]) - OVER);
+                let other = (frame.at_x(x_edges[column + 1]) + OVER, frame.at_y(y_edges[row]));
+                let shown = value(self.values[j * self.x.len() + i]);
+                if shown.is_finite() {
+                    canvas.rectangle(corner, other, ramp((shown - range.low) / range.width()));
+                } else {
+                    hatched(&mut canvas, corner, other);
+                }
+            }
+        }
+        self.mark(&mut canvas, &frame);
+        self.axes(&mut canvas, &frame);
+        self.bar(&mut canvas, &frame, range);
+        canvas
+    }
+
+    fn mark(&self, canvas: &mut Canvas, frame: &Panel) {
+        let Some((column, row, name)) = &self.best else { return };
+        let (Some(x), Some(y)) = (self.x.get(*column), self.y.get(*row)) else { return };
+        let at = (frame.at_x(*x), frame.at_y(*y));
+        canvas.dot(at, 5.5, TEXT);
+        canvas.speck(at, 2.0, WHITE);
+        // On the side where there is room, on a plate of its own.
+        let is_left = at.0 > frame.left + 0.5 * frame.width;
+        let text = Rich::plain(name);
+        let long = crate::canvas::text_width(&text, TICK_SIZE) * 1.1 + 8.0;
+        let from = if is_left { at.0 - 12.0 - long } else { at.0 + 12.0 };
+        canvas.rectangle((from, at.1 - 10.0), (from + long, at.1 + 10.0), WHITE.faint(0.85));
+        canvas.text(text, (from + 4.0, at.1), TICK_SIZE, TEXT, Align::Left);
+    }
+
+    fn axes(&self, canvas: &mut Canvas, frame: &Panel) {
+        let (x, y) = (frame.x.ticks(8), frame.y.ticks(6));
+        for &place in &y.places {
+            canvas.line((frame.left - 5.0, frame.at_y(place)), (frame.left, frame.at_y(place)), MUTED, 1.0);
+            let at = (frame.left - 8.0, frame.at_y(place));
+            canvas.text(Rich::plain(&y.label(place)), at, TICK_SIZE, MUTED, Align::Right);
+        }
+        for &place in &x.places {
+            canvas.line((frame.at_x(place), frame.bottom()), (frame.at_x(place), frame.bottom() + 5.0), MUTED, 1.0);
+            let at = (frame.at_x(place), frame.bottom() + 15.0);
+            canvas.text(Rich::plain(&x.label(place)), at, TICK_SIZE, MUTED, Align::Center);
+        }
+        let middle = frame.top + 0.5 * frame.height;
+        canvas.upward_text(y.titled(Rich::plain(&self.y_label)), (14.0, middle), LABEL_SIZE, TEXT);
+        let at = (frame.left + 0.5 * frame.width, frame.bottom() + 38.0);
+        canvas.text(x.titled(Rich::plain(&self.x_label)), at, LABEL_SIZE, TEXT, Align::Center);
+    }
+
+    fn bar(&self, canvas: &mut Canvas, frame: &Panel, range: Span) {
+        let bar = Panel { left: frame.right() + GAP, width: BAR, x: Span { low: 0.0, high: 1.0 }, y: range, ..*frame };
+        let at = |part: usize| bar.bottom() - bar.height * part as f64 / BAR_PARTS as f64;
+        for part in 0..BAR_PARTS {
+            let ink = ramp((part as f64 + 0.5) / BAR_PARTS as f64);
+            canvas.rectangle((bar.left, at(part + 1) - OVER), (bar.right(), at(part)), ink);
+        }
+        let ticks = ticks(range, self.value_scale, 6);
+        for &place in &ticks.places {
+            canvas.line((bar.right(), bar.at_y(place)), (bar.right() + 4.0, bar.at_y(place)), MUTED, 1.0);
+            let at = (bar.right() + 8.0, bar.at_y(place));
+            canvas.text(label(&ticks, self.value_scale, place), at, TICK_SIZE, MUTED, Align::Left);
+        }
+        let middle = bar.top + 0.5 * bar.height;
+        canvas.upward_text(ticks.titled(Rich::plain(&self.value_label)), (WIDTH - 14.0, middle), LABEL_SIZE, TEXT);
+    }
+}
+
+/// Which of n are drawn.
+fn chosen(n: usize) -> Vec<usize> {
+    if n <= MOST {
+        return (0..n).collect();
+    }
+    (0..MOST).map(|k| k * (n - 1) / (MOST - 1)).collect()
+}
+
+/// Where the cells of these numbers end: halfway to their neighbours.
+fn edges(at: &[f64]) -> Vec<f64> {
+    let Some((first, last)) = at.first().zip(at.last()) else { return vec![0.0] };
+    if at.len() == 1 {
+        let half = if *first == 0.0 { 0.5 } else { 0.5 * first.abs() };
+        return vec![first - half, first + half];
+    }
+    let mut out: Vec<f64> = at.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+    out.insert(0, 2.0 * first - out[0]);
+    out.push(2.0 * last - out[out.len() - 1]);
+    out
+}
+
+fn hatched(canvas: &mut Canvas, (x0, y0): (f64, f64), (x1, y1): (f64, f64)) {
+    canvas.rectangle((x0, y0), (x1, y1), RULE.faint(0.5));
+    // Lines x + y = s, on one grid for all cells, so that those of neighbours meet.
+    let mut s = ((x0 + y0) / HATCH).ceil() * HATCH;
+    while s < x1 + y1 {
+        let from = (x0.max(s - y1), s - x0.max(s - y1));
+        let to = (x1.min(s - y0), s - x1.min(s - y0));
+        canvas.line(from, to, HATCHED, 1.0);
+        s += HATCH;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map() -> Map {
+        Map {
+            name: "speed".to_owned(),
+            title: "Speed".to_owned(),
+            x_label: "amplitude [deg]".to_owned(),
+            y_label: "phase [deg]".to_owned(),
+            value_label: "speed [m/s]".to_owned(),
+            x: vec![10.0, 20.0, 30.0],
+            y: vec![10.0, 20.0],
+            values: vec![0.1, 0.2, 0.3, 0.2, f64::NAN, 0.1],
+            best: Some((2, 0, "fastest".to_owned())),
+            ..Map::default()
+        }
+    }
+
+    #[test]
+    fn a_map_has_a_cell_for_each_number_its_labels_and_its_mark() {
+        let drawn = map().svg().unwrap();
+        for text in ["amplitude [deg]", "phase [deg]", "speed [m/s]", "fastest"] {
+            assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
+        }
+        // Five cells, one that is hatched, the plate, and the bar.
+        assert_eq!(drawn.matches("<rect").count(), 6 + 1 + BAR_PARTS);
+        assert!(!drawn.contains("NaN"));
+    }
+
+    /// Costs over five decades: what lies between is told apart, and none of nothing has a place.
+    #[test]
+    fn a_map_of_decades_has_their_colours() {
+        let values = vec![0.1, 1.0, 10.0, 100.0, 1e4, 0.0];
+        let drawn = Map { values, value_scale: Scale::Logarithmic, best: None, ..map() }.svg().unwrap();
+        assert_eq!(drawn.matches("<rect").count(), 6 + BAR_PARTS);
+        for text in ["0.1", "1", "10", "100", "1000"] {
+            assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
+        }
+    }
+
+    #[test]
+    fn numbers_of_other_axes_are_refused_and_none_at_all_is_no_panic() {
+        let refused = Map { values: vec![1.0], ..map() }.svg().unwrap_err();
+        assert!(refused.to_string().contains("1 numbers for 3 × 2 cells"), "{refused}");
+        assert!(Map { values: vec![f64::INFINITY; 6], best: Some((9, 9, String::new())), ..map() }.svg().is_ok());
+        assert!(Map::default().svg().is_ok());
+    }
+
+    #[test]
+    fn a_large_map_is_drawn_by_some_of_its_cells() {
+        let n = 1000;
+        let x: Vec<f64> = (0..n).map(f64::from).collect();
+        let drawn = Map { values: vec![1.0; 1_000_000], y: x.clone(), x, best: None, ..map() }.svg().unwrap();
+        assert_eq!(drawn.matches("<rect").count(), MOST * MOST + BAR_PARTS);
+    }
+
+    #[test]
+    fn cells_end_halfway_to_their_neighbours() {
+        assert_eq!(edges(&[10.0, 20.0, 40.0]), [5.0, 15.0, 30.0, 50.0]);
+        assert_eq!(edges(&[4.0]), [2.0, 6.0]);
+    }
+}

@@ -1,0 +1,62 @@
+//! What the joints of a robot allow, and what drives them.
+//!
+//! **Units.** SI; angles in rad.
+
+use froude_records::robot::JointFile;
+
+use crate::drive::{Following, Motor};
+
+/// Limits of a joint, where they are declared.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Limits {
+    /// Largest angle, rad.
+    pub angle_rad: Option<f64>,
+    /// Largest rate, rad/s.
+    pub rate_rad_s: Option<f64>,
+    /// Largest torque, N m.
+    pub torque_n_m: Option<f64>,
+}
+
+/// All joints, from the head.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drives {
+    /// Of each.
+    pub limits: Vec<Limits>,
+    /// Servos of each; empty where the joints follow their gait exactly.
+    pub following: Vec<Following>,
+    /// The motor that all of them have.
+    pub motor: Motor,
+}
+
+impl Drives {
+    /// Joints that follow a gait exactly, without limits.
+    #[must_use]
+    pub fn free(joints: usize) -> Self {
+        Self { limits: vec![Limits::default(); joints], ..Self::default() }
+    }
+
+    /// The joints of a robot file, without a motor's curve: what all have, and each of them.
+    #[must_use]
+    pub fn of(all: &JointFile, each: &[JointFile]) -> Self {
+        let limits = |file: &JointFile| Limits {
+            angle_rad: file.limit_rad,
+            rate_rad_s: file.rate_rad_s,
+            torque_n_m: file.torque_n_m,
+        };
+        let following = |file: &JointFile| {
+            let servo = file.servo?;
+            Some(Following {
+                stiffness_n_m: servo.stiffness_n_m,
+                damping_n_m_s: servo.damping_n_m_s,
+                torque_n_m: file.torque_n_m,
+                viscous_n_m_s: servo.friction.viscous_n_m_s,
+                dry_n_m: servo.friction.dry_n_m,
+            })
+        };
+        Self {
+            limits: each.iter().map(limits).collect(),
+            following: each.iter().filter_map(following).collect(),
+            motor: Motor { curve: Vec::new(), efficiency: all.efficiency, regeneration: all.regeneration },
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! Many gaits of a robot: a grid of them, and what each comes to as a row of numbers.
+//!
+//! A gait without an answer is a row too: its status says why, and its figures are no numbers.
+//!
+//! **Units.** SI, angles in rad; each column's stands in [`COLUMNS`].
+
+use crate::gait::{Course, Envelope, Gait};
+use crate::joints::Drives;
+use crate::robot::Robot;
+use crate::swim::{Swim, SwimError};
+
+/// Values at even distances, both ends among them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axis {
+    /// The first.
+    pub low: f64,
+    /// The last.
+    pub high: f64,
+    /// How many, one at least.
+    pub n: usize,
+}
+
+impl Axis {
+    /// One value.
+    #[must_use]
+    pub fn one(value: f64) -> Self {
+        Self { low: value, high: value, n: 1 }
+    }
+
+    /// Value k of `0..n`.
+    #[must_use]
+    pub fn at(&self, k: usize) -> f64 {
+        if k == 0 {
+            return self.low;
+        }
+        let part = k as f64 / (self.n - 1) as f64;
+        // Both ends are met exactly.
+        self.low * (1.0 - part) + self.high * part
+    }
+}
+
+/// Gaits with every combination of four numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// α, rad.
+    pub amplitude: Axis,
+    /// ω, rad/s.
+    pub frequency: Axis,
+    /// δ, rad.
+    pub phase: Axis,
+    /// γ, rad.
+    pub turn: Axis,
+    /// g.
+    pub envelope: Envelope,
+}
+
+impl Grid {
+    /// The grid of one gait.
+    #[must_use]
+    pub fn of(gait: &Gait) -> Self {
+        Self {
+            amplitude: Axis::one(gait.amplitude),
+            frequency: Axis::one(gait.frequency),
+            phase: Axis::one(gait.phase),
+            turn: Axis::one(gait.turn),
+            envelope: gait.envelope.clone(),
+        }
+    }
+
+    /// In the order in which they are counted, the last the fastest.
+    #[must_use]
+    pub fn axes(&self) -> [Axis; 4] {
+        [self.amplitude, self.frequency, self.phase, self.turn]
+    }
+
+    /// How many gaits; `None` where they cannot be counted.
+    #[must_use]
+    pub fn gaits(&self) -> Option<usize> {
+        self.axes().iter().try_fold(1_usize, |all, axis| all.checked_mul(axis.n))
+    }
+
+    /// Gait i.
+    #[must_use]
+    pub fn gait(&self, mut i: usize) -> Gait {
+        let mut at = [0.0; 4];
+        for (value, axis) in at.iter_mut().zip(self.axes()).rev() {
+            *value = axis.at(i % axis.n);
+            i /= axis.n;
+        }
+        let [amplitude, frequency, phase, turn] = at;
+        Gait { amplitude, frequency, phase, turn, envelope: self.envelope.clone() }
+    }
+}
+
+/// Names and units of the numbers of a [`Row`].
+#[rustfmt::skip]
+pub const COLUMNS: [(&str, &str); 23] = [
+    ("amplitude", "rad"), ("frequency", "rad/s"), ("phase", "rad"), ("turn", "rad"), ("draw", "1"),
+    ("speed", "m/s"), ("turn_rate", "rad/s"),
+    ("power_net", "W"), ("power_pos", "W"), ("power_abs", "W"), ("power_loss", "W"), ("power_friction", "W"), ("power_electric", "W"),
+    ("cot", "J/m"), ("cot_pos", "J/m"), ("cot_weight", "1"),
+    ("torque_peak", "N m"), ("rate_peak", "rad/s"),
+    ("residual", "1"), ("periods", "1"), ("floquet", "1"),
+    ("extrapolated_loss_by_speed", "1"), ("extrapolated_loss_by_angle", "1"),
+];
+
+/// Why a gait has no answer, or that it has one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Status {
+    /// It repeats itself.
+    Periodic,
+    /// Joints beyond their limits.
+    Limit,
+    /// No motion repeats itself.
+    NotPeriodic,
+    /// Nothing moves.
+    Still,
+    /// An inertia that is not positive.
+    Inertia,
+    /// A step that the servos do not allow.
+    Step,
+    /// A period of too many steps.
+    TooSlow,
+    /// It repeats itself, and needs more than the drives give or goes beyond the joints' limits.
+    Drives,
+}
+
+impl Status {
+    /// All of them, in the order of their codes.
+    pub const ALL: [Self; 8] = [
+        Self::Periodic,
+        Self::Limit,
+        Self::NotPeriodic,
+        Self::Still,
+        Self::Inertia,
+        Self::Step,
+        Self::TooSlow,
+        Self::Drives,
+    ];
+
+    /// As a column has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Periodic => "periodic",
+            Self::Limit => "limit",
+            Self::NotPeriodic => "not_periodic",
+            Self::Still => "still",
+            Self::Inertia => "inertia",
+            Self::Step => "step",
+            Self::TooSlow => "too_slow",
+            Self::Drives => "drives",
+        }
+    }
+}
+
+impl From<&SwimError> for Status {
+    fn from(error: &SwimError) -> Self {
+        match error {
+            SwimError::Inertia => Self::Inertia,
+            SwimError::Limit { .. } => Self::Limit,
+            SwimError::Still { .. } => Self::Still,
+            SwimError::Step { .. } => Self::Step,
+            SwimError::TooSlow { .. } => Self::TooSlow,
+            SwimError::NotPeriodic
+            | SwimError::Restless { .. }
+            | SwimError::Diverged { .. }
+            | SwimError::TooLong { .. } => Self::NotPeriodic,
+        }
+    }
+}
+
+/// What a gait comes to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// In the order of [`COLUMNS`]; those of an answer are NaN where there is none, or where they do not apply.
+    pub numbers: [f64; COLUMNS.len()],
+    /// Whether there is one.
+    pub status: Status,
+}
+
+impl Row {
+    /// A robot with a gait; `draw` is the number of its coefficients, 0 of those that are estimated.
+    #[must_use]
+    pub fn of(robot: &Robot, drives: &Drives, step_s: Option<f64>, gait: &Gait, draw: usize) -> Self {
+        let found = robot.swim(gait, drives, step_s);
+        let asked = [gait.amplitude, gait.frequency, gait.phase, gait.turn, draw as f64];
+        let mut numbers = [f64::NAN; COLUMNS.len()];
+        numbers[..asked.len()].copy_from_slice(&asked);
+        let status = found
+            .as_ref()
+            .map_or_else(Status::from, |swim| if swim.needs.is_beyond { Status::Drives } else { Status::Periodic });
+        if let Ok(swim) = &found {
+            numbers[asked.len()..].copy_from_slice(&answer(swim, gait));
+        }
+        Self { numbers, status }
+    }
+
+    /// The number of a column; NaN of a name that there is not.
+    #[must_use]
+    pub fn get(&self, name: &str) -> f64 {
+        COLUMNS.iter().position(|(own, _)| *own == name).map_or(f64::NAN, |j| self.numbers[j])
+    }
+}
+
+fn answer(swim: &Swim, gait: &Gait) -> [f64; COLUMNS.len() - 5] {
+    let p = &swim.periodic;
+    let [by_speed, by_angle] = swim.extrapolated.map(|share| share.unwrap_or(f64::NAN));
+    [
+        p.speed_m_s,
+        p.turn / gait.period_s(),
+        p.net_w,
+        p.positive_w,
+        p.absolute_w,
+        p.loss_w,
+        p.friction_w,
+        swim.electric_w.unwrap_or(f64::NAN),
+        swim.cost_j_m,
+        swim.cost_positive_j_m,
+        swim.cost,
+        swim.needs.torque_n_m,
+        swim.needs.rate_rad_s,
+        p.residual,
+        p.periods as f64,
+        p.multipliers[0],
+        by_speed,
+        by_angle,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_grid_has_every_combination_once_and_meets_its_ends() {
+        let mut grid = Grid::of(&Gait::wave(0.5, 1.4, 0.7, Envelope::Lateral));
+        grid.amplitude = Axis { low: 0.1, high: 0.7, n: 7 };
+        grid.turn = Axis { low: -0.1, high: 0.1, n: 3 };
+        let gaits: Vec<Gait> = (0..grid.gaits().unwrap()).map(|i| grid.gait(i)).collect();
+        assert_eq!(gaits.len(), 21);
+        assert!(gaits.iter().all(|g| (g.frequency, g.phase) == (1.4, 0.7)));
+        let mut pairs: Vec<[u64; 2]> = gaits.iter().map(|g| [g.amplitude.to_bits(), g.turn.to_bits()]).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        assert_eq!(pairs.len(), 21);
+        assert_eq!((gaits[20].amplitude, gaits[20].turn, gaits[0].turn), (0.7, 0.1, -0.1));
+        assert!((grid.amplitude.at(3) - 0.4).abs() < 1e-15);
+    }
+
+    #[test]
+    fn statuses_stand_in_the_order_of_their_codes() {
+        for (code, status) in Status::ALL.iter().enumerate() {
+            assert_eq!(*status as usize, code);
+        }
+    }
+}

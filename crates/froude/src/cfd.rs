@@ -1,0 +1,118 @@
+//! `froude cfd`: a campaign of flow computations, planned, run on a laptop or a cluster, and collected into a table that `froude identify` reads.
+
+pub mod collect;
+mod computed;
+pub mod plan;
+pub mod run;
+pub mod status;
+
+use std::path::{Path, PathBuf};
+
+use froude_cfd::case::Water;
+use froude_cfd::store::Store;
+use froude_records::campaign::{Input, Source, read_campaign};
+use froude_records::cfd::CfdSpec;
+
+pub(crate) use self::computed::Computed;
+use crate::Error;
+
+/// A file of a CFD campaign that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{}: {problem}", .path.display())]
+pub struct CfdInput {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong, and what to do.
+    pub problem: String,
+}
+
+/// Folder of the meshes in that of a campaign's cases.
+const MESHES: &str = "meshes";
+
+/// What a campaign says of its computed source.
+#[derive(Debug, Clone)]
+struct Asked {
+    source: Source,
+    spec: CfdSpec,
+    /// The folder of the cases.
+    folder: PathBuf,
+    /// The file of the body.
+    body: PathBuf,
+    water: Water,
+}
+
+impl Asked {
+    /// Of a campaign's only source with `cases`, or the one of a name.
+    fn read(path: &Path, name: Option<&str>) -> Result<Self, Error> {
+        let campaign = read_campaign(path)?;
+        let refused = |problem: String| CfdInput { path: path.to_owned(), problem };
+        let computed: Vec<&Source> = campaign.sources.iter().filter(|s| matches!(s.input, Input::Cases(_))).collect();
+        let names = || computed.iter().map(|s| format!("{:?}", s.name)).collect::<Vec<_>>().join(", ");
+        let source = match (name, computed.as_slice()) {
+            (_, []) => {
+                let problem =
+                    "has no source with cases: write kind = \"cfd\" and cases = \"cases\", the folder for them";
+                return Err(refused(problem.to_owned()).into());
+            }
+            (None, [only]) => *only,
+            (None, _) => {
+                let problem = format!("has the sources {} with cases; say which with --source", names());
+                return Err(refused(problem).into());
+            }
+            (Some(name), _) => *computed
+                .iter()
+                .find(|s| s.name == name)
+                .ok_or_else(|| refused(format!("has no source {name:?} with cases; it has {}", names())))?,
+        };
+        let need = |what: &str, example: &str| {
+            refused(format!("[fluid] states no {what}, which a flow depends on; write {example}"))
+        };
+        let fluid = &campaign.fluid;
+        let water = match (fluid.density_kg_m3, fluid.kinematic_viscosity_m2_s, fluid.temperature_degc) {
+            (Some(density_kg_m3), Some(viscosity_m2_s), _) => Water { density_kg_m3, viscosity_m2_s },
+            (density, viscosity, Some(temperature)) => {
+                let water = froude_hydro::fluid::Water::at(temperature, fluid.salinity_g_kg.unwrap_or(0.0))
+                    .map_err(|e| refused(e.to_string()))?;
+                Water {
+                    density_kg_m3: density.unwrap_or(water.density_kg_m3),
+                    viscosity_m2_s: viscosity.unwrap_or(water.kinematic_viscosity_m2_s()),
+                }
+            }
+            (None, _, None) => {
+                return Err(need("density", "density = \"1025 kg/m^3\", or temperature = \"20 degC\"").into());
+            }
+            (_, None, None) => {
+                return Err(
+                    need("viscosity", "kinematic_viscosity = \"1.19e-6 m^2/s\", or temperature = \"20 degC\"").into()
+                );
+            }
+        };
+        if source.plan.is_empty() {
+            let problem = format!(
+                "source {:?} plans nothing: add a [[source.plan]] with configurations, speed and angle",
+                source.name
+            );
+            return Err(refused(problem).into());
+        }
+        let spec = source.cfd.clone().unwrap_or_default();
+        let body = spec.body.clone().ok_or_else(|| {
+            refused(format!("source {:?} names no body: write body = \"body.toml\" in [source.cfd]", source.name))
+        })?;
+        if spec.is_half && source.plan.iter().any(|block| block.pitch_rad.iter().any(|p| *p != 0.0)) {
+            let problem = "plans angles out of the plane of symmetry, and half a domain has none: write domain = \"full\" in [source.cfd]";
+            return Err(refused(problem.to_owned()).into());
+        }
+        let (folder, source) = (source.input.path().to_owned(), source.clone());
+        Ok(Self { source, spec, folder, body, water })
+    }
+}
+
+/// Puts cases that failed or diverged back among those to compute, all of them or by name; the names.
+///
+/// # Errors
+///
+/// As the campaign is read; a case that it does not have, or whose result counts; another process runs it.
+pub fn retry(campaign: &Path, source: Option<&str>, named: &[String]) -> Result<Vec<String>, Error> {
+    let asked = Asked::read(campaign, source)?;
+    Ok(froude_cfd::retry::retry(&Store::open(&asked.folder)?, named)?)
+}

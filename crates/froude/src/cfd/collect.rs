@@ -1,0 +1,233 @@
+//! `froude cfd collect`: the forces that count, as a table of observations; and how far cases that should agree do.
+
+use std::path::{Path, PathBuf};
+
+use froude_cfd::case::Model;
+use froude_cfd::collect::{Collected as Row, collect as results};
+use froude_cfd::outcome::Status;
+use froude_cfd::store::Store;
+use froude_records::number::{percent, significant};
+use froude_records::page::{DocumentSection, TextTable};
+use froude_records::table::{Column, ColumnData, Table, links_of_configuration, prepare_table};
+use froude_records::text::counted;
+use froude_records::units::{Dimension, Unit, parse_unit};
+use serde_json::{Value, json};
+
+use super::Asked;
+use crate::Error;
+
+/// Loads in the order of [`Loads`].
+pub(super) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
+/// Those that half a domain determines; the others are zero by its symmetry.
+const OF_HALF: [usize; 3] = [0, 1, 5];
+/// Name of the table.
+const TABLE: &str = "observations.csv";
+
+/// What was collected.
+#[derive(Debug)]
+pub struct Collected {
+    /// The table's file.
+    pub path: PathBuf,
+    pub(super) table: Table,
+    /// Those of the table.
+    pub(super) rows: Vec<Row>,
+    /// Names of cases without a result that counts, and why.
+    pub without: Vec<(String, String)>,
+    /// A repeat from the inflow, or by the other model, with the case it repeats.
+    pairs: Vec<Pair>,
+}
+
+/// Two computations of one setting.
+#[derive(Debug, Clone)]
+struct Pair {
+    what: &'static str,
+    first: Row,
+    second: Row,
+}
+
+/// Collects a campaign and writes its table.
+///
+/// # Errors
+///
+/// As the campaign is read; no case has a result that counts; the table cannot be written.
+pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Collected, Error> {
+    let asked = Asked::read(campaign, source)?;
+    of_folder(&asked.folder)
+}
+
+/// The same of a folder of cases.
+pub(super) fn of_folder(folder: &Path) -> Result<Collected, Error> {
+    let found = results(&Store::open(folder)?);
+    let (rows, pairs) = paired(found.rows);
+    if rows.is_empty() {
+        let why = found.without.first().map_or_else(String::new, |(id, why)| format!(" ({id}: {why})"));
+        let problem = format!("no case has a result that counts{why}; froude cfd run computes what has none");
+        return Err(super::CfdInput { path: folder.to_owned(), problem }.into());
+    }
+    let path = folder.join(TABLE);
+    let table = table(&rows, &path);
+    prepare_table(&table, &path)?.take_place()?;
+    Ok(Collected { path, table, rows, without: found.without, pairs })
+}
+
+/// The rows of the table, and the repeats: of a setting that both models computed the one with turbulence counts, and of one that was repeated from the inflow the first.
+fn paired(all: Vec<Row>) -> (Vec<Row>, Vec<Pair>) {
+    let (mut rows, mut others): (Vec<Row>, Vec<(&'static str, Row)>) = (Vec::new(), Vec::new());
+    let key = |row: &Row| (row.case.configuration.clone(), row.case.flow.velocity_m_s().map(f64::to_bits));
+    let (turbulent, laminar): (Vec<Row>, Vec<Row>) =
+        all.into_iter().partition(|row| matches!(row.case.model, Model::Sst { .. }));
+    for (what, of_model) in [("from the inflow", turbulent), ("laminar", laminar)] {
+        let is_other_model = what == "laminar";
+        for row in of_model {
+            let is_cold = row.case.id.ends_with("-cold");
+            let is_there = rows.iter().any(|r: &Row| key(r) == key(&row));
+            match (is_cold, is_there && is_other_model) {
+                (true, _) => others.push(("from the inflow", row)),
+                (false, true) => others.push((what, row)),
+                (false, false) => rows.push(row),
+            }
+        }
+    }
+    let mut pairs = Vec::new();
+    for (what, second) in others {
+        let is_same = |r: &&Row| key(r) == key(&second) && (what == "laminar" || r.case.model == second.case.model);
+        match rows.iter().find(is_same).cloned() {
+            Some(first) => pairs.push(Pair { what, first, second }),
+            // The case that it repeats has no result that counts.
+            None if what == "from the inflow" => rows.push(second),
+            None => {}
+        }
+    }
+    rows.sort_by(|a, b| a.case.id.cmp(&b.case.id));
+    (rows, pairs)
+}
+
+fn table(rows: &[Row], path: &Path) -> Table {
+    let text = |name: &str, of: &dyn Fn(&Row) -> String| Column {
+        name: name.to_owned(),
+        data: ColumnData::Text(rows.iter().map(of).collect()),
+    };
+    let number = |name: &str, unit: &str, dimension: Dimension, of: &dyn Fn(&Row) -> f64| Column {
+        name: name.to_owned(),
+        data: ColumnData::Number {
+            // The units of this file are units.
+            unit: parse_unit(unit).unwrap_or_else(|_| Unit::si(dimension)),
+            dimension,
+            si: rows.iter().map(of).collect(),
+        },
+    };
+    let mut columns = vec![
+        text("configuration", &|r| r.case.configuration.clone()),
+        text("run", &|r| r.case.id.clone()),
+        text("model", &|r| if r.case.model == Model::Laminar { "laminar" } else { "sst" }.to_owned()),
+        text("ended", &|r| r.outcome.status.word().to_owned()),
+        text("start_from", &|r| r.outcome.start_from.clone().unwrap_or_else(|| "inflow".to_owned())),
+    ];
+    let links = |r: &Row| links_of_configuration(&r.case.configuration).map_or(f64::NAN, f64::from);
+    if rows.iter().all(|r| links(r).is_finite()) {
+        columns.push(number("n_links", "1", Dimension::ONE, &links));
+    }
+    if rows.iter().all(|r| r.case.flow.pitch_rad == 0.0) {
+        columns.push(number("speed", "m/s", Dimension::SPEED, &|r| r.case.flow.speed_m_s));
+        columns.push(number("angle", "deg", Dimension::ONE, &|r| r.case.flow.angle_rad));
+    } else {
+        for (k, name) in ["v_x", "v_y", "v_z"].into_iter().enumerate() {
+            columns.push(number(name, "m/s", Dimension::SPEED, &|r| r.case.flow.velocity_m_s()[k]));
+        }
+    }
+    let is_half = rows.iter().all(|r| r.case.is_half);
+    for (k, load) in LOADS.into_iter().enumerate().filter(|(k, _)| !is_half || OF_HALF.contains(k)) {
+        let (unit, dimension) = if k < 3 { ("N", Dimension::FORCE) } else { ("N m", Dimension::MOMENT) };
+        columns.push(number(load, unit, dimension, &|r| r.loads[k]));
+    }
+    if rows.iter().all(|r| r.outcome.y_plus.is_some()) {
+        let y_plus = |k: usize| move |r: &Row| r.outcome.y_plus.map_or(f64::NAN, |y| y[k]);
+        columns.push(number("y_plus_mean", "1", Dimension::ONE, &y_plus(1)));
+        columns.push(number("y_plus_largest", "1", Dimension::ONE, &y_plus(2)));
+    }
+    columns.push(number("iterations", "1", Dimension::ONE, &|r| r.outcome.iterations as f64));
+    let line_of_row = (2..2 + rows.len()).collect();
+    Table { path: path.to_owned(), columns, n_rows: rows.len(), line_of_row, sidecar: None, left_out: Vec::new() }
+}
+
+impl Collected {
+    /// Largest difference of repeats of one kind: of f_x and f_y, over the largest of the table each, with how many there are.
+    fn apart(&self, what: &str) -> Option<([f64; 2], usize)> {
+        let largest = |k: usize| self.rows.iter().map(|r| r.loads[k].abs()).fold(0.0, f64::max);
+        let own: Vec<&Pair> = self.pairs.iter().filter(|p| p.what == what).collect();
+        let of = |k: usize| {
+            own.iter().map(|p| (p.first.loads[k] - p.second.loads[k]).abs()).fold(0.0, f64::max) / largest(k)
+        };
+        (!own.is_empty()).then(|| ([of(0), of(1)], own.len()))
+    }
+
+    /// What a person reads.
+    #[must_use]
+    pub fn section(&self) -> DocumentSection {
+        let is = |status: Status| self.rows.iter().filter(|r| r.outcome.status == status).count();
+        let mut paragraphs = Vec::new();
+        if !self.without.is_empty() {
+            let cases = counted(self.without.len(), "case has", "cases have");
+            paragraphs.push(format!("{cases} no result that counts; froude cfd status says why"));
+        }
+        for (what, words) in [
+            ("from the inflow", "repeated from the inflow: what is left of where a case starts from"),
+            (
+                "laminar",
+                "computed by both models, of which the table has the one with turbulence: two limits, no interval",
+            ),
+        ] {
+            if let Some(([x, y], n)) = self.apart(what) {
+                let cases = counted(n, "case", "cases");
+                paragraphs.push(format!(
+                    "{cases} {words}; at most {} of the largest f_x apart, {} of the largest f_y",
+                    percent(x),
+                    percent(y)
+                ));
+            }
+        }
+        let range = |k: usize| {
+            let of = |f: fn(f64, f64) -> f64, from: f64| self.rows.iter().map(|r| r.loads[k]).fold(from, f);
+            [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
+        };
+        let row = |k: usize| {
+            let [low, high] = range(k);
+            vec![
+                LOADS[k].to_owned(),
+                significant(low, 4),
+                significant(high, 4),
+                if k < 3 { "N" } else { "N m" }.to_owned(),
+            ]
+        };
+        let is_half = self.rows.iter().all(|r| r.case.is_half);
+        DocumentSection {
+            title: "Collected".to_owned(),
+            paragraphs,
+            tables: vec![TextTable {
+                caption: format!(
+                    "{} ({} converged, {} oscillating) in {}",
+                    counted(self.rows.len(), "observation", "observations"),
+                    is(Status::Converged),
+                    is(Status::Oscillating),
+                    self.path.display()
+                ),
+                head: ["load", "least", "largest", "unit"].map(str::to_owned).to_vec(),
+                rows: (0..6).filter(|k| !is_half || OF_HALF.contains(k)).map(row).collect(),
+            }],
+            charts: Vec::new(),
+        }
+    }
+
+    /// The same for a program.
+    #[must_use]
+    pub fn as_json(&self) -> Value {
+        let apart = |what: &str| self.apart(what).map(|([x, y], n)| json!({"cases": n, "f_x": x, "f_y": y}));
+        json!({
+            "table": self.path,
+            "observations": self.rows.len(),
+            "without": self.without.iter().map(|(id, why)| json!({"case": id, "reason": why})).collect::<Vec<_>>(),
+            "repeated_from_the_inflow": apart("from the inflow"),
+            "laminar_beside_turbulent": apart("laminar"),
+        })
+    }
+}

@@ -1,0 +1,81 @@
+//! Computed cases as a source of `froude identify`: collected, and fitted as the rows of a table whose scatter is the error of the law.
+
+use std::collections::BTreeMap;
+
+use froude_cfd::outcome::Loads;
+use froude_identify::method::{Found, Method, MethodError, Need};
+use froude_identify::reduce::{Observations, reduce_table};
+use froude_identify::source::{ReadFile, identify_observations};
+use froude_identify::uncertainty::SharedError;
+use froude_records::campaign::{Campaign, Source};
+use froude_records::finding::{Finding, Severity};
+use froude_records::text::counted;
+
+use super::collect::{LOADS, of_folder};
+
+/// The cases of a CFD campaign.
+pub(crate) struct Computed;
+
+impl Method for Computed {
+    fn names(&self) -> &'static [&'static str] {
+        &["cfd"]
+    }
+
+    fn words(&self, _: &str) -> &'static str {
+        "computed cases"
+    }
+
+    fn needs(&self, _: &str) -> &'static [Need] {
+        const { &[Need::of(&["cases"], &[])] }
+    }
+
+    fn runs(&self) -> &'static str {
+        ""
+    }
+
+    fn identify(
+        &self,
+        campaign: &Campaign,
+        source: &Source,
+        _: &[&'static str],
+        progress: &dyn Fn(&str),
+    ) -> Result<Found, MethodError> {
+        progress("collecting cases");
+        let collected =
+            of_folder(source.input.path()).map_err(|e| MethodError::input(source.input.path(), e.to_string()))?;
+        // Cases of one configuration err alike.
+        let group = source.group.clone().or_else(|| Some("configuration".to_owned()));
+        let source = Source { group, ..source.clone() };
+        let files = vec![ReadFile::new(collected.path.clone(), "table")];
+        let mut observations = reduce_table(campaign, &source, &collected.table, files)?;
+        let std: BTreeMap<&str, Loads> = (collected.rows.iter())
+            .filter_map(|row| Some((row.case.id.as_str(), row.outcome.std_iterative?)))
+            .collect();
+        observations.shared_errors.extend(iterative(&observations, &std));
+        let left_out = collected.without.len();
+        if left_out > 0 {
+            let text = format!(
+                "{} no result that counts and stand in no fit; froude cfd status says why",
+                counted(left_out, "case has", "cases have")
+            );
+            observations.findings.push(Finding::new(Severity::Warning, "cfd-cases-missing", text));
+        }
+        let mut result = identify_observations(campaign, &source, observations, "cfd", &|model| {
+            progress(&format!("fitting {model}"));
+        })?;
+        let findings = std::mem::take(&mut result.findings);
+        let section = collected.section();
+        Ok(Found { results: vec![result.into()], findings, blocks: vec![section], ..Found::default() })
+    }
+}
+
+/// What is left of the solver's iterations in each row: part of the scatter.
+fn iterative(observations: &Observations, std: &BTreeMap<&str, Loads>) -> Vec<SharedError> {
+    let runs = &observations.data.run;
+    let of = |(k, load): (usize, &&'static str)| {
+        observations.data.values(load)?;
+        let standard: Vec<f64> = runs.iter().map(|run| std.get(run.as_str()).map_or(0.0, |s| s[k])).collect();
+        Some(SharedError::of_each_row("iterations of the solver", load, &standard))
+    };
+    LOADS.iter().enumerate().filter_map(of).collect()
+}

@@ -1,0 +1,256 @@
+//! What the joints of a swimmer do: a gait from its file and what was typed, or a recording.
+
+use std::path::{Path, PathBuf};
+
+use froude_records::RecordError;
+use froude_records::gait_file::{GaitForm, PitchFile, read_gait};
+use froude_records::motor_file::read_motor;
+use froude_records::number::significant;
+use froude_records::table::{Table, read_table};
+use froude_records::units::Dimension;
+use froude_swim::course::{Ramped, Recorded};
+use froude_swim::drive::Motor;
+use froude_swim::gait::{Course, Envelope, Gait, Shape};
+use froude_swim::joints::Drives;
+
+use serde_json::{Value, json};
+
+use super::SwimInput;
+
+/// What is asked of the joints.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Moves {
+    /// A wave, in numbers.
+    Wave(Gait),
+    /// A gait file, with numbers that stand before its own.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What was typed.
+        typed: Typed,
+    },
+    /// Recorded joint angles: a table with `time` and `phi_1`, `phi_2`, ….
+    Track(PathBuf),
+}
+
+/// Numbers of a gait, as far as they were typed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Typed {
+    /// rad.
+    pub amplitude_rad: Option<f64>,
+    /// rad/s.
+    pub frequency_rad_s: Option<f64>,
+    /// rad.
+    pub phase_rad: Option<f64>,
+    /// rad.
+    pub turn_rad: Option<f64>,
+}
+
+/// A periodic course, with the time in which a trajectory reaches it.
+#[derive(Debug, Clone)]
+pub(super) struct Periodically {
+    pub(super) wave: Wave,
+    pub(super) ramp_s: Option<f64>,
+    /// Of joints that pitch.
+    pub(super) pitch: Option<PitchFile>,
+}
+
+/// A gait or one period of a recording.
+#[derive(Debug, Clone)]
+pub(super) enum Wave {
+    Gait(Gait),
+    Table(Recorded),
+}
+
+impl Periodically {
+    pub(super) fn course(&self) -> &dyn Course {
+        match &self.wave {
+            Wave::Gait(gait) => gait,
+            Wave::Table(cycle) => cycle,
+        }
+    }
+}
+
+/// The same from straight joints, where there is a ramp.
+#[derive(Debug)]
+pub(super) struct FromRest<'a>(pub(super) &'a Periodically);
+
+impl Course for FromRest<'_> {
+    fn at(&self, time_s: f64, shape: &mut Shape) {
+        match self.0.ramp_s {
+            Some(ramp_s) => Ramped { course: self.0.course(), ramp_s }.at(time_s, shape),
+            None => self.0.course().at(time_s, shape),
+        }
+    }
+
+    fn period_s(&self) -> f64 {
+        self.0.course().period_s()
+    }
+
+    fn extremes(&self, joint: usize, joints: usize) -> [f64; 2] {
+        match self.0.ramp_s {
+            Some(ramp_s) => Ramped { course: self.0.course(), ramp_s }.extremes(joint, joints),
+            None => self.0.course().extremes(joint, joints),
+        }
+    }
+}
+
+/// The gait of a file for so many joints that yaw.
+pub(super) fn flat_gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, crate::Error> {
+    let gait = gait_of(path, typed, joints)?;
+    if gait.pitch.is_some() {
+        let problem =
+            "has pitch, and joints of a plane yaw: leave it out, or write space = \"3d\" in the robot file".to_owned();
+        return Err(SwimInput { path: path.to_owned(), problem }.into());
+    }
+    Ok(gait)
+}
+
+/// The gait of a file for so many joints.
+pub(super) fn gait_of(path: &Path, typed: &Typed, joints: usize) -> Result<Periodically, crate::Error> {
+    let file = read_gait(path)?;
+    let wrong = |problem: String| SwimInput { path: path.to_owned(), problem };
+    let envelope = match file.form {
+        GaitForm::Lateral => Envelope::Lateral,
+        GaitForm::Eel => Envelope::Eel,
+        GaitForm::Factors(factors) if factors.len() != joints => {
+            let problem =
+                format!("envelope has {} factors, and the robot has {joints} joints: write one of each", factors.len());
+            return Err(wrong(problem).into());
+        }
+        GaitForm::Factors(factors) => Envelope::Factors(factors),
+        GaitForm::Table { path: table, .. } => {
+            if *typed != Typed::default() {
+                let problem = "takes its angles from a table; --amplitude, --frequency, --phase and --turn mean nothing beside it: leave them out";
+                return Err(wrong(problem.to_owned()).into());
+            }
+            let cycle = recorded(&table, joints, true)?;
+            return Ok(Periodically { wave: Wave::Table(cycle), ramp_s: file.ramp_s, pitch: file.pitch });
+        }
+    };
+    let need = |typed: Option<f64>, own: Option<f64>, key: &str, example: &str| {
+        typed
+            .or(own)
+            .ok_or_else(|| wrong(format!("has no {key}: write {key} = \"{example}\", or type --{key} '{example}'")))
+    };
+    let gait = Gait {
+        amplitude: need(typed.amplitude_rad, file.amplitude_rad, "amplitude", "30 deg")?,
+        frequency: need(typed.frequency_rad_s, file.frequency_rad_s, "frequency", "80 deg/s")?,
+        phase: need(typed.phase_rad, file.phase_rad, "phase", "40 deg")?,
+        turn: typed.turn_rad.or(file.turn_rad).unwrap_or(0.0),
+        envelope,
+    };
+    Ok(Periodically { wave: Wave::Gait(gait), ramp_s: file.ramp_s, pitch: file.pitch })
+}
+
+/// Joint angles of a table.
+pub(super) fn recorded(path: &Path, joints: usize, is_cycle: bool) -> Result<Recorded, crate::Error> {
+    let table = read_table(path, None)?;
+    let wrong = |problem: String| crate::Error::from(SwimInput { path: path.to_owned(), problem });
+    let time = table.number("time", Dimension::TIME)?;
+    let angles: Vec<Vec<f64>> = (1..=joints).map(|i| angle(&table, i)).collect::<Result<_, _>>()?;
+    let next = format!("phi_{}", joints + 1);
+    if table.columns.iter().any(|c| c.name == next) {
+        return Err(wrong(format!("has {next}, and the robot has {joints} joints: one angle less than modules")));
+    }
+    if is_cycle {
+        for (i, angle) in angles.iter().enumerate() {
+            let (Some(first), Some(last)) = (angle.first(), angle.last()) else { continue };
+            let size = angle.iter().fold(0.0_f64, |m, a| m.max(a.abs()));
+            if (last - first).abs() > CLOSES * size {
+                return Err(wrong(format!(
+                    "phi_{} begins a period at {:.4} deg and ends it at {:.4} deg: its last row must be the first one again; of angles that do not repeat give --track",
+                    i + 1,
+                    first.to_degrees(),
+                    last.to_degrees()
+                )));
+            }
+        }
+    }
+    let found = if is_cycle { Recorded::cycle(time, &angles) } else { Recorded::track(time, &angles) };
+    found.map_err(|e| wrong(e.to_string()))
+}
+
+/// A period closes when its ends differ by less than this part of its largest angle.
+const CLOSES: f64 = 1e-3;
+
+fn angle(table: &Table, joint: usize) -> Result<Vec<f64>, RecordError> {
+    table.number(&format!("phi_{joint}"), Dimension::ANGLE).map(<[f64]>::to_vec)
+}
+
+/// Joints with the motor of a file.
+pub(super) fn with_motor(drives: Drives, path: &Path) -> Result<Drives, RecordError> {
+    let file = read_motor(path)?;
+    let own = &drives.motor;
+    let motor = Motor {
+        curve: file.curve,
+        efficiency: file.efficiency.or(own.efficiency),
+        regeneration: file.regeneration.unwrap_or(own.regeneration),
+    };
+    Ok(Drives { motor, ..drives })
+}
+
+/// What was asked of the joints.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Asked {
+    /// A gait file or a recording, with what it is.
+    pub file: Option<(&'static str, PathBuf)>,
+    /// The gait in numbers, where it has them.
+    pub gait: Option<Gait>,
+    /// In which a trajectory reaches it, s.
+    pub ramp_s: Option<f64>,
+}
+
+impl Asked {
+    pub(super) fn of(moves: &Moves, periodically: Option<&Periodically>) -> Self {
+        let gait = periodically.and_then(|p| match &p.wave {
+            Wave::Gait(gait) => Some(gait.clone()),
+            Wave::Table(_) => None,
+        });
+        let file = match moves {
+            Moves::Wave(_) => None,
+            Moves::File { path, .. } => Some(("gait file", path.clone())),
+            Moves::Track(path) => Some(("recording", path.clone())),
+        };
+        Self { file, gait, ramp_s: periodically.and_then(|p| p.ramp_s) }
+    }
+
+    fn form(gait: &Gait) -> &'static str {
+        match gait.envelope {
+            Envelope::Lateral => "lateral",
+            Envelope::Eel => "eel",
+            Envelope::Factors(_) => "envelope",
+        }
+    }
+
+    /// Name, value and unit of each.
+    pub(super) fn words(&self) -> Vec<(&'static str, String, &'static str)> {
+        let mut out: Vec<(&'static str, String, &'static str)> =
+            self.file.iter().map(|(name, path)| (*name, path.display().to_string(), "")).collect();
+        if let Some(gait) = &self.gait {
+            let degrees = |x: f64| significant(x.to_degrees(), 5);
+            out.extend([
+                ("gait", Self::form(gait).to_owned(), ""),
+                ("amplitude", degrees(gait.amplitude), "deg"),
+                ("frequency", degrees(gait.frequency), "deg/s"),
+                ("phase", degrees(gait.phase), "deg"),
+                ("turn", degrees(gait.turn), "deg"),
+            ]);
+        }
+        out.extend(self.ramp_s.map(|ramp_s| ("ramp of the trajectory", significant(ramp_s, 4), "s")));
+        out
+    }
+
+    /// The same in SI.
+    pub(super) fn as_json(&self) -> Value {
+        json!({
+            "file": self.file.as_ref().map(|(_, path)| path),
+            "gait": self.gait.as_ref().map(Self::form),
+            "amplitude_rad": self.gait.as_ref().map(|g| g.amplitude),
+            "frequency_rad_s": self.gait.as_ref().map(|g| g.frequency),
+            "phase_rad": self.gait.as_ref().map(|g| g.phase),
+            "turn_rad": self.gait.as_ref().map(|g| g.turn),
+            "ramp_s": self.ramp_s,
+        })
+    }
+}

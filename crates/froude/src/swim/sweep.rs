@@ -1,0 +1,260 @@
+//! `froude swim --sweep`: many gaits, in parallel, into one table.
+//!
+//! **Parts.** Rows are made in parts of consecutive ones, each written whole beside the table that they become (`.sweep-KEY/`). The key is a hash of all that the numbers depend on: robot file, records, motor, gaits. Started
+//! again, a sweep goes on from the parts that are there and the table is the same to the byte; of another robot or other gaits the key is another, and nothing is mixed.
+//!
+//! **Order.** Amplitude, frequency, phase, turn, draw, the last the fastest.
+
+mod page;
+mod parts;
+pub(super) mod told;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use froude_records::parquet_table::write_parquet;
+use froude_records::robot::{AddedFile, RobotFile, is_urdf, sidecar_of_urdf};
+use froude_records::table::{Column, ColumnData, Table};
+use froude_records::units::{Dimension, Unit, parse_unit};
+use froude_records::write::write_atomically;
+use froude_swim::blueprint::Blueprint;
+use froude_swim::draws::Beyond;
+use froude_swim::gait::Gait;
+use froude_swim::joints::Drives;
+use froude_swim::robot::Robot;
+use froude_swim::sweep::{Axis, COLUMNS, Grid, Row};
+use rayon::prelude::*;
+
+use super::SwimInput;
+use super::moves::{Moves, Wave, flat_gait_of};
+use super::uncertain::Drawing;
+use crate::Error;
+use parts::Parts;
+
+/// What is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepJob {
+    /// The robot file.
+    pub robot: PathBuf,
+    /// The gait whose numbers are swept.
+    pub moves: Moves,
+    /// What is swept.
+    pub ranges: Ranges,
+    /// The motor of the joints.
+    pub motor: Option<PathBuf>,
+    /// The longest step, s.
+    pub step_s: Option<f64>,
+    /// Coefficients that are drawn, for every gait the same.
+    pub draws: Option<Drawing>,
+    /// Folder of `sweep.parquet`.
+    pub out: PathBuf,
+}
+
+/// Numbers that take the place of a gait's.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ranges {
+    /// rad.
+    pub amplitude: Option<Axis>,
+    /// rad/s.
+    pub frequency: Option<Axis>,
+    /// rad.
+    pub phase: Option<Axis>,
+    /// rad.
+    pub turn: Option<Axis>,
+}
+
+impl Ranges {
+    /// The grid of them about a gait.
+    fn about(&self, gait: &Gait) -> Grid {
+        let own = Grid::of(gait);
+        Grid {
+            amplitude: self.amplitude.unwrap_or(own.amplitude),
+            frequency: self.frequency.unwrap_or(own.frequency),
+            phase: self.phase.unwrap_or(own.phase),
+            turn: self.turn.unwrap_or(own.turn),
+            envelope: own.envelope,
+        }
+    }
+}
+
+/// What came of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Swept {
+    /// The robot's name.
+    pub name: String,
+    /// A row per gait and draw; of a gait, that of the estimate stands first.
+    pub rows: Vec<Row>,
+    /// Rows of a gait.
+    pub each: usize,
+    /// What was drawn, and the draws that were no bodies.
+    pub drawn: Option<(Drawing, Beyond)>,
+    /// Rows that were there from an earlier start.
+    pub resumed: usize,
+    /// The table.
+    pub written: PathBuf,
+    /// The page with its maps.
+    pub report: PathBuf,
+    /// Folders with parts of other sweeps that never came to their end.
+    pub others: Vec<PathBuf>,
+}
+
+/// Why a sweep does not begin.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// More than memory holds.
+    #[error(
+        "the sweep has {rows} rows; one of {most} at most is made at a time: take fewer values, or sweep its parts into folders of their own"
+    )]
+    TooMany {
+        /// As they are counted.
+        rows: String,
+        /// Most of them.
+        most: usize,
+    },
+    /// Another process makes the same.
+    #[error("{}: another process is at this sweep; wait for it, or name another folder with --out", .folder.display())]
+    Busy {
+        /// The folder of its parts.
+        folder: PathBuf,
+    },
+}
+
+/// Most rows of a table.
+const MOST_ROWS: usize = 1_000_000;
+
+/// Sweeps; `tell` hears how many rows of how many are done.
+///
+/// # Errors
+///
+/// A robot file, record or gait that cannot be used, too many gaits, a folder that cannot be written. A gait without an answer is a row.
+pub fn sweep(job: &SweepJob, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Swept, Error> {
+    let ready = Ready::new(job)?;
+    let each = ready.robots.len();
+    let rows = ready.gaits * each;
+    std::fs::create_dir_all(&job.out).map_err(|source| Error::Output { path: job.out.clone(), source })?;
+    let asked = format!("{:?} {:?} {:?}", ready.grid, job.step_s, job.draws);
+    let parts = Parts::begin(&job.out, &parts::key(&ready.depends_on, &asked)?, rows)?;
+    let done = AtomicUsize::new(0);
+    let resumed = AtomicUsize::new(0);
+    let count = |n: usize| tell(done.fetch_add(n, Ordering::Relaxed) + n, rows);
+    let of_part = |part: usize| -> Result<Vec<Row>, Error> {
+        if let Some(found) = parts.read(part) {
+            resumed.fetch_add(found.len(), Ordering::Relaxed);
+            count(found.len());
+            return Ok(found);
+        }
+        let made = parts.rows(part).map(|i| {
+            let row = ready.row(&ready.grid.gait(i / each), i % each);
+            count(1);
+            row
+        });
+        let made: Vec<Row> = made.collect();
+        parts.write(part, &made)?;
+        Ok(made)
+    };
+    let all: Vec<Vec<Row>> = (0..parts.count()).into_par_iter().map(of_part).collect::<Result<_, _>>()?;
+    let all = all.concat();
+    let written = job.out.join("sweep.parquet");
+    write_parquet(&table(&all, &written), &written)?;
+    let others = parts.finish();
+    let drawn = job.draws.map(|drawing| (drawing, ready.beyond));
+    let report = job.out.join("report.html");
+    let swept =
+        Swept { name: ready.name, rows: all, each, drawn, resumed: resumed.into_inner(), written, report, others };
+    write_atomically(&swept.report, swept.page()?.as_bytes())?;
+    write_atomically(&job.out.join("result.json"), format!("{:#}\n", swept.as_json()).as_bytes())?;
+    Ok(swept)
+}
+
+/// All that the rows are made from.
+#[derive(Debug)]
+pub(super) struct Ready<'a> {
+    job: &'a SweepJob,
+    pub(super) name: String,
+    pub(super) grid: Grid,
+    pub(super) gaits: usize,
+    drives: Drives,
+    /// As estimated, and of each draw behind it.
+    pub(super) robots: Vec<Robot>,
+    /// Draws that were no bodies.
+    pub(super) beyond: Beyond,
+    /// The files whose content the numbers depend on.
+    depends_on: Vec<PathBuf>,
+}
+
+impl<'a> Ready<'a> {
+    pub(super) fn new(job: &'a SweepJob) -> Result<Self, Error> {
+        let file = super::planar(&job.robot)?;
+        let blueprint = Blueprint::of(&file)?;
+        let drives = super::drives(&file, job.motor.as_deref())?;
+        let grid = job.ranges.about(&base(&job.moves, file.modules.len() - 1)?);
+        let too_many = |rows: String| SweepError::TooMany { rows, most: MOST_ROWS };
+        let each = job.draws.map_or(0, |drawing| drawing.n) + 1;
+        let rows = grid.gaits().and_then(|gaits| gaits.checked_mul(each));
+        match rows {
+            None => return Err(too_many("more than can be counted".to_owned()).into()),
+            Some(rows) if rows > MOST_ROWS => return Err(too_many(rows.to_string()).into()),
+            Some(_) => {}
+        }
+        let (mut robots, mut beyond) = (vec![blueprint.estimated()], Beyond::default());
+        if let Some(drawing) = job.draws {
+            let draws = blueprint.draws(drawing.n, drawing.seed)?;
+            beyond = draws.beyond;
+            robots.extend(draws.values.iter().map(|values| blueprint.robot(values)));
+        }
+        let gaits = grid.gaits().unwrap_or_default();
+        let depends_on = depends_on(&file, job);
+        Ok(Self { job, name: file.name, grid, gaits, drives, robots, beyond, depends_on })
+    }
+
+    pub(super) fn row(&self, gait: &Gait, draw: usize) -> Row {
+        Row::of(&self.robots[draw], &self.drives, self.job.step_s, gait, draw)
+    }
+}
+
+/// The gait in numbers.
+fn base(moves: &Moves, joints: usize) -> Result<Gait, Error> {
+    let refused = |path: &Path, problem: &str| SwimInput { path: path.to_owned(), problem: problem.to_owned() };
+    match moves {
+        Moves::Wave(gait) => Ok(gait.clone()),
+        Moves::Track(path) => Err(refused(path, "is a recording, which has no numbers to sweep: name a gait").into()),
+        Moves::File { path, typed } => match flat_gait_of(path, typed, joints)?.wave {
+            Wave::Gait(gait) => Ok(gait),
+            Wave::Table(_) => Err(refused(path, "is a table, which has no numbers to sweep: take another kind").into()),
+        },
+    }
+}
+
+/// The files whose content the numbers depend on.
+fn depends_on(file: &RobotFile, job: &SweepJob) -> Vec<PathBuf> {
+    let mut paths = vec![job.robot.clone(), file.drag.path.clone()];
+    if is_urdf(&job.robot) {
+        paths.push(sidecar_of_urdf(&job.robot));
+    }
+    let own = file.modules.iter().filter_map(|m| m.spatial.added.as_ref());
+    for from in own.chain([&file.added_mass]) {
+        if let AddedFile::Record(from) = from {
+            paths.push(from.path.clone());
+        }
+    }
+    paths.extend(job.motor.clone());
+    paths
+}
+
+/// Columns with their units; a column that no row has is left out.
+pub(super) fn table(rows: &[Row], path: &Path) -> Table {
+    let of = |(j, (name, unit)): (usize, &(&str, &str))| {
+        let si: Vec<f64> = rows.iter().map(|row| row.numbers[j]).collect();
+        // Every unit of the list is one.
+        let unit = parse_unit(unit).unwrap_or_else(|_| Unit::si(Dimension::ONE));
+        let dimension = unit.dimension;
+        let column = Column { name: (*name).to_owned(), data: ColumnData::Number { unit, dimension, si } };
+        rows.iter().any(|row| row.numbers[j].is_finite()).then_some(column)
+    };
+    let mut columns: Vec<Column> = COLUMNS.iter().enumerate().filter_map(of).collect();
+    let status = rows.iter().map(|row| row.status.name().to_owned()).collect();
+    columns.push(Column { name: "status".to_owned(), data: ColumnData::Text(status) });
+    let line_of_row = (1..=rows.len()).collect();
+    Table { path: path.to_owned(), columns, n_rows: rows.len(), line_of_row, sidecar: None, left_out: Vec::new() }
+}

@@ -1,0 +1,148 @@
+//! Parts of a sweep on the disk: what is done stays done when the process is killed.
+//!
+//! A part is its rows as 64-bit numbers with the code of their status, and their SHA-256. One that is cut off or damaged is none, and is made again.
+
+use std::fs::{File, TryLockError};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use froude_records::hash::{sha256_of_bytes, sha256_of_file, short_key};
+use froude_records::write::write_atomically;
+use froude_swim::sweep::{COLUMNS, Row, Status};
+
+use super::SweepError;
+use crate::Error;
+
+/// So many parts, where a part has not more rows than it may.
+const PARTS: usize = 64;
+/// Most rows of a part: some seconds of work.
+const MOST_ROWS: usize = 1024;
+/// Bytes of a row.
+const ROW: usize = 8 * COLUMNS.len() + 1;
+/// Before the key.
+const PREFIX: &str = ".sweep-";
+
+/// Hash of files and of what was asked.
+pub(super) fn key(files: &[PathBuf], asked: &str) -> Result<String, Error> {
+    let mut text = format!("{} {asked}", env!("CARGO_PKG_VERSION"));
+    for file in files {
+        text.push_str(&format!(" {}", sha256_of_file(file)?));
+    }
+    Ok(short_key(text.as_bytes()))
+}
+
+/// The parts of one sweep.
+#[derive(Debug)]
+pub(super) struct Parts {
+    folder: PathBuf,
+    rows: usize,
+    each: usize,
+    others: Vec<PathBuf>,
+    /// Held for as long as the process lives.
+    _lock: File,
+}
+
+impl Parts {
+    /// Finds or makes the folder of so many rows.
+    pub(super) fn begin(out: &Path, key: &str, rows: usize) -> Result<Self, Error> {
+        let folder = out.join(format!("{PREFIX}{key}"));
+        let failed = |path: &Path| {
+            let path = path.to_owned();
+            move |source| Error::Output { path, source }
+        };
+        std::fs::create_dir_all(&folder).map_err(failed(&folder))?;
+        let lock_path = folder.join("lock");
+        let lock = File::create(&lock_path).map_err(failed(&lock_path))?;
+        // A disk without locks has none to wait for.
+        if let Err(TryLockError::WouldBlock) = lock.try_lock() {
+            return Err(SweepError::Busy { folder }.into());
+        }
+        let is_other = |path: &PathBuf| {
+            let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+            *path != folder && name.starts_with(PREFIX)
+        };
+        let entries = std::fs::read_dir(out).map_err(failed(out))?;
+        let mut others: Vec<PathBuf> = entries.flatten().map(|e| e.path()).filter(is_other).collect();
+        others.sort();
+        Ok(Self { folder, rows, each: (rows / PARTS).clamp(1, MOST_ROWS), others, _lock: lock })
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.rows.div_ceil(self.each)
+    }
+
+    pub(super) fn rows(&self, part: usize) -> Range<usize> {
+        let first = part * self.each;
+        first..(first + self.each).min(self.rows)
+    }
+
+    fn path(&self, part: usize) -> PathBuf {
+        self.folder.join(format!("{part:06}"))
+    }
+
+    /// The rows of a part that is done.
+    pub(super) fn read(&self, part: usize) -> Option<Vec<Row>> {
+        let bytes = std::fs::read(self.path(part)).ok()?;
+        let (content, sum) = bytes.split_at_checked(ROW * self.rows(part).len())?;
+        if sum != sha256_of_bytes(content).as_bytes() {
+            return None;
+        }
+        content.chunks_exact(ROW).map(row).collect()
+    }
+
+    pub(super) fn write(&self, part: usize, rows: &[Row]) -> Result<(), Error> {
+        let mut bytes = Vec::with_capacity(ROW * rows.len() + 64);
+        for row in rows {
+            bytes.extend(row.numbers.iter().flat_map(|x| x.to_le_bytes()));
+            bytes.push(row.status as u8);
+        }
+        let sum = sha256_of_bytes(&bytes);
+        bytes.extend(sum.as_bytes());
+        Ok(write_atomically(&self.path(part), &bytes)?)
+    }
+
+    /// Takes the parts away, whose table is written; the folders of other sweeps are left.
+    pub(super) fn finish(self) -> Vec<PathBuf> {
+        // What is left where this fails is found by the next start, and makes the same table.
+        let _ = std::fs::remove_dir_all(&self.folder);
+        self.others
+    }
+}
+
+fn row(bytes: &[u8]) -> Option<Row> {
+    let (numbers, status) = bytes.split_at_checked(8 * COLUMNS.len())?;
+    let mut row = Row { numbers: [f64::NAN; COLUMNS.len()], status: *Status::ALL.get(usize::from(*status.first()?))? };
+    for (number, bytes) in row.numbers.iter_mut().zip(numbers.chunks_exact(8)) {
+        *number = f64::from_le_bytes(bytes.try_into().ok()?);
+    }
+    Some(row)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_read_as_it_was_written_and_a_damaged_one_is_none() {
+        let out = tempfile::tempdir().unwrap();
+        let parts = Parts::begin(out.path(), "0123", 130).unwrap();
+        assert_eq!((parts.count(), parts.rows(64)), (65, 128..130));
+        let made: Vec<Row> = [Status::Periodic, Status::Still]
+            .map(|status| Row { numbers: std::array::from_fn(|j| 1.0 / (j as f64 + 3.0)), status })
+            .to_vec();
+        parts.write(3, &made).unwrap();
+        assert_eq!(parts.read(3).unwrap(), made);
+        assert_eq!(parts.read(4), None);
+        let whole = std::fs::read(parts.path(3)).unwrap();
+        std::fs::write(parts.path(3), &whole[..whole.len() - 1]).unwrap();
+        assert_eq!(parts.read(3), None);
+        let mut changed = whole.clone();
+        changed[5] ^= 1;
+        std::fs::write(parts.path(3), &changed).unwrap();
+        assert_eq!(parts.read(3), None);
+        let busy = Parts::begin(out.path(), "0123", 130).unwrap_err().to_string();
+        assert!(busy.contains("another process"), "{busy}");
+        let other = Parts::begin(out.path(), "4567", 1).unwrap();
+        assert_eq!(other.finish(), [out.path().join(".sweep-0123")]);
+    }
+}
