@@ -31,7 +31,7 @@ shared   = "campaign"
 [source.cfd]
 body = "body.toml"
 mesh = { stations = 20, layers = 20, azimuth = 8, first_layer = "0.5 mm" }
-iterations = 400
+iterations = 900
 window = 40
 cold = 0
 [[source.plan]]
@@ -135,7 +135,7 @@ fn a_campaign_that_was_killed_goes_on_and_is_identified() {
     child.kill().unwrap();
     child.wait().unwrap();
     done(&run);
-    assert_eq!(usable(&counts()), 6, "{}", counts());
+    assert_eq!(usable(&counts()), 6, "{}", done(&["cfd", "status", text(&path)]));
     let again = done(&run);
     assert!(again.contains("6 cases are kept") || again.contains("Computed") || again.contains("converged"), "{again}");
 
