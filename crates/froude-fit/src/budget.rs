@@ -55,13 +55,27 @@ pub enum Kind {
     A,
     /// From anything else: a certificate, a data sheet, another fit.
     B,
+    /// From anything else: the mesh and the iterations of a computation.
+    Numerical,
+    /// From anything else: what went into a computation.
+    Input,
+    /// From anything else: the law, or the model of turbulence.
+    ModelForm,
+}
+
+impl Kind {
+    /// Whether it is of type B of the GUM: from anything but the scatter.
+    #[must_use]
+    pub fn is_type_b(self) -> bool {
+        self != Self::A
+    }
 }
 
 impl std::fmt::Display for Kind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::A => "A",
-            Self::B => "B",
+            Self::B | Self::Numerical | Self::Input | Self::ModelForm => "B",
         })
     }
 }
@@ -169,8 +183,11 @@ impl Combined {
 #[must_use]
 pub fn combine(parts: &[Part], j: usize, outside: f64) -> Combined {
     let counted = || parts.iter().filter(|part| !part.in_scatter);
-    let of_kind = |kind: Kind| {
-        counted().filter(|part| part.kind == kind).fold(0.0, |sum, part| sum + part.covariance[(j, j)].max(0.0)).sqrt()
+    let of_type = |is_b: bool| {
+        counted()
+            .filter(|part| part.kind.is_type_b() == is_b)
+            .fold(0.0, |sum, part| sum + part.covariance[(j, j)].max(0.0))
+            .sqrt()
     };
     let entry = |part: &Part| (part.covariance[(j, j)].max(0.0), part.dof[j]);
     let entries: Vec<(f64, f64)> = counted().map(entry).collect();
@@ -183,8 +200,8 @@ pub fn combine(parts: &[Part], j: usize, outside: f64) -> Combined {
         .collect();
     let half = expanded(&normal, 1.0 - outside).expanded;
     Combined {
-        type_a: of_kind(Kind::A),
-        type_b: of_kind(Kind::B),
+        type_a: of_type(false),
+        type_b: of_type(true),
         standard: entries.iter().map(|e| e.0).sum::<f64>().sqrt(),
         dof: effective_dof(&entries),
         arms: if limits.is_empty() { [half, half] } else { drawn(half, &limits, outside) },

@@ -22,6 +22,7 @@ mod selection;
 mod settings;
 #[cfg(test)]
 mod tests;
+pub mod validation;
 
 use froude_records::page::SourceSection;
 

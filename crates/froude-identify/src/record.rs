@@ -257,7 +257,7 @@ fn type_a(model: &ModelFit) -> Option<TypeA> {
 fn errors(model: &ModelFit) -> IndexMap<String, SharedError> {
     let there = known(model);
     let is_felt = |part: &&Part| there.iter().any(|&j| part.covariance[(j, j)] > 0.0);
-    let added = model.budget.iter().filter(|part| part.kind == Evaluation::B && !part.in_scatter).filter(is_felt);
+    let added = model.budget.iter().filter(|part| part.kind.is_type_b() && !part.in_scatter).filter(is_felt);
     let mut out: IndexMap<String, SharedError> = IndexMap::new();
     for part in added {
         let (key, error) = match &part.origin {
@@ -267,7 +267,7 @@ fn errors(model: &ModelFit) -> IndexMap<String, SharedError> {
                 let error = SharedError {
                     name: part.name.clone(),
                     quantity: origin.quantity.clone(),
-                    kind: ErrorKind::B,
+                    kind: evaluated(part),
                     covariance: square(&origin.covariance, &(0..q).collect::<Vec<_>>()),
                     dof: finite(part.dof.first().copied()),
                     limits: origin.limits,
@@ -299,11 +299,21 @@ fn alone(part: &Part, there: &[usize]) -> SharedError {
     SharedError {
         name: part.name.clone(),
         quantity: String::new(),
-        kind: ErrorKind::B,
+        kind: evaluated(part),
         covariance: square(&part.covariance, there),
         dof: finite(part.dof.first().copied()),
         limits,
         sensitivity: there.iter().map(|&a| there.iter().map(|&b| one(a, b)).collect()).collect(),
+    }
+}
+
+/// How a part of type B was evaluated, as the record says it.
+fn evaluated(part: &Part) -> ErrorKind {
+    match part.kind {
+        Evaluation::A | Evaluation::B => ErrorKind::B,
+        Evaluation::Numerical => ErrorKind::Numerical,
+        Evaluation::Input => ErrorKind::Input,
+        Evaluation::ModelForm => ErrorKind::ModelForm,
     }
 }
 

@@ -6,7 +6,6 @@
 
 pub(crate) mod reduced;
 
-use froude_fit::budget::Kind;
 use froude_records::campaign::Identify;
 use froude_records::finding::{Finding, Severity};
 
@@ -145,7 +144,7 @@ fn monte_carlo_note(model: &ModelFit, data: &Dataset, settings: Settings<'_>, dr
     let (shared, drawn): (Vec<_>, Vec<_>) = settings
         .budget
         .iter()
-        .zip(model.budget.iter().filter(|part| part.kind == Kind::B))
+        .zip(model.budget.iter().filter(|part| part.kind.is_type_b()))
         .filter(|(_, part)| !part.in_scatter)
         .map(|(entry, part)| (entry.clone(), part))
         .unzip();

@@ -8,6 +8,7 @@ mod setting;
 mod size;
 
 use angles::beyond_its_angles;
+use froude_fit::budget::Kind;
 use froude_fit::faer::Mat;
 use froude_records::campaign::Tare;
 use froude_records::estimate::{Estimate, EstimateFile, OWN};
@@ -118,6 +119,7 @@ fn errors(file: &EstimateFile, estimate: &Estimate, law: &ForceLaw, slopes: &Mat
     let own = SharedError {
         name: format!("tare {}", estimate.id),
         key: Some(format!("tare/{}", origin(file, estimate))),
+        kind: Kind::B,
         quantity: format!("coefficients of {}", estimate.id),
         shared: "campaign",
         directions: directions(&|j, k| if j == k { 1.0 } else { 0.0 }, columns.len()),
@@ -129,6 +131,7 @@ fn errors(file: &EstimateFile, estimate: &Estimate, law: &ForceLaw, slopes: &Mat
     let others = estimate.errors.iter().map(|(key, error)| SharedError {
         name: format!("tare {}: {}", estimate.id, error.name),
         key: Some(if key.starts_with(OWN) { format!("tare/{}/{key}", origin(file, estimate)) } else { key.clone() }),
+        kind: Kind::B,
         quantity: error.quantity.clone(),
         shared: "campaign",
         directions: directions(&|j, k| error.sensitivity[j][k], error.covariance.len()),

@@ -13,6 +13,7 @@ use faer::Mat;
 use froude_fit as fit;
 use froude_fit::budget::{Kind, Origin, Part, Shape, one_sided};
 use froude_records::campaign::{BudgetEntry, Shared};
+use froude_records::estimate::ErrorKind;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
@@ -32,6 +33,8 @@ pub struct SharedError {
     pub name: String,
     /// Its name among all sources and campaigns: what has one key is one error. `None` where no other estimate can have it.
     pub key: Option<String>,
+    /// How it was evaluated, by anything but scatter.
+    pub kind: Kind,
     /// The quantity that errs.
     pub quantity: String,
     /// Who shares it: `run`, `setup`, `campaign`.
@@ -58,6 +61,7 @@ impl SharedError {
         Self {
             name: name.to_owned(),
             key: None,
+            kind: Kind::B,
             quantity: load.to_owned(),
             shared: "campaign",
             directions: vec![(load.to_owned(), direction.iter().map(|d| vec![*d]).collect())],
@@ -85,6 +89,12 @@ impl SharedError {
     #[must_use]
     pub fn known_as(self, key: Option<String>, quantity: &str) -> Self {
         Self { key, quantity: quantity.to_owned(), ..self }
+    }
+
+    /// The same error, evaluated otherwise.
+    #[must_use]
+    pub fn evaluated_as(self, kind: Kind) -> Self {
+        Self { kind, ..self }
     }
 
     /// Standard uncertainties of a load, row by row and independent: part of the scatter.
@@ -154,7 +164,12 @@ pub fn contributions(
                 .clone()
                 .map_or_else(|| entry.quantity.clone(), |name| format!("{name} ({})", entry.quantity)),
             shared: entry.shared.name(),
-            kind: Kind::B,
+            kind: match entry.kind {
+                ErrorKind::B => Kind::B,
+                ErrorKind::Numerical => Kind::Numerical,
+                ErrorKind::Input => Kind::Input,
+                ErrorKind::ModelForm => Kind::ModelForm,
+            },
             covariance,
             dof: vec![entry.dof.unwrap_or(f64::INFINITY); p],
             shape: Shape::Normal,
@@ -193,7 +208,7 @@ pub fn common_key(entry: &BudgetEntry, campaign: &str) -> Option<String> {
 ///
 /// A load errs by itself. A wrong motion or density makes the fit use X(q + e) for X(q):
 /// the response is then wrong by −∂(Xβ)/∂q·e, taken by central differences.
-fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, IdentifyError> {
+pub(crate) fn direction(fit: Linearised<'_>, entry: &BudgetEntry) -> Result<Vec<f64>, IdentifyError> {
     let quantity = aliased(&entry.quantity);
     let n = fit.data.rows;
     let values = fit.data.values(quantity).ok_or_else(|| IdentifyError::Campaign {
@@ -305,7 +320,7 @@ fn shared_error(fit: Linearised<'_>, error: &SharedError) -> Result<Part, Identi
     Ok(Part {
         name: error.name.clone(),
         shared: error.shared,
-        kind: Kind::B,
+        kind: error.kind,
         covariance,
         dof: vec![error.dof; p],
         shape: error

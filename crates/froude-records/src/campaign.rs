@@ -17,6 +17,7 @@ use crate::carriage::CarriageCampaign;
 use crate::cfd::CfdSpec;
 use crate::decay::{DecayPlan, DecaySpec};
 use crate::error::{Place, RecordError};
+use crate::estimate::ErrorKind;
 use crate::excited_response::{ExcitedPlan, ExcitedSpec};
 use crate::oscillation::{OscillationPlan, OscillationSpec};
 use crate::rotation::{RotationPlan, RotationSpec};
@@ -311,6 +312,8 @@ pub struct BudgetEntry {
     pub dof: Option<f64>,
     /// A name for the budget table.
     pub name: Option<String>,
+    /// How it was evaluated.
+    pub kind: ErrorKind,
     /// What `standard` measures; a pure number when `relative`.
     pub dimension: Dimension,
     /// Where its quantity is named in the campaign.

@@ -19,6 +19,7 @@ use crate::carriage_toml::carriage;
 use crate::cfd::cfd;
 use crate::decay::{decay, decay_plan};
 use crate::error::RecordError;
+use crate::estimate::ErrorKind;
 use crate::excited_response::{excited, excited_plan};
 use crate::hash::short_key;
 use crate::keep::parse_keep;
@@ -333,7 +334,7 @@ fn added_mass(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
 }
 
 fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
-    s.only(&["quantity", "standard", "shared", "dof", "name"])?;
+    s.only(&["quantity", "standard", "shared", "dof", "name", "kind"])?;
     let quantity = s
         .text("quantity")?
         .ok_or_else(|| s.missing("quantity", "name the uncertain column: f_x, speed, angle, density, …"))?;
@@ -368,6 +369,7 @@ fn budget_entry(s: &Section<'_>) -> Result<BudgetEntry, RecordError> {
         shared,
         dof: positive_number(s, "dof")?,
         name: s.text("name")?.map(str::to_owned),
+        kind: one_of(s, "kind", &ErrorKind::NAMES, &ErrorKind::ALL)?.unwrap_or(ErrorKind::B),
         dimension,
         place: s.get("quantity").map_or_else(|| s.place(), |v| s.source.place(v.span().start)),
     })

@@ -23,6 +23,9 @@ pub struct Comparison {
     /// Predicted loads over the common range: the first source beside each of the others.
     #[serde(default)]
     pub loads: Vec<LoadComparison>,
+    /// Computed numbers beside measured ones: the comparison error E = S − D and what its uncertainty is made of.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub validation: Vec<Validation>,
     /// Which coverage factor the expanded uncertainties of the loads have, a sentence per source.
     #[serde(default)]
     pub coverage: Vec<String>,
@@ -164,6 +167,60 @@ pub struct LoadComparison {
     /// Why there is none; empty where there is.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub note: String,
+}
+
+/// A computed number S beside a measured one D, by ASME V&V 20: E = S − D, and the standard uncertainty of everything in E but the error of the model.
+///
+/// The error of the model lies in E ± k·u_validation. Numbers are in `unit`. A load is compared in every computed flow that the measured law covers; its numbers are then roots of mean squares over these flows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Validation {
+    /// Id of the estimate that was computed.
+    pub simulation: String,
+    /// Id of the one that was measured.
+    pub data: String,
+    /// Name of the coefficient, or of the load.
+    pub quantity: String,
+    /// Unit of all numbers.
+    pub unit: String,
+    /// Flows that a load was compared in; null for a coefficient.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub flows: Option<usize>,
+    /// S.
+    pub computed: f64,
+    /// D.
+    pub measured: f64,
+    /// E = S − D.
+    pub error: f64,
+    /// The factor by which the computed loads lie above the measured ones, Σ S·D / Σ D²; null for a coefficient.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ratio: Option<f64>,
+    /// Standard uncertainty of S from mesh and iterations.
+    pub u_numerical: f64,
+    /// From what went into the computation.
+    pub u_input: f64,
+    /// From the scatter about the law, of a coefficient.
+    pub u_fit: f64,
+    /// Standard uncertainty of D; null where the record states none, and then `u_validation` is too small.
+    pub u_data: Option<f64>,
+    /// The root of the sum of their squares.
+    pub u_validation: f64,
+    /// Standard uncertainty that was declared for the form of the model; E shows what it is.
+    pub declared_model_form: f64,
+    /// Flows in which |E| > 2 u_validation; null for a coefficient.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub beyond: Option<usize>,
+}
+
+impl Validation {
+    /// Whether the error of the model is beyond what everything else explains: |E| > 2 u_validation, of a load in more than a twentieth of its flows.
+    #[must_use]
+    pub fn is_beyond(&self) -> bool {
+        match (self.beyond, self.flows) {
+            (Some(beyond), Some(flows)) => 20 * beyond > flows,
+            _ => self.error.abs() > 2.0 * self.u_validation,
+        }
+    }
 }
 
 /// An F test of a simple model inside a general one, fitted to the same observations.

@@ -230,9 +230,16 @@ pub enum ErrorKind {
     /// What went into a computation.
     #[serde(rename = "input")]
     Input,
-    /// The law itself.
+    /// The law itself, or the model of turbulence behind a computation.
     #[serde(rename = "model_form")]
     ModelForm,
+}
+
+impl ErrorKind {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::B, Self::Numerical, Self::Input, Self::ModelForm];
+    /// What files call them, in the same order.
+    pub const NAMES: [&'static str; 4] = ["B", "numerical", "input", "model_form"];
 }
 
 /// Axes of the coefficients.

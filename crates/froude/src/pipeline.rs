@@ -1,6 +1,7 @@
 //! From a campaign, a bare table, runs or records to estimates side by side and a report.
 
 mod job;
+mod validation;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -66,7 +67,8 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     for source in &campaign.sources {
         gathered.take(source, &campaign, &mut files, job, progress)?;
     }
-    let Gathered { sources, summaries, blocks, exports, published, mut findings, beside, is_part } = gathered;
+    let Gathered { sources, mut summaries, mut blocks, mut exports, published, mut findings, beside, is_part } =
+        gathered;
     findings.extend(asked::laws_not_asked(&campaign));
     // What a method says without an estimate is an answer too: jogs show the polarity.
     if sources.is_empty() && published.is_empty() && summaries.is_empty() {
@@ -81,6 +83,15 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     let mut all = vec![("this campaign".to_owned(), fitted)];
     all.extend(published);
     let comparison = if is_one { None } else { side_by_side(&all, &job.input)? };
+    let mut comparison = comparison;
+    if let Some(comparison) = &mut comparison {
+        let validated = validation::against(&campaign, &sources, &all)?;
+        comparison.validation = validated.numbers;
+        // It is of no source alone.
+        summaries.extend(validated.first.map(|section| Summary { sources: 0..0, section }));
+        blocks.extend(validated.others);
+        exports.extend(validated.exports);
+    }
     findings.extend(comparison.iter().flat_map(|c| c.findings.iter().cloned()));
     findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
     let (_, fitted) = all.remove(0);

@@ -55,10 +55,10 @@ pub(super) fn coefficient(observed: Observed, setup: &DragSetup) -> Result<Optio
     // Without pairs or runs to leave out nothing tells the scatter.
     let counts = |part: &&Part| match part.kind {
         Kind::A => stated.is_some(),
-        Kind::B => part.standard(0) > 0.0,
+        _ => part.standard(0) > 0.0,
     };
     let budget: Vec<Part> = model.budget.iter().filter(counts).cloned().collect();
-    let declared = |part: &&Part| part.kind == Kind::B && !part.in_scatter;
+    let declared = |part: &&Part| part.kind.is_type_b() && !part.in_scatter;
     let Observed { method, points, .. } = observed;
     Ok(Some(Coefficient {
         method,

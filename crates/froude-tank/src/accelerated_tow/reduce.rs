@@ -12,6 +12,7 @@
 //!
 //! **Units.** SI. **Source.** JCGM 100:2008 (GUM), 5.2.
 
+use froude_fit::budget::Kind;
 use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 use froude_fit::serial::{RowErrors, serial};
@@ -217,6 +218,7 @@ fn zeros(load: &str, of_run: &[usize], wet: &[(String, usize, Rows)]) -> SharedE
     SharedError {
         name: "zeros of the runs".to_owned(),
         key: None,
+        kind: Kind::B,
         quantity: "zero".to_owned(),
         shared: "run",
         directions: vec![(load.to_owned(), of_run.iter().zip(&middles).map(row).collect())],

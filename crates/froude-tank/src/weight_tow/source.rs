@@ -1,10 +1,12 @@
 //! The weight-driven rig as a source of a campaign: a folder of logs, one run each, reduced to the rows of a table.
 
+use froude_fit::budget::Kind;
 use froude_identify::method::{Export, Found, Method, MethodError, Need, Prospect};
 use froude_identify::reduce::reduce_table;
 use froude_identify::source::identify_observations;
 use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{BudgetEntry, Campaign, Shared, Source};
+use froude_records::estimate::ErrorKind;
 use froude_records::finding::{Finding, Severity};
 use froude_records::run::step::Step;
 use froude_records::run::{ImportedRun, Role, WEIGHT_TOW};
@@ -231,6 +233,7 @@ pub fn with_track(source: &Source, reduced: &[Reduced]) -> Source {
         shared: Shared::Sample,
         dof: None,
         name: Some("errors of the tracks".to_owned()),
+        kind: ErrorKind::B,
         dimension: Dimension::ONE,
         place: source.place.clone(),
     });
@@ -256,6 +259,7 @@ pub fn shared(reduced: &[Reduced], loads: &[&str]) -> Vec<SharedError> {
         is_there.then(|| SharedError {
             name: (*name).to_owned(),
             key: None,
+            kind: Kind::B,
             quantity: (*name).to_owned(),
             shared: "campaign",
             directions,
