@@ -4,7 +4,8 @@
 use std::path::Path;
 
 use froude_records::comparison::{
-    CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison, Side, Verdict,
+    CoefficientComparison, Comparison, JointComparison, LargestCoefficient, LargestLoad, LoadComparison, Side,
+    Validation, Verdict,
 };
 use froude_records::estimate::{
     Attitude, Clusters, Coefficient, DataFile, Derived, Diagnostics, ESTIMATE_SCHEMA, ErrorKind, Estimate,
@@ -169,6 +170,17 @@ fn comparison() -> Comparison {
             note: text("CFD/f4 gives no f_x"),
             ..LoadComparison::default()
         }],
+        validation: vec![
+            Validation {
+                simulation: text("CFD/f4"),
+                data: text("tank/f4"),
+                quantity: text("C_d_II"),
+                unit: text("1"),
+                u_data: Some(0.057),
+                ..Validation::default()
+            },
+            Validation { flows: Some(3), ratio: Some(0.8), beyond: Some(1), ..Validation::default() },
+        ],
         coverage: vec![text("tank/f4: k = 2.78")],
         findings: Vec::new(),
     }

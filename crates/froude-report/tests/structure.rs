@@ -333,6 +333,7 @@ fn hostile_names_are_escaped_everywhere() {
                 note: h(),
                 ..LoadComparison::default()
             }],
+            validation: Vec::new(),
             coverage: vec![h()],
             findings: vec![Finding::new(Severity::Note, HOSTILE, h())],
         }),

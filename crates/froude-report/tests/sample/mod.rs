@@ -573,6 +573,7 @@ pub fn report() -> Report {
                     })
                 })
                 .collect(),
+            validation: Vec::new(),
             coverage: vec![
                 "circulation tank: k = 2.00 (Student's t, effective degrees of freedom 57.3)".to_owned(),
                 "CFD: k = 2.00 (Student's t, effective degrees of freedom 57.3)".to_owned(),

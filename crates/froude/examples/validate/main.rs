@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, clocks,
 //! dynamic, potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -10,6 +10,7 @@ mod accelerated;
 #[path = "../../../froude-panel/examples/coverage/bodies.rs"]
 mod bodies;
 mod carriage;
+mod cfd;
 mod claims;
 mod clocks;
 // Its own example tells more of each row.
@@ -24,6 +25,8 @@ mod emps;
 mod excited;
 mod family;
 mod flexible;
+#[path = "../../../froude-cfd/examples/known_flows/flows.rs"]
+mod flows;
 mod hour;
 mod kvlcc2;
 mod oscillation;
@@ -129,6 +132,9 @@ fn main() -> ExitCode {
         }
         if wants("swim-coverage") {
             swim_coverage::all(claims, &root, if full { 200 } else { 10 })?;
+        }
+        if wants("cfd") {
+            cfd::all(claims, &root, full)?;
         }
         if wants("clocks") {
             clocks::all(claims, &shared)?;
