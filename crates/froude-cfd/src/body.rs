@@ -4,7 +4,7 @@ use froude_mesh::panel::{Facet, facets};
 use froude_mesh::sections::{Resolution, SectionBody};
 use froude_mesh::{Mesh, robot};
 use froude_records::body::{BodyFile, SemiAxes, Shape};
-use froude_records::cfd::CfdSpec;
+use froude_records::cfd::{CfdSpec, MeshSpec};
 use froude_records::table::links_of_configuration;
 
 use crate::case::Reference;
@@ -32,17 +32,27 @@ impl Shaped {
     /// The grid about it that a campaign asks for.
     #[must_use]
     pub fn grid(&self, spec: &CfdSpec) -> OGrid {
-        let Reference { length_m, width_m, .. } = self.reference;
-        let usual_m = (RADIUS[0] * length_m).max(RADIUS[1] * width_m);
+        self.grid_of(spec, spec.mesh)
+    }
+
+    /// The same with the cells of another mesh.
+    #[must_use]
+    pub fn grid_of(&self, spec: &CfdSpec, mesh: MeshSpec) -> OGrid {
         OGrid {
-            stations: spec.mesh.stations,
-            layers: spec.mesh.layers,
-            around: if spec.is_half { spec.mesh.azimuth } else { 2 * spec.mesh.azimuth },
-            first_layer_m: spec.mesh.first_layer_m,
-            outer_radius_m: spec.radius.map_or(usual_m, |radius| radius * length_m),
+            stations: mesh.stations,
+            layers: mesh.layers,
+            around: if spec.is_half { mesh.azimuth } else { 2 * mesh.azimuth },
+            first_layer_m: mesh.first_layer_m,
+            outer_radius_m: domain_radius(spec, self.reference) * self.reference.length_m,
             is_half: spec.is_half,
         }
     }
+}
+
+/// Radius of the domain that a campaign asks for, in lengths of the body \[-\].
+#[must_use]
+pub fn domain_radius(spec: &CfdSpec, Reference { length_m, width_m, .. }: Reference) -> f64 {
+    spec.radius.unwrap_or(RADIUS[0].max(RADIUS[1] * width_m / length_m))
 }
 
 /// A configuration of the body of a file.

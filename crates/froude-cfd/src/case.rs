@@ -7,6 +7,8 @@ use std::path::Path;
 use froude_records::hash::sha256_of_bytes;
 use serde::{Deserialize, Serialize};
 
+use crate::outcome::Loads;
+
 /// A case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Case {
@@ -117,6 +119,14 @@ impl Case {
     #[must_use]
     pub fn reynolds(&self) -> f64 {
         self.flow.speed_m_s * self.reference.width_m / self.water.viscosity_m2_s
+    }
+
+    /// What loads are compared with: ½ρU²A, N, and for moments ½ρU²A L, N m.
+    #[must_use]
+    pub fn load_scales(&self) -> Loads {
+        let force_n = 0.5 * self.water.density_kg_m3 * self.flow.speed_m_s.powi(2) * self.reference.area_m2;
+        let moment_n_m = force_n * self.reference.length_m;
+        [force_n, force_n, force_n, moment_n_m, moment_n_m, moment_n_m]
     }
 
     /// Whether its layer is laminar over the whole body, and its model has it turbulent from the nose on.

@@ -9,6 +9,8 @@ use crate::outcome::Outcome;
 const ASSUMED_S_PER_CELL_ITERATION: f64 = 3.2e-6;
 /// Of a coarse mesh, from the inflow and from another case.
 const ASSUMED_ITERATIONS: [f64; 2] = [150.0, 70.0];
+/// Cells of a coarse mesh: finer ones take more iterations.
+const COARSE_CELLS: f64 = 22_400.0;
 /// Of a mesh that no case has run on.
 const ASSUMED_CELLS: f64 = 50_000.0;
 
@@ -18,7 +20,7 @@ pub struct Cost {
     cpu_s: f64,
     cell_iterations: f64,
     cells: BTreeMap<String, f64>,
-    /// Iterations and cases, from the inflow and from another case.
+    /// Iterations over the cells of a direction, and cases, from the inflow and from another case.
     ended: [(f64, f64); 2],
 }
 
@@ -33,7 +35,7 @@ impl Cost {
         self.cell_iterations += cells * iterations;
         self.cells.insert(case.mesh.clone(), cells);
         let (sum, count) = &mut self.ended[usize::from(outcome.start_from.is_some())];
-        *sum += iterations;
+        *sum += iterations / cells.cbrt();
         *count += 1.0;
     }
 
@@ -56,13 +58,14 @@ impl Cost {
 
     /// Time of a processor that a case is expected to take, s.
     ///
-    /// Its iterations are the mean of those that have ended from a like start; before one has, a usual number.
+    /// Its iterations are the mean of those that have ended from a like start, more on a finer mesh in the ratio of the cells in a direction; before one has, a usual number.
     #[must_use]
     pub fn expected_s(&self, case: &Case) -> f64 {
         let (sum, count) = self.ended[usize::from(case.start_from.is_some())];
-        let usual = ASSUMED_ITERATIONS[usize::from(case.start_from.is_some())].min(case.stop.iterations as f64);
-        let iterations = if count > 0.0 { sum / count } else { usual };
         let cells = self.cells.get(&case.mesh).copied().unwrap_or_else(|| self.mean_cells());
+        let usual = ASSUMED_ITERATIONS[usize::from(case.start_from.is_some())] * (cells / COARSE_CELLS).cbrt().max(1.0);
+        let iterations = if count > 0.0 { sum / count * cells.cbrt() } else { usual };
+        let iterations = iterations.min(case.stop.iterations as f64);
         self.s_per_cell_iteration() * cells * iterations
     }
 

@@ -18,13 +18,40 @@ impl OGrid {
     ///
     /// [`MeshError`]: a body that is none, or layers that have no growth.
     pub fn family(&self, body: &SectionBody, grids: usize) -> Result<Vec<Self>, MeshError> {
-        let length_m = self.length_m(&Meridian::new(body)?);
-        let layers = Layers::of_first(self.layers, self.first_layer_m, length_m)?;
-        Ok((0..grids).map(|level| self.finer(level, layers)).collect())
+        let layers = self.own_layers(body)?;
+        Ok((0..grids).map(|level| self.finer(level as i32, layers)).collect())
     }
 
-    fn finer(&self, level: usize, layers: Layers) -> Self {
-        let factor = SQRT_2.powf(level as f64);
+    /// The grid of the same family that is so many steps of √2 finer than this one; −1 is one coarser.
+    ///
+    /// # Errors
+    ///
+    /// As [`family`](Self::family).
+    pub fn at_level(&self, body: &SectionBody, level: i32) -> Result<Self, MeshError> {
+        Ok(self.finer(level, self.own_layers(body)?))
+    }
+
+    /// The same cells about the body with others of the same growth behind them, out to another radius.
+    ///
+    /// # Errors
+    ///
+    /// As [`family`](Self::family).
+    pub fn of_radius(&self, body: &SectionBody, outer_radius_m: f64) -> Result<Self, MeshError> {
+        let growth = self.own_layers(body)?.growth;
+        let grid = Self { outer_radius_m, ..*self };
+        let length_m = grid.length_m(&Meridian::new(body)?);
+        // length = first (gⁿ − 1)/(g − 1), with its limit n first as g goes to 1.
+        let in_first = length_m / self.first_layer_m;
+        let layers = if growth - 1.0 > 1e-9 { (in_first * (growth - 1.0)).ln_1p() / growth.ln() } else { in_first };
+        Ok(Self { layers: layers.round() as usize, ..grid })
+    }
+
+    fn own_layers(&self, body: &SectionBody) -> Result<Layers, MeshError> {
+        Layers::of_first(self.layers, self.first_layer_m, self.length_m(&Meridian::new(body)?))
+    }
+
+    fn finer(&self, level: i32, layers: Layers) -> Self {
+        let factor = SQRT_2.powi(level);
         let [stations, count, around] =
             [self.stations, self.layers, self.around].map(|cells| (cells as f64 * factor).round() as usize);
         Self { stations, layers: count, around, first_layer_m: layers.in_layers(count).first_m(), ..*self }
@@ -59,6 +86,21 @@ mod tests {
             let near = found[from..].iter().take_while(|q| q[0] <= p[0] + 1e-9);
             assert!(near.into_iter().any(|q| (0..3).all(|c| (p[c] - q[c]).abs() < 1e-9)), "{p:?}");
         }
+    }
+
+    #[test]
+    fn a_coarser_grid_and_a_wider_domain_have_the_layers_of_the_first() {
+        let body = SectionBody::capsule(0.455, 0.045, 0.045, 0.045, [1; 2]);
+        let coarser = BASE.at_level(&body, -1).unwrap();
+        assert_eq!([coarser.stations, coarser.layers, coarser.around], [14, 13, 8]);
+        assert_eq!(BASE.at_level(&body, 0).unwrap().layers, BASE.layers);
+        let growth = |grid: &OGrid| grid.own_layers(&body).unwrap().growth;
+        for radius_m in [2.0, 4.0, 12.0] {
+            let grid = BASE.of_radius(&body, radius_m).unwrap();
+            assert!((growth(&grid) / growth(&BASE) - 1.0).abs() < 0.03, "{radius_m} m: {grid:?}");
+            assert_eq!(grid.first_layer_m, BASE.first_layer_m);
+        }
+        assert_eq!(BASE.of_radius(&body, 4.0).unwrap(), BASE);
     }
 
     #[test]

@@ -44,11 +44,26 @@ pub struct GridError {
     pub extrapolated: Option<f64>,
     /// p of every three grids in a row, the finest first, claimed or not; `None` where they do not approach a limit.
     pub orders: Vec<Option<f64>>,
+    /// Half-width of the interval of 95 % about the result of each grid, by the grid alone, the finest first.
+    pub of_grids: Vec<f64>,
+    /// p that distances to the limit are taken with: the order, the scheme's where it is larger; `None` where no order is claimed.
+    law_order: Option<f64>,
+    /// Largest distance of a grid that had no part in the law from it.
+    misfit: f64,
     /// Where the half-width comes from.
     pub reason: String,
 }
 
 impl GridError {
+    /// Half-width of the interval of 95 % about the result of a grid that is no member of the family, by the grid alone; `size` is its h over that of the finest.
+    ///
+    /// With an order, 1.25 times its distance to the limit by the family's law; without, 3 times the spread of the family.
+    #[must_use]
+    pub fn at(&self, size: f64) -> f64 {
+        let finest = self.of_grids.first().copied().unwrap_or(0.0);
+        self.law_order.map_or(finest, |p| (finest - self.misfit) * size.powf(p) + self.misfit)
+    }
+
     /// Half of the half-width.
     #[must_use]
     pub fn std(&self) -> f64 {
@@ -115,14 +130,19 @@ pub fn grid_error(results: &[OnGrid], directions: u32) -> Result<GridError, Fami
         order: None,
         extrapolated: None,
         orders,
+        of_grids: Vec::new(),
+        law_order: None,
+        misfit: 0.0,
         reason: String::new(),
     };
     let order = match claim(&grids, &found.orders) {
         Ok(order) => order,
         Err(why) => {
             let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(l, h), &v| (l.min(v), h.max(v)));
+            let mesh = SPREAD_FACTOR * (high - low);
             return Ok(GridError {
-                expanded: (SPREAD_FACTOR * (high - low)).hypot(iterative),
+                expanded: mesh.hypot(iterative),
+                of_grids: vec![mesh; grids.len()],
                 reason: format!("{SPREAD_FACTOR} times the spread of {} grids: {why}", grids.len()),
                 ..found
             });
@@ -137,8 +157,13 @@ pub fn grid_error(results: &[OnGrid], directions: u32) -> Result<GridError, Fami
         .skip(3)
         .map(|(h, v)| (v - limit + distance(order) * h.powf(order)).abs())
         .fold(0.0, f64::max);
+    let law_order = order.min(SCHEME_ORDER);
+    let by_law = |size: f64| SAFETY * (distance(law_order) * size.powf(law_order)).abs() + misfit;
     Ok(GridError {
-        expanded: (SAFETY * distance(order.min(SCHEME_ORDER)).abs() + misfit).hypot(iterative),
+        expanded: by_law(1.0).hypot(iterative),
+        of_grids: sizes.iter().map(|size| by_law(*size)).collect(),
+        law_order: Some(law_order),
+        misfit,
         order: Some(order),
         extrapolated: Some(limit),
         reason: format!(
@@ -147,6 +172,18 @@ pub fn grid_error(results: &[OnGrid], directions: u32) -> Result<GridError, Fami
         ),
         ..found
     })
+}
+
+/// Half-width of the interval of 95 % about the finer of two results by the grid alone, where no family says more: three times the distance to the limit of the schemes' order.
+///
+/// `refinement` is how much finer it is in each direction, above 1.
+///
+/// # Source
+///
+/// Roache, J. Fluids Eng. 116 (1994) 405–413: the grid convergence index of two grids, `3 |φ₂ − φ₁|/(rᵖ − 1)` with p of the scheme.
+#[must_use]
+pub fn two_grids(difference: f64, refinement: f64) -> f64 {
+    SPREAD_FACTOR * difference.abs() / (refinement.powf(SCHEME_ORDER) - 1.0)
 }
 
 /// The order, or why none is claimed.
@@ -277,6 +314,29 @@ mod tests {
         grids[3].value -= 0.05;
         let found = grid_error(&grids, 3).unwrap();
         assert!((found.expanded - (1.25 * 0.3 + 0.05)).abs() < 1e-9, "{found:?}");
+    }
+
+    /// φ = 5 + 0.3 hᵖ has the error 0.3 hᵖ on a grid of size h.
+    #[test]
+    fn each_grid_has_its_own_distance_to_the_limit_and_so_has_one_that_is_no_member() {
+        let sizes = CELLS.map(|cells| refinement_ratio(CELLS[0], cells, 3));
+        for p in [0.7, 1.0, 2.0] {
+            let found = grid_error(&of(|h| 5.0 + 0.3 * h.powf(p)), 3).unwrap();
+            for (h, expanded) in sizes.iter().zip(&found.of_grids) {
+                assert!((expanded - 1.25 * 0.3 * h.powf(p)).abs() < 1e-8, "{p}: {found:?}");
+            }
+            assert!((found.at(1.2) - 1.25 * 0.3 * 1.2_f64.powf(p)).abs() < 1e-8);
+        }
+        let wavy = grid_error(&of(|h| 5.0 + (3.0 * h).sin()), 3).unwrap();
+        assert_eq!(wavy.of_grids, [wavy.expanded; 4]);
+        assert_eq!(wavy.at(1.7), wavy.expanded);
+    }
+
+    /// Two grids of a law of order 2, by a factor of 2: a third of the difference is left, and is covered three times.
+    #[test]
+    fn two_grids_cover_three_times_what_the_order_of_the_schemes_leaves() {
+        let value = |h: f64| 5.0 + 0.3 * h * h;
+        assert!((two_grids(value(2.0) - value(1.0), 2.0) - 3.0 * 0.3).abs() < 1e-12);
     }
 
     #[test]

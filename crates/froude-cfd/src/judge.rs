@@ -114,8 +114,7 @@ pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
         return without_loads(Status::Failed, false, reason);
     }
 
-    let scale_n = 0.5 * case.water.density_kg_m3 * case.flow.speed_m_s.powi(2) * case.reference.area_m2;
-    let scales = [scale_n, scale_n * case.reference.length_m].map(|s| [s; 3]).concat();
+    let scales = case.load_scales();
     let largest = |loads: &Loads, counts: &dyn Fn(usize) -> bool| {
         let parts = loads.iter().zip(&scales).enumerate().filter(|(load, _)| counts(*load));
         parts.map(|(_, (load, scale))| load.abs() / scale).fold(0.0, f64::max)

@@ -5,6 +5,7 @@
 //!
 //! | module | content |
 //! | --- | --- |
+//! | [`again`] | settings that are computed again: from the inflow, on other grids, in other domains |
 //! | [`body`] | bodies by their dimensions: shape, lengths, grid |
 //! | [`case`] | all that a case is: its file, and the hash that says which cases are the same |
 //! | [`change`] | a plan over what a campaign's folder holds |
@@ -25,10 +26,12 @@
 //! | [`matrix`] | the run matrix of a campaign as cases, with the case that each starts from |
 //! | [`meridian`] | the meridian of a body of elliptic sections, and where a mesh cuts it |
 //! | [`mesh_error`] | why there is no mesh |
+//! | [`numerical`] | what the mesh does to the forces of a campaign: their correction and what it leaves |
 //! | [`o_grid`] | O-grids around bodies of elliptic sections |
 //! | [`openfoam`] | where it is, which it is, running its programs |
 //! | [`orphans`] | solvers that outlived their coordinator |
 //! | [`outcome`] | what a case came to: its forces, how far they are known, and why it ended |
+//! | [`over_angles`] | a number a load, known at some settings and wanted at all |
 //! | [`plate`] | a flat plate in two dimensions, for validation |
 //! | [`poly_mesh`] | a volume mesh as OpenFOAM has it |
 //! | [`poly_mesh_files`] | a mesh as the files of OpenFOAM, in a folder that its content names |
@@ -42,6 +45,7 @@
 //! | [`status`] | how far a campaign is |
 //! | [`store`] | the folder of a campaign |
 //! | [`store_error`] | why that cannot be worked with |
+//! | [`study`] | settings on a family of grids and in several domains |
 //! | [`transient`] | a case in time |
 //! | [`warm`] | starting from another case's last fields, scaled |
 //! | [`work`] | one case, done once |
@@ -49,6 +53,7 @@
 //! Not here: what the forces say of coefficients (`froude-identify`), potential flow (`froude-panel`).
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic))]
 
+pub mod again;
 mod attempt;
 mod block;
 pub mod body;
@@ -74,10 +79,12 @@ pub mod lock;
 pub mod matrix;
 pub mod meridian;
 pub mod mesh_error;
+pub mod numerical;
 pub mod o_grid;
 pub mod openfoam;
 pub mod orphans;
 pub mod outcome;
+pub mod over_angles;
 pub mod plate;
 pub mod poly_mesh;
 pub mod poly_mesh_files;
@@ -91,6 +98,7 @@ pub mod solver_log;
 pub mod status;
 pub mod store;
 pub mod store_error;
+pub mod study;
 pub mod transient;
 pub mod warm;
 pub mod window;

@@ -2,11 +2,15 @@
 //!
 //! **Chains.** Cases of one configuration and model lie on a comb. Those at angle 0 go from the fastest to the slowest, each from the one before; at every speed the other angles go up from there. A chain is one job after another, the chains of different combs and of different speeds are independent. Fields are scaled by the ratio of speeds (Reynolds similarity, which holds nearly).
 //! **Cold repeats.** Of every `1/cold` cases that start warm one is computed once more from the inflow, under the same name with `-cold`: how far its forces lie from the warm ones' is the hysteresis.
+//! **Computed again.** Settings of a study run on the other grids of a family and in other domains, and of the cases of a configuration that a table has, in the order of angles and of speeds within each, some at equal distances run on a finer mesh, the first and the last among them ([`Again`]). All of these start from the inflow. Iterations and window grow with the refinement, as a change of pressure or flux goes a cell an iteration.
 //! **Model.** By the Reynolds number of the width, Re = U W/ν: laminar below one bound, with and without a model of turbulence between that and another, as campaigns say (`[source.cfd]`). The two are limits and no interval.
 
-use froude_records::campaign::Source;
-use froude_records::cfd::CfdSpec;
+use std::collections::BTreeSet;
 
+use froude_records::campaign::Source;
+use froude_records::cfd::{CfdSpec, FineSpec, StudySpec};
+
+use crate::again::Again;
 use crate::case::{Case, Flow, Model, Reference, Stop, Water};
 
 /// Turbulence of the inflow: intensity 1 %, ν_t/ν = 1.
@@ -27,6 +31,8 @@ pub struct Meshed {
     pub mesh: String,
     /// Lengths of the body.
     pub reference: Reference,
+    /// Folders of the meshes that settings are computed again on, as [`computed_again`] asks for them.
+    pub others: Vec<(Again, String)>,
 }
 
 /// A point of the matrix.
@@ -38,11 +44,21 @@ struct Point {
 }
 
 /// All cases of a source for its configurations, in the order in which they may run: each behind the one it starts from.
-#[must_use]
-pub fn cases(source: &Source, spec: &CfdSpec, water: Water, meshed: &[Meshed]) -> Vec<Case> {
-    let mut out = Vec::new();
+///
+/// # Errors
+///
+/// A study of settings that the plan does not have, in words.
+pub fn cases(source: &Source, spec: &CfdSpec, water: Water, meshed: &[Meshed]) -> Result<Vec<Case>, String> {
+    let named = spec.study.iter().flat_map(|study| &study.configurations);
+    if let Some(name) = named.into_iter().find(|name| !meshed.iter().any(|body| body.configuration == **name)) {
+        return Err(format!(
+            "a [[source.cfd.study]] names {name:?}, which the plan does not compute; a study repeats settings of [[source.plan]]"
+        ));
+    }
+    let (mut out, mut again) = (Vec::new(), Vec::new());
     for body in meshed {
         let points = points(source, &body.configuration);
+        let from = out.len();
         for is_laminar in [false, true] {
             let of_model = |p: &&Point| {
                 models(spec, p.speed_m_s * body.reference.width_m / water.viscosity_m2_s)[usize::from(is_laminar)]
@@ -51,8 +67,101 @@ pub fn cases(source: &Source, spec: &CfdSpec, water: Water, meshed: &[Meshed]) -
             let comb = Comb { spec, water, body, model: if is_laminar { Model::Laminar } else { SST } };
             out.extend(comb.cases(&chosen));
         }
+        again.extend(cases_again(spec, body, &out[from..])?);
     }
-    with_cold(out, spec.cold)
+    out = with_cold(out, spec.cold);
+    out.extend(again);
+    Ok(out)
+}
+
+/// How settings of a configuration are computed again, each with a mesh of its own.
+#[must_use]
+pub fn computed_again(spec: &CfdSpec, configuration: &str) -> Vec<Again> {
+    let mut out: Vec<Again> = spec.fine.iter().map(|_| Again::Fine).collect();
+    for again in spec.study.iter().filter(|study| is_of(study, configuration)).flat_map(of_study) {
+        if !out.contains(&again) {
+            out.push(again);
+        }
+    }
+    out
+}
+
+fn is_of(study: &StudySpec, configuration: &str) -> bool {
+    study.configurations.is_empty() || study.configurations.iter().any(|c| c == configuration)
+}
+
+fn of_study(study: &StudySpec) -> Vec<Again> {
+    // The campaign's own mesh is the second coarsest.
+    let finest = study.grids as i32 - 2;
+    let levels = (-1..=finest).filter(|level| study.grids > 0 && *level != 0).map(Again::Grid);
+    levels.chain(study.radius.iter().map(|radius| Again::Domain(*radius))).collect()
+}
+
+/// The cases of a body that repeat some of `own`.
+fn cases_again(spec: &CfdSpec, body: &Meshed, own: &[Case]) -> Result<Vec<Case>, String> {
+    let is_turbulent = |case: &Case| case.model != Model::Laminar;
+    // Of a setting that both models compute the table has the one with turbulence.
+    let counts = |case: &&Case| is_turbulent(case) || !own.iter().any(|c| is_turbulent(c) && c.flow == case.flow);
+    let counted: Vec<&Case> = own.iter().filter(counts).collect();
+    let mut chosen: Vec<(&Case, Again)> = Vec::new();
+    if let Some(fine) = spec.fine {
+        for model in [true, false] {
+            let of_model = counted.iter().copied().filter(|case| is_turbulent(case) == model).collect();
+            chosen.extend(spread(of_model, fine).into_iter().map(|case| (case, Again::Fine)));
+        }
+    }
+    for study in spec.study.iter().filter(|study| is_of(study, &body.configuration)) {
+        for (speed_m_s, angle_rad, pitch_rad) in settings(study) {
+            let is_it = |case: &&&Case| {
+                let flow = case.flow;
+                is_same(flow.speed_m_s, speed_m_s)
+                    && is_same(flow.angle_rad, angle_rad)
+                    && is_same(flow.pitch_rad, pitch_rad)
+            };
+            let Some(case) = counted.iter().find(is_it) else {
+                return Err(format!(
+                    "a [[source.cfd.study]] has {} at {speed_m_s} m/s and {}°, which the plan does not compute; a study repeats settings of [[source.plan]]",
+                    body.configuration,
+                    shortest(angle_rad.to_degrees())
+                ));
+            };
+            chosen.extend(of_study(study).into_iter().map(|again| (*case, again)));
+        }
+    }
+    let mesh = |again: Again| body.others.iter().find(|(other, _)| *other == again).map(|(_, mesh)| mesh.clone());
+    let mut seen = BTreeSet::new();
+    let made = chosen.into_iter().filter_map(|(case, again)| {
+        let id = format!("{}-{}", case.id, again.suffix());
+        let refinement = match (again, spec.fine) {
+            (Again::Fine, Some(fine)) => (fine.mesh.cells() as f64 / spec.mesh.cells() as f64).cbrt(),
+            _ => again.refinement(),
+        };
+        let more = |n: usize| (n as f64 * refinement.max(1.0)).round() as usize;
+        let stop = Stop { iterations: more(case.stop.iterations), window: more(case.stop.window), ..case.stop };
+        let is_new = seen.insert(id.clone());
+        Some(Case { id, mesh: mesh(again)?, start_from: None, stop, ..case.clone() }).filter(|_| is_new)
+    });
+    Ok(made.collect())
+}
+
+/// Some of the cases at equal distances in the order of angles and of speeds within each.
+fn spread(mut cases: Vec<&Case>, fine: FineSpec) -> Vec<&Case> {
+    cases.sort_by(|a, b| {
+        let angles = a.flow.pitch_rad.total_cmp(&b.flow.pitch_rad).then(a.flow.angle_rad.total_cmp(&b.flow.angle_rad));
+        angles.then(b.flow.speed_m_s.total_cmp(&a.flow.speed_m_s))
+    });
+    // Two at least, for a difference between them.
+    let count = cases.len().div_ceil(fine.every).max(2).min(cases.len());
+    let last = cases.len().saturating_sub(1);
+    let places: BTreeSet<usize> = (0..count).map(|k| (k * last + (count - 1) / 2) / (count - 1).max(1)).collect();
+    places.into_iter().filter_map(|place| cases.get(place).copied()).collect()
+}
+
+fn settings(study: &StudySpec) -> impl Iterator<Item = (f64, f64, f64)> {
+    study.speed_m_s.iter().flat_map(|speed| {
+        let angles = study.angle_rad.iter();
+        angles.flat_map(|angle| study.pitch_rad.iter().map(|pitch| (*speed, *angle, *pitch)))
+    })
 }
 
 /// Whether a case of a Reynolds number is computed with and without a model of turbulence.
@@ -78,11 +187,14 @@ fn points(source: &Source, configuration: &str) -> Vec<Point> {
         let angles = a.pitch_rad.total_cmp(&b.pitch_rad).then(a.angle_rad.total_cmp(&b.angle_rad));
         b.speed_m_s.total_cmp(&a.speed_m_s).then(angles)
     });
-    let is_same = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs()).max(SAME);
     all.dedup_by(|a, b| {
         is_same(a.speed_m_s, b.speed_m_s) && is_same(a.angle_rad, b.angle_rad) && is_same(a.pitch_rad, b.pitch_rad)
     });
     all
+}
+
+fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs()).max(SAME)
 }
 
 /// The cases of a configuration and a model.
@@ -153,7 +265,11 @@ fn with_cold(cases: Vec<Case>, part: f64) -> Vec<Case> {
     let mut due = 0.0;
     for case in cases {
         due += if case.start_from.is_some() { part } else { 0.0 };
-        let cold = (due >= 1.0).then(|| Case { id: format!("{}-cold", case.id), start_from: None, ..case.clone() });
+        let cold = (due >= 1.0).then(|| Case {
+            id: format!("{}-{}", case.id, Again::Cold.suffix()),
+            start_from: None,
+            ..case.clone()
+        });
         due -= if cold.is_some() { 1.0 } else { 0.0 };
         out.push(case);
         out.extend(cold);
@@ -173,7 +289,7 @@ mod tests {
     const REFERENCE: Reference = Reference { length_m: 0.6, width_m: 0.08, area_m2: 0.05, point_m: [0.0; 3] };
     const WATER: Water = Water { density_kg_m3: 1025.0, viscosity_m2_s: 1.19e-6 };
 
-    fn of(plan: &str, spec: &str) -> Vec<Case> {
+    fn made(plan: &str, spec: &str) -> Result<Vec<Case>, String> {
         let text = format!(
             "schema = 1\nname = \"a\"\n[[source]]\nname = \"flow\"\nkind = \"cfd\"\ncases = \"cases\"\n[source.cfd]\n{spec}\n{plan}"
         );
@@ -183,8 +299,13 @@ mod tests {
             configuration: c.to_owned(),
             mesh: format!("mesh of {c}"),
             reference: REFERENCE,
+            others: computed_again(&spec, c).into_iter().map(|a| (a, format!("{c} {}", a.suffix()))).collect(),
         });
         cases(&source, &spec, WATER, &meshed)
+    }
+
+    fn of(plan: &str, spec: &str) -> Vec<Case> {
+        made(plan, spec).unwrap()
     }
 
     /// Table 2 of the USR paper: 174 settings of each configuration.
@@ -229,5 +350,44 @@ mod tests {
             ["H1LT-u0.2-a0", "H1LT-u0.1-a0", "H1LT-u0.1-a0-laminar", "H1LT-u0.02-a0-laminar"]
         );
         assert_eq!(ids("cold = 0\nmodel = \"laminar\"").len(), 3);
+    }
+
+    #[test]
+    fn settings_of_a_study_run_on_other_grids_and_in_other_domains_from_the_inflow() {
+        let study = "cold = 0\niterations = 600\nwindow = 60\n[[source.cfd.study]]\nconfigurations = [\"H2LT\"]\nspeed = \"0.3 m/s\"\nangle = [\"0 deg\", \"90 deg\"]\ngrids = 4\nradius = [6]";
+        let cases = of(TABLE_2, study);
+        let again: Vec<&Case> = cases.iter().filter(|c| Again::of(&c.id).is_some()).collect();
+        let ids: Vec<&str> = again.iter().map(|c| c.id.as_str()).collect();
+        let of_angle = |a: u32| ["coarser", "finer", "finer2", "r6"].map(|s| format!("H2LT-u0.3-a{a}-{s}"));
+        assert_eq!(ids, [of_angle(0), of_angle(90)].concat());
+        for case in &again {
+            assert_eq!((&case.start_from, case.flow.speed_m_s), (&None, 0.3));
+            assert!(case.mesh.starts_with("H2LT "), "{case:?}");
+        }
+        // Twice as fine, twice as long; none shorter than the campaign's.
+        let stops: Vec<[usize; 2]> = again.iter().take(4).map(|c| [c.stop.iterations, c.stop.window]).collect();
+        assert_eq!(stops, [[600, 60], [849, 85], [1200, 120], [600, 60]]);
+        let refused = made(TABLE_2, &study.replace("0.3 m/s", "0.31 m/s")).unwrap_err();
+        assert!(refused.contains("H2LT at 0.31 m/s and 0°, which the plan does not compute"), "{refused}");
+    }
+
+    /// Of 170 cases every fifth, from one end of the angles to the other, at each of the four speeds.
+    #[test]
+    fn fine_cases_are_spread_over_angles_and_speeds() {
+        let cases = of(TABLE_2, "cold = 0.1\nfine = { mesh = \"medium\", every = 5 }");
+        let fine: Vec<&Case> = cases.iter().filter(|c| matches!(Again::of(&c.id), Some((_, Again::Fine)))).collect();
+        assert_eq!(fine.len(), 2 * 34);
+        let of_it = || fine.iter().filter(|c| c.configuration == "H1LT").map(|c| c.flow);
+        let angles: Vec<f64> = of_it().map(|f| f.angle_rad.to_degrees()).collect();
+        assert_eq!((angles[0], *angles.last().unwrap()), (0.0, 90_f64.to_radians().to_degrees()));
+        let gaps = angles.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        assert!(gaps < 6.1, "{angles:?}");
+        for speed in [0.1, 0.2, 0.3, 0.4] {
+            let n = of_it().filter(|f| f.angle_rad > 0.0 && (f.speed_m_s - speed).abs() < 1e-9).count();
+            assert!(n >= 4, "{speed}: {n}");
+        }
+        let few = "[[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = \"0.4 m/s\"\nangle = [\"0 deg\", \"45 deg\", \"90 deg\"]\n";
+        let ids: Vec<String> = of(few, "cold = 0\nfine = { mesh = \"medium\" }").into_iter().map(|c| c.id).collect();
+        assert_eq!(ids[3..], ["H1LT-u0.4-a0-fine", "H1LT-u0.4-a90-fine"]);
     }
 }

@@ -58,7 +58,7 @@ pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
             if json {
                 return print::json(&found.as_json());
             }
-            print::summary(&found.section());
+            found.sections().iter().for_each(print::summary);
         }
         CfdJob::Retry { of, cases } => {
             let again = retry(&of.campaign, of.source.as_deref(), &cases)?;

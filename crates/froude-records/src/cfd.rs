@@ -12,6 +12,13 @@
 //! iterations    = 600               # at most
 //! window        = 60                # iterations that forces are judged over
 //! cold          = 0.1               # part of the cases that are repeated from the inflow
+//! fine          = { mesh = "medium", every = 5 }   # every n-th case of a configuration also on a finer mesh
+//! [[source.cfd.study]]              # settings of the plan computed again
+//! configurations = ["H4LT"]         # left out: all
+//! speed         = "0.3 m/s"
+//! angle         = ["0 deg", "90 deg"]
+//! grids         = 4                 # on meshes by √2: one coarser than the campaign's, itself, and finer ones
+//! radius        = [6, 12]           # in other domains, in lengths of the body
 //! ```
 
 use std::path::PathBuf;
@@ -20,7 +27,7 @@ use toml::de::DeValue;
 
 use crate::error::RecordError;
 use crate::section::Section;
-use crate::section_values::{count, one_of};
+use crate::section_values::{count, one_of, series};
 use crate::units::Dimension;
 
 /// Most cells in one direction.
@@ -29,6 +36,14 @@ const MOST_CELLS: u64 = 2000;
 const MOST_CELLS_IN_ALL: usize = 20_000_000;
 /// Most iterations of a case.
 const MOST_ITERATIONS: u64 = 100_000;
+/// Least and most grids of a study: three have an order, and the sixth has 64 times the cells of the third.
+const GRIDS: [u64; 2] = [3, 6];
+/// Grids of a study that does not say.
+const USUAL_GRIDS: usize = 4;
+/// Least refinement of a fine mesh in each direction: below it the difference of two meshes is mostly rounding of their counts.
+const LEAST_REFINEMENT: f64 = 1.2;
+/// Of how many cases one is computed on the fine mesh, where the campaign does not say.
+const USUAL_EVERY: usize = 5;
 
 /// How the flow about a body is computed.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +68,36 @@ pub struct CfdSpec {
     pub window: usize,
     /// Part of the cases that are repeated from the inflow.
     pub cold: f64,
+    /// Cases that are also computed on a finer mesh.
+    pub fine: Option<FineSpec>,
+    /// Settings of the plan that are computed again on other grids and in other domains.
+    pub study: Vec<StudySpec>,
+}
+
+/// Which cases are also computed on a finer mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FineSpec {
+    /// The finer mesh.
+    pub mesh: MeshSpec,
+    /// Every so many of the cases of a configuration.
+    pub every: usize,
+}
+
+/// Settings of the plan that are computed again on other grids and in other domains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudySpec {
+    /// `HkLT`; all where there are none.
+    pub configurations: Vec<String>,
+    /// Speeds, m/s.
+    pub speed_m_s: Vec<f64>,
+    /// Angles, rad.
+    pub angle_rad: Vec<f64>,
+    /// Angles out of the plane, rad.
+    pub pitch_rad: Vec<f64>,
+    /// Grids of a family by √2 in all directions, the second coarsest the campaign's own; 0: no other grids.
+    pub grids: usize,
+    /// Radii of other domains over the body's length \[-\].
+    pub radius: Vec<f64>,
 }
 
 /// Cells of an O-grid.
@@ -96,6 +141,8 @@ impl Default for CfdSpec {
             iterations: 600,
             window: 60,
             cold: 0.1,
+            fine: None,
+            study: Vec::new(),
         }
     }
 }
@@ -113,6 +160,8 @@ pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
         "iterations",
         "window",
         "cold",
+        "fine",
+        "study",
     ])?;
     let usual = CfdSpec::default();
     let number = |key: &'static str, low: f64, high: f64| -> Result<Option<f64>, RecordError> {
@@ -123,9 +172,10 @@ pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
             (x, _) => Ok(x),
         }
     };
+    let own_mesh = mesh(s)?.unwrap_or(usual.mesh);
     let out = CfdSpec {
         body: s.text("body")?.map(|text| s.source.relative(text)),
-        mesh: mesh(s)?.unwrap_or(usual.mesh),
+        mesh: own_mesh,
         radius: number("radius", 1.0, 1000.0)?,
         is_half: one_of(s, "domain", &["half", "full"], &[true, false])?.unwrap_or(usual.is_half),
         is_laminar: one_of(s, "model", &["sst", "laminar"], &[false, true])?.unwrap_or(usual.is_laminar),
@@ -134,6 +184,8 @@ pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
         iterations: count(s, "iterations", MOST_ITERATIONS)?.unwrap_or(usual.iterations),
         window: count(s, "window", MOST_ITERATIONS)?.unwrap_or(usual.window),
         cold: number("cold", 0.0, 1.0)?.unwrap_or(usual.cold),
+        fine: s.section("fine")?.map(|f| fine(&f, own_mesh)).transpose()?,
+        study: s.sections("study")?.iter().map(study).collect::<Result<_, _>>()?,
     };
     if let Some(value) = s.get("window").or(s.get("iterations")).filter(|_| 2 * out.window > out.iterations) {
         let problem = format!(
@@ -143,6 +195,52 @@ pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
         return Err(s.wrong("window", value, problem));
     }
     Ok(out)
+}
+
+fn fine(s: &Section<'_>, own: MeshSpec) -> Result<FineSpec, RecordError> {
+    s.only(&["mesh", "every"])?;
+    let finer = mesh(s)?.ok_or_else(|| s.missing("mesh", "write fine = { mesh = \"medium\", every = 5 }"))?;
+    let refinement = (finer.cells() as f64 / own.cells() as f64).cbrt();
+    if let Some(value) = s.get("mesh").filter(|_| refinement < LEAST_REFINEMENT) {
+        let problem = format!(
+            "has {} cells, and the mesh of the campaign {}: {refinement:.2} times as fine in each direction; a difference of meshes needs {LEAST_REFINEMENT} at least",
+            finer.cells(),
+            own.cells()
+        );
+        return Err(s.wrong("mesh", value, problem));
+    }
+    Ok(FineSpec { mesh: finer, every: count(s, "every", 1000)?.unwrap_or(USUAL_EVERY) })
+}
+
+fn study(s: &Section<'_>) -> Result<StudySpec, RecordError> {
+    s.only(&["configurations", "speed", "angle", "pitch", "grids", "radius"])?;
+    let speed = s.get("speed").ok_or_else(|| s.missing("speed", "name settings of the plan: speed = \"0.3 m/s\""))?;
+    let angles = |key| s.get(key).map_or(Ok(vec![0.0]), |v| series(s, key, v, Dimension::ONE));
+    let radius: Vec<f64> = s.get("radius").map_or(Ok(Vec::new()), |value| {
+        let all = value.get_ref().as_array().map_or_else(|| vec![value], |list| list.iter().collect());
+        all.into_iter()
+            .map(|value| match s.as_number("radius", value)? {
+                x if (1.0..=1000.0).contains(&x) => Ok(x),
+                x => Err(s.wrong("radius", value, format!("is {x}; expected a number from 1 to 1000"))),
+            })
+            .collect()
+    })?;
+    let grids = match (s.integer("grids")?, s.get("grids")) {
+        (Some(n), Some(value)) if !(GRIDS[0]..=GRIDS[1]).contains(&n) => {
+            return Err(s.wrong("grids", value, format!("is {n}; expected {} to {}", GRIDS[0], GRIDS[1])));
+        }
+        (Some(n), _) => n as usize,
+        (None, _) if radius.is_empty() => USUAL_GRIDS,
+        (None, _) => 0,
+    };
+    Ok(StudySpec {
+        configurations: s.texts("configurations")?,
+        speed_m_s: series(s, "speed", speed, Dimension::SPEED)?,
+        angle_rad: angles("angle")?,
+        pitch_rad: angles("pitch")?,
+        grids,
+        radius,
+    })
 }
 
 fn mesh(s: &Section<'_>) -> Result<Option<MeshSpec>, RecordError> {
@@ -201,8 +299,24 @@ mod tests {
     }
 
     #[test]
+    fn a_campaign_names_what_is_computed_again() {
+        let text = "\"full\"\nfine = { mesh = \"fine\" }\n[[source.cfd.study]]\nconfigurations = [\"H1LT\"]\nspeed = \"0.4 m/s\"\nangle = [\"0 deg\", \"90 deg\"]\n\
+                    [[source.cfd.study]]\nspeed = [\"0.4 m/s\"]\nradius = [6, 12.5]\n";
+        let spec = parse("\"full\"", text).unwrap().sources.remove(0).cfd.unwrap();
+        assert_eq!(spec.fine, Some(FineSpec { mesh: MeshSpec::FINE, every: 5 }));
+        let [grids, domains] = &spec.study[..] else { panic!("{:?}", spec.study) };
+        assert_eq!((grids.grids, grids.angle_rad.len(), &grids.radius[..]), (4, 2, &[][..]));
+        assert_eq!((domains.grids, &domains.radius[..], domains.configurations.len()), (0, &[6.0, 12.5][..], 0));
+    }
+
+    #[test]
     fn what_cannot_be_is_refused_where_it_stands() {
         for (from, to, said) in [
+            ("\"full\"", "\"full\"\nfine = { mesh = \"coarse\", every = 5 }", "0.62 times as fine"),
+            ("\"full\"", "\"full\"\nfine = { every = 5 }", "mesh"),
+            ("\"full\"", "\"full\"\n[[source.cfd.study]]\nspeed = \"0.4 m/s\"\ngrids = 2", "3 to 6"),
+            ("\"full\"", "\"full\"\n[[source.cfd.study]]\nspeed = \"0.4 m/s\"\nradius = [0.5]", "from 1 to 1000"),
+            ("\"full\"", "\"full\"\n[[source.cfd.study]]\ngrids = 4", "speed"),
             ("\"medium\"", "\"meduim\"", "medium"),
             ("\"full\"", "\"full\"\nwindow = 400", "no room"),
             ("\"full\"", "\"full\"\nradius = 0.2", "from 1 to 1000"),

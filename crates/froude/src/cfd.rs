@@ -2,6 +2,7 @@
 
 pub mod collect;
 mod computed;
+mod numerical;
 pub mod plan;
 pub mod run;
 pub mod status;

@@ -2,10 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use froude_cfd::again::Again;
 use froude_cfd::case::Model;
 use froude_cfd::collect::{Collected as Row, collect as results};
+use froude_cfd::numerical::Numerical;
 use froude_cfd::outcome::Status;
 use froude_cfd::store::Store;
+use froude_records::cfd::CfdSpec;
 use froude_records::number::{percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::table::{Column, ColumnData, Table, links_of_configuration, prepare_table};
@@ -13,7 +16,7 @@ use froude_records::text::counted;
 use froude_records::units::{Dimension, Unit, parse_unit};
 use serde_json::{Value, json};
 
-use super::Asked;
+use super::{Asked, numerical};
 use crate::Error;
 
 /// Loads in the order of [`Loads`].
@@ -35,6 +38,8 @@ pub struct Collected {
     pub without: Vec<(String, String)>,
     /// A repeat from the inflow, or by the other model, with the case it repeats.
     pairs: Vec<Pair>,
+    /// What the mesh and the domain do.
+    pub(super) numerical: Numerical,
 }
 
 /// Two computations of one setting.
@@ -52,34 +57,42 @@ struct Pair {
 /// As the campaign is read; no case has a result that counts; the table cannot be written.
 pub fn collect(campaign: &Path, source: Option<&str>) -> Result<Collected, Error> {
     let asked = Asked::read(campaign, source)?;
-    of_folder(&asked.folder)
+    of_folder(&asked.folder, &asked.spec)
 }
 
-/// The same of a folder of cases.
-pub(super) fn of_folder(folder: &Path) -> Result<Collected, Error> {
+/// The same of a folder of cases, which are computed as `spec` says.
+pub(super) fn of_folder(folder: &Path, spec: &CfdSpec) -> Result<Collected, Error> {
     let found = results(&Store::open(folder)?);
-    let (rows, pairs) = paired(found.rows);
+    let numerical = Numerical::of(&found.rows, spec);
+    let (mut rows, pairs) = paired(found.rows);
     if rows.is_empty() {
         let why = found.without.first().map_or_else(String::new, |(id, why)| format!(" ({id}: {why})"));
         let problem = format!("no case has a result that counts{why}; froude cfd run computes what has none");
         return Err(super::CfdInput { path: folder.to_owned(), problem }.into());
     }
+    for row in &mut rows {
+        let correction = numerical.correction(&row.case);
+        row.loads = std::array::from_fn(|k| row.loads[k] + correction[k]);
+    }
     let path = folder.join(TABLE);
-    let table = table(&rows, &path);
+    let table = table(&rows, &numerical, &path);
     prepare_table(&table, &path)?.take_place()?;
-    Ok(Collected { path, table, rows, without: found.without, pairs })
+    Ok(Collected { path, table, rows, without: found.without, pairs, numerical })
 }
 
-/// The rows of the table, and the repeats: of a setting that both models computed the one with turbulence counts, and of one that was repeated from the inflow the first.
+/// The rows of the table, and the repeats, without what was computed on other grids and in other domains: of a setting that both models computed the one with turbulence counts, and of one that was repeated from the inflow the first.
 fn paired(all: Vec<Row>) -> (Vec<Row>, Vec<Pair>) {
     let (mut rows, mut others): (Vec<Row>, Vec<(&'static str, Row)>) = (Vec::new(), Vec::new());
     let key = |row: &Row| (row.case.configuration.clone(), row.case.flow.velocity_m_s().map(f64::to_bits));
-    let (turbulent, laminar): (Vec<Row>, Vec<Row>) =
-        all.into_iter().partition(|row| matches!(row.case.model, Model::Sst { .. }));
+    let again = |row: &Row| Again::of(&row.case.id).map(|(_, again)| again);
+    let (turbulent, laminar): (Vec<Row>, Vec<Row>) = all
+        .into_iter()
+        .filter(|row| matches!(again(row), None | Some(Again::Cold)))
+        .partition(|row| matches!(row.case.model, Model::Sst { .. }));
     for (what, of_model) in [("from the inflow", turbulent), ("laminar", laminar)] {
         let is_other_model = what == "laminar";
         for row in of_model {
-            let is_cold = row.case.id.ends_with("-cold");
+            let is_cold = again(&row) == Some(Again::Cold);
             let is_there = rows.iter().any(|r: &Row| key(r) == key(&row));
             match (is_cold, is_there && is_other_model) {
                 (true, _) => others.push(("from the inflow", row)),
@@ -102,7 +115,17 @@ fn paired(all: Vec<Row>) -> (Vec<Row>, Vec<Pair>) {
     (rows, pairs)
 }
 
-fn table(rows: &[Row], path: &Path) -> Table {
+/// Loads that a domain determines, by their places.
+pub(super) fn loads_of(is_half: bool) -> Vec<usize> {
+    if is_half { OF_HALF.to_vec() } else { (0..LOADS.len()).collect() }
+}
+
+/// Of a load.
+pub(super) fn unit(load: usize) -> &'static str {
+    if load < 3 { "N" } else { "N m" }
+}
+
+fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {
     let text = |name: &str, of: &dyn Fn(&Row) -> String| Column {
         name: name.to_owned(),
         data: ColumnData::Text(rows.iter().map(of).collect()),
@@ -136,10 +159,23 @@ fn table(rows: &[Row], path: &Path) -> Table {
         }
     }
     let is_half = rows.iter().all(|r| r.case.is_half);
-    for (k, load) in LOADS.into_iter().enumerate().filter(|(k, _)| !is_half || OF_HALF.contains(k)) {
-        let (unit, dimension) = if k < 3 { ("N", Dimension::FORCE) } else { ("N m", Dimension::MOMENT) };
-        columns.push(number(load, unit, dimension, &|r| r.loads[k]));
-    }
+    let dimension = |load: usize| if load < 3 { Dimension::FORCE } else { Dimension::MOMENT };
+    let mut of_loads = |prefix: &str, of: &dyn Fn(&Row) -> Option<[f64; 6]>| {
+        // What some rows do not have is no column.
+        if rows.iter().all(|r| of(r).is_some()) {
+            for k in loads_of(is_half) {
+                let name = format!("{prefix}{}", LOADS[k]);
+                columns.push(number(&name, unit(k), dimension(k), &|r| of(r).map_or(f64::NAN, |loads| loads[k])));
+            }
+        }
+    };
+    of_loads("", &|r| Some(r.loads));
+    of_loads("correction_", &|r| (!numerical.fine.is_empty()).then(|| numerical.correction(&r.case)));
+    of_loads("std_iterative_", &|r| r.outcome.std_iterative);
+    of_loads("std_numerical_", &|r| {
+        let (mesh, iterative) = (numerical.std_of_mesh(&r.case)?, r.outcome.std_iterative?);
+        Some(std::array::from_fn(|k| mesh[k].hypot(iterative[k])))
+    });
     if rows.iter().all(|r| r.outcome.y_plus.is_some()) {
         let y_plus = |k: usize| move |r: &Row| r.outcome.y_plus.map_or(f64::NAN, |y| y[k]);
         columns.push(number("y_plus_mean", "1", Dimension::ONE, &y_plus(1)));
@@ -161,9 +197,13 @@ impl Collected {
         (!own.is_empty()).then(|| ([of(0), of(1)], own.len()))
     }
 
-    /// What a person reads.
+    /// What a person reads: the table, then each setting that was computed again, then the correction.
     #[must_use]
-    pub fn section(&self) -> DocumentSection {
+    pub fn sections(&self) -> Vec<DocumentSection> {
+        std::iter::once(self.section()).chain(numerical::sections(&self.numerical, &self.rows)).collect()
+    }
+
+    fn section(&self) -> DocumentSection {
         let is = |status: Status| self.rows.iter().filter(|r| r.outcome.status == status).count();
         let mut paragraphs = Vec::new();
         if !self.without.is_empty() {
@@ -186,18 +226,14 @@ impl Collected {
                 ));
             }
         }
+        paragraphs.extend(numerical::sentences(&self.numerical, &self.rows));
         let range = |k: usize| {
             let of = |f: fn(f64, f64) -> f64, from: f64| self.rows.iter().map(|r| r.loads[k]).fold(from, f);
             [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
         };
         let row = |k: usize| {
             let [low, high] = range(k);
-            vec![
-                LOADS[k].to_owned(),
-                significant(low, 4),
-                significant(high, 4),
-                if k < 3 { "N" } else { "N m" }.to_owned(),
-            ]
+            vec![LOADS[k].to_owned(), significant(low, 4), significant(high, 4), unit(k).to_owned()]
         };
         let is_half = self.rows.iter().all(|r| r.case.is_half);
         DocumentSection {
@@ -212,7 +248,7 @@ impl Collected {
                     self.path.display()
                 ),
                 head: ["load", "least", "largest", "unit"].map(str::to_owned).to_vec(),
-                rows: (0..6).filter(|k| !is_half || OF_HALF.contains(k)).map(row).collect(),
+                rows: loads_of(is_half).into_iter().map(row).collect(),
             }],
             charts: Vec::new(),
         }
@@ -228,6 +264,7 @@ impl Collected {
             "without": self.without.iter().map(|(id, why)| json!({"case": id, "reason": why})).collect::<Vec<_>>(),
             "repeated_from_the_inflow": apart("from the inflow"),
             "laminar_beside_turbulent": apart("laminar"),
+            "numerical": numerical::as_json(&self.numerical),
         })
     }
 }

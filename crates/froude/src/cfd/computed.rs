@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use froude_cfd::case::Case;
+use froude_cfd::collect::Collected as Row;
 use froude_cfd::outcome::Loads;
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::reduce::{Observations, reduce_table};
@@ -11,7 +13,7 @@ use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::text::counted;
 
-use super::collect::{LOADS, of_folder};
+use super::collect::{Collected, LOADS, of_folder};
 
 /// The cases of a CFD campaign.
 pub(crate) struct Computed;
@@ -41,8 +43,9 @@ impl Method for Computed {
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         progress("collecting cases");
-        let collected =
-            of_folder(source.input.path()).map_err(|e| MethodError::input(source.input.path(), e.to_string()))?;
+        let spec = source.cfd.clone().unwrap_or_default();
+        let collected = of_folder(source.input.path(), &spec)
+            .map_err(|e| MethodError::input(source.input.path(), e.to_string()))?;
         // Cases of one configuration err alike.
         let group = source.group.clone().or_else(|| Some("configuration".to_owned()));
         let source = Source { group, ..source.clone() };
@@ -52,6 +55,7 @@ impl Method for Computed {
             .filter_map(|row| Some((row.case.id.as_str(), row.outcome.std_iterative?)))
             .collect();
         observations.shared_errors.extend(iterative(&observations, &std));
+        observations.shared_errors.extend(of_grid(&observations, &collected));
         let left_out = collected.without.len();
         if left_out > 0 {
             let text = format!(
@@ -64,8 +68,8 @@ impl Method for Computed {
             progress(&format!("fitting {model}"));
         })?;
         let findings = std::mem::take(&mut result.findings);
-        let section = collected.section();
-        Ok(Found { results: vec![result.into()], findings, blocks: vec![section], ..Found::default() })
+        let blocks = collected.sections();
+        Ok(Found { results: vec![result.into()], findings, blocks, ..Found::default() })
     }
 }
 
@@ -78,4 +82,25 @@ fn iterative(observations: &Observations, std: &BTreeMap<&str, Loads>) -> Vec<Sh
         Some(SharedError::of_each_row("iterations of the solver", load, &standard))
     };
     LOADS.iter().enumerate().filter_map(of).collect()
+}
+
+/// What mesh and domain leave in the loads, as errors that all cases share.
+///
+/// A mesh errs alike about bodies that differ in their length alone, at all speeds, and in one direction: its error does not average down, over cases or over configurations. So each load has one, of the size that it has in each row. What an endless domain changes is known with its sign; loads are not corrected for it, so it lies between nothing and all of it.
+fn of_grid(observations: &Observations, collected: &Collected) -> Vec<SharedError> {
+    let rows: BTreeMap<&str, &Row> = collected.rows.iter().map(|row| (row.case.id.as_str(), row)).collect();
+    let of = |case: &dyn Fn(&Case) -> Option<Loads>, load: usize| -> Option<Vec<f64>> {
+        let row = |run: &String| Some(case(&rows.get(run.as_str())?.case)?[load]);
+        observations.data.run.iter().map(row).collect()
+    };
+    let mut out = Vec::new();
+    for (k, load) in LOADS.iter().enumerate().filter(|(_, load)| observations.data.values(load).is_some()) {
+        if let Some(standard) = of(&|case| collected.numerical.std_of_mesh(case), k) {
+            out.push(SharedError::of_load("mesh", load, &standard, 1.0, f64::INFINITY));
+        }
+        if let Some(change) = of(&|case| collected.numerical.endless(case), k) {
+            out.push(SharedError::between("domain", load, &change, [-1.0, 0.0]));
+        }
+    }
+    out
 }

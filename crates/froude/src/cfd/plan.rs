@@ -2,11 +2,14 @@
 
 use std::path::Path;
 
+use froude_cfd::again::Again;
 use froude_cfd::body::{Shaped, shaped};
 use froude_cfd::case::{Case, LAMINAR_REYNOLDS};
 use froude_cfd::change::{Change, plan as plan_cases};
 use froude_cfd::cost::Cost;
-use froude_cfd::matrix::{Meshed, cases};
+use froude_cfd::matrix::{Meshed, cases, computed_again};
+use froude_cfd::mesh_error::MeshError;
+use froude_cfd::o_grid::OGrid;
 use froude_cfd::quality::Quality;
 use froude_cfd::store::{State, Store};
 use froude_panel::refine::duration;
@@ -29,7 +32,7 @@ pub struct Planned {
     pub store: Store,
     /// What became of cases that were there.
     pub change: Change,
-    /// A row per configuration.
+    /// A row per configuration and mesh.
     pub configurations: Vec<PlannedConfiguration>,
     /// Whether the cost is measured on this machine.
     pub is_measured: bool,
@@ -44,6 +47,8 @@ pub struct Planned {
 pub struct PlannedConfiguration {
     /// Its name.
     pub configuration: String,
+    /// Empty for the campaign's own mesh; of others as their cases end: `fine`, `coarser`, `finer2`, `r6`.
+    pub mesh: String,
     /// Length of the body, m.
     pub length_m: f64,
     /// Cells of its mesh.
@@ -75,13 +80,14 @@ pub fn plan(campaign: &Path, source: Option<&str>, tell: &dyn Fn(&str)) -> Resul
         tell(&format!("mesh of {}", shape.configuration));
         meshed.push(mesh(&asked, shape)?);
     }
-    let bodies: Vec<Meshed> = meshed.iter().map(|(body, ..)| body.clone()).collect();
-    let cases = cases(&asked.source, &asked.spec, asked.water, &bodies);
+    let bodies: Vec<Meshed> = meshed.iter().map(|(body, _)| body.clone()).collect();
+    let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
+    let cases = cases(&asked.source, &asked.spec, asked.water, &bodies).map_err(refused)?;
     tell("cases");
     let (store, change) = plan_cases(&asked.folder, &cases)?;
     let mut cost = Cost::default();
-    for (body, cells, _) in &meshed {
-        cost.knows(&body.mesh, *cells);
+    for made in meshed.iter().flat_map(|(_, meshes)| meshes) {
+        cost.knows(&made.name, made.cells);
     }
     let states = store.states();
     for case in &cases {
@@ -89,19 +95,23 @@ pub fn plan(campaign: &Path, source: Option<&str>, tell: &dyn Fn(&str)) -> Resul
             cost.learn(case, &done.outcome);
         }
     }
-    let configurations = meshed.iter().map(|(body, cells, quality)| {
-        let own: Vec<&Case> = cases.iter().filter(|c| c.configuration == body.configuration).collect();
+    let rows = meshed.iter().flat_map(|(body, meshes)| meshes.iter().map(move |made| (body, made)));
+    let configurations = rows.map(|(body, made)| {
+        let again = |c: &Case| Again::of(&c.id).map(|(_, again)| again).filter(|again| *again != Again::Cold);
+        let is_own = |c: &&Case| c.configuration == body.configuration && again(c) == made.again;
+        let own: Vec<&Case> = cases.iter().filter(is_own).collect();
         let open = || own.iter().filter(|c| states.get(&c.id).is_none_or(State::is_open));
         let reynolds = own.iter().map(|c| c.reynolds());
         PlannedConfiguration {
             configuration: body.configuration.clone(),
+            mesh: made.again.map_or_else(String::new, Again::suffix),
             length_m: body.reference.length_m,
-            cells: *cells,
-            non_orthogonality_rad: quality.max_non_orthogonality_rad.value,
+            cells: made.cells,
+            non_orthogonality_rad: made.quality.max_non_orthogonality_rad.value,
             cases: own.len(),
             open: open().count(),
             cpu_s: open().map(|c| cost.expected_s(c)).sum(),
-            bytes: BYTES_PER_CELL * *cells as f64 * own.len() as f64,
+            bytes: BYTES_PER_CELL * made.cells as f64 * own.len() as f64,
             reynolds: reynolds.fold([f64::INFINITY, 0.0], |[low, high], re| [low.min(re), high.max(re)]),
         }
     });
@@ -128,17 +138,49 @@ fn shapes(asked: &Asked) -> Result<Vec<Shaped>, Error> {
     names.into_iter().map(|name| shaped(&file, name).map_err(refused)).collect()
 }
 
-/// The mesh of a configuration, written; with its cells and its quality.
-fn mesh(asked: &Asked, shape: &Shaped) -> Result<(Meshed, usize, Quality), Error> {
+/// A mesh that is written.
+struct Made {
+    /// Which cases run on it; `None`: those of the plan.
+    again: Option<Again>,
+    name: String,
+    cells: usize,
+    quality: Quality,
+}
+
+/// The meshes of a configuration, written, its own first.
+fn mesh(asked: &Asked, shape: &Shaped) -> Result<(Meshed, Vec<Made>), Error> {
     let refused = |e: &dyn std::fmt::Display| {
         let name = if shape.configuration.is_empty() { "the body" } else { &shape.configuration };
         CfdInput { path: asked.body.clone(), problem: format!("no mesh of {name}: {e}") }
     };
-    let (mesh, quality) = shape.grid(&asked.spec).mesh(&shape.body).map_err(|e| refused(&e))?;
-    let folder = mesh.write(&asked.folder.join(MESHES)).map_err(|e| refused(&e))?;
-    let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let body = Meshed { configuration: shape.configuration.clone(), mesh: name, reference: shape.reference };
-    Ok((body, mesh.cells, quality))
+    let again = computed_again(&asked.spec, &shape.configuration);
+    let mut meshes = Vec::with_capacity(1 + again.len());
+    for again in std::iter::once(None).chain(again.into_iter().map(Some)) {
+        let grid = grid(asked, shape, again).map_err(|e| refused(&e))?;
+        let (mesh, quality) = grid.mesh(&shape.body).map_err(|e| refused(&e))?;
+        let folder = mesh.write(&asked.folder.join(MESHES)).map_err(|e| refused(&e))?;
+        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        meshes.push(Made { again, name, cells: mesh.cells, quality });
+    }
+    let of = |again: Option<Again>| meshes.iter().find(|m| m.again == again).map(|m| m.name.clone());
+    let body = Meshed {
+        configuration: shape.configuration.clone(),
+        mesh: of(None).unwrap_or_default(),
+        reference: shape.reference,
+        others: meshes.iter().filter_map(|m| Some((m.again?, m.name.clone()))).collect(),
+    };
+    Ok((body, meshes))
+}
+
+/// The grid of the plan's cases, or of those that compute its settings again.
+fn grid(asked: &Asked, shape: &Shaped, again: Option<Again>) -> Result<OGrid, MeshError> {
+    let own = shape.grid(&asked.spec);
+    match (again, asked.spec.fine) {
+        (Some(Again::Fine), Some(fine)) => Ok(shape.grid_of(&asked.spec, fine.mesh)),
+        (Some(Again::Grid(level)), _) => own.at_level(&shape.body, level),
+        (Some(Again::Domain(radius)), _) => own.of_radius(&shape.body, radius * shape.reference.length_m),
+        (None | Some(Again::Cold | Again::Fine), _) => Ok(own),
+    }
 }
 
 fn said(asked: &Asked, cases: &[Case], change: &Change) -> Vec<String> {
@@ -176,7 +218,7 @@ impl Planned {
     pub fn section(&self, processors: usize) -> DocumentSection {
         let row = |c: &PlannedConfiguration| {
             vec![
-                c.configuration.clone(),
+                format!("{} {}", c.configuration, c.mesh).trim().to_owned(),
                 significant(c.length_m, 4),
                 count(c.cells),
                 format!("{:.0}", c.non_orthogonality_rad.to_degrees()),
@@ -230,6 +272,7 @@ impl Planned {
             "folder": self.store.root(),
             "configurations": self.configurations.iter().map(|c| json!({
                 "configuration": c.configuration,
+                "mesh": c.mesh,
                 "length_m": c.length_m,
                 "cells": c.cells,
                 "max_non_orthogonality_rad": c.non_orthogonality_rad,
