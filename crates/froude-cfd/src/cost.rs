@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::case::Case;
+use crate::foam_mesh::FoamMesh;
 use crate::outcome::Outcome;
+use crate::store::Store;
 
 /// Of simpleFoam with k-ω SST on one core: 3.1 to 3.3 µs on meshes of 22 to 264 thousand cells.
 const ASSUMED_S_PER_CELL_ITERATION: f64 = 3.2e-6;
@@ -42,6 +44,15 @@ impl Cost {
     /// Takes the cells of a mesh into account that no case may have run on yet.
     pub fn knows(&mut self, mesh: &str, cells: usize) {
         self.cells.insert(mesh.to_owned(), cells as f64);
+    }
+
+    /// The same of the mesh of a case in its campaign's folder, where it can be read.
+    pub fn knows_mesh_of(&mut self, store: &Store, case: &Case) {
+        if !self.cells.contains_key(&case.mesh)
+            && let Ok(mesh) = FoamMesh::read(&store.mesh_folder(case))
+        {
+            self.knows(&case.mesh, mesh.cells);
+        }
     }
 
     /// Whether a case has ended that says what cases cost here.

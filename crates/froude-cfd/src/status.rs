@@ -98,7 +98,11 @@ impl CampaignStatus {
                 cost.learn(case, &attempted.outcome);
             }
             let start_from = case.as_ref().and_then(|c| c.start_from.clone());
-            open.extend(case.filter(|_| state.is_open()));
+            let waiting = case.filter(|_| state.is_open());
+            if let Some(case) = &waiting {
+                cost.knows_mesh_of(store, case);
+            }
+            open.extend(waiting);
             let attempts = result::attempts(&store.case_folder(id)).map_or(0, |a| a.len());
             rows.push(row(id, state, attempts, start_from));
         }

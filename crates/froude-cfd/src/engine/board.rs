@@ -45,7 +45,12 @@ impl Board {
                     Standing::Done(attempted.outcome.status)
                 }
                 State::Edited(why) => Standing::Left(why),
-                State::Planned | State::Running(_) | State::Interrupted => Standing::Waiting,
+                State::Planned | State::Running(_) | State::Interrupted => {
+                    if let Some(case) = &case {
+                        cost.knows_mesh_of(store, case);
+                    }
+                    Standing::Waiting
+                }
             };
             Entry { id: id.to_owned(), case, standing }
         });

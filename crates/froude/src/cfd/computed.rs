@@ -11,6 +11,7 @@ use froude_identify::source::{ReadFile, identify_observations};
 use froude_identify::uncertainty::SharedError;
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
+use froude_records::table::Table;
 use froude_records::text::counted;
 
 use super::collect::{Collected, LOADS, of_folder};
@@ -50,7 +51,7 @@ impl Method for Computed {
         let group = source.group.clone().or_else(|| Some("configuration".to_owned()));
         let source = Source { group, ..source.clone() };
         let files = vec![ReadFile::new(collected.path.clone(), "table")];
-        let mut observations = reduce_table(campaign, &source, &collected.table, files)?;
+        let mut observations = reduce_table(campaign, &source, &loads_alone(&collected.table), files)?;
         let std: BTreeMap<&str, Loads> = (collected.rows.iter())
             .filter_map(|row| Some((row.case.id.as_str(), row.outcome.std_iterative?)))
             .collect();
@@ -71,6 +72,12 @@ impl Method for Computed {
         let blocks = collected.sections();
         Ok(Found { results: vec![result.into()], findings, blocks, ..Found::default() })
     }
+}
+
+/// A table without what it says about its own loads, which no law asks for.
+fn loads_alone(table: &Table) -> Table {
+    let is_about = |name: &str| ["std_", "correction_"].iter().any(|prefix| name.starts_with(prefix));
+    Table { columns: table.columns.iter().filter(|c| !is_about(&c.name)).cloned().collect(), ..table.clone() }
 }
 
 /// What is left of the solver's iterations in each row: part of the scatter.

@@ -28,15 +28,17 @@ pub(super) fn sections(numerical: &Numerical, rows: &[Row]) -> Vec<DocumentSecti
 /// What stands at the head of all: how far forces are known, or what would say it.
 pub(super) fn sentences(numerical: &Numerical, rows: &[Row]) -> Vec<String> {
     let largest = |of: &dyn Fn(&Row) -> f64| rows.iter().map(of).fold(0.0, f64::max);
-    // Both axes have what is along one of them.
-    let part = |of: &dyn Fn(&Case) -> Option<[f64; 6]>, k: usize| {
-        let most = largest(&|row: &Row| row.loads[k].abs());
-        percent(largest(&|row: &Row| of(&row.case).map_or(0.0, |loads| loads[k].abs())) / most)
-    };
-    let both = |of: &dyn Fn(&Case) -> Option<[f64; 6]>| {
-        format!("{} of the largest f_x and {} of the largest f_y at most", part(of, 0), part(of, 1))
+    // Of f_x and f_y, as a part of the largest; one that is zero throughout has no part.
+    let at_most = |of: &dyn Fn(&Case) -> Option<[f64; 6]>| {
+        let part = |k: usize| {
+            let most = largest(&|row| row.loads[k].abs());
+            let found = largest(&|row| of(&row.case).map_or(0.0, |loads| loads[k].abs()));
+            (most > 0.0).then(|| format!("{} of the largest {}", percent(found / most), LOADS[k]))
+        };
+        format!("{} at most", [0, 1].into_iter().filter_map(part).collect::<Vec<_>>().join(" and "))
     };
     let mut out = Vec::new();
+    let families = numerical.studies.iter().filter(|study| study.grids.len() > 1).count();
     let known = rows.first().and_then(|row| numerical.std_of_mesh(&row.case));
     match (known, numerical.fine.is_empty()) {
         (None, _) => out.push(
@@ -45,28 +47,24 @@ pub(super) fn sentences(numerical: &Numerical, rows: &[Row]) -> Vec<String> {
         ),
         (Some(_), true) => out.push(format!(
             "standard uncertainty of the mesh, by {}: {}",
-            counted(numerical.studies.len(), "study", "studies"),
-            both(&|case| numerical.std_of_mesh(case))
+            counted(families, "family of grids", "families of grids"),
+            at_most(&|case| numerical.std_of_mesh(case))
         )),
         (Some(_), false) => {
             out.push(format!(
                 "loads are corrected to the finer mesh by {}: {}; the table says by how much",
                 counted(numerical.fine.len(), "case", "cases"),
-                both(&|case| Some(numerical.correction(case)))
+                at_most(&|case| Some(numerical.correction(case)))
             ));
-            let left = if numerical.studies.is_empty() {
-                "the index of two grids"
-            } else {
-                "the family of the study"
-            };
+            let left = if families == 0 { "the index of two grids" } else { "the families of grids" };
             out.push(format!(
                 "standard uncertainty of the mesh that is left, by {left} and by leaving each of these cases out: {}",
-                both(&|case| numerical.std_of_mesh(case))
+                at_most(&|case| numerical.std_of_mesh(case))
             ));
         }
     }
     if rows.first().is_some_and(|row| numerical.endless(&row.case).is_some()) {
-        out.push(format!("an endless domain would change loads by {}", both(&|case| numerical.endless(case))));
+        out.push(format!("an endless domain would change loads by {}", at_most(&|case| numerical.endless(case))));
     }
     if !numerical.alone.is_empty() {
         out.push(format!(
