@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use froude_cfd::case::Case;
 use froude_cfd::collect::Collected as Row;
 use froude_cfd::outcome::Loads;
+use froude_fit::budget::Kind;
 use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::reduce::{Observations, reduce_table};
 use froude_identify::source::{ReadFile, identify_observations};
@@ -74,9 +75,9 @@ impl Method for Computed {
     }
 }
 
-/// A table without what it says about its own loads, which no law asks for.
+/// A table without what it says about its own loads and nothing reads.
 fn loads_alone(table: &Table) -> Table {
-    let is_about = |name: &str| ["std_", "correction_"].iter().any(|prefix| name.starts_with(prefix));
+    let is_about = |name: &str| ["std_iterative_", "correction_"].iter().any(|prefix| name.starts_with(prefix));
     Table { columns: table.columns.iter().filter(|c| !is_about(&c.name)).cloned().collect(), ..table.clone() }
 }
 
@@ -86,7 +87,7 @@ fn iterative(observations: &Observations, std: &BTreeMap<&str, Loads>) -> Vec<Sh
     let of = |(k, load): (usize, &&'static str)| {
         observations.data.values(load)?;
         let standard: Vec<f64> = runs.iter().map(|run| std.get(run.as_str()).map_or(0.0, |s| s[k])).collect();
-        Some(SharedError::of_each_row("iterations of the solver", load, &standard))
+        Some(SharedError::of_each_row("iterations of the solver", load, &standard).evaluated_as(Kind::Numerical))
     };
     LOADS.iter().enumerate().filter_map(of).collect()
 }
@@ -103,10 +104,11 @@ fn of_grid(observations: &Observations, collected: &Collected) -> Vec<SharedErro
     let mut out = Vec::new();
     for (k, load) in LOADS.iter().enumerate().filter(|(_, load)| observations.data.values(load).is_some()) {
         if let Some(standard) = of(&|case| collected.numerical.std_of_mesh(case), k) {
-            out.push(SharedError::of_load("mesh", load, &standard, 1.0, f64::INFINITY));
+            let error = SharedError::of_load("mesh", load, &standard, 1.0, f64::INFINITY);
+            out.push(error.evaluated_as(Kind::Numerical));
         }
         if let Some(change) = of(&|case| collected.numerical.endless(case), k) {
-            out.push(SharedError::between("domain", load, &change, [-1.0, 0.0]));
+            out.push(SharedError::between("domain", load, &change, [-1.0, 0.0]).evaluated_as(Kind::Numerical));
         }
     }
     out
