@@ -6,7 +6,8 @@
 //! | --- | --- |
 //! | drift and spread within the case's limits | converged |
 //! | drift within, spread beyond; or to and fro about a mean that stands still | oscillating |
-//! | drift beyond, residuals that rise, a speed beyond 3 U, forces that are no numbers, a floating-point trap | diverged |
+//! | drift beyond at the last iteration, and at most 1 % of ½ρU²A | oscillating, what it still has to go being its error |
+//! | drift beyond that, residuals that rise, a speed beyond 3 U, forces that are no numbers, a floating-point trap | diverged |
 //! | an error of the solver, or fewer iterations than the window | failed |
 
 use crate::case::Case;
@@ -22,6 +23,8 @@ const LARGEST_SPEED: f64 = 3.0;
 const BEYOND_POTENTIAL: f64 = 1.2;
 /// Residuals this many times as high as they were rise.
 const RISE: f64 = 10.0;
+/// Drift over ½ρU²A that a case which has done all its iterations may still have: a wake that goes over from one state to another does so for thousands of them.
+const SLOW: f64 = 0.01;
 /// An oscillation has this many windows to die down before its case is ended.
 const PATIENCE: usize = 5;
 
@@ -138,6 +141,12 @@ pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
         shortest.get_or_insert((drift, found));
     }
     match shortest {
+        Some((drift, found)) if drift <= SLOW && iterations >= case.stop.iterations => {
+            let reason = format!(
+                "after {iterations} iterations, which is all, the mean force still changes by {drift:.1e} of ½ρU²A from one half of {window} iterations to the other; what it still has to go is counted as its error"
+            );
+            with_loads(Status::Oscillating, true, reason, &found)
+        }
         Some((drift, found)) => {
             let reason = format!(
                 "after {iterations} iterations the mean force still changes by {drift:.1e} of ½ρU²A from one half of {window} iterations to the other; {:.1e} is allowed",
@@ -252,6 +261,19 @@ mod tests {
             beyond.reason,
             "after 100 iterations the mean force still changes by 2.0e-3 of ½ρU²A from one half of 40 iterations to the other; 2.0e-3 is allowed"
         );
+    }
+
+    #[test]
+    fn a_slow_drift_at_the_last_iteration_is_its_error() {
+        // 20 iterations of the slope from half to half, of 50 N.
+        let ramp = |drift: f64, count| of(&samples(count, |i| drift * 50.0 / 20.0 * i));
+        let slow = ramp(0.0099, 400);
+        assert_eq!((slow.status, slow.is_final), (Status::Oscillating, true), "{}", slow.reason);
+        assert!(slow.std_iterative.unwrap()[0] > 0.0099 * 50.0, "{slow:?}");
+        assert!(slow.reason.contains("after 400 iterations, which is all") && slow.reason.contains("9.9e-3"));
+        // Before the last it goes on, and a faster one is none.
+        assert_eq!(ramp(0.0099, 399).status, Status::Diverged);
+        assert_eq!(ramp(0.0101, 400).status, Status::Diverged);
     }
 
     #[test]

@@ -43,11 +43,15 @@ struct Asked {
 }
 
 impl Asked {
-    /// Of a campaign's only source with `cases`, or the one of a name.
+    /// Of a campaign's only source that plans `cases`, or the one of a name; others may read the same cases.
     fn read(path: &Path, name: Option<&str>) -> Result<Self, Error> {
         let campaign = read_campaign(path)?;
         let refused = |problem: String| CfdInput { path: path.to_owned(), problem };
-        let computed: Vec<&Source> = campaign.sources.iter().filter(|s| matches!(s.input, Input::Cases(_))).collect();
+        let has_cases = |source: &&Source| matches!(source.input, Input::Cases(_));
+        let mut computed: Vec<&Source> = campaign.sources.iter().filter(has_cases).collect();
+        if name.is_none() && computed.iter().any(|source| !source.plan.is_empty()) {
+            computed.retain(|source| !source.plan.is_empty());
+        }
         let names = || computed.iter().map(|s| format!("{:?}", s.name)).collect::<Vec<_>>().join(", ");
         let source = match (name, computed.as_slice()) {
             (_, []) => {

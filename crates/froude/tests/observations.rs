@@ -63,3 +63,21 @@ fn every_row_has_its_numbers_of_similarity_what_was_fitted_and_what_is_left() {
     // Leverages of one coefficient add up to one.
     assert!((column(&table, "f_x_leverage [1]").iter().sum::<f64>() - 1.0).abs() < 1e-12);
 }
+
+#[test]
+fn a_law_of_ones_own_that_the_list_of_models_names_too_is_fitted_once() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("t.csv"), "speed [m/s],f_x [N]\n0.1,-0.12\n0.2,-0.39\n0.3,-0.92\n0.4,-1.58\n")
+        .unwrap();
+    std::fs::write(
+        folder.path().join("c.toml"),
+        "schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n\
+         [[source]]\nname = \"day\"\nkind = \"towing\"\ntable = \"t.csv\"\n\
+         [identify]\nmodels = [\"quadratic\", \"own\", \"quadratic\"]\n\
+         [[identify.model]]\nname = \"own\"\nf_x = \"-A*v_x*abs(v_x)\"\n",
+    )
+    .unwrap();
+    let done = identify(&Job::new(folder.path().join("c.toml")), &|_| {}).unwrap();
+    let ids: Vec<&str> = done.file.estimates.iter().map(|e| e.id.as_str()).collect();
+    assert_eq!(ids, ["day/quadratic", "day/own"]);
+}

@@ -1,5 +1,7 @@
 //! The laws that a source asks for, as its observations allow them.
 
+use std::collections::BTreeSet;
+
 use froude_hydro::{Body, CrossTerm, DragModel};
 use froude_records::RecordError;
 use froude_records::campaign::{Campaign, Source};
@@ -41,13 +43,17 @@ pub fn asked_models(campaign: &Campaign, source: &Source) -> Result<Vec<String>,
         });
         return Err(IdentifyError::UnknownModel { place: places.get(i).cloned(), model: unknown.clone(), advice });
     }
-    Ok(if !source.models.is_empty() {
+    let mut asked = if !source.models.is_empty() {
         source.models.clone()
     } else if !identify.models.is_empty() || !user.is_empty() {
         identify.models.iter().cloned().chain(user.iter().map(|name| (*name).to_owned())).collect()
     } else {
         DEFAULT_MODELS.map(str::to_owned).to_vec()
-    })
+    };
+    // A person may name a law of their own in the list too.
+    let mut seen = BTreeSet::new();
+    asked.retain(|name| seen.insert(name.clone()));
+    Ok(asked)
 }
 
 /// Every quantity of the budget must be a channel of the data.

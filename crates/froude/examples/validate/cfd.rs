@@ -16,6 +16,7 @@ use froude_cfd::grid_error::{GridError, OnGrid, grid_error};
 use froude_cfd::openfoam::OpenFoam;
 use serde_json::Value;
 
+use crate::cfd_laws;
 use crate::claims::{Claims, Verdict};
 use crate::flows::{Room, capsule, capsule_body, capsule_grid, cylinder, plate, plate_friction, sphere};
 
@@ -40,8 +41,8 @@ const OTHER_D: [(f64, Option<f64>, Option<f64>); 4] = [
     (90.0, None, Some(5.182)),
 ];
 
-/// Known flows, and in full the capsule and the campaign too.
-pub fn all(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Failed> {
+/// Known flows, and in full the capsule and the campaign too; `pages` is where the chapter on laws is written.
+pub fn all(claims: &mut Claims, root: &Path, full: bool, pages: Option<&Path>) -> Result<(), Failed> {
     if OpenFoam::find().is_err() {
         let found = "OpenFOAM is not there; cargo xtask test installs it".to_owned();
         claims.add(KNOWN, "forces of known flows", "", found, Verdict::Skipped);
@@ -53,7 +54,7 @@ pub fn all(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Failed> {
     if full {
         of_capsule(claims, &room, &Room::new(folder.path().join("family"))?)?;
         drop(folder);
-        robot(claims, root)?;
+        robot(claims, root, pages)?;
         design(claims, root)?;
     }
     Ok(())
@@ -200,7 +201,7 @@ fn example(root: &Path) -> Result<String, Failed> {
     Ok(std::fs::read_to_string(root.join("examples/mamba-cfd/campaign.toml"))?)
 }
 
-fn robot(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
+fn robot(claims: &mut Claims, root: &Path, pages: Option<&Path>) -> Result<(), Failed> {
     let path = campaign(root, "reduced", &example(root)?)?;
     finish(&path)?;
     let done = status(&path, None)?.as_json();
@@ -216,6 +217,9 @@ fn robot(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
     );
     let found = identify(&Job { out: Some(path.with_file_name("results")), ..Job::new(&path) }, &|_| {})?;
     coefficients(claims, &found);
+    if let Some(pages) = pages {
+        cfd_laws::write(&found, pages)?;
+    }
     if let Some(comparison) = &found.file.comparison {
         for number in comparison.validation.iter().filter(|number| number.flows.is_some()) {
             beside(claims, number);
@@ -231,7 +235,7 @@ fn minutes(seconds: &Value) -> f64 {
 /// Coefficients of the six laws beside Table 5 and the tanks.
 fn coefficients(claims: &mut Claims, found: &Outcome) {
     let Some(comparison) = &found.file.comparison else { return };
-    for estimate in found.file.estimates.iter().filter(|e| e.source == "CFD") {
+    for estimate in found.file.estimates.iter().filter(|e| e.source.starts_with("CFD")) {
         let mut own = String::new();
         let mut others: Vec<(String, String)> = Vec::new();
         for (name, c) in &estimate.coefficients {
@@ -257,7 +261,7 @@ fn coefficients(claims: &mut Claims, found: &Outcome) {
         let beside: Vec<String> = others.iter().map(|(source, text)| format!("{source}: {text}")).collect();
         claims.add(
             ROBOT,
-            &format!("coefficients of {}{}", estimate.law.name, residual(estimate)),
+            &format!("{}: coefficients of {}{}", estimate.source, estimate.law.name, residual(estimate)),
             &beside.join("\n"),
             own,
             Verdict::Measured,

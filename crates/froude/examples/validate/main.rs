@@ -11,6 +11,7 @@ mod accelerated;
 mod bodies;
 mod carriage;
 mod cfd;
+mod cfd_laws;
 mod claims;
 mod clocks;
 // Its own example tells more of each row.
@@ -134,7 +135,8 @@ fn main() -> ExitCode {
             swim_coverage::all(claims, &root, if full { 200 } else { 10 })?;
         }
         if wants("cfd") {
-            cfd::all(claims, &root, full)?;
+            let pages = root.join("book/src");
+            cfd::all(claims, &root, full, (full && (chosen.is_empty() || is_part)).then_some(pages.as_path()))?;
         }
         if wants("clocks") {
             clocks::all(claims, &shared)?;
