@@ -15,6 +15,7 @@
 //! | [`engine`] | what works through a campaign |
 //! | [`evidence`] | files that a result stands on, by their checksums |
 //! | [`family`] | families of similar O-grids, each finer by √2 |
+//! | [`flow_field`] | pressure and velocity of a solved case, on its mesh |
 //! | [`foam_case`] | a case's folder as OpenFOAM wants it, with its [start and boundary](foam_fields), its [schemes](foam_system), its [mesh](foam_mesh) |
 //! | [`foam_solver`] | OpenFOAM as the solver of a campaign |
 //! | [`grid_error`] | how far a result is from that of infinitely many cells |
@@ -25,6 +26,7 @@
 //! | [`matrix`] | the run matrix of a campaign as cases, with the case that each starts from |
 //! | [`meridian`] | the meridian of a body of elliptic sections, and where a mesh cuts it |
 //! | [`mesh_error`] | why there is no mesh |
+//! | [`midplane`] | speeds in the plane z = 0 through the body |
 //! | [`o_grid`] | O-grids around bodies of elliptic sections |
 //! | [`openfoam`] | where it is, which it is, running its programs |
 //! | [`orphans`] | solvers that outlived their coordinator |
@@ -42,6 +44,7 @@
 //! | [`status`] | how far a campaign is |
 //! | [`store`] | the folder of a campaign |
 //! | [`store_error`] | why that cannot be worked with |
+//! | [`surface`] | the pressure on the body's surface |
 //! | [`transient`] | a case in time |
 //! | [`warm`] | starting from another case's last fields, scaled |
 //! | [`work`] | one case, done once |
@@ -61,6 +64,8 @@ pub mod dictionary;
 pub mod engine;
 pub mod evidence;
 pub mod family;
+pub mod flow_field;
+mod foam_binary;
 pub mod foam_case;
 pub mod foam_fields;
 pub mod foam_mesh;
@@ -74,6 +79,7 @@ pub mod lock;
 pub mod matrix;
 pub mod meridian;
 pub mod mesh_error;
+pub mod midplane;
 pub mod o_grid;
 pub mod openfoam;
 pub mod orphans;
@@ -81,6 +87,7 @@ pub mod outcome;
 pub mod plate;
 pub mod poly_mesh;
 pub mod poly_mesh_files;
+mod poly_mesh_read;
 pub mod process;
 pub mod quality;
 pub mod result;
@@ -91,6 +98,7 @@ pub mod solver_log;
 pub mod status;
 pub mod store;
 pub mod store_error;
+pub mod surface;
 pub mod transient;
 pub mod warm;
 pub mod window;
