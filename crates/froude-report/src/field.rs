@@ -29,8 +29,7 @@ const ARROW: f64 = 44.0;
 const UNSEEN: f64 = 0.005;
 
 /// Viridis at every eighth, as `viridis(9)` of viridisLite prints it.
-const VIRIDIS: [u32; 9] =
-    [0x44_01_54, 0x47_2d_7b, 0x3b_52_8b, 0x2c_72_8e, 0x21_90_8c, 0x27_ad_81, 0x5d_c8_63, 0xaa_dc_32, 0xfd_e7_25];
+const VIRIDIS: [u32; 9] = [0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21908c, 0x27ad81, 0x5dc863, 0xaadc32, 0xfde725];
 
 /// A quantity over a plane, in one view or several.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -115,7 +114,9 @@ impl Field {
         let mut largest: Vec<usize> = (0..placed.len()).collect();
         largest.sort_by(|a, b| placed[*b].area.total_cmp(&placed[*a].area));
         let mut kept = vec![false; placed.len()];
-        largest.iter().take(MOST).for_each(|index| kept[*index] = true);
+        for index in largest.iter().take(MOST) {
+            kept[*index] = true;
+        }
         let mut kept = kept.into_iter();
         placed.retain(|_| kept.next().unwrap_or(false));
         let left_out = largest.len() - placed.len();

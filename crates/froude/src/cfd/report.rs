@@ -2,10 +2,10 @@
 //!
 //! | module | content |
 //! | --- | --- |
-//! | [`convergence`] | forces over the iterations of a case, and the window that was judged |
-//! | [`forces`] | forces against angle and speed |
-//! | [`meshes`] | quality of the meshes, and y+ |
-//! | [`pictures`] | pressure on the surface, and the wake |
+//! | `convergence` | forces over the iterations of a case, and the window that was judged |
+//! | `forces` | forces against angle and speed |
+//! | `meshes` | quality of the meshes, and y+ |
+//! | `pictures` | pressure on the surface, and the wake |
 
 mod convergence;
 mod forces;
