@@ -19,6 +19,10 @@ pub struct FoamPatch {
     pub name: String,
     /// `wall`, `patch`, `symmetryPlane`, `symmetry`, `empty`.
     pub kind: String,
+    /// First of its faces.
+    pub start: usize,
+    /// How many there are.
+    pub count: usize,
 }
 
 impl FoamPatch {
@@ -73,7 +77,7 @@ impl FoamMesh {
     }
 }
 
-fn refuse(path: &Path, problem: String) -> FoamMeshError {
+pub(crate) fn refuse(path: &Path, problem: String) -> FoamMeshError {
     FoamMeshError { path: path.display().to_string(), problem }
 }
 
@@ -91,18 +95,23 @@ fn patches_of(text: &str) -> Result<Vec<FoamPatch>, String> {
         if words.next() != Some("{") {
             return Err(format!("the patch {name} has no braces"));
         }
-        let mut kind = None;
+        let (mut kind, mut start, mut count) = (None, None, None);
         loop {
             match words.next() {
                 None => return Err(format!("the patch {name} does not end")),
                 Some("}") => break,
                 Some("type") if kind.is_none() => kind = words.next(),
+                Some("startFace") => start = words.next().and_then(|word| word.parse().ok()),
+                Some("nFaces") => count = words.next().and_then(|word| word.parse().ok()),
                 Some(_) => {}
             }
         }
+        let (Some(start), Some(count)) = (start, count) else {
+            return Err(format!("the patch {name} does not say its startFace and nFaces"));
+        };
         match kind {
             Some(kind @ ("wall" | "patch" | "symmetryPlane" | "symmetry" | "empty")) => {
-                patches.push(FoamPatch { name: name.to_owned(), kind: kind.to_owned() });
+                patches.push(FoamPatch { name: name.to_owned(), kind: kind.to_owned(), start, count });
             }
             found => {
                 return Err(format!(
@@ -121,7 +130,7 @@ fn patches_of(text: &str) -> Result<Vec<FoamPatch>, String> {
     Ok(patches)
 }
 
-fn without_comments(text: &str) -> String {
+pub(crate) fn without_comments(text: &str) -> String {
     let mut plain = String::new();
     let mut rest = text;
     while let Some(start) = rest.find("/*") {
@@ -145,13 +154,13 @@ mod tests {
 
     use super::*;
 
-    const BOUNDARY: &str = "/* a banner */\nFoamFile\n{\n format ascii; // a comment\n}\n3\n(\n body\n {\n  type wall;\n  inGroups 1(wall);\n  nFaces 9; startFace 3;\n }\n far { type patch; nFaces 2; startFace 12; }\n mid { type symmetryPlane; }\n)\n";
+    const BOUNDARY: &str = "/* a banner */\nFoamFile\n{\n format ascii; // a comment\n}\n3\n(\n body\n {\n  type wall;\n  inGroups 1(wall);\n  nFaces 9; startFace 3;\n }\n far { type patch; nFaces 2; startFace 12; }\n mid { type symmetryPlane; nFaces 1; startFace 14; }\n)\n";
 
     #[test]
     fn a_boundary_is_read_with_its_patches_in_order() {
         let patches = patches_of(BOUNDARY).unwrap();
-        let found: Vec<_> = patches.iter().map(|p| (p.name.as_str(), p.kind.as_str())).collect();
-        assert_eq!(found, [("body", "wall"), ("far", "patch"), ("mid", "symmetryPlane")]);
+        let found: Vec<_> = patches.iter().map(|p| (p.name.as_str(), p.kind.as_str(), p.start, p.count)).collect();
+        assert_eq!(found, [("body", "wall", 3, 9), ("far", "patch", 12, 2), ("mid", "symmetryPlane", 14, 1)]);
     }
 
     #[test]
@@ -160,7 +169,8 @@ mod tests {
         assert_eq!(refused("type wall", "type patch"), "no patch is a wall, and forces need one");
         assert_eq!(refused("type patch", "type wall"), "no patch is open, and water must come in");
         assert!(refused("symmetryPlane", "cyclic").starts_with("the patch mid is of type cyclic"));
-        assert_eq!(refused("symmetryPlane; }\n)\n", ""), "the patch mid does not end");
+        assert_eq!(refused("nFaces 1; startFace 14; }\n)\n", ""), "the patch mid does not end");
+        assert_eq!(refused("startFace 12", ""), "the patch far does not say its startFace and nFaces");
     }
 
     #[test]

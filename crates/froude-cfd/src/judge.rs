@@ -117,45 +117,72 @@ pub fn judge(case: &Case, evidence: Evidence) -> Judgement {
         return without_loads(Status::Failed, false, reason);
     }
 
-    let scales = case.load_scales();
-    let largest = |loads: &Loads, counts: &dyn Fn(usize) -> bool| {
-        let parts = loads.iter().zip(&scales).enumerate().filter(|(load, _)| counts(*load));
-        parts.map(|(_, (load, scale))| load.abs() / scale).fold(0.0, f64::max)
-    };
-    // A cycle drifts within a window shorter than its period, and is one in a window of several.
-    let lengths =
-        std::iter::successors(Some(window), |n| Some(2 * n)).take_while(|n| *n == window || 2 * n <= iterations);
-    let mut shortest = None;
-    for length in lengths {
-        let found = Window::of(samples, length);
-        let (drift, spread) = (largest(&found.drift, &|_| true), largest(&found.spread, &|_| true));
-        let words = format!(
-            "over {length} iterations the mean force changes by {drift:.1e} of ½ρU²A and a force is at most {spread:.1e} from it"
-        );
-        if drift <= case.stop.drift && spread <= case.stop.spread {
-            return with_loads(Status::Converged, true, words, &found);
-        }
-        if largest(&found.drift, &|load| !found.is_cycle[load]) <= case.stop.drift {
-            return with_loads(Status::Oscillating, iterations >= PATIENCE * length, words, &found);
-        }
-        shortest.get_or_insert((drift, found));
-    }
-    match shortest {
-        Some((drift, found)) if drift <= SLOW && iterations >= case.stop.iterations => {
+    let (standing, found) = standing(case, samples);
+    let (drift, spread) = (largest(case, &found.drift, &|_| true), largest(case, &found.spread, &|_| true));
+    let words = format!(
+        "over {} iterations the mean force changes by {drift:.1e} of ½ρU²A and a force is at most {spread:.1e} from it",
+        found.length
+    );
+    match standing {
+        Standing::Still => with_loads(Status::Converged, true, words, &found),
+        Standing::Swings => with_loads(Status::Oscillating, iterations >= PATIENCE * found.length, words, &found),
+        Standing::Drifts if drift <= SLOW && iterations >= case.stop.iterations => {
             let reason = format!(
-                "after {iterations} iterations, which is all, the mean force still changes by {drift:.1e} of ½ρU²A from one half of {window} iterations to the other; what it still has to go is counted as its error"
+                "after {iterations} iterations, which is all, the mean force still changes by {drift:.1e} of ½ρU²A from one half of {} iterations to the other; what it still has to go is counted as its error",
+                found.length
             );
             with_loads(Status::Oscillating, true, reason, &found)
         }
-        Some((drift, found)) => {
+        Standing::Drifts => {
             let reason = format!(
-                "after {iterations} iterations the mean force still changes by {drift:.1e} of ½ρU²A from one half of {window} iterations to the other; {:.1e} is allowed",
-                case.stop.drift
+                "after {iterations} iterations the mean force still changes by {drift:.1e} of ½ρU²A from one half of {} iterations to the other; {:.1e} is allowed",
+                found.length, case.stop.drift
             );
             with_loads(Status::Diverged, false, reason, &found)
         }
-        None => without_loads(Status::Failed, false, "it has no forces".to_owned()),
     }
+}
+
+/// How forces are over a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Standing {
+    Still,
+    /// They swing about a mean that stands still.
+    Swings,
+    Drifts,
+}
+
+/// How the forces stand, and over which window: the case's, or that doubled, and doubled again, up to half of the iterations. A cycle drifts within a window shorter than its period, and is one in a window of several. The first is that of forces that drift in all of them.
+fn standing(case: &Case, samples: &[Sample]) -> (Standing, Window) {
+    let of = |length: usize| {
+        let found = Window::of(samples, length);
+        let (drift, spread) = (largest(case, &found.drift, &|_| true), largest(case, &found.spread, &|_| true));
+        let standing = if drift <= case.stop.drift && spread <= case.stop.spread {
+            Standing::Still
+        } else if largest(case, &found.drift, &|load| !found.is_cycle[load]) <= case.stop.drift {
+            Standing::Swings
+        } else {
+            Standing::Drifts
+        };
+        (standing, found)
+    };
+    let first = of(case.stop.window.max(4));
+    let longer = std::iter::successors(Some(2 * first.1.length), |n| Some(2 * n));
+    let mut all = std::iter::once(first).chain(longer.take_while(|n| *n > 0 && 2 * n <= samples.len()).map(of));
+    all.find(|(standing, _)| *standing != Standing::Drifts).unwrap_or(first)
+}
+
+/// The window that the forces of a case were judged over; `None` where there are fewer than it takes.
+#[must_use]
+pub fn judged_window(case: &Case, samples: &[Sample]) -> Option<Window> {
+    (samples.len() >= case.stop.window.max(4)).then(|| standing(case, samples).1)
+}
+
+/// Largest of the loads that count, over ½ρU²A and, of moments, the body's length.
+fn largest(case: &Case, loads: &Loads, counts: &dyn Fn(usize) -> bool) -> f64 {
+    let scales = case.load_scales();
+    let parts = loads.iter().zip(&scales).enumerate().filter(|(load, _)| counts(*load));
+    parts.map(|(_, (load, scale))| load.abs() / scale).fold(0.0, f64::max)
 }
 
 /// Why its field grows without bound, and whether that is more than the wild beginning of a flow from rest.
@@ -287,7 +314,11 @@ mod tests {
 
     #[test]
     fn a_slow_cycle_is_judged_over_several_of_its_periods() {
-        let found = of(&samples(400, |i| -20.0 + 2.0 * (TAU * i / 60.0).sin()));
+        let series = samples(400, |i| -20.0 + 2.0 * (TAU * i / 60.0).sin());
+        let found = of(&series);
+        // 40 iterations are less than a period, 80 little more.
+        assert_eq!(judged_window(&case(), &series).map(|w| w.length), Some(160));
+        assert_eq!(judged_window(&case(), &series[..39]), None);
         assert_eq!(found.status, Status::Oscillating, "{}", found.reason);
         assert!((found.loads.unwrap()[0] + 20.0).abs() < 3.0 * found.std_iterative.unwrap()[0]);
     }

@@ -16,6 +16,7 @@
 //! | [`engine`] | what works through a campaign |
 //! | [`evidence`] | files that a result stands on, by their checksums |
 //! | [`family`] | families of similar O-grids, each finer by √2 |
+//! | [`flow_field`] | pressure and velocity of a solved case, on its mesh |
 //! | [`foam_case`] | a case's folder as OpenFOAM wants it, with its [start and boundary](foam_fields), its [schemes](foam_system), its [mesh](foam_mesh) |
 //! | [`foam_solver`] | OpenFOAM as the solver of a campaign |
 //! | [`grid_error`] | how far a result is from that of infinitely many cells |
@@ -26,6 +27,7 @@
 //! | [`matrix`] | the run matrix of a campaign as cases, with the case that each starts from |
 //! | [`meridian`] | the meridian of a body of elliptic sections, and where a mesh cuts it |
 //! | [`mesh_error`] | why there is no mesh |
+//! | [`midplane`] | speeds in the plane z = 0 through the body |
 //! | [`numerical`] | what the mesh does to the forces of a campaign: their correction and what it leaves |
 //! | [`o_grid`] | O-grids around bodies of elliptic sections |
 //! | [`openfoam`] | where it is, which it is, running its programs |
@@ -46,6 +48,7 @@
 //! | [`store`] | the folder of a campaign |
 //! | [`store_error`] | why that cannot be worked with |
 //! | [`study`] | settings on a family of grids and in several domains |
+//! | [`surface_pressure`] | the pressure on the body's surface |
 //! | [`transient`] | a case in time |
 //! | [`warm`] | starting from another case's last fields, scaled |
 //! | [`work`] | one case, done once |
@@ -66,6 +69,8 @@ pub mod dictionary;
 pub mod engine;
 pub mod evidence;
 pub mod family;
+pub mod flow_field;
+mod foam_binary;
 pub mod foam_case;
 pub mod foam_fields;
 pub mod foam_mesh;
@@ -79,6 +84,7 @@ pub mod lock;
 pub mod matrix;
 pub mod meridian;
 pub mod mesh_error;
+pub mod midplane;
 pub mod numerical;
 pub mod o_grid;
 pub mod openfoam;
@@ -88,6 +94,7 @@ pub mod over_angles;
 pub mod plate;
 pub mod poly_mesh;
 pub mod poly_mesh_files;
+mod poly_mesh_read;
 pub mod process;
 pub mod quality;
 pub mod result;
@@ -99,6 +106,7 @@ pub mod status;
 pub mod store;
 pub mod store_error;
 pub mod study;
+pub mod surface_pressure;
 pub mod transient;
 pub mod warm;
 pub mod window;

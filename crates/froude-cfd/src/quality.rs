@@ -147,7 +147,7 @@ impl Shapes {
 }
 
 /// Centre and area vector of a face.
-fn face(mesh: &PolyMesh, corners: &[u32]) -> (Vec3, Vec3) {
+pub(crate) fn face(mesh: &PolyMesh, corners: &[u32]) -> (Vec3, Vec3) {
     let at = |corner: u32| mesh.points_m[corner as usize];
     if let &[a, b, c] = corners {
         let (a, b, c) = (at(a), at(b), at(c));

@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use crate::case::Case;
+use crate::foam_binary::{List, MARK, find, numbers_of, split};
 use crate::foam_case::{FoamCaseError, times};
 use crate::foam_fields::fields;
 use crate::foam_mesh::FoamMesh;
@@ -61,21 +62,21 @@ fn scaled(path: &Path, scale: f64) -> Result<(Vec<u8>, usize), FoamCaseError> {
     scaled_field(&get(path)?, scale).map_err(|problem| FoamCaseError::at(path, problem))
 }
 
-/// Values stand behind `uniform` as text, and behind `nonuniform` as a list of binary numbers of a length that is said; so text is searched, never numbers.
 fn scaled_field(content: &[u8], scale: f64) -> Result<(Vec<u8>, usize), String> {
-    const MARK: &[u8] = b"uniform ";
-    let start = find(content, b"internalField").ok_or("it has no internalField")?;
-    let (head, mut rest) = content.split_at(start);
-    if find(head, b"binary").is_none() || find(head, b"MSB").is_some() || find(head, b"scalar=32").is_some() {
-        return Err("it is not written in binary numbers of 64 bits, the lowest byte first".to_owned());
-    }
+    let (head, mut rest) = split(content)?;
     let mut scaled = head.to_vec();
     let mut internal_end = None;
     while let Some(at) = find(rest, MARK) {
         let (text, value) = rest.split_at(at + MARK.len());
         scaled.extend_from_slice(text);
         rest = if value.starts_with(b"List<") {
-            scale_list(value, scale, &mut scaled)?
+            let list = List::read(value)?;
+            scaled.extend_from_slice(list.head);
+            for number in list.numbers {
+                scaled.extend_from_slice(&(f64::from_le_bytes(*number) * scale).to_le_bytes());
+            }
+            scaled.push(b')');
+            list.rest
         } else {
             scale_text(value, scale, &mut scaled)?
         };
@@ -83,32 +84,6 @@ fn scaled_field(content: &[u8], scale: f64) -> Result<(Vec<u8>, usize), String> 
     }
     scaled.extend_from_slice(rest);
     Ok((scaled, internal_end.ok_or("its internalField has no value")?))
-}
-
-/// `List<vector> 22400 (`, numbers, `)`: writes it scaled, and returns what follows the numbers.
-fn scale_list<'a>(value: &'a [u8], scale: f64, scaled: &mut Vec<u8>) -> Result<&'a [u8], String> {
-    let open = value.iter().position(|byte| *byte == b'(').ok_or("a list does not begin")?;
-    let (head, numbers) = value.split_at(open + 1);
-    let head_text = String::from_utf8_lossy(head);
-    let (kind, count) = head_text.trim_end_matches('(').split_once('>').ok_or("a list has no kind")?;
-    let width = match kind {
-        "List<scalar" => 1,
-        "List<vector" => 3,
-        other => return Err(format!("a list is of the kind {other}>; expected scalar or vector")),
-    };
-    let count: usize = count.trim().parse().map_err(|_| format!("a list has the length {:?}", count.trim()))?;
-    let bytes = count.checked_mul(width * 8).and_then(|bytes| numbers.get(..bytes));
-    let bytes = bytes.ok_or_else(|| format!("a list of {count} ends before its numbers do"))?;
-    scaled.extend_from_slice(head);
-    for number in bytes.as_chunks::<8>().0 {
-        scaled.extend_from_slice(&(f64::from_le_bytes(*number) * scale).to_le_bytes());
-    }
-    let rest = &numbers[bytes.len()..];
-    if !rest.starts_with(b")") {
-        return Err(format!("a list of {count} does not end where its numbers do"));
-    }
-    scaled.push(b')');
-    Ok(&rest[1..])
 }
 
 /// `1e-06;`, `(0.4 0 0);`, or the `0();` of an empty list: writes it scaled, and returns what follows it.
@@ -120,20 +95,10 @@ fn scale_text<'a>(value: &'a [u8], scale: f64, scaled: &mut Vec<u8>) -> Result<&
         scaled.extend_from_slice(text.as_bytes());
         return Ok(rest);
     }
-    let inner = text.trim().trim_start_matches('(').trim_end_matches(')');
-    let numbers = inner
-        .split_whitespace()
-        .map(|word| {
-            word.parse::<f64>().map(|x| format!("{:e}", x * scale)).map_err(|_| format!("{word:?} is no number"))
-        })
-        .collect::<Result<Vec<String>, String>>()?
-        .join(" ");
+    let numbers: Vec<String> = numbers_of(&text)?.into_iter().map(|x| format!("{:e}", x * scale)).collect();
+    let numbers = numbers.join(" ");
     scaled.extend_from_slice(if text.contains('(') { format!("({numbers})") } else { numbers }.as_bytes());
     Ok(rest)
-}
-
-fn find(content: &[u8], what: &[u8]) -> Option<usize> {
-    content.windows(what.len()).position(|part| part == what)
 }
 
 #[cfg(test)]

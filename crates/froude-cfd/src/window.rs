@@ -6,6 +6,8 @@ use crate::outcome::Loads;
 /// Of a window, a number a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
+    /// Iterations.
+    pub length: usize,
     /// Mean.
     pub mean: Loads,
     /// Mean of the part by pressure.
@@ -27,6 +29,7 @@ impl Window {
         let length = length.min(samples.len());
         let start = samples.len() - length;
         let mut window = Self {
+            length,
             mean: [0.0; 6],
             pressure: [0.0; 6],
             drift: [0.0; 6],

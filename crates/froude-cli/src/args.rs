@@ -215,6 +215,21 @@ pub enum CfdJob {
         #[command(flatten)]
         of: CfdCampaign,
     },
+    /// Write a page of a campaign: status, meshes, forces against angle and speed, convergence, surface pressure and wake.
+    #[command(
+        after_help = "Examples:\n  froude cfd report campaign.toml\n  froude cfd report campaign.toml --case H5LT-u0.4-a45 --case H5LT-u0.4-a90"
+    )]
+    Report {
+        /// Which campaign.
+        #[command(flatten)]
+        of: CfdCampaign,
+        /// A case whose flow is shown, once for each [default: the middle configuration at its highest speed, at 0, 45 and 90 degrees].
+        #[arg(long = "case", value_name = "ID")]
+        cases: Vec<String>,
+        /// Folder of the page and its figures [default: CAMPAIGN-cfd beside the campaign].
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// Put cases that failed or diverged back among those to compute.
     #[command(after_help = "Example: froude cfd retry campaign.toml H3LT-u0.4-a30")]
     Retry {

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use std::thread::available_parallelism;
 
 use froude::cfd::run::{Engine, Job, Running, SlurmOptions, run, run_case};
-use froude::cfd::{collect, plan, retry, status};
+use froude::cfd::{collect, plan, report, retry, status};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
@@ -59,6 +59,20 @@ pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
                 return print::json(&found.as_json());
             }
             found.sections().iter().for_each(print::summary);
+        }
+        CfdJob::Report { of, cases, out } => {
+            let bar = Spinner::new();
+            let tell = |what: &str| bar.set_message(what);
+            let source = of.source.as_deref();
+            let found = report::report(&of.campaign, source, &cases, out.as_deref(), Some(crate::today()), &tell)?;
+            bar.finish_and_clear();
+            if json {
+                return print::json(&found.as_json());
+            }
+            print::summary(&found.section());
+            say!("");
+            say!("report     {}", found.report.display());
+            say!("figures    {} in {}", found.figures.len(), found.report.with_file_name("figures").display());
         }
         CfdJob::Retry { of, cases } => {
             let again = retry(&of.campaign, of.source.as_deref(), &cases)?;

@@ -149,6 +149,8 @@ fn a_campaign_that_was_killed_goes_on_and_is_identified() {
     // f1 at 0.4 m/s has 1/0.4 of its linear term beside the square: a drag of 3.5 C_d, which of a short body with round ends is some 0.5; widely.
     assert!((0.08..0.3).contains(&c("C_d")) && (0.0..0.02).contains(&c("C_f")), "{coefficients}");
 
+    reported(&path);
+
     // Edited by hand: it reaches no fit, and is said.
     let result = std::fs::read_dir(folder.path().join("flow/cases/H1LT-u0.4-a90")).unwrap();
     let result = result.map(|e| e.unwrap().path()).find(|p| p.ends_with("result.json")).unwrap();
@@ -165,6 +167,81 @@ fn a_campaign_that_was_killed_goes_on_and_is_identified() {
     let collected = json(&["cfd", "collect", text(&path)]);
     assert_eq!(collected["observations"].as_u64(), Some(4));
     assert!(collected["without"].to_string().contains("it was changed after it was written"), "{collected}");
+}
+
+/// The page of the same campaign, and the fitted law through its points in that of identify.
+fn reported(path: &Path) {
+    let folder = path.parent().unwrap();
+    let read = |part: &str| std::fs::read_to_string(folder.join(part)).unwrap();
+    let found = json(&["cfd", "report", text(path)]);
+    let names: Vec<&str> = found["cases"].as_array().unwrap().iter().filter_map(|c| c["case"].as_str()).collect();
+    // The middle of two configurations is the second; H2LT has one speed.
+    assert_eq!(names, ["H2LT-u0.4-a0", "H2LT-u0.4-a45", "H2LT-u0.4-a90"]);
+    assert_eq!(found["forces"].as_array().unwrap().len(), 6);
+    assert_eq!(found["meshes"][0]["cells"].as_u64(), Some(3200));
+    for case in found["cases"].as_array().unwrap() {
+        let (convergence, pictures) = (&case["convergence"], &case["pictures"]);
+        let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("{case}"));
+        // What was judged is a window of the campaign's, or twice that and so on.
+        let window = convergence["window"]["iterations"].as_u64().unwrap();
+        assert!(window % 40 == 0 && number(&convergence["last"]) >= window as f64, "{case}");
+        // 1 where the water comes to rest; a cell is a tenth of a turn, and half of a first layer of 0.5 mm off the wall.
+        let [least, most] = [0, 1].map(|end| number(&pictures["pressure_coefficient"][end]));
+        assert!((most - 1.0).abs() < 0.15 && (-5.0..-0.3).contains(&least), "{case}");
+        assert!((1.0..2.5).contains(&number(&pictures["largest_speed_ratio"])), "{case}");
+
+        // The pressure on the surface is the force that the solver wrote at its last iteration.
+        let id = case["case"].as_str().unwrap();
+        let attempt = folder.join("flow/cases").join(id);
+        let attempt =
+            std::fs::read_dir(attempt).unwrap().map(|e| e.unwrap().path()).filter(|p| p.is_dir()).max().unwrap();
+        let starts = std::fs::read_dir(attempt.join("postProcessing/forces")).unwrap().map(|e| e.unwrap().path());
+        let last = starts.max_by_key(|p| p.file_name().unwrap().to_str().unwrap().parse::<u32>().unwrap()).unwrap();
+        let last = std::fs::read_to_string(last.join("force.dat")).unwrap();
+        let numbers: Vec<f64> =
+            last.lines().last().unwrap().split(['(', ')', ' ', '\t']).filter_map(|w| w.parse().ok()).collect();
+        for axis in [0, 1] {
+            // Behind the time and the total; half of the body.
+            let (written, summed) = (2.0 * numbers[4 + axis], number(&pictures["pressure_force_n"][axis]));
+            let size = 2.0 * numbers[4].hypot(numbers[5]);
+            assert!((written - summed).abs() < 1e-6 * size, "{written} {summed}");
+        }
+
+        // Half of the surface faces each eye: 20 x 16 faces seen from three sides.
+        let polygons =
+            |svg: &str| svg.lines().filter(|l| l.starts_with("<path")).map(|l| l.matches('z').count()).sum::<usize>();
+        let surface = read(&format!("campaign-cfd/figures/surface-{id}.svg"));
+        assert!((3 * 120..=3 * 160).contains(&polygons(&surface)), "{}", polygons(&surface));
+        assert!(
+            surface.contains("C_p [-]")
+                && surface.contains("from port, where the water meets it") == !id.ends_with("-a0")
+        );
+        let wake = read(&format!("campaign-cfd/figures/wake-{id}.svg"));
+        assert!((300..=800).contains(&polygons(&wake)), "{}", polygons(&wake));
+        assert!(wake.starts_with("<svg ") && wake.ends_with("</svg>\n") && !wake.contains("NaN"));
+    }
+    let page = read("campaign-cfd/report.html");
+    for id in ["H2LT-u0.4-a45", "H1LT-u0.4-a90"] {
+        assert!(page.contains(id), "{id}");
+    }
+    // Two charts of forces against the angle, three of convergence, three pairs of pictures.
+    assert_eq!((page.matches("<figure>").count(), found["figures"].as_array().unwrap().len()), (11, 11));
+    assert!(!page.contains("<script") && page.len() < 1_500_000, "{}", page.len());
+    let said = done(&["cfd", "report", text(path), "--case", "H1LT-u0.4-a90", "--out", text(&folder.join("one"))]);
+    assert!(said.contains("pictures of H1LT-u0.4-a90"), "{said}");
+    assert!(refused(&["cfd", "report", text(path), "--case", "H9LT-u1-a0"]).contains("H9LT-u1-a0"));
+
+    for load in ["f_x", "f_y"] {
+        let figures = std::fs::read_dir(folder.join("campaign-results/figures")).unwrap();
+        let own =
+            figures.map(|e| e.unwrap().path()).find(|p| text(p).ends_with(&format!("cfd-{load}-against-angle.svg")));
+        let chart = std::fs::read_to_string(own.unwrap()).unwrap();
+        // A line of the law through the computed points of each of two configurations.
+        assert!(
+            chart.matches("<polyline").count() >= 2 && chart.contains("computed") && chart.contains("f1"),
+            "{load}"
+        );
+    }
 }
 
 #[test]

@@ -78,6 +78,8 @@ pub(crate) struct Canvas {
     height: f64,
     /// Drawing steps, played to the backend at the end.
     steps: Vec<Step>,
+    /// Areas side by side, under all steps: each ink with its outlines, as SVG writes them.
+    mosaic: Vec<(Ink, String)>,
 }
 
 enum Step {
@@ -98,7 +100,7 @@ fn grid(at: Xy) -> (i32, i32) {
 
 impl Canvas {
     pub(crate) fn new(width: f64, height: f64) -> Self {
-        Self { width, height, steps: Vec::new() }
+        Self { width, height, steps: Vec::new(), mosaic: Vec::new() }
     }
 
     pub(crate) fn line(&mut self, from: Xy, to: Xy, ink: Ink, width: f64) {
@@ -139,6 +141,23 @@ impl Canvas {
     pub(crate) fn area(&mut self, places: Vec<Xy>, ink: Ink) {
         if places.len() > 2 {
             self.steps.push(Step::Area(places, Pen { ink, width: 1.0 }));
+        }
+    }
+
+    /// An area among others side by side, under everything else: no seam shines through between two of them.
+    pub(crate) fn mosaic(&mut self, places: &[Xy], ink: Ink) {
+        let mut at = (0, 0);
+        let mut outline = String::new();
+        for (index, place) in places.iter().enumerate() {
+            let (x, y) = grid(*place);
+            let before = if index == 0 { 'M' } else { 'l' };
+            let _ = write!(outline, "{before}{} {}", x - at.0, y - at.1);
+            at = (x, y);
+        }
+        outline.push('z');
+        match self.mosaic.last_mut() {
+            Some((last, outlines)) if *last == ink => outlines.push_str(&outline),
+            _ => self.mosaic.push((ink, outline)),
         }
     }
 
@@ -200,6 +219,13 @@ impl Canvas {
             escaped(title),
             escaped(description),
         );
+        if !self.mosaic.is_empty() {
+            out.push_str("<g shape-rendering=\"crispEdges\">\n");
+            for (Ink { rgb: (r, g, b), .. }, outlines) in &self.mosaic {
+                let _ = writeln!(out, "<path fill=\"#{r:02x}{g:02x}{b:02x}\" d=\"{outlines}\"/>");
+            }
+            out.push_str("</g>\n");
+        }
         let mut pieces = inner.split(PLACE);
         out.push_str(pieces.next().unwrap_or(""));
         let mut markups = markups.iter();

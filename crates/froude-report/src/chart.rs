@@ -4,7 +4,7 @@
 
 use froude_records::page::{Chart, ChartPanel, Mark, Scale, Series};
 
-use crate::canvas::{Align, Canvas};
+use crate::canvas::{Align, Canvas, text_width};
 use crate::input::ReportError;
 use crate::plot::{
     Entry, LABEL_SIZE, MUTED, Panel, Span, Swatch, TEXT, TICK_SIZE, Ticks, WIDTH, category, draw_legend, drawable,
@@ -52,27 +52,30 @@ impl Drawn<'_> {
                 text: Rich::plain(name),
             })
             .collect();
-        let top = legend_height(&legend, LEFT) + 8.0;
+        let spans: Vec<Span> = self.0.panels.iter().map(y_span).collect();
+        let labels = self.0.panels.iter().zip(&spans).flat_map(|(panel, span)| {
+            let ticks = ticks(*span, panel.y_scale, 5);
+            let wide = |place: &f64| text_width(&label(&ticks, panel.y_scale, *place), TICK_SIZE);
+            ticks.places.iter().map(wide).collect::<Vec<_>>()
+        });
+        // The name of the ordinate stands left of the widest number.
+        let left = labels.fold(LEFT, |left, wide| left.max(wide + 34.0));
+        let top = legend_height(&legend, left) + 8.0;
         let n = self.0.panels.len() as f64;
         let total = top + n * HEIGHT + (n - 1.0).max(0.0) * GAP + 52.0;
         let mut canvas = Canvas::new(WIDTH, total);
-        draw_legend(&mut canvas, &legend, LEFT, 0.0);
+        draw_legend(&mut canvas, &legend, left, 0.0);
         let x_all =
             self.0.panels.iter().flat_map(|p| p.series.iter().flat_map(|s| s.x.iter().map(|&x| on(self.0.x_scale, x))));
         let x_span = Span::of(x_all).map_or(Span { low: 0.0, high: 1.0 }, |s| s.aired(0.02));
-        for (i, panel) in self.0.panels.iter().enumerate() {
-            let y_all = panel
-                .series
-                .iter()
-                .flat_map(|s| s.y.iter().chain(&s.low).chain(&s.high).map(|&y| on(panel.y_scale, y)));
-            let y_span = Span::of(y_all).map_or(Span { low: 0.0, high: 1.0 }, |s| s.aired(0.06));
+        for (i, (panel, y)) in self.0.panels.iter().zip(spans).enumerate() {
             let frame = Panel {
-                left: LEFT,
+                left,
                 top: top + i as f64 * (HEIGHT + GAP),
-                width: WIDTH - LEFT - 20.0,
+                width: WIDTH - left - 20.0,
                 height: HEIGHT,
                 x: x_span,
-                y: y_span,
+                y,
             };
             let is_last = i + 1 == self.0.panels.len();
             self.axes(&mut canvas, &frame, panel, is_last);
@@ -117,6 +120,13 @@ impl Drawn<'_> {
             canvas.text(titled(&x, self.0.x_scale, &self.0.x_label), at, LABEL_SIZE, TEXT, Align::Center);
         }
     }
+}
+
+/// What the ordinate of a panel covers.
+fn y_span(panel: &ChartPanel) -> Span {
+    let values = panel.series.iter().flat_map(|s| s.y.iter().chain(&s.low).chain(&s.high));
+    let all = values.map(|&y| on(panel.y_scale, y));
+    Span::of(all).map_or(Span { low: 0.0, high: 1.0 }, |s| s.aired(0.06))
 }
 
 /// A number on its axis.

@@ -9,11 +9,15 @@ use froude_records::text::visible;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::chart;
+use crate::field::Field;
 use crate::findings::findings_by_severity;
 use crate::input::ReportError;
 use crate::map::Map;
 use crate::style::{POLICY, STYLE};
 use crate::tables::Tables;
+
+/// Cells longer than this are sentences, and break into lines.
+const WORDS: usize = 44;
 
 /// A page.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -30,6 +34,8 @@ pub struct Document {
     pub sections: Vec<DocumentSection>,
     /// Maps, behind the sections.
     pub maps: Vec<Map>,
+    /// Quantities over a plane, behind the maps.
+    pub fields: Vec<Field>,
     /// What the checks found.
     pub findings: Vec<Finding>,
 }
@@ -48,6 +54,7 @@ impl Document {
             body.push(section_markup(i, section, &mut tables, &mut figure)?);
         }
         let maps = self.maps.iter().map(Map::svg).collect::<Result<Vec<_>, _>>()?;
+        let fields = self.fields.iter().map(Field::svg).collect::<Result<Vec<_>, _>>()?;
         let findings = findings_by_severity(&self.findings, &mut tables);
         let contents = html! {
             ol {
@@ -55,6 +62,7 @@ impl Document {
                     li { a href={ "#section-" (i + 1) } { span { (i + 1) } (section.title) } }
                 }
                 @if !maps.is_empty() { li { a href="#maps" { span {} "Maps" } } }
+                @if !fields.is_empty() { li { a href="#pictures" { span {} "Pictures" } } }
                 @if !self.findings.is_empty() { li { a href="#findings" { span {} "Findings" } } }
             }
         };
@@ -73,6 +81,17 @@ impl Document {
                         figure {
                             (PreEscaped(svg))
                             figcaption { b { "Figure " (count(&mut figure)) ". " } (map.caption) }
+                        }
+                    }
+                }
+            }
+            @if !fields.is_empty() {
+                section {
+                    h2 id="pictures" { "Pictures" }
+                    @for (field, svg) in self.fields.iter().zip(&fields) {
+                        figure {
+                            (PreEscaped(svg))
+                            figcaption { b { "Figure " (count(&mut figure)) ". " } (field.caption()) }
                         }
                     }
                 }
@@ -140,14 +159,19 @@ pub(crate) fn section_text(section: &DocumentSection, tables: &mut Tables) -> Ma
 
 fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {
     let caption = tables.caption(&table.caption);
+    let is_words =
+        |column: usize| table.rows.iter().any(|row| row.get(column).is_some_and(|c| c.chars().count() > WORDS));
+    let class: Vec<&str> =
+        (0..table.head.len()).map(|column| if is_words(column) { "message" } else { "num" }).collect();
+    let class_of = |column: usize| class.get(column).copied().unwrap_or("num");
     html! {
         div class="table wide" {
-            table {
+            table class=[class.contains(&"message").then_some("named")] {
                 (caption)
                 thead {
                     tr {
                         @for (i, head) in table.head.iter().enumerate() {
-                            th scope="col" class=[(i > 0).then_some("num")] { (head) }
+                            th scope="col" class=[(i > 0).then(|| class_of(i))] { (head) }
                         }
                     }
                 }
@@ -155,7 +179,7 @@ fn table_markup(table: &TextTable, tables: &mut Tables) -> Markup {
                     @for row in &table.rows {
                         tr {
                             @for (i, cell) in row.iter().enumerate() {
-                                @if i == 0 { th scope="row" { (cell) } } @else { td class="num" { (cell) } }
+                                @if i == 0 { th scope="row" { (cell) } } @else { td class=(class_of(i)) { (cell) } }
                             }
                         }
                     }

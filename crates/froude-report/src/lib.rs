@@ -29,7 +29,9 @@
 mod canvas;
 pub mod chart;
 pub mod document;
+pub mod field;
 mod figures;
+mod filled;
 mod findings;
 mod input;
 pub mod map;

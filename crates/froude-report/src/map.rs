@@ -5,9 +5,10 @@
 use froude_records::page::Scale;
 
 use crate::canvas::{Align, Canvas, Ink, WHITE};
-use crate::chart::{label, on, ticks};
+use crate::chart::on;
+use crate::filled::{BAR, GAP, OVER, RIGHT, axes, bar};
 use crate::input::ReportError;
-use crate::plot::{LABEL_SIZE, MUTED, Panel, RULE, Span, TEXT, TICK_SIZE, WIDTH, ramp};
+use crate::plot::{Panel, RULE, Span, TEXT, TICK_SIZE, WIDTH, ramp};
 use crate::symbol::Rich;
 
 /// Most cells along an axis that are drawn; of more, evenly chosen ones.
@@ -15,14 +16,6 @@ const MOST: usize = 120;
 const LEFT: f64 = 74.0;
 const TOP: f64 = 14.0;
 const HEIGHT: f64 = 380.0;
-/// Between the map and its bar, and the bar.
-const GAP: f64 = 26.0;
-const BAR: f64 = 18.0;
-/// For the bar's numbers and name.
-const RIGHT: f64 = 84.0;
-const BAR_PARTS: usize = 100;
-/// By how much a cell goes under its neighbours, so that nothing shines through.
-const OVER: f64 = 0.7;
 /// Between the lines of a hatched cell.
 const HATCH: f64 = 7.0;
 const HATCHED: Ink = Ink::new(0xb4_bc_c2);
@@ -100,8 +93,9 @@ impl Map {
             }
         }
         self.mark(&mut canvas, &frame);
-        self.axes(&mut canvas, &frame);
-        self.bar(&mut canvas, &frame, range);
+        axes(&mut canvas, &frame, [&self.x_label, &self.y_label], [8, 6]);
+        let place = Panel { left: frame.right() + GAP, width: BAR, x: Span { low: 0.0, high: 1.0 }, y: range, ..frame };
+        bar(&mut canvas, &place, self.value_scale, &self.value_label, WIDTH - 14.0, ramp);
         canvas
     }
 
@@ -118,41 +112,6 @@ impl Map {
         let from = if is_left { at.0 - 12.0 - long } else { at.0 + 12.0 };
         canvas.rectangle((from, at.1 - 10.0), (from + long, at.1 + 10.0), WHITE.faint(0.85));
         canvas.text(text, (from + 4.0, at.1), TICK_SIZE, TEXT, Align::Left);
-    }
-
-    fn axes(&self, canvas: &mut Canvas, frame: &Panel) {
-        let (x, y) = (frame.x.ticks(8), frame.y.ticks(6));
-        for &place in &y.places {
-            canvas.line((frame.left - 5.0, frame.at_y(place)), (frame.left, frame.at_y(place)), MUTED, 1.0);
-            let at = (frame.left - 8.0, frame.at_y(place));
-            canvas.text(Rich::plain(&y.label(place)), at, TICK_SIZE, MUTED, Align::Right);
-        }
-        for &place in &x.places {
-            canvas.line((frame.at_x(place), frame.bottom()), (frame.at_x(place), frame.bottom() + 5.0), MUTED, 1.0);
-            let at = (frame.at_x(place), frame.bottom() + 15.0);
-            canvas.text(Rich::plain(&x.label(place)), at, TICK_SIZE, MUTED, Align::Center);
-        }
-        let middle = frame.top + 0.5 * frame.height;
-        canvas.upward_text(y.titled(Rich::plain(&self.y_label)), (14.0, middle), LABEL_SIZE, TEXT);
-        let at = (frame.left + 0.5 * frame.width, frame.bottom() + 38.0);
-        canvas.text(x.titled(Rich::plain(&self.x_label)), at, LABEL_SIZE, TEXT, Align::Center);
-    }
-
-    fn bar(&self, canvas: &mut Canvas, frame: &Panel, range: Span) {
-        let bar = Panel { left: frame.right() + GAP, width: BAR, x: Span { low: 0.0, high: 1.0 }, y: range, ..*frame };
-        let at = |part: usize| bar.bottom() - bar.height * part as f64 / BAR_PARTS as f64;
-        for part in 0..BAR_PARTS {
-            let ink = ramp((part as f64 + 0.5) / BAR_PARTS as f64);
-            canvas.rectangle((bar.left, at(part + 1) - OVER), (bar.right(), at(part)), ink);
-        }
-        let ticks = ticks(range, self.value_scale, 6);
-        for &place in &ticks.places {
-            canvas.line((bar.right(), bar.at_y(place)), (bar.right() + 4.0, bar.at_y(place)), MUTED, 1.0);
-            let at = (bar.right() + 8.0, bar.at_y(place));
-            canvas.text(label(&ticks, self.value_scale, place), at, TICK_SIZE, MUTED, Align::Left);
-        }
-        let middle = bar.top + 0.5 * bar.height;
-        canvas.upward_text(ticks.titled(Rich::plain(&self.value_label)), (WIDTH - 14.0, middle), LABEL_SIZE, TEXT);
     }
 }
 
@@ -192,6 +151,7 @@ fn hatched(canvas: &mut Canvas, (x0, y0): (f64, f64), (x1, y1): (f64, f64)) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::filled::SHADES;
 
     fn map() -> Map {
         Map {
@@ -215,7 +175,7 @@ mod tests {
             assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
         }
         // Five cells, one that is hatched, the plate, and the bar.
-        assert_eq!(drawn.matches("<rect").count(), 6 + 1 + BAR_PARTS);
+        assert_eq!(drawn.matches("<rect").count(), 6 + 1 + SHADES);
         assert!(!drawn.contains("NaN"));
     }
 
@@ -224,7 +184,7 @@ mod tests {
     fn a_map_of_decades_has_their_colours() {
         let values = vec![0.1, 1.0, 10.0, 100.0, 1e4, 0.0];
         let drawn = Map { values, value_scale: Scale::Logarithmic, best: None, ..map() }.svg().unwrap();
-        assert_eq!(drawn.matches("<rect").count(), 6 + BAR_PARTS);
+        assert_eq!(drawn.matches("<rect").count(), 6 + SHADES);
         for text in ["0.1", "1", "10", "100", "1000"] {
             assert!(drawn.lines().any(|line| line.trim() == text), "{text} is missing");
         }
@@ -243,7 +203,7 @@ mod tests {
         let n = 1000;
         let x: Vec<f64> = (0..n).map(f64::from).collect();
         let drawn = Map { values: vec![1.0; 1_000_000], y: x.clone(), x, best: None, ..map() }.svg().unwrap();
-        assert_eq!(drawn.matches("<rect").count(), MOST * MOST + BAR_PARTS);
+        assert_eq!(drawn.matches("<rect").count(), MOST * MOST + SHADES);
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub mod collect;
 mod computed;
 mod numerical;
 pub mod plan;
+pub mod report;
 pub mod run;
 pub mod status;
 
@@ -33,6 +34,8 @@ const MESHES: &str = "meshes";
 /// What a campaign says of its computed source.
 #[derive(Debug, Clone)]
 struct Asked {
+    /// Name of the campaign.
+    title: String,
     source: Source,
     spec: CfdSpec,
     /// The folder of the cases.
@@ -108,7 +111,7 @@ impl Asked {
             return Err(refused(problem.to_owned()).into());
         }
         let (folder, source) = (source.input.path().to_owned(), source.clone());
-        Ok(Self { source, spec, folder, body, water })
+        Ok(Self { title: campaign.name, source, spec, folder, body, water })
     }
 }
 

@@ -21,6 +21,7 @@ use froude_records::text::in_a_file_name;
 
 use crate::{Error, campaign_page, method, results};
 
+pub(crate) use crate::pipeline::job::default_out;
 pub use crate::pipeline::job::{Input, Job, Outcome, Purpose, Summary};
 
 /// Reads, fits, chooses, compares, reports; `progress` receives each step.

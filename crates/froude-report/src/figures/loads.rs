@@ -38,6 +38,11 @@ fn load_word(component: &str) -> &'static str {
     }
 }
 
+/// What the points are.
+fn points_word(section: &SourceSection) -> &'static str {
+    if section.kind == "cfd" { "computed" } else { "measured" }
+}
+
 /// The abscissae that loads are drawn against.
 #[derive(Debug, Clone, PartialEq)]
 enum Abscissa {
@@ -329,7 +334,11 @@ impl Look<'_> {
                 None => String::new(),
             };
             if has_points {
-                entries.push(Entry { swatch: Swatch::Dot, ink, text: Rich::plain(&format!("measured{at}")) });
+                entries.push(Entry {
+                    swatch: Swatch::Dot,
+                    ink,
+                    text: Rich::plain(&format!("{}{at}", points_word(self.section))),
+                });
             }
             if let (true, Some(best)) = (has_curves, self.best) {
                 entries.push(Entry { swatch: Swatch::Line, ink, text: Rich::plain(&format!("model {best}")) });
@@ -481,7 +490,7 @@ fn load_caption(look: &Look, contents: &[Content], is_shared: bool, part: &str) 
     );
     let has_points = contents.iter().any(|c| !c.points.is_empty());
     if has_points {
-        out.push_str(" Points: measured");
+        let _ = write!(out, " Points: {}", points_word(look.section));
         let has_bars = |c: &Content| {
             c.points.len() < CLOUD && c.points.iter().any(|(_, p, _)| number::usable(p.standard).is_some())
         };

@@ -30,20 +30,28 @@ pub struct Standings {
 /// As the campaign is read; a folder that was not planned.
 pub fn status(campaign: &Path, source: Option<&str>) -> Result<Standings, Error> {
     let asked = Asked::read(campaign, source)?;
-    let store = Store::open(&asked.folder)?;
-    Ok(Standings { found: CampaignStatus::of(&store), folder: asked.folder })
+    Ok(of_store(&Store::open(&asked.folder)?))
+}
+
+/// The same of a campaign's folder.
+pub(super) fn of_store(store: &Store) -> Standings {
+    Standings { found: CampaignStatus::of(store), folder: store.root().to_owned() }
 }
 
 impl Standings {
+    /// How many cases are in which state.
+    pub(super) fn counts(&self) -> String {
+        let counts = self.found.counts.iter().map(|(standing, n)| format!("{n} {}", standing.word()));
+        format!("{}: {}", counted(self.found.rows.len(), "case", "cases"), counts.collect::<Vec<_>>().join(", "))
+    }
+
     /// What a person reads: what needs attention whole, the others up to a number.
     #[must_use]
     pub fn section(&self) -> DocumentSection {
         let f = &self.found;
-        let counts = f.counts.iter().map(|(standing, n)| format!("{n} {}", standing.word()));
         let mut paragraphs = vec![format!(
-            "{}: {}; {} of a processor spent, {} left at {} µs a cell and iteration, {} GB on disk",
-            counted(f.rows.len(), "case", "cases"),
-            counts.collect::<Vec<_>>().join(", "),
+            "{}; {} of a processor spent, {} left at {} µs a cell and iteration, {} GB on disk",
+            self.counts(),
             duration(f.cpu_s),
             duration(f.left_cpu_s),
             significant(1e6 * f.s_per_cell_iteration, 2),
