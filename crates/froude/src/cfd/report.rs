@@ -14,6 +14,7 @@ mod pictures;
 
 use std::path::{Path, PathBuf};
 
+use froude_cfd::again::Again;
 use froude_cfd::case::Case;
 use froude_cfd::outcome::Outcome;
 use froude_cfd::result::attempt_folder;
@@ -72,9 +73,9 @@ impl Solved {
         }))
     }
 
-    /// Whether it repeats another from the inflow.
+    /// Whether it computes another again, and enters no fit.
     fn is_repeat(&self) -> bool {
-        self.case.id.ends_with("-cold")
+        Again::of(&self.case.id).is_some()
     }
 }
 

@@ -4,6 +4,7 @@ use froude_cfd::case::Model;
 use froude_cfd::outcome::Status;
 use froude_records::number::plain;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series};
+use froude_records::text::counted;
 use serde_json::{Value, json};
 
 use super::Solved;
@@ -31,7 +32,10 @@ pub(super) fn section(solved: &[Solved]) -> DocumentSection {
     let outside = solved.len() - level.len();
     let mut paragraphs = Vec::new();
     if outside > 0 {
-        paragraphs.push(format!("{outside} repeats from the inflow, or angles out of the plane, are not drawn."));
+        paragraphs.push(format!(
+            "Not drawn: {}, of settings that are computed again or of angles out of the plane.",
+            counted(outside, "case", "cases")
+        ));
     }
     DocumentSection { title: "Forces".to_owned(), paragraphs, tables: Vec::new(), charts }
 }

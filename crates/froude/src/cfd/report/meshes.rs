@@ -1,5 +1,6 @@
 //! How good the meshes are, and the y+ of the flows on them.
 
+use froude_cfd::again::Again;
 use froude_cfd::poly_mesh::PolyMesh;
 use froude_cfd::quality::Quality;
 use froude_records::number::{count, significant};
@@ -9,23 +10,24 @@ use serde_json::{Value, json};
 use super::Solved;
 
 /// A mesh with the y+ of its cases that count.
-struct Meshed<'a> {
-    configuration: &'a str,
+struct Meshed {
+    /// The configuration, and what is computed again on it.
+    name: String,
     cells: usize,
     quality: Result<Quality, String>,
     /// Least and largest of the means, largest of all.
     y_plus: Option<[f64; 3]>,
 }
 
-impl<'a> Meshed<'a> {
-    fn of(solved: &'a [Solved]) -> Vec<Self> {
+impl Meshed {
+    fn of(solved: &[Solved]) -> Vec<Self> {
         let mut first: Vec<&Solved> = Vec::new();
         for own in solved {
             if !first.iter().any(|f| f.case.mesh == own.case.mesh) {
                 first.push(own);
             }
         }
-        let meshed = |own: &'a Solved| {
+        let meshed = |own: &Solved| {
             let same = solved.iter().filter(|s| s.case.mesh == own.case.mesh && s.outcome.status.is_usable());
             let y_plus =
                 same.filter_map(|s| s.outcome.y_plus).fold(None, |found: Option<[f64; 3]>, [_, mean, most]| {
@@ -34,7 +36,10 @@ impl<'a> Meshed<'a> {
                 });
             let mesh = PolyMesh::read(&own.mesh).map_err(|e| e.to_string());
             Self {
-                configuration: &own.case.configuration,
+                name: match Again::of(&own.case.id) {
+                    None | Some((_, Again::Cold)) => own.case.configuration.clone(),
+                    Some((_, again)) => format!("{}, {}", own.case.configuration, again.suffix()),
+                },
                 cells: own.outcome.cells,
                 quality: mesh.map(|mesh| Quality::of(&mesh)),
                 y_plus,
@@ -50,7 +55,7 @@ impl<'a> Meshed<'a> {
         };
         let y_plus = |of: &dyn Fn(&[f64; 3]) -> String| self.y_plus.as_ref().map_or_else(|| "—".to_owned(), of);
         vec![
-            self.configuration.to_owned(),
+            self.name.clone(),
             count(self.cells),
             measure(&|q| q.max_non_orthogonality_rad.value.to_degrees()),
             measure(&|q| q.max_skewness.value),
@@ -62,7 +67,7 @@ impl<'a> Meshed<'a> {
 
     fn as_json(&self) -> Value {
         json!({
-            "configuration": self.configuration,
+            "mesh": self.name,
             "cells": self.cells,
             "max_non_orthogonality_rad": self.quality.as_ref().ok().map(|q| q.max_non_orthogonality_rad.value),
             "max_skewness": self.quality.as_ref().ok().map(|q| q.max_skewness.value),
@@ -77,7 +82,7 @@ impl<'a> Meshed<'a> {
 /// The section, and the same for a program.
 pub(super) fn section(solved: &[Solved]) -> (DocumentSection, Value) {
     let meshes = Meshed::of(solved);
-    let problems = meshes.iter().filter_map(|m| Some(format!("{}: {}", m.configuration, m.quality.as_ref().err()?)));
+    let problems = meshes.iter().filter_map(|m| Some(format!("{}: {}", m.name, m.quality.as_ref().err()?)));
     let head =
         ["body", "cells", "non-orthogonality, deg", "skewness", "aspect ratio", "y+, mean of a case", "y+, largest"];
     let table = TextTable {
