@@ -16,6 +16,7 @@ use froude_records::text::counted;
 use froude_records::units::{Dimension, Unit, parse_unit};
 use serde_json::{Value, json};
 
+use super::symmetry::{OneSided, is_symmetric, take_means};
 use super::{Asked, numerical};
 use crate::Error;
 
@@ -25,6 +26,8 @@ pub(super) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
 const OF_HALF: [usize; 3] = [0, 1, 5];
 /// Name of the table.
 const TABLE: &str = "observations.csv";
+/// Part of the largest load beyond which a flow that leans to one side is worth a sentence.
+const SEEN: f64 = 0.01;
 
 /// What was collected.
 #[derive(Debug)]
@@ -38,6 +41,8 @@ pub struct Collected {
     pub without: Vec<(String, String)>,
     /// A repeat from the inflow, or by the other model, with the case it repeats.
     pairs: Vec<Pair>,
+    /// Loads that were set to the mean of a flow and its mirror image.
+    pub one_sided: Vec<OneSided>,
     /// What the mesh and the domain do.
     pub(super) numerical: Numerical,
 }
@@ -74,10 +79,11 @@ pub(super) fn of_folder(folder: &Path, spec: &CfdSpec) -> Result<Collected, Erro
         let correction = numerical.correction(&row.case);
         row.loads = std::array::from_fn(|k| row.loads[k] + correction[k]);
     }
+    let one_sided = if is_symmetric(spec) { take_means(&mut rows) } else { Vec::new() };
     let path = folder.join(TABLE);
     let table = table(&rows, &numerical, &path);
     prepare_table(&table, &path)?.take_place()?;
-    Ok(Collected { path, table, rows, without: found.without, pairs, numerical })
+    Ok(Collected { path, table, rows, without: found.without, pairs, one_sided, numerical })
 }
 
 /// The rows of the table, and the repeats, without what was computed on other grids and in other domains: of a setting that both models computed the one with turbulence counts, and of one that was repeated from the inflow the first.
@@ -187,6 +193,22 @@ fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {
 }
 
 impl Collected {
+    /// Flows that lean to a side of a plane of symmetry by more than a hundredth of the largest load.
+    fn of_one_side(&self) -> Option<String> {
+        let largest = |k: usize| self.rows.iter().map(|r| r.loads[k].abs()).fold(0.0, f64::max);
+        let seen: Vec<&OneSided> =
+            self.one_sided.iter().filter(|o| o.value.abs() > SEEN * largest(o.load) && o.load < 3).collect();
+        let most = seen.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
+        Some(format!(
+            "{} to one side of a plane of symmetry that the body moves in ({} of {} is {} {}); the mirrored flow is a solution as well, and the loads that change sign with it are set to the mean of both, zero",
+            counted(seen.len(), "force leans", "forces lean"),
+            LOADS[most.load],
+            most.case,
+            significant(most.value, 3),
+            unit(most.load)
+        ))
+    }
+
     /// Largest difference of repeats of one kind: of f_x and f_y, over the largest of the table each, with how many there are.
     fn apart(&self, what: &str) -> Option<([f64; 2], usize)> {
         let largest = |k: usize| self.rows.iter().map(|r| r.loads[k].abs()).fold(0.0, f64::max);
@@ -226,6 +248,7 @@ impl Collected {
                 ));
             }
         }
+        paragraphs.extend(self.of_one_side());
         paragraphs.extend(numerical::sentences(&self.numerical, &self.rows));
         let range = |k: usize| {
             let of = |f: fn(f64, f64) -> f64, from: f64| self.rows.iter().map(|r| r.loads[k]).fold(from, f);
@@ -264,6 +287,7 @@ impl Collected {
             "without": self.without.iter().map(|(id, why)| json!({"case": id, "reason": why})).collect::<Vec<_>>(),
             "repeated_from_the_inflow": apart("from the inflow"),
             "laminar_beside_turbulent": apart("laminar"),
+            "one_sided": self.one_sided.iter().map(|o| json!({"case": o.case, "load": LOADS[o.load], "value": o.value})).collect::<Vec<_>>(),
             "numerical": numerical::as_json(&self.numerical),
         })
     }

@@ -45,7 +45,10 @@ impl Method for Computed {
         progress: &dyn Fn(&str),
     ) -> Result<Found, MethodError> {
         progress("collecting cases");
-        let spec = source.cfd.clone().unwrap_or_default();
+        // Another source may read the same cases, of which one says how they were computed.
+        let of_cases = |other: &&Source| other.cfd.is_some() && other.input == source.input;
+        let spec =
+            source.cfd.clone().or_else(|| campaign.sources.iter().find(of_cases)?.cfd.clone()).unwrap_or_default();
         let collected = of_folder(source.input.path(), &spec)
             .map_err(|e| MethodError::input(source.input.path(), e.to_string()))?;
         // Cases of one configuration err alike.
@@ -69,10 +72,15 @@ impl Method for Computed {
         let mut result = identify_observations(campaign, &source, observations, "cfd", &|model| {
             progress(&format!("fitting {model}"));
         })?;
-        let findings = std::mem::take(&mut result.findings);
+        let findings = std::mem::take(&mut result.findings).into_iter().filter(|f| !is_of_a_rig(f)).collect();
         let blocks = collected.sections();
         Ok(Found { results: vec![result.into()], findings, blocks, ..Found::default() })
     }
+}
+
+/// Whether a finding is about the mounting of a sensor, of which a computation has none: one sign of the angle is enough, and suction at the nose pushes a body forward at large angles. That all rows point along the motion is an error whatever made them.
+fn is_of_a_rig(finding: &Finding) -> bool {
+    finding.code == "one-sign-of-angle" || (finding.code == "force-along-motion" && finding.severity < Severity::Error)
 }
 
 /// A table without what it says about its own loads and nothing reads.
