@@ -87,37 +87,49 @@ impl ComparedFlow {
     }
 }
 
-/// Every coefficient that the computed source and a measured one have in a common law, and every load of the law that is recommended.
+/// Every coefficient that the computed source and a measured one have in a common law, and every load that the computation and a measured source's law give.
 ///
-/// The measured law is the recommended one of its source; where none is, that of the name of the computed one.
+/// That law is the recommended one of the measured source; where none is, as of published sets, the one with most coefficients, which follows its observations best.
 ///
 /// # Errors
 ///
 /// A quantity of the budget that is no channel of the observations.
 pub fn validate(simulation: Simulation<'_>, measured: &[Named<'_>]) -> Result<Validated, IdentifyError> {
     let mut out = Validated::default();
-    for (computed, model) in simulation.result.estimates.iter().zip(&simulation.result.models) {
-        for data in measured.iter().map(|named| named.estimate) {
-            if computed.law.name == data.law.name {
-                out.numbers.extend(coefficients(computed, data));
-            }
-            let is_recommended = computed.recommended && (data.recommended || has_no_better(data, measured));
-            if is_recommended && (data.recommended || computed.law.name == data.law.name) {
-                let flows = loads(simulation, model, data)?;
-                for load in &model.law.responses {
-                    let own: Vec<&ComparedFlow> = flows.iter().filter(|flow| flow.load == *load).collect();
-                    out.numbers.extend(over_flows(computed, &own));
-                }
-                out.flows.extend(flows);
-            }
+    let result = simulation.result;
+    for computed in &result.estimates {
+        let of_law = measured.iter().filter(|named| named.estimate.law.name == computed.law.name);
+        out.numbers.extend(of_law.flat_map(|named| coefficients(computed, named.estimate)));
+    }
+    let recommended = result.estimates.iter().position(|estimate| estimate.recommended).unwrap_or(0);
+    let (Some(computed), Some(model)) = (result.estimates.get(recommended), result.models.get(recommended)) else {
+        return Ok(out);
+    };
+    for data in laws(measured) {
+        let flows = loads(simulation, model, data)?;
+        for load in &model.law.responses {
+            let own: Vec<&ComparedFlow> = flows.iter().filter(|flow| flow.load == *load).collect();
+            out.numbers.extend(over_flows(computed, &own));
         }
+        out.flows.extend(flows);
     }
     Ok(out)
 }
 
-/// Whether no other estimate of its source is recommended.
-fn has_no_better(data: &Estimate, measured: &[Named<'_>]) -> bool {
-    !measured.iter().any(|other| other.estimate.source == data.source && other.estimate.recommended)
+/// One estimate of each measured source.
+fn laws<'a>(measured: &[Named<'a>]) -> Vec<&'a Estimate> {
+    let mut out: Vec<Named<'a>> = Vec::new();
+    let rank = |named: &Named<'_>| (named.estimate.recommended, named.estimate.coefficients.len());
+    for named in measured {
+        let is_of_source =
+            |seen: &&mut Named<'a>| seen.file == named.file && seen.estimate.source == named.estimate.source;
+        match out.iter_mut().find(is_of_source) {
+            Some(seen) if rank(named) > rank(seen) => *seen = *named,
+            Some(_) => {}
+            None => out.push(*named),
+        }
+    }
+    out.into_iter().map(|named| named.estimate).collect()
 }
 
 /// Standard uncertainties of what S is made of.
