@@ -1,18 +1,23 @@
-//! Bodies as their computations need them: shape, lengths, and the O-grid about them.
+//! Bodies as their computations need them: shape, lengths, and the O-grid or the cubes about them.
 
-use froude_mesh::panel::{Facet, facets};
+use froude_mesh::measure::Measure;
 use froude_mesh::sections::{Resolution, SectionBody};
+use froude_mesh::vector::Vec3;
 use froude_mesh::{Mesh, robot};
 use froude_records::body::{BodyFile, SemiAxes, Shape};
-use froude_records::cfd::{CfdSpec, MeshSpec};
+use froude_records::cfd::{CfdSpec, CubeSpec, MeshSpec, Mesher};
 use froude_records::table::links_of_configuration;
 
 use crate::case::Reference;
 use crate::o_grid::OGrid;
+use crate::snappy::{Sides, Snappy};
+use crate::surface::{bounds_m, reference};
 
 /// Radius of a domain over the body's length, and over its width, where the campaign does not say: the larger.
 const RADIUS: [f64; 2] = [3.0, 25.0];
-/// Panels around a body whose plan area is measured.
+/// Far cubes from the middle of a box to its sides, at least; across a tank.
+const FAR_CUBES: [f64; 2] = [4.0, 3.0];
+/// Panels around a body whose plan area is measured, and that cubes are cut by.
 const FINE: Resolution = Resolution { along: 4, around: 64 };
 /// Cells along a link, for the same.
 const CELLS_PER_LINK: f64 = 16.0;
@@ -22,14 +27,77 @@ const CELLS_PER_LINK: f64 = 16.0;
 pub struct Shaped {
     /// `HkLT`; empty where the body has only one.
     pub configuration: String,
-    /// Its shape.
-    pub body: SectionBody,
-    /// Lengths, its middle as the reference point.
+    /// Its sections, where an O-grid may go around them; `None` of a surface mesh and of flat ends.
+    pub sections: Option<SectionBody>,
+    /// Its surface in body axes.
+    pub surface: Mesh,
+    /// Lengths, and the point that moments are about: the origin of a body of sections.
     pub reference: Reference,
 }
 
 impl Shaped {
-    /// The grid about it that a campaign asks for.
+    /// A surface mesh in body axes, with its centre of buoyancy as the reference point.
+    #[must_use]
+    pub fn of_surface(configuration: &str, surface: Mesh) -> Self {
+        let centre_m = Measure::of(&surface).centroid_m;
+        let reference = reference(&surface, centre_m);
+        Self { configuration: configuration.to_owned(), sections: None, surface, reference }
+    }
+
+    /// The cubes about it that a campaign asks for; `angle_rad` is that of the velocity, which a tank lies along.
+    ///
+    /// Where the campaign names an O-grid, as many cells lie on the surface as that one has, and layers grow by 1.3 from its first one until they are half as high as the cubes.
+    #[must_use]
+    pub fn cubes(&self, spec: &CfdSpec, angle_rad: f64) -> Snappy {
+        let cubes = match spec.mesher {
+            Mesher::Cubes(cubes) => cubes,
+            Mesher::ByBody | Mesher::OGrid => {
+                let area_m2 = 0.5 * Measure::of(&self.surface).area_m2;
+                CubeSpec {
+                    surface_cell_m: (area_m2 / (spec.mesh.stations * spec.mesh.azimuth) as f64).sqrt(),
+                    first_layer_m: spec.mesh.first_layer_m,
+                    layers: None,
+                    growth: CubeSpec::GROWTH,
+                }
+            }
+        };
+        let CubeSpec { surface_cell_m, first_layer_m, growth, .. } = cubes;
+        let layers = cubes.layers.unwrap_or_else(|| {
+            let ratio = 0.5 * surface_cell_m / first_layer_m;
+            1 + (ratio.ln() / growth.max(1.01).ln()).max(0.0).round() as usize
+        });
+        let radius_m = domain_radius(spec, self.reference) * self.reference.length_m;
+        let turn_rad = if spec.tank.is_some() { angle_rad } else { 0.0 };
+        let (sin, cos) = turn_rad.sin_cos();
+        let [low, high] = bounds_m(&self.surface.mapped(|[x, y, z]| [cos * x - sin * y, sin * x + cos * y, z]));
+        let middle: Vec3 = core::array::from_fn(|k| 0.5 * (low[k] + high[k]));
+        let [mut from, mut to] = [-radius_m, radius_m].map(|r| middle.map(|m| m + r));
+        let mut far_m = radius_m / FAR_CUBES[0];
+        if let Some(tank) = spec.tank {
+            (from[1], to[1]) = (-0.5 * tank.width_m, 0.5 * tank.width_m);
+            (from[2], to[2]) = (-tank.submergence_m, tank.depth_m - tank.submergence_m);
+            far_m = far_m.min(tank.width_m.min(tank.depth_m) / FAR_CUBES[1]);
+        }
+        if spec.is_half {
+            from[2] = 0.0;
+            far_m = far_m.min(to[2] / 2.0);
+        }
+        let levels = (far_m / surface_cell_m).log2().floor().max(1.0) as usize;
+        let sides = if spec.tank.is_some() { Sides::Tank } else { Sides::Open };
+        Snappy {
+            surface_cell_m,
+            levels,
+            layers,
+            first_layer_m,
+            growth,
+            box_m: [from, to],
+            sides,
+            turn_rad,
+            is_half: spec.is_half,
+        }
+    }
+
+    /// The O-grid about it that a campaign asks for.
     #[must_use]
     pub fn grid(&self, spec: &CfdSpec) -> OGrid {
         self.grid_of(spec, spec.mesh)
@@ -75,34 +143,15 @@ pub fn shaped(file: &BodyFile, configuration: &str) -> Result<Shaped, String> {
         (Shape::Capsule { length_m, section: SemiAxes { major_m, minor_m }, end_m }, _) => {
             SectionBody::capsule(0.5 * length_m - end_m, *minor_m, *major_m, *end_m, [32, 16])
         }
-        (Shape::Cylinder { .. }, _) => {
-            let problem =
-                "has flat ends, whose edges an O-grid cannot follow; give it ends of a length: shape = \"capsule\""
-                    .to_owned();
-            return Err(problem);
+        (Shape::Cylinder { length_m, section: SemiAxes { major_m, minor_m } }, _) => {
+            SectionBody::flat_cylinder(0.5 * length_m, *minor_m, *major_m, [16, 32])
         }
     };
-    let mesh = body.mesh(FINE).map_err(|e| e.to_string())?.mesh;
-    Ok(Shaped { configuration: configuration.to_owned(), reference: reference(&mesh), body })
-}
-
-/// Length along x, largest width across it, and the area of the side view, of a closed mesh.
-fn reference(mesh: &Mesh) -> Reference {
-    let extent = |k: usize| {
-        let ends = mesh
-            .vertices
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v[k]), high.max(v[k])]);
-        ends[1] - ends[0]
-    };
-    // What looks to starboard, as a shadow on the xz plane.
-    let shadow = |facet: &Facet| (facet.area * facet.normal[1]).max(0.0);
-    Reference {
-        length_m: extent(0),
-        width_m: extent(1),
-        area_m2: facets(mesh).iter().map(shadow).sum(),
-        point_m: [0.0; 3],
-    }
+    let surface = body.mesh(FINE).map_err(|e| e.to_string())?.mesh;
+    let reference = reference(&surface, [0.0; 3]);
+    // No O-grid follows the edges of flat ends.
+    let sections = Some(body).filter(|_| !matches!(file.shape, Shape::Cylinder { .. }));
+    Ok(Shaped { configuration: configuration.to_owned(), sections, surface, reference })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use crate::case::Case;
 use crate::dictionary::Dictionary;
-use crate::foam_fields::fields;
+use crate::foam_fields::{Field, fields};
 use crate::foam_mesh::{FoamMesh, FoamMeshError};
 use crate::foam_system::{self, Pace};
 
@@ -47,14 +47,21 @@ pub fn write(case: &Case, mesh: &Path, folder: &Path, pace: Pace) -> Result<Foam
     let link = folder.join("constant/polyMesh");
     let way = way_from(&folder.join("constant"), mesh)?;
     std::os::unix::fs::symlink(way, &link).map_err(|e| FoamCaseError::at(&link, e))?;
-    for field in fields(case) {
-        write_text(&folder.join("0").join(field.name), &field.file(&found))?;
-    }
+    write_fields(&fields(case), &found, folder)?;
     write_dictionary(folder, "constant/transportProperties", &foam_system::transport(case))?;
     write_dictionary(folder, "constant/turbulenceProperties", &foam_system::turbulence(case))?;
     write_dictionary(folder, "system/fvSchemes", &foam_system::schemes(case, pace))?;
     write_dictionary(folder, "system/fvSolution", &foam_system::solution(pace))?;
     Ok(found)
+}
+
+/// Writes fields into the start of a case's folder.
+///
+/// # Errors
+///
+/// [`FoamCaseError::File`].
+pub fn write_fields(fields: &[Field], mesh: &FoamMesh, folder: &Path) -> Result<(), FoamCaseError> {
+    fields.iter().try_for_each(|field| write_text(&folder.join("0").join(field.name), &field.file(mesh)))
 }
 
 /// Writes a dictionary's file, `part` of a case's folder.

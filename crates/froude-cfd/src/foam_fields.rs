@@ -68,6 +68,28 @@ pub fn fields(case: &Case) -> Vec<Field> {
     fields
 }
 
+/// The fields of water at rest around a wall that moves: open to water at rest at the outer boundary, whose pressure is 0.
+///
+/// The turbulence is that of the case's own speed.
+#[must_use]
+pub fn fields_at_rest(case: &Case) -> Vec<Field> {
+    let of_type = |kind: &str, zero: &str| Dictionary::default().with("type", kind).with("value", zero);
+    let mut fields = fields(case);
+    for field in &mut fields {
+        let (zero, wall, open) = match field.name {
+            "U" => ("uniform (0 0 0)", Some("movingWallVelocity"), "pressureInletOutletVelocity"),
+            "p" => ("uniform 0", None, "fixedValue"),
+            _ => continue,
+        };
+        zero.clone_into(&mut field.inflow);
+        field.open = of_type(open, zero);
+        if let Some(wall) = wall {
+            field.wall = of_type(wall, zero);
+        }
+    }
+    fields
+}
+
 impl Field {
     /// The file of a start from the inflow.
     #[must_use]

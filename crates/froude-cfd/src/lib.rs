@@ -32,6 +32,7 @@
 //! | [`o_grid`] | O-grids around bodies of elliptic sections |
 //! | [`openfoam`] | where it is, which it is, running its programs |
 //! | [`orphans`] | solvers that outlived their coordinator |
+//! | [`oscillation`] | a body that swings in water at rest: added mass and damping of each period |
 //! | [`outcome`] | what a case came to: its forces, how far they are known, and why it ended |
 //! | [`over_angles`] | a number a load, known at some settings and wanted at all |
 //! | [`plate`] | a flat plate in two dimensions, for validation |
@@ -41,7 +42,7 @@
 //! | [`quality`] | how good a mesh is, by the measures of `checkMesh` |
 //! | [`result`] | results of attempts, and the one that counts |
 //! | [`retry`] | cases that are to be computed again |
-//! | [`snappy`] | meshes of any closed surface by snappyHexMesh |
+//! | [`snappy`] | meshes of any closed surface by snappyHexMesh, with its [files](snappy_files) and [what came out](snappy_log) |
 //! | [`solve`] | a whole case, from its folder to its outcome |
 //! | [`solver_log`] | residuals, time of processors, errors, the largest speed, y+ |
 //! | [`status`] | how far a campaign is |
@@ -49,6 +50,7 @@
 //! | [`store_error`] | why that cannot be worked with |
 //! | [`study`] | settings on a family of grids and in several domains |
 //! | [`surface_pressure`] | the pressure on the body's surface |
+//! | [`surface`] | a closed surface as a body: its lengths, its symmetry |
 //! | [`transient`] | a case in time |
 //! | [`warm`] | starting from another case's last fields, scaled |
 //! | [`work`] | one case, done once |
@@ -89,6 +91,7 @@ pub mod numerical;
 pub mod o_grid;
 pub mod openfoam;
 pub mod orphans;
+pub mod oscillation;
 pub mod outcome;
 pub mod over_angles;
 pub mod plate;
@@ -100,12 +103,15 @@ pub mod quality;
 pub mod result;
 pub mod retry;
 pub mod snappy;
+pub mod snappy_files;
+pub mod snappy_log;
 pub mod solve;
 pub mod solver_log;
 pub mod status;
 pub mod store;
 pub mod store_error;
 pub mod study;
+pub mod surface;
 pub mod surface_pressure;
 pub mod transient;
 pub mod warm;

@@ -1,6 +1,7 @@
 //! The run matrix of a campaign as cases: which settings, by which model, and from which case each starts.
 //!
 //! **Chains.** Cases of one configuration and model lie on a comb. Those at angle 0 go from the fastest to the slowest, each from the one before; at every speed the other angles go up from there. A chain is one job after another, the chains of different combs and of different speeds are independent. Fields are scaled by the ratio of speeds (Reynolds similarity, which holds nearly).
+//! **Tanks.** In a tank each angle has a mesh of its own, and its cases go from the fastest to the slowest.
 //! **Cold repeats.** Of every `1/cold` cases that start warm one is computed once more from the inflow, under the same name with `-cold`: how far its forces lie from the warm ones' is the hysteresis.
 //! **Computed again.** Settings of a study run on the other grids of a family and in other domains, and of the cases of a configuration that a table has, in the order of angles and of speeds within each, some at equal distances run on a finer mesh, the first and the last among them ([`Again`]). All of these start from the inflow. Iterations and window grow with the refinement, as a change of pressure or flux goes a cell an iteration.
 //! **Model.** By the Reynolds number of the width, Re = U W/ν: laminar below one bound, with and without a model of turbulence between that and another, as campaigns say (`[source.cfd]`). The two are limits and no interval.
@@ -33,6 +34,8 @@ pub struct Meshed {
     pub reference: Reference,
     /// Folders of the meshes that settings are computed again on, as [`computed_again`] asks for them.
     pub others: Vec<(Again, String)>,
+    /// The only angle that the mesh is for, as in a tank, whose walls lie along the velocity; `None`: all.
+    pub angle_rad: Option<f64>,
 }
 
 /// A point of the matrix.
@@ -57,7 +60,8 @@ pub fn cases(source: &Source, spec: &CfdSpec, water: Water, meshed: &[Meshed]) -
     }
     let (mut out, mut again) = (Vec::new(), Vec::new());
     for body in meshed {
-        let points = points(source, &body.configuration);
+        let mut points = points(source, &body.configuration);
+        points.retain(|point| body.angle_rad.is_none_or(|angle| (angle - point.angle_rad).abs() <= SAME));
         let from = out.len();
         for is_laminar in [false, true] {
             let of_model = |p: &&Point| {
@@ -207,7 +211,9 @@ struct Comb<'a> {
 
 impl Comb<'_> {
     fn cases(&self, points: &[Point]) -> Vec<Case> {
-        let is_head_on = |p: &&Point| p.angle_rad == 0.0 && p.pitch_rad == 0.0;
+        // Where each angle has a mesh of its own, fields go from speed to speed only.
+        let root_rad = self.body.angle_rad.unwrap_or(0.0);
+        let is_head_on = |p: &&Point| (p.angle_rad - root_rad).abs() <= SAME && p.pitch_rad == 0.0;
         let (head_on, others): (Vec<&Point>, Vec<&Point>) = points.iter().partition(is_head_on);
         let mut out = Vec::with_capacity(points.len());
         let mut before: Option<String> = None;
@@ -300,6 +306,7 @@ mod tests {
             mesh: format!("mesh of {c}"),
             reference: REFERENCE,
             others: computed_again(&spec, c).into_iter().map(|a| (a, format!("{c} {}", a.suffix()))).collect(),
+            angle_rad: None,
         });
         cases(&source, &spec, WATER, &meshed)
     }
@@ -338,6 +345,28 @@ mod tests {
             let warm = cases.iter().find(|c| format!("{}-cold", c.id) == case.id).unwrap();
             assert_eq!((case.hash(), &case.start_from), (warm.hash(), &None));
         }
+    }
+
+    #[test]
+    fn where_each_angle_has_a_mesh_fields_go_from_speed_to_speed() {
+        let text = format!(
+            "schema = 1\nname = \"a\"\n[[source]]\nname = \"flow\"\nkind = \"cfd\"\ncases = \"cases\"\n[source.cfd]\ncold = 0\n{TABLE_2}"
+        );
+        let source = parse_campaign(Path::new("campaign.toml"), &text).unwrap().sources.remove(0);
+        let spec = source.cfd.clone().unwrap();
+        let meshed = [0.0, 45.0_f64.to_radians()].map(|angle| Meshed {
+            configuration: "H1LT".to_owned(),
+            mesh: format!("mesh at {angle}"),
+            reference: REFERENCE,
+            others: Vec::new(),
+            angle_rad: Some(angle),
+        });
+        let cases = cases(&source, &spec, WATER, &meshed).unwrap();
+        assert_eq!(cases.len(), 50 + 4);
+        let at = |id: &str| cases.iter().find(|c| c.id == id).unwrap();
+        assert_eq!(at("H1LT-u0.4-a45").start_from, None);
+        assert_eq!(at("H1LT-u0.3-a45").start_from.as_deref(), Some("H1LT-u0.4-a45"));
+        assert_eq!(at("H1LT-u0.3-a45").mesh, meshed[1].mesh);
     }
 
     /// Re = U W/ν: 2000 at 0.02975 m/s.

@@ -24,7 +24,7 @@ pub enum MeshError {
     },
     /// Cells turned inside out.
     #[error(
-        "the rays of the O-grid cross at {place}: the body is too concave there; mesh its smooth stand-in, or the body by snappyHexMesh"
+        "the rays of the O-grid cross at {place}: the body is too concave there; write mesh = \"coarse\" or {{ surface_cell, first_layer }}, which snappyHexMesh cuts cubes for, or mesh a smooth stand-in"
     )]
     Crossing {
         /// Where.
@@ -43,6 +43,12 @@ pub enum MeshError {
         place: String,
         /// What to do.
         advice: &'static str,
+    },
+    /// A body that is not within its box of water.
+    #[error("the body is not in the water: {problem}")]
+    Outside {
+        /// How it lies.
+        problem: String,
     },
     /// A program of OpenFOAM that made no mesh.
     #[error("{program} made no mesh: {problem}; its log is {log}")]

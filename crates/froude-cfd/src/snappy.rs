@@ -1,20 +1,26 @@
-//! Meshes of any closed surface by OpenFOAM's own `blockMesh` and `snappyHexMesh`: for necks and hulls that no O-grid goes around.
+//! Meshes of any closed surface by OpenFOAM's own `blockMesh` and `snappyHexMesh`: for necks and hulls that no O-grid goes around, and for bodies in a tank.
 //!
-//! A box of cubes about the origin is halved towards the body as often as `levels` says, its cells are moved onto the surface, and layers are put under them. What comes out is what `checkMesh` has nothing to say of, or an error; the counts of cells are the program's, and no family of such meshes is similar.
+//! A box of cubes is halved towards the body as often as `levels` says, its cells are moved onto the surface, and layers are put under them. What comes out is what `checkMesh` has nothing to say of, or an error; the counts of cells are the program's, and no family of such meshes is similar.
+//!
+//! **Frame.** The box lies along the axes that the body's turn about z by `turn_rad` brings its own to. The mesh is in body axes.
+//! **Once.** What was made of the same surface with the same numbers stands in `meshes/snappy-HASH.json` and is not made again; while it is made, and where it fails, the folder `meshes/snappy-HASH` has the programs' logs.
 
 use std::fs::read_to_string;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use froude_mesh::files::write_stl_binary;
 use froude_mesh::mesh::Mesh;
+use froude_mesh::vector::Vec3;
 use froude_records::RecordError;
+use froude_records::hash::sha256_of_bytes;
 use froude_records::write::write_atomically;
 
-use crate::dictionary::{Dictionary, Entry, vector};
 use crate::mesh_error::{MeshError, check_counts, check_length};
 use crate::openfoam::{End, OpenFoam};
 use crate::poly_mesh_files::keep;
+pub use crate::snappy_log::Made;
+use crate::snappy_log::{fault_of, layers_of, quality_of};
+use crate::surface::bounds_m;
 
 /// How fine such a mesh is, and how far it goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,211 +35,233 @@ pub struct Snappy {
     pub first_layer_m: f64,
     /// Each layer over the one before \[-\].
     pub growth: f64,
-    /// Half of the box's edge, m.
-    pub reach_m: f64,
+    /// Two corners of the box, m.
+    pub box_m: [Vec3; 2],
+    /// What its sides are.
+    pub sides: Sides,
+    /// Turn of the body about z in the box, rad.
+    pub turn_rad: f64,
     /// The half domain z ≥ 0 with a plane of symmetry, or all of it.
     pub is_half: bool,
+}
+
+/// What the sides of a box are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sides {
+    /// Open water.
+    Open,
+    /// A tank along the box's x: open at its ends, and four sides along which the water slips, as the walls move with it. The water's surface is one, flat.
+    Tank,
 }
 
 const FILES: [&str; 5] = ["points", "faces", "owner", "neighbour", "boundary"];
 
 impl Snappy {
-    /// Makes the mesh around a closed surface that holds the origin, works in an empty folder, and puts it into `meshes/HASH`, which it gives: patches `body`, `far`, and `symmetry` of the half domain.
+    /// The mesh, where it was made before.
+    #[must_use]
+    pub fn known(&self, surface: &Mesh, meshes: &Path) -> Option<Made> {
+        let text = read_to_string(meshes.join(format!("{}.json", self.name(surface).ok()?))).ok()?;
+        let made: Made = serde_json::from_str(&text).ok()?;
+        meshes.join(&made.mesh).is_dir().then_some(made)
+    }
+
+    /// Makes the mesh around a closed surface in body axes and puts it into `meshes/HASH`: patches `body`, `far`, `tank` of a tank, and `symmetry` of the half domain.
     ///
     /// # Errors
     ///
-    /// [`MeshError`]: numbers that no mesh has, a program that fails, a mesh that `checkMesh` finds fault with.
+    /// [`MeshError`]: numbers that no mesh has, a body that does not fit, a program that fails, a mesh that `checkMesh` finds fault with.
     pub fn mesh(
         &self,
         surface: &Mesh,
         meshes: &Path,
-        folder: &Path,
         openfoam: &OpenFoam,
         cancel: &AtomicBool,
-    ) -> Result<PathBuf, MeshError> {
-        let cells = self.check()?;
-        let extent_m = surface.vertices.iter().flatten().fold(0.0, |most: f64, v| most.max(v.abs()));
-        // Twice, so that the place in the water that the mesh is kept from is none in the body.
-        if surface.panels.is_empty() || 2.0 * extent_m > self.reach_m {
-            return Err(MeshError::Number {
-                quantity: "the extent of the surface from the origin",
-                found: extent_m,
-                expected: format!("above 0 and at most half of {} m, which the box reaches", self.reach_m),
-            });
+    ) -> Result<Made, MeshError> {
+        let name = self.name(surface)?;
+        if let Some(made) = self.known(surface, meshes) {
+            return Ok(made);
         }
-        self.write(surface, folder, cells)?;
-        for (program, arguments, sign) in [
-            ("blockMesh", &[][..], "End"),
-            ("snappyHexMesh", &["-overwrite"][..], "Finished meshing"),
-            ("checkMesh", &["-constant"][..], "Mesh OK."),
-        ] {
+        let folder = meshes.join(&name);
+        let failed = |e: std::io::Error| RecordError::Write { path: folder.clone(), reason: e.to_string() };
+        if folder.exists() {
+            std::fs::remove_dir_all(&folder).map_err(failed)?;
+        }
+        self.write(&self.turned(surface), &folder)?;
+        let run = |program: &'static str, arguments: &[&str], sign: &str| -> Result<String, MeshError> {
             let log = format!("log.{program}");
-            let end = openfoam.run(program, arguments, 1, folder, &log, cancel, &mut || {})?;
+            let end = openfoam.run(program, arguments, 1, &folder, &log, cancel, &mut || {})?;
             let path = folder.join(&log);
             let text = read_to_string(&path).unwrap_or_default();
-            if end != End::Whole || !text.contains(sign) {
-                let faults: Vec<&str> = text.lines().filter(|l| l.contains("***")).map(str::trim).collect();
-                let problem = if faults.is_empty() { format!("it ended as {end:?}") } else { faults.join("; ") };
-                return Err(MeshError::Program { program, problem, log: path.display().to_string() });
+            if end == End::Whole && text.contains(sign) {
+                return Ok(text);
             }
-        }
+            let problem = fault_of(&text).unwrap_or_else(|| format!("it ended as {end:?}"));
+            Err(MeshError::Program { program, problem, log: path.display().to_string() })
+        };
+        run("blockMesh", &[], "End")?;
+        let snapped = run("snappyHexMesh", &["-overwrite"], "Finished meshing")?;
+        let checked = run("checkMesh", &["-constant"], "Mesh OK.")?;
+        let unreadable = |program: &'static str| MeshError::Program {
+            program,
+            problem: "its log does not say what it made".to_owned(),
+            log: folder.join(format!("log.{program}")).display().to_string(),
+        };
+        let (wall_faces, layers, layers_m, coverage) =
+            layers_of(&snapped, "body").ok_or_else(|| unreadable("snappyHexMesh"))?;
+        let (cells, non_orthogonality_deg, max_skewness) =
+            quality_of(&checked).ok_or_else(|| unreadable("checkMesh"))?;
+        let kept = keep(meshes, &self.files(&folder)?)?;
+        let made = Made {
+            mesh: kept.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            cells,
+            max_non_orthogonality_rad: non_orthogonality_deg.to_radians(),
+            max_skewness,
+            wall_faces,
+            layers_asked: self.layers,
+            layers,
+            layers_m,
+            coverage,
+            openfoam: openfoam.version.clone(),
+        };
+        let text = serde_json::to_string_pretty(&made)
+            .map_err(|e| RecordError::Write { path: folder.clone(), reason: e.to_string() })?;
+        write_atomically(&meshes.join(format!("{name}.json")), (text + "\n").as_bytes())?;
+        std::fs::remove_dir_all(&folder).map_err(failed)?;
+        Ok(made)
+    }
+
+    /// Of all that the mesh depends on, OpenFOAM aside.
+    fn name(&self, surface: &Mesh) -> Result<String, MeshError> {
+        self.check(surface)?;
+        let inputs = self.inputs(&self.turned(surface));
+        let parts: Vec<String> =
+            inputs.iter().map(|(name, bytes)| format!("{name} {} {}", sha256_of_bytes(bytes), self.turn_rad)).collect();
+        Ok(format!("snappy-{}", &sha256_of_bytes(parts.join("\n").as_bytes())[..16]))
+    }
+
+    /// The surface as it lies in the box.
+    fn turned(&self, surface: &Mesh) -> Mesh {
+        let turn = Turn::by(self.turn_rad);
+        surface.mapped(|point| turn.of(point))
+    }
+
+    /// The mesh's files, in body axes.
+    fn files(&self, folder: &Path) -> Result<Vec<(&'static str, String)>, MeshError> {
+        let back = Turn::by(-self.turn_rad);
         let mut files = Vec::new();
         for name in FILES {
             let path = folder.join("constant/polyMesh").join(name);
             let text =
                 read_to_string(&path).map_err(|e| RecordError::Read { path: path.clone(), reason: e.to_string() })?;
-            files.push((name, text));
+            files.push((name, if name == "points" && self.turn_rad != 0.0 { back.of_points(&text) } else { text }));
         }
-        keep(meshes, &files)
+        Ok(files)
     }
 
-    /// Cells of the box each way, in the half of its edge.
-    fn check(&self) -> Result<usize, MeshError> {
+    /// Far cells along x, y, z.
+    pub(crate) fn far_cells(&self) -> [usize; 3] {
+        let far_m = self.surface_cell_m * 2.0_f64.powf(self.levels as f64);
+        let [low, high] = self.box_m;
+        core::array::from_fn(|k| ((high[k] - low[k]) / far_m).round() as usize)
+    }
+
+    fn check(&self, surface: &Mesh) -> Result<(), MeshError> {
         check_length("the cells at the surface", self.surface_cell_m)?;
         check_length("the thickness of the first layer", self.first_layer_m)?;
-        check_length("the half of the box's edge", self.reach_m)?;
         check_length("the growth of the layers", self.growth)?;
         check_counts(&[("the number of layers", self.layers, 1)])?;
         check_counts(&[("the number of halvings", self.levels, 1)])?;
-        let cells = (self.reach_m / (self.surface_cell_m * 2.0_f64.powf(self.levels as f64))).round() as usize;
-        check_counts(&[("the number of far cells in half of the box's edge", cells, 2); 3])?;
-        Ok(cells)
+        let [x, y, z] = self.far_cells();
+        check_counts(&[
+            ("the number of far cells along the box", x, 2),
+            ("the number of far cells across the box", y, 2),
+            ("the number of far cells over the box's height", z, 2),
+        ])?;
+        if surface.panels.is_empty() {
+            return Err(MeshError::Outside { problem: "the surface has no panel".to_owned() });
+        }
+        let ([low, high], [least, most]) = (self.box_m, bounds_m(&self.turned(surface)));
+        for (k, axis) in ["along", "across", "over its height"].into_iter().enumerate() {
+            // Half of the box to each side of open water; of a tank a few cells before its walls.
+            let room_m = match self.sides {
+                Sides::Tank if k > 0 => 4.0 * self.surface_cell_m,
+                _ => 0.25 * (high[k] - low[k]),
+            };
+            let is_cut = self.is_half && k == 2;
+            if most[k] > high[k] - room_m || (!is_cut && least[k] < low[k] + room_m) {
+                let problem = format!(
+                    "{axis} the box of {:.4} to {:.4} m the body reaches from {:.4} to {:.4} m, and {room_m:.4} m of water are needed on both sides",
+                    low[k], high[k], least[k], most[k]
+                );
+                return Err(MeshError::Outside { problem });
+            }
+        }
+        Ok(())
     }
 
-    fn write(&self, surface: &Mesh, folder: &Path, cells: usize) -> Result<(), MeshError> {
+    fn write(&self, surface: &Mesh, folder: &Path) -> Result<(), MeshError> {
         for inner in ["constant/triSurface", "system"] {
             let path = folder.join(inner);
             std::fs::create_dir_all(&path)
                 .map_err(|e| RecordError::Write { path: path.clone(), reason: e.to_string() })?;
         }
-        write_atomically(&folder.join("constant/triSurface/body.stl"), &write_stl_binary(surface))?;
-        let control = values(&[
-            ("application", "simpleFoam"),
-            ("startFrom", "startTime"),
-            ("startTime", "0"),
-            ("stopAt", "endTime"),
-            ("endTime", "1"),
-            ("deltaT", "1"),
-            ("writeControl", "timeStep"),
-            ("writeInterval", "1"),
-            ("writeFormat", "ascii"),
-            ("writePrecision", "12"),
-        ]);
-        let schemes = ["ddt", "grad", "div", "laplacian", "interpolation", "snGrad"]
-            .iter()
-            .fold(Dictionary::default(), |all, name| all.with(&format!("{name}Schemes"), Dictionary::default()));
-        for (name, dictionary) in [
-            ("controlDict", control),
-            ("fvSchemes", schemes),
-            ("fvSolution", Dictionary::default()),
-            ("blockMeshDict", self.block(cells)),
-            ("snappyHexMeshDict", self.snappy()),
-        ] {
-            write_atomically(&folder.join("system").join(name), dictionary.file("dictionary", name).as_bytes())?;
+        for (name, bytes) in self.inputs(surface) {
+            write_atomically(&folder.join(name), &bytes)?;
         }
         Ok(())
     }
+}
 
-    fn block(&self, cells: usize) -> Dictionary {
-        let r = self.reach_m;
-        let (low, up) = if self.is_half { (0.0, cells) } else { (-r, 2 * cells) };
-        let corners: Vec<String> =
-            [low, r].iter().flat_map(|&z| [[-r, -r, z], [r, -r, z], [r, r, z], [-r, r, z]]).map(vector).collect();
-        let (bottom, kind) = if self.is_half { ("symmetry", "symmetryPlane") } else { ("bottom", "patch") };
-        let sides = "(0 4 7 3) (1 2 6 5) (0 1 5 4) (3 7 6 2) (4 5 6 7)";
-        let (sides, last) = if self.is_half {
-            (sides.to_owned(), format!("{bottom}\n{{\n type {kind};\n faces ((0 3 2 1));\n}}\n"))
-        } else {
-            (format!("{sides} (0 3 2 1)"), String::new())
+/// A turn about z.
+#[derive(Debug, Clone, Copy)]
+struct Turn {
+    sin: f64,
+    cos: f64,
+}
+
+impl Turn {
+    fn by(angle_rad: f64) -> Self {
+        let (sin, cos) = angle_rad.sin_cos();
+        Self { sin, cos }
+    }
+
+    fn of(self, [x, y, z]: Vec3) -> Vec3 {
+        [self.cos * x - self.sin * y, self.sin * x + self.cos * y, z]
+    }
+
+    /// The points of a file of OpenFOAM, each on a line of its own.
+    fn of_points(self, text: &str) -> String {
+        let point = |line: &str| -> Option<Vec3> {
+            let inner = line.strip_prefix('(')?.strip_suffix(')')?;
+            let mut words = inner.split_whitespace().map(|word| word.parse::<f64>().ok());
+            Some([words.next()??, words.next()??, words.next()??])
         };
-        Dictionary::default()
-            .with("scale", "1")
-            .with("vertices", format!("({})", corners.join(" ")))
-            .with("blocks", format!("(hex (0 1 2 3 4 5 6 7) ({0} {0} {up}) simpleGrading (1 1 1))", 2 * cells))
-            .with("edges", "()")
-            .with("boundary", format!("(\nfar\n{{\n type patch;\n faces ({sides});\n}}\n{last})"))
-    }
-
-    /// Cells whose centre is this near to the surface are halved: more than half of their diagonal, so that no body is missed between the centres.
-    fn distances(&self) -> String {
-        let of = |level: usize| 2.0 * self.surface_cell_m * 2.0_f64.powf((self.levels - level) as f64);
-        let levels: Vec<String> = (1..=self.levels).rev().map(|level| format!("({} {level})", of(level))).collect();
-        format!("({})", levels.join(" "))
-    }
-
-    fn snappy(&self) -> Dictionary {
-        let level = format!("({0} {0})", self.levels);
-        let body = |inner: Dictionary| Dictionary::default().with("body", inner);
-        let castellated = values(&[
-            ("maxLocalCells", "20000000"),
-            ("maxGlobalCells", "50000000"),
-            ("minRefinementCells", "0"),
-            ("nCellsBetweenLevels", "3"),
-            ("features", "()"),
-            ("resolveFeatureAngle", "30"),
-            ("allowFreeStandingZoneFaces", "false"),
-        ])
-        // Not on a face of any cell.
-        .with("locationInMesh", vector([0.911, 0.917, 0.907].map(|part| part * self.reach_m)))
-        .with("refinementRegions", body(values(&[("mode", "distance"), ("levels", &self.distances())])))
-        .with("refinementSurfaces", body(values(&[("level", &level)]).with("patchInfo", values(&[("type", "wall")]))));
-        let snap = values(&[
-            ("nSmoothPatch", "3"),
-            ("tolerance", "2"),
-            ("nSolveIter", "50"),
-            ("nRelaxIter", "5"),
-            ("nFeatureSnapIter", "10"),
-            ("implicitFeatureSnap", "true"),
-            ("explicitFeatureSnap", "false"),
-        ]);
-        let layers = values(&[
-            ("relativeSizes", "false"),
-            ("firstLayerThickness", &self.first_layer_m.to_string()),
-            ("expansionRatio", &self.growth.to_string()),
-            ("minThickness", &(0.1 * self.first_layer_m).to_string()),
-            ("nGrow", "0"),
-            ("featureAngle", "130"),
-            ("nRelaxIter", "5"),
-            ("nSmoothSurfaceNormals", "1"),
-            ("nSmoothNormals", "3"),
-            ("nSmoothThickness", "10"),
-            ("maxFaceThicknessRatio", "0.5"),
-            ("maxThicknessToMedialRatio", "0.3"),
-            ("minMedianAxisAngle", "90"),
-            ("nBufferCellsNoExtrude", "0"),
-            ("nLayerIter", "50"),
-        ])
-        .with("layers", body(values(&[("nSurfaceLayers", &self.layers.to_string())])));
-        let quality = values(&[
-            ("maxNonOrtho", "65"),
-            ("maxBoundarySkewness", "4"),
-            ("maxInternalSkewness", "4"),
-            ("maxConcave", "80"),
-            ("minVol", "1e-18"),
-            ("minTetQuality", "1e-30"),
-            ("minArea", "-1"),
-            ("minTwist", "0.02"),
-            ("minDeterminant", "0.001"),
-            ("minFaceWeight", "0.05"),
-            ("minVolRatio", "0.01"),
-            ("minTriangleTwist", "-1"),
-            ("nSmoothScale", "4"),
-            ("errorReduction", "0.75"),
-        ]);
-        values(&[("castellatedMesh", "true"), ("snap", "true"), ("addLayers", "true"), ("mergeTolerance", "1e-6")])
-            .with(
-                "geometry",
-                Dictionary::default().with("body.stl", values(&[("type", "triSurfaceMesh"), ("name", "body")])),
-            )
-            .with("castellatedMeshControls", castellated)
-            .with("snapControls", snap)
-            .with("addLayersControls", layers)
-            .with("meshQualityControls", quality)
+        let mut out = String::with_capacity(text.len());
+        for line in text.lines() {
+            match point(line) {
+                Some(found) => {
+                    let [x, y, z] = self.of(found);
+                    out.push_str(&format!("({x:.12e} {y:.12e} {z:.12e})"));
+                }
+                None => out.push_str(line),
+            }
+            out.push('\n');
+        }
+        out
     }
 }
 
-fn values(entries: &[(&str, &str)]) -> Dictionary {
-    entries
-        .iter()
-        .fold(Dictionary::default(), |all, &(keyword, value)| all.with(keyword, Entry::Value(value.to_owned())))
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_turned_and_the_rest_of_their_file_stays() {
+        let text = "FoamFile\n{\n    object points;\n}\n2\n(\n(1 0 3)\n(0 -2e-1 0)\n)\n";
+        let turned = Turn::by(std::f64::consts::FRAC_PI_2).of_points(text);
+        let lines: Vec<&str> = turned.lines().collect();
+        assert_eq!((lines.len(), lines[2], lines[5], lines[8]), (9, "    object points;", "(", ")"));
+        assert!(lines[6].ends_with(" 1.000000000000e0 3.000000000000e0)"), "{turned}");
+        assert!(lines[7].starts_with("(2.000000000000e-1 "), "{turned}");
+    }
 }

@@ -18,8 +18,8 @@ use crate::print;
 pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
     match job {
         CfdJob::Plan { of, jobs } => {
-            let bar = Spinner::new();
-            let planned = plan::plan(&of.campaign, of.source.as_deref(), &|what| bar.set_message(what))?;
+            let (bar, cancel) = (Spinner::new(), cancel()?);
+            let planned = plan::plan(&of.campaign, of.source.as_deref(), &cancel, &|what| bar.set_message(what))?;
             bar.finish_and_clear();
             if json {
                 return print::json(&planned.as_json());

@@ -271,6 +271,145 @@ fn what_cannot_be_computed_is_refused() {
     assert!(refused(&["cfd", "status", text(&path)]).contains("froude cfd plan"));
 }
 
+/// An ellipsoid of 200 by 60 by 80 mm with its nose at x = 100, as a text of STL in millimetres; `keel` stretches what lies below.
+fn ellipsoid_mm(keel: f64) -> String {
+    let (along, around) = (12, 24);
+    let point = |i: usize, j: usize| {
+        let (a, b) = (std::f64::consts::PI * i as f64 / along as f64, std::f64::consts::TAU * j as f64 / around as f64);
+        let (sin, cos) = if i == along { (0.0, -1.0) } else { a.sin_cos() };
+        let z = 40.0 * sin * b.sin();
+        // Zero has no sign.
+        [100.0 * cos, 30.0 * sin * b.cos(), if z < 0.0 { keel * z } else { z }].map(|v| (1e6 * v).round() / 1e6 + 0.0)
+    };
+    let mut text = "solid hull\n".to_owned();
+    let mut facet = |corners: [[f64; 3]; 3]| {
+        text.push_str(" facet normal 0 0 0\n  outer loop\n");
+        for [x, y, z] in corners {
+            text.push_str(&format!("   vertex {x:.6} {y:.6} {z:.6}\n"));
+        }
+        text.push_str("  endloop\n endfacet\n");
+    };
+    for i in 0..along {
+        for j in 0..around {
+            let k = (j + 1) % around;
+            let [p, q, r, s] = [point(i, j), point(i + 1, j), point(i + 1, k), point(i, k)];
+            if i > 0 {
+                facet([p, q, s]);
+            }
+            if i + 1 < along {
+                facet([s, q, r]);
+            }
+        }
+    }
+    text + "endsolid hull\n"
+}
+
+#[test]
+fn a_closed_mesh_is_meshed_once_computed_and_its_faults_are_told() {
+    if is_left_out() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("hull.stl"), ellipsoid_mm(1.0)).unwrap();
+    let path = at("campaign.toml");
+    let with = |body: &str, plan: &str| {
+        let a = CAMPAIGN.find("body = \"body.toml\"").unwrap();
+        let b = CAMPAIGN.find("[identify]").unwrap();
+        let text =
+            format!("{}{body}\niterations = 400\nwindow = 40\ncold = 0\n[[source.plan]]\n{plan}\n", &CAMPAIGN[..a]);
+        std::fs::write(&path, text + &CAMPAIGN[b..]).unwrap();
+    };
+    let cubes = "mesh = { surface_cell = \"8 mm\", first_layer = \"0.8 mm\", layers = 3 }\nradius = 5";
+    let plan = "speed = \"0.4 m/s\"\nangle = \"90 deg\"";
+    with(&format!("body = \"hull.stl\"\nunit = \"mm\"\n{cubes}"), plan);
+    // A mesh by snappyHexMesh needs OpenFOAM; once it is made, planning does not.
+    let bare = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_froude"));
+        command.args(["cfd", "plan", text(&path)]).env("PATH", folder.path()).output().unwrap()
+    };
+    let said = String::from_utf8(bare().stderr).unwrap();
+    assert!(said.contains("install the package openfoam"), "{said}");
+    let planned = json(&["cfd", "plan", text(&path)]);
+    assert!(bare().status.success());
+    let row = &planned["configurations"][0];
+    assert_eq!((row["mesher"].as_str(), row["layers"]["asked"].as_u64()), (Some("snappyHexMesh"), Some(3)));
+    let near = |key: &str, expected: f64, part: f64| {
+        let found = row[key].as_f64().unwrap();
+        assert!((found / expected - 1.0).abs() < part, "{key}: {found}, {expected}");
+    };
+    near("length_m", 0.2, 1e-6);
+    near("width_m", 0.06, 1e-6);
+    // Polygons within an ellipse.
+    near("area_m2", std::f64::consts::PI * 0.1 * 0.04, 0.03);
+    assert!(row["cells"].as_u64().unwrap() > 2000 && row["layers"]["coverage"].as_f64().unwrap() > 0.5, "{row}");
+    done(&["cfd", "run", text(&path), "--jobs", "1"]);
+    let table = json(&["cfd", "collect", text(&path)]);
+    assert_eq!(table["observations"].as_u64(), Some(1), "{}", done(&["cfd", "status", text(&path)]));
+    let rows = std::fs::read_to_string(at("flow/observations.csv")).unwrap();
+    let head: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
+    let row: Vec<&str> = rows.lines().nth(1).unwrap().split(',').collect();
+    let of = |name: &str| {
+        let column = head.iter().position(|h| h.starts_with(name)).unwrap();
+        row[column].parse::<f64>().unwrap()
+    };
+    // An ellipse of 3 by 4 across the flow has a drag of 0.4 to 1.5 of ½ρU²A; the sides are alike.
+    let scale_n = 0.5 * 1025.0 * 0.16 * 0.012566;
+    assert!((0.3..1.6).contains(&(of("f_y") / scale_n)), "{rows}");
+    assert!(of("f_x").abs() < 0.05 * of("f_y") && of("y_plus_mean") > 1.0, "{rows}");
+
+    for (file, body, said) in [
+        (ellipsoid_mm(1.0), "", "write unit = \"mm\""),
+        (ellipsoid_mm(1.3), "unit = \"mm\"\n", "domain = \"full\""),
+        (ellipsoid_mm(1.0).replacen("   vertex", "   vertex 1", 1), "unit = \"mm\"\n", "hull.stl"),
+        (ellipsoid_mm(1.0), "unit = \"kg\"\n", "unit of length"),
+    ] {
+        std::fs::write(at("hull.stl"), file).unwrap();
+        with(&format!("body = \"hull.stl\"\n{body}{cubes}"), plan);
+        let found = refused(&["cfd", "plan", text(&path)]);
+        assert!(found.contains(said), "{said}: {found}");
+    }
+    let facets = ellipsoid_mm(1.0);
+    let second = facets.match_indices(" facet").nth(1).unwrap().0;
+    let first = facets.find(" facet").unwrap();
+    std::fs::write(at("hull.stl"), format!("{}{}", &facets[..first], &facets[second..])).unwrap();
+    with(&format!("body = \"hull.stl\"\nunit = \"mm\"\n{cubes}"), plan);
+    let found = refused(&["cfd", "plan", text(&path)]);
+    assert!(found.contains("the surface is open there") && found.contains("--repair"), "{found}");
+}
+
+/// Rays of an O-grid cross in the necks, and a named mesh is then one of cubes; in a tank it is one too, a mesh an angle.
+#[test]
+fn necks_and_tanks_are_meshed_by_cubes() {
+    if is_left_out() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = campaign(folder.path());
+    let own = "mesh = { stations = 20, layers = 20, azimuth = 8, first_layer = \"0.5 mm\" }";
+    let with = |mesh: &str| {
+        let text = CAMPAIGN.replacen(own, mesh, 1).replacen(", \"H2LT\"", "", 1);
+        assert!(text.contains(mesh) && !text.contains("H2LT"));
+        std::fs::write(&path, text).unwrap();
+        json(&["cfd", "plan", self::text(&path)])
+    };
+    let necked = BODY.replace("ends =", "joint = { length = \"60 mm\", scale = 0.7, ramp = \"4 mm\" }\nends =");
+    std::fs::write(folder.path().join("body.toml"), necked).unwrap();
+    let planned = with("mesh = \"coarse\"");
+    assert_eq!(planned["configurations"][0]["mesher"].as_str(), Some("snappyHexMesh"));
+    assert!(planned["said"].to_string().contains("rays of an O-grid cross at"), "{}", planned["said"]);
+    let tank = "mesh = { surface_cell = \"12 mm\", first_layer = \"2 mm\", layers = 2 }\n\
+         tank = { width = \"1 m\", depth = \"0.6 m\", submergence = \"0.3 m\" }";
+    let planned = with(tank);
+    let rows = planned["configurations"].as_array().unwrap();
+    assert_eq!(rows.len(), 3);
+    let blocked: Vec<f64> = rows.iter().map(|row| row["blockage"].as_f64().unwrap()).collect();
+    // Across, the side of some 0.023 m²; head on, the section.
+    assert!(blocked[0] < blocked[1] && blocked[1] < blocked[2], "{blocked:?}");
+    assert!((blocked[2] - rows[2]["area_m2"].as_f64().unwrap() / 0.6).abs() < 1e-9, "{blocked:?}");
+    assert!(planned["said"].to_string().contains("the water slips"), "{}", planned["said"]);
+}
+
 /// Without OpenFOAM a sentence says what to install, and planning works.
 #[test]
 fn without_openfoam_a_sentence_says_what_to_install() {

@@ -3,9 +3,13 @@
 //! ```toml
 //! [source.cfd]
 //! body          = "body.toml"       # a body file, or a closed surface mesh
-//! mesh          = "coarse"          # coarse, medium, fine, or { stations, layers, azimuth, first_layer }
+//! unit          = "mm"              # of a surface mesh; left out: m
+//! forward       = "x"               # its axis that points forward
+//! up            = "z"               # its axis that points up
+//! mesh          = "coarse"          # coarse, medium, fine, { stations, layers, azimuth, first_layer }, or { surface_cell, first_layer, layers, growth }
 //! radius        = 3.0               # of the domain, in lengths of the body; left out: 3, and 25 widths at least
 //! domain        = "half"            # half: cut at the body's plane of symmetry z = 0; full
+//! tank          = { width = "2 m", depth = "1.5 m", submergence = "0.75 m" }   # walls instead of unbounded water
 //! model         = "sst"             # sst, laminar
 //! laminar_below = 2000              # Reynolds number U W/ν of the width, below which a case is laminar whatever the model
 //! both_below    = 10000             # below it a case is computed by both models
@@ -25,6 +29,7 @@ use std::path::PathBuf;
 
 use toml::de::DeValue;
 
+use crate::added_mass_options::GivenOption;
 use crate::error::RecordError;
 use crate::section::Section;
 use crate::section_values::{count, one_of, series};
@@ -32,6 +37,8 @@ use crate::units::Dimension;
 
 /// Most cells in one direction.
 const MOST_CELLS: u64 = 2000;
+/// Most layers at a wall.
+const MOST_LAYERS: u64 = 100;
 /// Most cells of a mesh.
 const MOST_CELLS_IN_ALL: usize = 20_000_000;
 /// Most iterations of a case.
@@ -50,12 +57,18 @@ const USUAL_EVERY: usize = 5;
 pub struct CfdSpec {
     /// A body file or a surface mesh; `None`: the campaign's own body.
     pub body: Option<PathBuf>,
+    /// `unit`, `forward` and `up` of a surface mesh, as they were written.
+    pub lies: Vec<GivenOption>,
     /// Cells about it.
     pub mesh: MeshSpec,
+    /// What makes the mesh.
+    pub mesher: Mesher,
     /// Radius of the domain over the body's length \[-\]; `None`: 3, and 25 widths at least.
     pub radius: Option<f64>,
     /// Whether the domain ends at the plane of symmetry z = 0.
     pub is_half: bool,
+    /// The tank that the body moves in; `None`: unbounded water.
+    pub tank: Option<TankSpec>,
     /// Whether no model of turbulence is used.
     pub is_laminar: bool,
     /// Reynolds number of the width below which no case has one \[-\].
@@ -100,6 +113,46 @@ pub struct StudySpec {
     pub radius: Vec<f64>,
 }
 
+/// What makes a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mesher {
+    /// An O-grid where one goes around the body, and otherwise cubes with as many cells on the surface.
+    ByBody,
+    /// An O-grid.
+    OGrid,
+    /// Cubes that are halved towards the surface and cut by it.
+    Cubes(CubeSpec),
+}
+
+/// Cells of a mesh of cubes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CubeSpec {
+    /// Edge of the cubes at the surface, m.
+    pub surface_cell_m: f64,
+    /// Height of the layer at the wall, m.
+    pub first_layer_m: f64,
+    /// Layers; `None`: until they are half as high as the cubes.
+    pub layers: Option<usize>,
+    /// Each layer over the one before \[-\].
+    pub growth: f64,
+}
+
+impl CubeSpec {
+    /// Growth of layers where nothing is said \[-\].
+    pub const GROWTH: f64 = 1.3;
+}
+
+/// The section of a tank, and where the body is in it: halfway between the walls.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TankSpec {
+    /// From wall to wall, m.
+    pub width_m: f64,
+    /// Of the water, m.
+    pub depth_m: f64,
+    /// Of the body's origin below the surface, m.
+    pub submergence_m: f64,
+}
+
 /// Cells of an O-grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshSpec {
@@ -132,9 +185,12 @@ impl Default for CfdSpec {
     fn default() -> Self {
         Self {
             body: None,
+            lies: Vec::new(),
             mesh: MeshSpec::COARSE,
+            mesher: Mesher::ByBody,
             radius: None,
             is_half: true,
+            tank: None,
             is_laminar: false,
             laminar_below: 0.0,
             both_below: 0.0,
@@ -151,9 +207,13 @@ impl Default for CfdSpec {
 pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
     s.only(&[
         "body",
+        "unit",
+        "forward",
+        "up",
         "mesh",
         "radius",
         "domain",
+        "tank",
         "model",
         "laminar_below",
         "both_below",
@@ -172,12 +232,15 @@ pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
             (x, _) => Ok(x),
         }
     };
-    let own_mesh = mesh(s)?.unwrap_or(usual.mesh);
+    let (own_mesh, mesher) = mesh(s)?.unwrap_or((usual.mesh, usual.mesher));
     let out = CfdSpec {
         body: s.text("body")?.map(|text| s.source.relative(text)),
+        lies: lies(s)?,
         mesh: own_mesh,
+        mesher,
         radius: number("radius", 1.0, 1000.0)?,
         is_half: one_of(s, "domain", &["half", "full"], &[true, false])?.unwrap_or(usual.is_half),
+        tank: s.section("tank")?.as_ref().map(tank).transpose()?,
         is_laminar: one_of(s, "model", &["sst", "laminar"], &[false, true])?.unwrap_or(usual.is_laminar),
         laminar_below: number("laminar_below", 0.0, 1e7)?.unwrap_or(usual.laminar_below),
         both_below: number("both_below", 0.0, 1e7)?.unwrap_or(usual.both_below),
@@ -187,6 +250,21 @@ pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
         fine: s.section("fine")?.map(|f| fine(&f, own_mesh)).transpose()?,
         study: s.sections("study")?.iter().map(study).collect::<Result<_, _>>()?,
     };
+    if let (Some(tank), Some(value)) = (out.tank, s.get("tank")) {
+        let problem = if out.mesher == Mesher::OGrid {
+            "goes with cubes, and mesh asks for an O-grid, which ends in a sphere; write mesh = \"coarse\" or { surface_cell, first_layer }".to_owned()
+        } else if out.is_half && (tank.depth_m - 2.0 * tank.submergence_m).abs() > 1e-9 * tank.depth_m {
+            format!(
+                "has the body {} m below the surface of {} m of water, and half a domain needs it in the middle; write domain = \"full\"",
+                tank.submergence_m, tank.depth_m
+            )
+        } else {
+            String::new()
+        };
+        if !problem.is_empty() {
+            return Err(s.wrong("tank", value, problem));
+        }
+    }
     if let Some(value) = s.get("window").or(s.get("iterations")).filter(|_| 2 * out.window > out.iterations) {
         let problem = format!(
             "leaves no room: forces are judged over {} iterations of at most {}; a window is half of them or less",
@@ -199,7 +277,11 @@ pub(crate) fn cfd(s: &Section<'_>) -> Result<CfdSpec, RecordError> {
 
 fn fine(s: &Section<'_>, own: MeshSpec) -> Result<FineSpec, RecordError> {
     s.only(&["mesh", "every"])?;
-    let finer = mesh(s)?.ok_or_else(|| s.missing("mesh", "write fine = { mesh = \"medium\", every = 5 }"))?;
+    let (finer, mesher) = mesh(s)?.ok_or_else(|| s.missing("mesh", "write fine = { mesh = \"medium\", every = 5 }"))?;
+    if let Some(value) = s.get("mesh").filter(|_| matches!(mesher, Mesher::Cubes(_))) {
+        let problem = "asks for cubes, which are not similar to another mesh; write \"medium\", \"fine\" or an O-grid";
+        return Err(s.wrong("mesh", value, problem));
+    }
     let refinement = (finer.cells() as f64 / own.cells() as f64).cbrt();
     if let Some(value) = s.get("mesh").filter(|_| refinement < LEAST_REFINEMENT) {
         let problem = format!(
@@ -243,15 +325,49 @@ fn study(s: &Section<'_>) -> Result<StudySpec, RecordError> {
     })
 }
 
-fn mesh(s: &Section<'_>) -> Result<Option<MeshSpec>, RecordError> {
+fn lies(s: &Section<'_>) -> Result<Vec<GivenOption>, RecordError> {
+    let mut out = Vec::new();
+    for name in ["unit", "forward", "up"] {
+        if let (Some(text), Some(value)) = (s.text(name)?, s.get(name)) {
+            let place = Some(s.source.place(value.span().start));
+            out.push(GivenOption { name: name.to_owned(), text: text.to_owned(), place });
+        }
+    }
+    Ok(out)
+}
+
+fn tank(s: &Section<'_>) -> Result<TankSpec, RecordError> {
+    s.only(&["width", "depth", "submergence"])?;
+    let length = |key: &'static str| {
+        let advice = "a tank needs width, depth, and the submergence of the body's origin";
+        s.positive(key, Dimension::LENGTH)?.ok_or_else(|| s.missing(key, advice))
+    };
+    let out = TankSpec { width_m: length("width")?, depth_m: length("depth")?, submergence_m: length("submergence")? };
+    match s.get("submergence") {
+        Some(value) if out.submergence_m >= out.depth_m => Err(s.wrong(
+            "submergence",
+            value,
+            format!("is {} m, and the water is {} m deep", out.submergence_m, out.depth_m),
+        )),
+        _ => Ok(out),
+    }
+}
+
+fn mesh(s: &Section<'_>) -> Result<Option<(MeshSpec, Mesher)>, RecordError> {
     let Some(value) = s.get("mesh") else { return Ok(None) };
     if matches!(value.get_ref(), DeValue::String(_)) {
         let named = [MeshSpec::COARSE, MeshSpec::MEDIUM, MeshSpec::FINE];
-        return one_of(s, "mesh", &["coarse", "medium", "fine"], &named);
+        let found = one_of(s, "mesh", &["coarse", "medium", "fine"], &named)?;
+        return Ok(found.map(|spec| (spec, Mesher::ByBody)));
     }
     let m = s.as_section("mesh", value)?;
+    if m.get("surface_cell").is_some() {
+        return Ok(Some((MeshSpec::COARSE, Mesher::Cubes(cubes(&m)?))));
+    }
     m.only(&["stations", "layers", "azimuth", "first_layer"])?;
-    let need = |key: &'static str| m.missing(key, "an O-grid needs stations, layers, azimuth and first_layer");
+    let need = |key: &'static str| {
+        m.missing(key, "an O-grid needs stations, layers, azimuth and first_layer, cubes surface_cell and first_layer")
+    };
     let first_layer_m = m.positive("first_layer", Dimension::LENGTH)?.ok_or_else(|| need("first_layer"))?;
     let cells = |key: &'static str| -> Result<usize, RecordError> {
         let n = count(&m, key, MOST_CELLS)?.ok_or_else(|| need(key))?;
@@ -266,7 +382,34 @@ fn mesh(s: &Section<'_>) -> Result<Option<MeshSpec>, RecordError> {
         let problem = format!("and layers and azimuth make {} cells; at most {MOST_CELLS_IN_ALL}", spec.cells());
         return Err(m.wrong("stations", m.get("stations").unwrap_or(value), problem));
     }
-    Ok(Some(spec))
+    Ok(Some((spec, Mesher::OGrid)))
+}
+
+fn cubes(m: &Section<'_>) -> Result<CubeSpec, RecordError> {
+    m.only(&["surface_cell", "first_layer", "layers", "growth"])?;
+    let length = |key: &'static str| {
+        m.positive(key, Dimension::LENGTH)?.ok_or_else(|| m.missing(key, "cubes need surface_cell and first_layer"))
+    };
+    let growth = m.number("growth")?.unwrap_or(CubeSpec::GROWTH);
+    if let Some(value) = m.get("growth").filter(|_| !(1.0..=2.0).contains(&growth)) {
+        return Err(m.wrong("growth", value, format!("is {growth}; expected a number from 1 to 2")));
+    }
+    let spec = CubeSpec {
+        surface_cell_m: length("surface_cell")?,
+        first_layer_m: length("first_layer")?,
+        layers: count(m, "layers", MOST_LAYERS)?,
+        growth,
+    };
+    match m.get("first_layer") {
+        Some(value) if spec.first_layer_m > spec.surface_cell_m => {
+            let problem = format!(
+                "is {} m, higher than the cubes at the surface, {} m; expected a part of them",
+                spec.first_layer_m, spec.surface_cell_m
+            );
+            Err(m.wrong("first_layer", value, problem))
+        }
+        _ => Ok(spec),
+    }
 }
 
 #[cfg(test)]
@@ -295,7 +438,20 @@ mod tests {
         assert!((source.plan[0].pitch_rad[0] - 10_f64.to_radians()).abs() < 1e-15);
         let own = "mesh = { stations = 20, layers = 18, azimuth = 8, first_layer = \"0.2 mm\" }";
         let spec = parse("mesh = \"medium\"", own).unwrap().sources.remove(0).cfd.unwrap();
-        assert_eq!((spec.mesh.cells(), spec.mesh.first_layer_m), (2880, 2e-4));
+        assert_eq!((spec.mesh.cells(), spec.mesh.first_layer_m, spec.mesher), (2880, 2e-4, Mesher::OGrid));
+    }
+
+    #[test]
+    fn a_surface_lies_somehow_in_cubes_within_a_tank() {
+        let own = "unit = \"mm\"\nup = \"-y\"\nmesh = { surface_cell = \"4 mm\", first_layer = \"0.2 mm\", layers = 8 }\n\
+             tank = { width = \"1.5 m\", depth = \"1 m\", submergence = \"0.3 m\" }";
+        let spec = parse("mesh = \"medium\"", own).unwrap().sources.remove(0).cfd.unwrap();
+        let cubes = CubeSpec { surface_cell_m: 4e-3, first_layer_m: 2e-4, layers: Some(8), growth: 1.3 };
+        assert_eq!(spec.mesher, Mesher::Cubes(cubes));
+        assert_eq!(spec.tank, Some(TankSpec { width_m: 1.5, depth_m: 1.0, submergence_m: 0.3 }));
+        let given: Vec<_> = spec.lies.iter().map(|o| (o.name.as_str(), o.text.as_str())).collect();
+        assert_eq!(given, [("unit", "mm"), ("up", "-y")]);
+        assert!(spec.lies[1].place.is_some());
     }
 
     #[test]
@@ -322,6 +478,15 @@ mod tests {
             ("\"full\"", "\"full\"\nradius = 0.2", "from 1 to 1000"),
             ("\"medium\"", "{ stations = 20, layers = 18, azimuth = 8 }", "first_layer"),
             ("\"medium\"", "{ stations = 2000, layers = 2000, azimuth = 8, first_layer = \"1 mm\" }", "32000000"),
+            ("\"medium\"", "{ surface_cell = \"4 mm\", first_layer = \"5 mm\" }", "higher than the cubes"),
+            ("\"medium\"", "{ surface_cell = \"4 mm\" }", "first_layer"),
+            (
+                "\"full\"",
+                "\"half\"\ntank = { width = \"1 m\", depth = \"1 m\", submergence = \"0.3 m\" }",
+                "domain = \"full\"",
+            ),
+            ("\"full\"", "\"full\"\ntank = { width = \"1 m\", depth = \"1 m\", submergence = \"2 m\" }", "1 m deep"),
+            ("\"full\"", "\"full\"\ntank = { width = \"1 m\", depth = \"1 m\" }", "submergence"),
             ("cases = \"cases\"", "table = \"t.csv\"", "names no cases"),
             ("pitch", "repeats", "repeats"),
         ] {

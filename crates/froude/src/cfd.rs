@@ -1,7 +1,9 @@
 //! `froude cfd`: a campaign of flow computations, planned, run on a laptop or a cluster, and collected into a table that `froude identify` reads.
 
+mod bodies;
 pub mod collect;
 mod computed;
+mod meshes;
 mod numerical;
 pub mod plan;
 pub mod report;
@@ -44,6 +46,8 @@ struct Asked {
     /// The file of the body.
     body: PathBuf,
     water: Water,
+    /// `reference_length` and `reference_area` of the campaign's body, m and m².
+    reference: [Option<f64>; 2],
 }
 
 impl Asked {
@@ -111,8 +115,14 @@ impl Asked {
             let problem = "plans angles out of the plane of symmetry, and half a domain has none: write domain = \"full\" in [source.cfd]";
             return Err(refused(problem.to_owned()).into());
         }
+        if spec.tank.is_some() && source.plan.iter().any(|block| block.pitch_rad.iter().any(|p| *p != 0.0)) {
+            let problem = "plans angles out of the horizontal plane in a tank, whose walls lie along the velocity: leave pitch out, or tank";
+            return Err(refused(problem.to_owned()).into());
+        }
+        let stated = campaign.body.as_ref();
+        let reference = [stated.and_then(|b| b.reference_length_m), stated.and_then(|b| b.reference_area_m2)];
         let (folder, source) = (source.input.path().to_owned(), source.clone());
-        Ok(Self { title: campaign.name, source, spec, folder, body, water })
+        Ok(Self { title: campaign.name, source, spec, folder, body, water, reference })
     }
 }
 

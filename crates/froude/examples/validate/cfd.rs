@@ -321,7 +321,7 @@ fn paper_matrix(example: &str, configurations: &str) -> String {
 fn price(claims: &mut Claims, root: &Path, done: &Value) -> Result<(), Failed> {
     let nine: Vec<String> = (1..=9).map(|k| format!("\"H{k}LT\"")).collect();
     let path = campaign(root, "paper", &paper_matrix(&example(root)?, &format!("[{}]", nine.join(", "))))?;
-    let planned = plan(&path, None, &|_| {})?.as_json();
+    let planned = plan(&path, None, &AtomicBool::new(false), &|_| {})?.as_json();
     let of = |key: &str| {
         planned["configurations"].as_array().map_or(0.0, |all| all.iter().filter_map(|c| c[key].as_f64()).sum())
     };

@@ -1,25 +1,25 @@
 //! `froude cfd plan`: meshes are made, cases are written, and priced before anything runs.
 
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use froude_cfd::again::Again;
-use froude_cfd::body::{Shaped, shaped};
-use froude_cfd::case::{Case, LAMINAR_REYNOLDS};
+use froude_cfd::case::{Case, LAMINAR_REYNOLDS, Reference, Water};
 use froude_cfd::change::{Change, plan as plan_cases};
 use froude_cfd::cost::Cost;
-use froude_cfd::matrix::{Meshed, cases, computed_again};
-use froude_cfd::mesh_error::MeshError;
-use froude_cfd::o_grid::OGrid;
-use froude_cfd::quality::Quality;
+use froude_cfd::matrix::{Meshed, cases};
+use froude_cfd::snappy::Made;
 use froude_cfd::store::{State, Store};
+use froude_cfd::surface::shadow_m2;
+use froude_hydro::similarity::{blockage, friction_ittc57, friction_laminar};
 use froude_panel::refine::duration;
-use froude_records::body::read_body;
-use froude_records::number::{count, significant};
+use froude_records::number::{count, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::text::counted;
 use serde_json::{Value, json};
 
-use super::{Asked, CfdInput, MESHES};
+use super::meshes::{Group, of_body};
+use super::{Asked, CfdInput, bodies};
 use crate::Error;
 
 /// Disk that a cell takes with one set of fields and a history of forces, bytes.
@@ -49,12 +49,22 @@ pub struct PlannedConfiguration {
     pub configuration: String,
     /// Empty for the campaign's own mesh; of others as their cases end: `fine`, `coarser`, `finer2`, `r6`.
     pub mesh: String,
-    /// Length of the body, m.
-    pub length_m: f64,
+    /// The angle that its mesh is for; `None`: all.
+    pub angle_rad: Option<f64>,
+    /// Lengths and the point that its loads refer to.
+    pub reference: Reference,
     /// Cells of its mesh.
     pub cells: usize,
     /// Largest non-orthogonality of the mesh, rad.
     pub non_orthogonality_rad: f64,
+    /// Largest skewness of the mesh \[-\].
+    pub skewness: f64,
+    /// What snappyHexMesh made; `None`: it is an O-grid.
+    pub cubes: Option<Made>,
+    /// y+ to expect of the mean over the body at the highest speed, from the friction of a plate of its length \[-\].
+    pub y_plus: f64,
+    /// Part of a tank's section that the body blocks \[-\].
+    pub blockage: Option<f64>,
     /// Its cases.
     pub cases: usize,
     /// Those without a result.
@@ -69,25 +79,25 @@ pub struct PlannedConfiguration {
 
 /// Plans a campaign: its only source with cases, or the one of a name. `tell` hears what is done.
 ///
+/// Meshes are made here, also those by snappyHexMesh, which take a second to a minute: without them nobody knows how many cells there are, and so no price. Each is made once.
+///
 /// # Errors
 ///
-/// A campaign or a body file that cannot be used; a body that no O-grid fits; a folder that cannot be written, or that another process runs.
-pub fn plan(campaign: &Path, source: Option<&str>, tell: &dyn Fn(&str)) -> Result<Planned, Error> {
+/// A campaign, a body file or a surface that cannot be used; a body that no mesh fits; OpenFOAM is not there and a mesh needs it; a folder that cannot be written, or that another process runs.
+pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &dyn Fn(&str)) -> Result<Planned, Error> {
     let asked = Asked::read(campaign, source)?;
-    let shapes = shapes(&asked)?;
-    let mut meshed = Vec::with_capacity(shapes.len());
-    for shape in &shapes {
-        tell(&format!("mesh of {}", shape.configuration));
-        meshed.push(mesh(&asked, shape)?);
+    let mut meshed: Vec<Group> = Vec::new();
+    for body in bodies::bodies(&asked)? {
+        meshed.extend(of_body(&asked, &body, cancel, tell)?);
     }
-    let bodies: Vec<Meshed> = meshed.iter().map(|(body, _)| body.clone()).collect();
+    let bodies: Vec<Meshed> = meshed.iter().map(|group| group.meshed.clone()).collect();
     let refused = |problem| CfdInput { path: campaign.to_owned(), problem };
     let cases = cases(&asked.source, &asked.spec, asked.water, &bodies).map_err(refused)?;
     tell("cases");
     let (store, change) = plan_cases(&asked.folder, &cases)?;
     let mut cost = Cost::default();
-    for made in meshed.iter().flat_map(|(_, meshes)| meshes) {
-        cost.knows(&made.name, made.cells);
+    for ready in meshed.iter().flat_map(|group| &group.meshes) {
+        cost.knows(&ready.mesh, ready.cells);
     }
     let states = store.states();
     for case in &cases {
@@ -95,23 +105,37 @@ pub fn plan(campaign: &Path, source: Option<&str>, tell: &dyn Fn(&str)) -> Resul
             cost.learn(case, &done.outcome);
         }
     }
-    let rows = meshed.iter().flat_map(|(body, meshes)| meshes.iter().map(move |made| (body, made)));
-    let configurations = rows.map(|(body, made)| {
+    let rows = meshed.iter().flat_map(|group| group.meshes.iter().map(move |ready| (group, ready)));
+    let configurations = rows.map(|(group, ready)| {
+        let Meshed { configuration, reference, angle_rad, .. } = &group.meshed;
         let again = |c: &Case| Again::of(&c.id).map(|(_, again)| again).filter(|again| *again != Again::Cold);
-        let is_own = |c: &&Case| c.configuration == body.configuration && again(c) == made.again;
+        let is_own = |c: &&Case| {
+            c.configuration == *configuration
+                && again(c) == ready.again
+                && (angle_rad.is_none() || c.mesh == ready.mesh)
+        };
         let own: Vec<&Case> = cases.iter().filter(is_own).collect();
         let open = || own.iter().filter(|c| states.get(&c.id).is_none_or(State::is_open));
         let reynolds = own.iter().map(|c| c.reynolds());
+        let speed_m_s = own.iter().map(|c| c.flow.speed_m_s).fold(0.0, f64::max);
         PlannedConfiguration {
-            configuration: body.configuration.clone(),
-            mesh: made.again.map_or_else(String::new, Again::suffix),
-            length_m: body.reference.length_m,
-            cells: made.cells,
-            non_orthogonality_rad: made.quality.max_non_orthogonality_rad.value,
+            configuration: configuration.clone(),
+            mesh: ready.again.map_or_else(String::new, Again::suffix),
+            angle_rad: *angle_rad,
+            reference: *reference,
+            cells: ready.cells,
+            non_orthogonality_rad: ready.max_non_orthogonality_rad,
+            skewness: ready.max_skewness,
+            cubes: ready.cubes.clone(),
+            y_plus: y_plus(asked.water, reference.length_m, speed_m_s, ready.first_layer_m),
+            blockage: asked.spec.tank.zip(*angle_rad).map(|(tank, angle)| {
+                let (sin, cos) = angle.sin_cos();
+                blockage(shadow_m2(&group.body.surface, [cos, -sin, 0.0]), tank.width_m * tank.depth_m)
+            }),
             cases: own.len(),
             open: open().count(),
             cpu_s: open().map(|c| cost.expected_s(c)).sum(),
-            bytes: BYTES_PER_CELL * made.cells as f64 * own.len() as f64,
+            bytes: BYTES_PER_CELL * ready.cells as f64 * own.len() as f64,
             reynolds: reynolds.fold([f64::INFINITY, 0.0], |[low, high], re| [low.min(re), high.max(re)]),
         }
     });
@@ -119,72 +143,43 @@ pub fn plan(campaign: &Path, source: Option<&str>, tell: &dyn Fn(&str)) -> Resul
         configurations: configurations.collect(),
         is_measured: cost.is_measured(),
         s_per_cell_iteration: cost.s_per_cell_iteration(),
-        said: said(&asked, &cases, &change),
+        said: said(&asked, &meshed, &cases, &change),
         store,
         change,
     })
 }
 
-/// The bodies that the plan names, in the order in which it does.
-fn shapes(asked: &Asked) -> Result<Vec<Shaped>, Error> {
-    let file = read_body(&asked.body)?;
-    let mut names: Vec<&String> = Vec::new();
-    for name in asked.source.plan.iter().flat_map(|block| &block.configurations) {
-        if !names.contains(&name) {
-            names.push(name);
+/// y+ of the centres of the first cells, u_τ y/ν with u_τ = U √(c_f/2).
+///
+/// c_f is that of the ITTC line of 1957 at the Reynolds number of the length, below 10³ that of Blasius. It is a scale for the mean and no bound: before a bluff body's shoulders the friction is some three times that.
+fn y_plus(water: Water, length_m: f64, speed_m_s: f64, first_layer_m: f64) -> f64 {
+    let reynolds = speed_m_s * length_m / water.viscosity_m2_s;
+    let friction = friction_ittc57(reynolds).unwrap_or_else(|_| friction_laminar(reynolds));
+    speed_m_s * (0.5 * friction).sqrt() * 0.5 * first_layer_m / water.viscosity_m2_s
+}
+
+/// Part of the layers' thickness below which they are said to be lost.
+const COVERED: f64 = 0.9;
+
+fn said(asked: &Asked, meshed: &[Group], cases: &[Case], change: &Change) -> Vec<String> {
+    let mut out = Vec::new();
+    for (group, ready) in meshed.iter().flat_map(|group| group.meshes.iter().map(move |ready| (group, ready))) {
+        let name = &group.meshed.configuration;
+        if let Some(place) = &ready.instead {
+            out.push(format!(
+                "{name}: rays of an O-grid cross at {place}, so that snappyHexMesh made the mesh, with as many cells on the surface"
+            ));
+        }
+        if let Some(made) = ready.cubes.as_ref().filter(|made| made.coverage < COVERED) {
+            out.push(format!(
+                "{name}: layers have {} of the thickness that was asked for; where they are missing, y+ is that of the cubes: make the cubes smaller, or ask for fewer layers",
+                percent(made.coverage)
+            ));
         }
     }
-    let refused = |problem| CfdInput { path: asked.body.clone(), problem }.into();
-    names.into_iter().map(|name| shaped(&file, name).map_err(refused)).collect()
-}
-
-/// A mesh that is written.
-struct Made {
-    /// Which cases run on it; `None`: those of the plan.
-    again: Option<Again>,
-    name: String,
-    cells: usize,
-    quality: Quality,
-}
-
-/// The meshes of a configuration, written, its own first.
-fn mesh(asked: &Asked, shape: &Shaped) -> Result<(Meshed, Vec<Made>), Error> {
-    let refused = |e: &dyn std::fmt::Display| {
-        let name = if shape.configuration.is_empty() { "the body" } else { &shape.configuration };
-        CfdInput { path: asked.body.clone(), problem: format!("no mesh of {name}: {e}") }
-    };
-    let again = computed_again(&asked.spec, &shape.configuration);
-    let mut meshes = Vec::with_capacity(1 + again.len());
-    for again in std::iter::once(None).chain(again.into_iter().map(Some)) {
-        let grid = grid(asked, shape, again).map_err(|e| refused(&e))?;
-        let (mesh, quality) = grid.mesh(&shape.body).map_err(|e| refused(&e))?;
-        let folder = mesh.write(&asked.folder.join(MESHES)).map_err(|e| refused(&e))?;
-        let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        meshes.push(Made { again, name, cells: mesh.cells, quality });
+    if asked.spec.tank.is_some() {
+        out.push("in a tank: its walls, its bottom and the water's surface are planes along which the water slips, as the walls move with it; the surface stays flat and makes no waves".to_owned());
     }
-    let of = |again: Option<Again>| meshes.iter().find(|m| m.again == again).map(|m| m.name.clone());
-    let body = Meshed {
-        configuration: shape.configuration.clone(),
-        mesh: of(None).unwrap_or_default(),
-        reference: shape.reference,
-        others: meshes.iter().filter_map(|m| Some((m.again?, m.name.clone()))).collect(),
-    };
-    Ok((body, meshes))
-}
-
-/// The grid of the plan's cases, or of those that compute its settings again.
-fn grid(asked: &Asked, shape: &Shaped, again: Option<Again>) -> Result<OGrid, MeshError> {
-    let own = shape.grid(&asked.spec);
-    match (again, asked.spec.fine) {
-        (Some(Again::Fine), Some(fine)) => Ok(shape.grid_of(&asked.spec, fine.mesh)),
-        (Some(Again::Grid(level)), _) => own.at_level(&shape.body, level),
-        (Some(Again::Domain(radius)), _) => own.of_radius(&shape.body, radius * shape.reference.length_m),
-        (None | Some(Again::Cold | Again::Fine), _) => Ok(own),
-    }
-}
-
-fn said(asked: &Asked, cases: &[Case], change: &Change) -> Vec<String> {
-    let mut out = Vec::new();
     let slow = cases.iter().filter(|c| c.is_tripped_too_early()).count();
     if slow > 0 {
         out.push(format!(
@@ -216,18 +211,38 @@ impl Planned {
     /// What a person reads; `processors` work side by side.
     #[must_use]
     pub fn section(&self, processors: usize) -> DocumentSection {
+        let name = |c: &PlannedConfiguration| match c.angle_rad {
+            Some(angle) => format!("{} at {:.1}°", c.configuration, angle.to_degrees()).trim_start().to_owned(),
+            None => format!("{} {}", c.configuration, c.mesh).trim().to_owned(),
+        };
         let row = |c: &PlannedConfiguration| {
             vec![
-                format!("{} {}", c.configuration, c.mesh).trim().to_owned(),
-                significant(c.length_m, 4),
+                name(c),
                 count(c.cells),
-                format!("{:.0}", c.non_orthogonality_rad.to_degrees()),
                 format!("{} to {}", significant(c.reynolds[0], 2), significant(c.reynolds[1], 2)),
                 c.cases.to_string(),
                 c.open.to_string(),
                 duration(c.cpu_s),
                 significant(c.bytes / 1e6, 2),
             ]
+        };
+        let mesh = |c: &PlannedConfiguration| {
+            let layers = |made: &Made| format!("{} of {}", significant(made.layers, 3), made.layers_asked);
+            vec![
+                name(c),
+                if c.cubes.is_some() { "snappyHexMesh" } else { "O-grid" }.to_owned(),
+                format!("{:.0}", c.non_orthogonality_rad.to_degrees()),
+                significant(c.skewness, 2),
+                c.cubes.as_ref().map_or_else(|| "all".to_owned(), layers),
+                percent(c.cubes.as_ref().map_or(1.0, |made| made.coverage)),
+                significant(c.y_plus, 2),
+                c.blockage.map_or_else(String::new, percent),
+            ]
+        };
+        let lengths = |c: &PlannedConfiguration| {
+            let Reference { length_m, width_m, area_m2, point_m } = c.reference;
+            let point = point_m.map(|x| significant(x, 3)).join(", ");
+            vec![name(c), significant(length_m, 4), significant(width_m, 4), significant(area_m2, 4), point]
         };
         let sum = |of: fn(&PlannedConfiguration) -> f64| self.configurations.iter().map(of).sum::<f64>();
         let cpu_s = sum(|c| c.cpu_s);
@@ -242,25 +257,24 @@ impl Planned {
             significant(1e6 * self.s_per_cell_iteration, 2),
         )];
         paragraphs.extend(self.said.iter().cloned());
-        let head = [
-            "body",
-            "length, m",
-            "cells",
-            "non-orthogonality, deg",
-            "Re of the width",
-            "cases",
-            "to compute",
-            "time",
-            "disk, MB",
-        ];
+        let table = |caption: String, head: &[&str], row: &dyn Fn(&PlannedConfiguration) -> Vec<String>| TextTable {
+            caption,
+            head: head.iter().map(|word| (*word).to_owned()).collect(),
+            rows: self.configurations.iter().map(row).collect(),
+        };
+        let head = ["body", "cells", "Re of the width", "cases", "to compute", "time", "disk, MB"];
+        let mesh_head =
+            ["body", "mesh", "non-orthogonality, deg", "skewness", "layers", "of their thickness", "y+", "blocks"];
+        let of_mesh = "meshes; y+ is what the friction of a plate lets expect at the highest speed";
+        let of_lengths = "lengths that numbers refer to, the area of the side, and the point of the moments, x forward, y to starboard, z down";
         DocumentSection {
             title: "Planned".to_owned(),
             paragraphs,
-            tables: vec![TextTable {
-                caption: format!("cases in {}", self.store.root().display()),
-                head: head.map(str::to_owned).to_vec(),
-                rows: self.configurations.iter().map(row).collect(),
-            }],
+            tables: vec![
+                table(format!("cases in {}", self.store.root().display()), &head, &row),
+                table(of_mesh.to_owned(), &mesh_head, &mesh),
+                table(of_lengths.to_owned(), &["body", "length, m", "width, m", "area, m²", "point, m"], &lengths),
+            ],
             charts: Vec::new(),
         }
     }
@@ -273,9 +287,18 @@ impl Planned {
             "configurations": self.configurations.iter().map(|c| json!({
                 "configuration": c.configuration,
                 "mesh": c.mesh,
-                "length_m": c.length_m,
+                "angle_rad": c.angle_rad,
+                "length_m": c.reference.length_m,
+                "width_m": c.reference.width_m,
+                "area_m2": c.reference.area_m2,
+                "point_m": c.reference.point_m,
+                "mesher": if c.cubes.is_some() { "snappyHexMesh" } else { "O-grid" },
                 "cells": c.cells,
                 "max_non_orthogonality_rad": c.non_orthogonality_rad,
+                "max_skewness": c.skewness,
+                "layers": c.cubes.as_ref().map(|m| json!({"asked": m.layers_asked, "mean": m.layers, "coverage": m.coverage, "thickness_m": m.layers_m})),
+                "y_plus_expected": c.y_plus,
+                "blockage": c.blockage,
                 "cases": c.cases,
                 "open": c.open,
                 "cpu_s": c.cpu_s,

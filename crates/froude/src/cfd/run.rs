@@ -58,7 +58,7 @@ pub struct Job {
 /// As [`plan`]; OpenFOAM is not there; another process runs the campaign.
 pub fn run(job: &Job, cancel: &AtomicBool, running: &Running<'_>) -> Result<Done, Error> {
     let programs = OpenFoam::find()?;
-    let planned = plan(&job.campaign, job.source.as_deref(), running.now)?;
+    let planned = plan(&job.campaign, job.source.as_deref(), cancel, running.now)?;
     for line in planned.said.iter().cloned().chain(programs.advice()) {
         (running.line)(&line);
     }

@@ -1,0 +1,95 @@
+//! The bodies that a campaign computes: a body file's, or a closed surface mesh as `froude added-mass` reads it.
+
+use froude_added_mass::frame::Axes;
+use froude_added_mass::load::{is_body_file, read_mesh};
+use froude_added_mass::options::Asked as Lies;
+use froude_cfd::body::{Shaped, shaped};
+use froude_cfd::surface::asymmetry;
+use froude_mesh::check::{Trouble, check};
+use froude_mesh::crossing::crossings;
+use froude_mesh::mesh::Mesh;
+use froude_mesh::parts::part_troubles;
+use froude_mesh::plausible::{LARGEST_M, too_large};
+use froude_mesh::vector::dot;
+use froude_records::body::read_body;
+
+use super::{Asked, CfdInput};
+use crate::Error;
+
+/// Faults of a mesh that are told one by one.
+const MOST_TOLD: usize = 6;
+
+/// The bodies that the plan names, in the order in which it does.
+pub(super) fn bodies(asked: &Asked) -> Result<Vec<Shaped>, Error> {
+    let mut names: Vec<&String> = Vec::new();
+    for name in asked.source.plan.iter().flat_map(|block| &block.configurations) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let refused = |problem: String| CfdInput { path: asked.body.clone(), problem };
+    let found = if is_body_file(&asked.body) {
+        if let Some(given) = asked.spec.lies.first() {
+            return Err(refused(format!("is a body file, which has its units and axes; take {given} out")).into());
+        }
+        let file = read_body(&asked.body)?;
+        names.into_iter().map(|name| shaped(&file, name).map_err(refused)).collect::<Result<Vec<_>, _>>()?
+    } else {
+        let [name] = names[..] else {
+            let problem =
+                "is a mesh, which is one body, and the plan names several configurations; write a source for each";
+            return Err(refused(problem.to_owned()).into());
+        };
+        vec![surface(asked, name)?]
+    };
+    for body in &found {
+        let off = if asked.spec.is_half { asymmetry(&body.surface) } else { None };
+        if let Some(asymmetry) = off {
+            let problem = format!("{asymmetry}; write domain = \"full\" in [source.cfd]");
+            return Err(refused(problem).into());
+        }
+    }
+    Ok(found)
+}
+
+/// A closed surface, turned into x forward, y to starboard, z down.
+fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
+    let refused = |problem: String| CfdInput { path: asked.body.clone(), problem };
+    let lies = Lies::read(&asked.body, &asked.spec.lies)?;
+    let (mesh, _) = read_mesh(&asked.body, lies.unit_m)?;
+    let troubles = troubles(&mesh);
+    if !troubles.is_empty() {
+        let repair = "froude added-mass FILE --repair repaired.obj writes a mesh with the unambiguous faults corrected";
+        let problem = format!("encloses no body that water flows around:\n{}\n  {repair}", troubles.join("\n"));
+        return Err(refused(problem).into());
+    }
+    if let Some(doubt) = too_large(&mesh).filter(|_| lies.unit_m.is_none()) {
+        let problem = format!(
+            "is {:.4} m long, which is doubtful above {LARGEST_M} m; write unit = \"mm\" in [source.cfd], or \"m\" if it is that large",
+            doubt.extent_m
+        );
+        return Err(refused(problem).into());
+    }
+    let axes = Axes::Ned.vectors(lies.orientation.unwrap_or_default());
+    let mut body = Shaped::of_surface(name, mesh.mapped(|v| axes.map(|axis| dot(axis, v))));
+    let [length_m, area_m2] = asked.reference;
+    body.reference.length_m = length_m.unwrap_or(body.reference.length_m);
+    body.reference.area_m2 = area_m2.unwrap_or(body.reference.area_m2);
+    Ok(body)
+}
+
+/// What makes a mesh none of a body, a line each.
+fn troubles(mesh: &Mesh) -> Vec<String> {
+    let mut all = check(mesh);
+    if !all.iter().any(Trouble::is_fatal) {
+        all.extend(part_troubles(mesh));
+        all.extend(crossings(mesh));
+    }
+    let mut told: Vec<String> = all.iter().filter(|t| t.is_fatal()).map(|t| format!("  {t}")).collect();
+    let rest = told.len().saturating_sub(MOST_TOLD);
+    told.truncate(MOST_TOLD);
+    if rest > 0 {
+        told.push(format!("  and {rest} more"));
+    }
+    told
+}
