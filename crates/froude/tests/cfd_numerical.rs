@@ -84,7 +84,7 @@ fn computed(folder: &Path, again: &str) -> PathBuf {
     std::fs::write(folder.join("body.toml"), BODY).unwrap();
     let path = folder.join("campaign.toml");
     std::fs::write(&path, CAMPAIGN.replace("STUDY", again)).unwrap();
-    let planned = plan::plan(&path, None, &|_| ()).unwrap();
+    let planned = plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap();
     local::run(&planned.store, &Known, 2, &AtomicBool::new(false), &|_| ()).unwrap();
     path
 }
@@ -172,7 +172,7 @@ fn a_mesh_that_nothing_is_known_of_is_said() {
     assert_eq!(part(&fitted(&path), "mesh"), 0.0);
     let refused = |again: &str| {
         std::fs::write(&path, CAMPAIGN.replace("STUDY", again)).unwrap();
-        plan::plan(&path, None, &|_| ()).unwrap_err().to_string()
+        plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap_err().to_string()
     };
     let other = refused("[[source.cfd.study]]\nspeed = \"0.3 m/s\"\n");
     assert!(other.contains("campaign.toml") && other.contains("H1LT at 0.3 m/s and 0°"), "{other}");
@@ -186,7 +186,7 @@ fn meshes_of_a_study_are_planned_and_priced() {
     let folder = tempfile::tempdir().unwrap();
     let again = format!("{STUDY}grids = 3\nradius = [12]\n");
     let path = computed(folder.path(), &again);
-    let planned = plan::plan(&path, None, &|_| ()).unwrap();
+    let planned = plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap();
     let rows = planned.as_json();
     let rows = rows["configurations"].as_array().unwrap();
     let of = |name: &str| rows.iter().find(|r| r["mesh"] == name && r["configuration"] == "H2LT").unwrap();
