@@ -60,11 +60,16 @@ fn paragraphs(loads: &[&Validation]) -> Vec<String> {
             format!("{} is declared", percent(load.declared_model_form / load.computed))
         };
         out.push(format!(
-            "{} of {} is {} times that of {}. |E| is beyond 2 u_val in {beyond} of {flows} flows; its root of mean squares is {} of the computed load's, and for the form of the model {declared}.",
+            "{} of {} is {} times that of {}. {} |E| has a root of mean squares of {} of the computed load's, and for the form of the model {declared}.",
             load.quantity,
             load.simulation,
             significant(ratio, 3),
             load.data,
+            if load.u_validation > 0.0 {
+                format!("|E| is beyond 2 u_val in {beyond} of {flows} flows.")
+            } else {
+                "No uncertainty is stated on either side, so that all of E stands against the model.".to_owned()
+            },
             percent(load.error / load.computed),
         ));
     }
