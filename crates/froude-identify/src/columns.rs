@@ -18,7 +18,7 @@ use indexmap::IndexSet;
 
 use crate::dataset::{Dataset, LOADS};
 use crate::law::{ForceLaw, Kind, aliased};
-use crate::validation::STD_NUMERICAL;
+use crate::validation::{STD_ITERATIVE, STD_NUMERICAL};
 
 /// Columns that say which run a row is, or in which water; and the motion, which is velocity at once or compared with it.
 const DESCRIBES: [&str; 10] =
@@ -172,8 +172,9 @@ fn is_used(name: &str, data: &Dataset, campaign: &Campaign, source: &Source, law
     if name == "volume" && data.channels.contains_key("n_links") {
         return true;
     }
-    if let Some(load) =
-        ["zero_before_", "zero_after_", STD_NUMERICAL, "std_"].iter().find_map(|prefix| name.strip_prefix(prefix))
+    if let Some(load) = ["zero_before_", "zero_after_", STD_NUMERICAL, STD_ITERATIVE, "std_"]
+        .iter()
+        .find_map(|prefix| name.strip_prefix(prefix))
     {
         return is_in(load, laws);
     }

@@ -4,9 +4,9 @@
 //! E ± k·u_val with u_val² = u_num² + u_input² + u_D², and is known no better. Where |E| exceeds 2 u_val it is E, in size and sign; where it
 //! does not, the comparison is too coarse to see it. What was declared for the form of the model is no part of u_val: it is what E is to show.
 //!
-//! A coefficient is fitted to S, so that the scatter about the law, u_fit, belongs to u_val too. A load is compared in each computed flow that lies in the
-//! range of the measured law: S is the computed load itself, D what the law gives there. An error that both sides name by one key is counted on both,
-//! which makes u_val too large and never too small.
+//! A coefficient is fitted to S, so that the scatter about the law, u_fit, belongs to u_val too; it is compared where S was fitted to no other angles than D.
+//! A load is compared in each computed flow that lies in the range of the measured law: S is the computed load itself, D what the law gives there. A law
+//! that states no range of speed is not compared. An error that both sides name by one key is counted on both, as if they were two.
 //!
 //! Source: ASME V&V 20-2009, 1-5 and 6-1.
 
@@ -25,6 +25,10 @@ use crate::uncertainty::{Linearised, direction};
 
 /// Start of the name of the column with the standard numerical uncertainty of a load, row by row.
 pub const STD_NUMERICAL: &str = "std_numerical_";
+/// The same of what is left of the iterations alone, which counts where the mesh's error is not known.
+pub const STD_ITERATIVE: &str = "std_iterative_";
+/// Angles no further apart are the same.
+const SAME_ANGLE_RAD: f64 = 0.02;
 /// Beyond the end of a range by rounding.
 const ROUNDING: f64 = 1e-9;
 /// Standard uncertainties within which E says nothing of the model.
@@ -46,6 +50,8 @@ pub struct Validated {
     pub numbers: Vec<Validation>,
     /// Loads flow by flow.
     pub flows: Vec<ComparedFlow>,
+    /// Ids of measured estimates that state no range of speed.
+    pub without_range: Vec<String>,
 }
 
 /// A load in one flow.
@@ -98,7 +104,10 @@ pub fn validate(simulation: Simulation<'_>, measured: &[Named<'_>]) -> Result<Va
     let mut out = Validated::default();
     let result = simulation.result;
     for computed in &result.estimates {
-        let of_law = measured.iter().filter(|named| named.estimate.law.name == computed.law.name);
+        let is_alike = |named: &&Named<'_>| {
+            named.estimate.law.name == computed.law.name && is_of_its_angles(computed, named.estimate)
+        };
+        let of_law = measured.iter().filter(is_alike);
         out.numbers.extend(of_law.flat_map(|named| coefficients(computed, named.estimate)));
     }
     let recommended = result.estimates.iter().position(|estimate| estimate.recommended).unwrap_or(0);
@@ -106,6 +115,10 @@ pub fn validate(simulation: Simulation<'_>, measured: &[Named<'_>]) -> Result<Va
         return Ok(out);
     };
     for data in laws(measured) {
+        if !data.validity.contains_key("speed") {
+            out.without_range.push(data.id.clone());
+            continue;
+        }
         let flows = loads(simulation, model, data)?;
         for load in &model.law.responses {
             let own: Vec<&ComparedFlow> = flows.iter().filter(|flow| flow.load == *load).collect();
@@ -207,7 +220,8 @@ fn loads(
     let mut out = Vec::new();
     for (response, load) in model.law.responses.iter().enumerate() {
         let (Some(values), Some(of_data)) = (data.values(load), prediction.response(load)) else { continue };
-        let own = data.values(&format!("{STD_NUMERICAL}{load}"));
+        let of = |prefix: &str| data.values(&format!("{prefix}{load}"));
+        let own = of(STD_NUMERICAL).or_else(|| of(STD_ITERATIVE));
         out.extend(rows.iter().map(|&row| {
             let mut parts = Parts::default();
             for (kind, moved) in &errors {
@@ -234,6 +248,9 @@ fn loads(
 
 /// A load over all flows that it was compared in.
 fn over_flows(computed: &Estimate, flows: &[&ComparedFlow]) -> Option<Validation> {
+    // A load that symmetry makes zero on both sides compares nothing.
+    let flows: Vec<&ComparedFlow> =
+        flows.iter().copied().filter(|flow| flow.computed != 0.0 || flow.measured != 0.0).collect();
     let first = flows.first()?;
     let root_of_mean = |of: &dyn Fn(&ComparedFlow) -> f64| {
         (flows.iter().map(|flow| of(flow).powi(2)).sum::<f64>() / flows.len() as f64).sqrt()
@@ -260,6 +277,15 @@ fn over_flows(computed: &Estimate, flows: &[&ComparedFlow]) -> Option<Validation
         declared_model_form: root_of_mean(&|flow| flow.declared_model_form),
         beyond: Some(flows.iter().filter(is_beyond).count()),
     })
+}
+
+/// Whether a computed law was fitted to no angles beyond those of a measured one: laws that are wrong in their form have other coefficients over another range.
+fn is_of_its_angles(computed: &Estimate, data: &Estimate) -> bool {
+    match (computed.validity.get("angle"), data.validity.get("angle")) {
+        (Some(own), Some(other)) => own.low >= other.low - SAME_ANGLE_RAD && own.high <= other.high + SAME_ANGLE_RAD,
+        (Some(own), None) => own.low.abs().max(own.high.abs()) <= SAME_ANGLE_RAD,
+        (None, _) => true,
+    }
 }
 
 /// Whether a flow lies in the ranges that an estimate states; one that it states none of is covered.

@@ -27,10 +27,10 @@ pub fn sections(found: &Validated, result: &SourceResult) -> Vec<DocumentSection
     let (first, others): (Vec<&Validation>, Vec<&Validation>) =
         coefficients.into_iter().partition(|number| Some(number.simulation.as_str()) == recommended);
     let mut out = Vec::new();
-    if !loads.is_empty() || !first.is_empty() {
+    if !loads.is_empty() || !first.is_empty() || !found.without_range.is_empty() {
         out.push(DocumentSection {
             title: format!("Validation of {}", result.name),
-            paragraphs: paragraphs(&loads),
+            paragraphs: paragraphs(found, &loads),
             tables: [load_table(&loads), coefficient_table(&first)].into_iter().flatten().collect(),
             charts: chart(found, &result.data, &result.name).into_iter().collect(),
         });
@@ -43,7 +43,7 @@ pub fn sections(found: &Validated, result: &SourceResult) -> Vec<DocumentSection
     out
 }
 
-fn paragraphs(loads: &[&Validation]) -> Vec<String> {
+fn paragraphs(found: &Validated, loads: &[&Validation]) -> Vec<String> {
     let mut out = vec![
         "By ASME V&V 20: E = S − D is what was computed less what was measured, and u_val the standard uncertainty of everything in it but the error of the model, from mesh and iterations, inputs, and the measurement. The error of the model lies in E ± 2 u_val. Of a load, numbers are roots of mean squares over the flows.".to_owned(),
     ];
@@ -51,6 +51,12 @@ fn paragraphs(loads: &[&Validation]) -> Vec<String> {
         out.push(
             "A record that states no uncertainty gives u_val without the measurement's part: an error of the model that stands on it may be one of the tank.".to_owned(),
         );
+    }
+    if !found.without_range.is_empty() {
+        out.push(format!(
+            "Loads are not compared with {}, which states no range of speed: nobody knows where its law holds.",
+            found.without_range.join(", ")
+        ));
     }
     for load in loads {
         let (Some(flows), Some(beyond), Some(ratio)) = (load.flows, load.beyond, load.ratio) else { continue };
@@ -60,9 +66,8 @@ fn paragraphs(loads: &[&Validation]) -> Vec<String> {
             format!("{} is declared", percent(load.declared_model_form / load.computed))
         };
         out.push(format!(
-            "{} of {} is {} times that of {}. {} |E| has a root of mean squares of {} of the computed load's, and for the form of the model {declared}.",
+            "Computed {} is {} times that of {}. {} |E| has a root of mean squares of {} of the computed load's, and for the form of the model {declared}.",
             load.quantity,
-            load.simulation,
             significant(ratio, 3),
             load.data,
             if load.u_validation > 0.0 {

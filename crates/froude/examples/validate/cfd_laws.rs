@@ -198,15 +198,16 @@ fn page(found: &Outcome) -> Result<String, Box<dyn Error>> {
          The paper fits its CFD to angles from 0 to 90°, its towing rig and its circulation tank to 39° at most. The same computed flows are fitted here over both ranges.\n\n{}\n\
          The ratios of the square terms:\n\n{}\n\
          ![Computed forces of two links against the angle, with laws fitted over both ranges](cfd-laws.svg)\n\n\
-         **f_y does not grow with v_y².** Over v_y² through the value at 90°, computed f_y of {CONFIGURATION} at {SPEED_M_S} m/s lies at {}. \
-         The normal force of a body at incidence is a part that goes with sin 2α, which the flow that separates at the tail leaves of the nose's potential-flow load, and the cross-flow drag, which goes with sin² α (Allen & Perkins, NACA Report 1048, 1951); of a short body at small angles the first is the larger. \
-         A law with v_y² alone, fitted to 39°, makes its coefficient of that load, and its force at 90° is then far beyond the computed one; fitted to 90° it misses the small angles. None of the six laws has a term v_x v_y in f_y: in f4 and f5 the cross terms act on f_x. \
-         The law `lift` of the example has one, and a suction v_y² along the body, which turns f_x forward at large angles.\n\n\
-         So a large part of the difference between the paper's CFD and its tanks is the range of angles of the fits and no error of the flow solver. Coefficients from different ranges cannot be compared in these laws; forces in the common range can.\n\n\
+         **f_y grows more slowly than v_y².** Over v_y² through the value at 90°, computed f_y of {CONFIGURATION} at {SPEED_M_S} m/s lies at {}. \
+         Two things make it so. An end that the flow separates from keeps a load that goes with sin 2α and does not grow with the length (Allen & Perkins, NACA Report 1048, 1951). And the cross-flow drag of a section depends on how far its vortices have developed, that is on the distance that the cross-flow has travelled since the nose. \
+         A law with v_y² alone, fitted to 39°, makes its coefficient of the loads there, and its force at 90° is far beyond the computed one; fitted to 90° it misses the small angles. None of the six laws has a term v_x v_y in f_y: in f4 and f5 the cross terms act on f_x. \
+         The law `lift` of the example has one. It is empirical, and its terms along the body are odd in v_x, as the symmetry fore and aft wants it.\n\n\
+         So a part of the difference between the paper's CFD and its tanks is the range of angles of the fits: the ratios above say how much. Coefficients from different ranges cannot be compared in these laws; forces in the common range can. \
+         The forces near 90° that enter the wider range are the less certain ones: a steady flow with a plane of symmetry cannot shed vortices, which takes from the drag of a bluff section.\n\n\
          ## What each law leaves\n\n\
          Standard deviation of the residuals; the recommended law of each range is bold.\n\n{}\n\
          ## What remains\n\n\
-         Forces in the range of the tank, by ASME V&V 20, stand on the [validation page](validation.md). What remains between computed and measured forces there may come from: the module's geometry, which is not published in full (joints, screws and cables add area and separate the flow); the rig (struts and mounting in the water, surface, blockage of a narrow tank, none of which the paper states); the model of turbulence, which has the layer turbulent from the nose on; and the mesh. The steady flows of short bodies have two mirrored states at 90°, of which each has a force along the body; their mean has none.\n",
+         Forces in the range of the tank, by ASME V&V 20, stand on the [validation page](validation.md). What remains between computed and measured forces there may come from: the module's geometry, which is not published in full (joints, screws and cables add area and separate the flow); the rig (struts and mounting in the water, surface, blockage of a narrow tank, none of which the paper states); the model of turbulence, which has the layer turbulent nominally from the nose on; the steady flow, which cannot shed; and the mesh. The steady flows of short bodies have two mirrored states at 90°, of which each has a force along the body; their mean has none.\n",
         table(found)?,
         ratios(found)?,
         above_square(found)?,

@@ -209,12 +209,12 @@ impl Collected {
         ))
     }
 
-    /// Largest difference of repeats of one kind: of f_x and f_y, over the largest of the table each, with how many there are.
+    /// Largest difference of repeats of one kind: of f_x and f_y, each over ½ρU²A of its case, with how many there are.
     fn apart(&self, what: &str) -> Option<([f64; 2], usize)> {
-        let largest = |k: usize| self.rows.iter().map(|r| r.loads[k].abs()).fold(0.0, f64::max);
         let own: Vec<&Pair> = self.pairs.iter().filter(|p| p.what == what).collect();
         let of = |k: usize| {
-            own.iter().map(|p| (p.first.loads[k] - p.second.loads[k]).abs()).fold(0.0, f64::max) / largest(k)
+            let part = |p: &&Pair| (p.first.loads[k] - p.second.loads[k]).abs() / p.first.case.load_scales()[k];
+            own.iter().map(part).fold(0.0, f64::max)
         };
         (!own.is_empty()).then(|| ([of(0), of(1)], own.len()))
     }
@@ -242,7 +242,7 @@ impl Collected {
             if let Some(([x, y], n)) = self.apart(what) {
                 let cases = counted(n, "case", "cases");
                 paragraphs.push(format!(
-                    "{cases} {words}; at most {} of the largest f_x apart, {} of the largest f_y",
+                    "{cases} {words}; f_x at most {} of ½ρU²A apart, f_y {}",
                     percent(x),
                     percent(y)
                 ));

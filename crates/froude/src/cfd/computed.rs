@@ -10,6 +10,7 @@ use froude_identify::method::{Found, Method, MethodError, Need};
 use froude_identify::reduce::{Observations, reduce_table};
 use froude_identify::source::{ReadFile, identify_observations};
 use froude_identify::uncertainty::SharedError;
+use froude_identify::validation::{STD_ITERATIVE, STD_NUMERICAL};
 use froude_records::campaign::{Campaign, Source};
 use froude_records::finding::{Finding, Severity};
 use froude_records::table::Table;
@@ -83,9 +84,10 @@ fn is_of_a_rig(finding: &Finding) -> bool {
     finding.code == "one-sign-of-angle" || (finding.code == "force-along-motion" && finding.severity < Severity::Error)
 }
 
-/// A table without what it says about its own loads and nothing reads.
+/// A table without what it says about its own loads and nothing reads: the iterations' part is that of the numerical uncertainty where this is known.
 fn loads_alone(table: &Table) -> Table {
-    let is_about = |name: &str| ["std_iterative_", "correction_"].iter().any(|prefix| name.starts_with(prefix));
+    let has_numerical = table.columns.iter().any(|c| c.name.starts_with(STD_NUMERICAL));
+    let is_about = |name: &str| name.starts_with("correction_") || (has_numerical && name.starts_with(STD_ITERATIVE));
     Table { columns: table.columns.iter().filter(|c| !is_about(&c.name)).cloned().collect(), ..table.clone() }
 }
 
@@ -102,7 +104,7 @@ fn iterative(observations: &Observations, std: &BTreeMap<&str, Loads>) -> Vec<Sh
 
 /// What mesh and domain leave in the loads, as errors that all cases share.
 ///
-/// A mesh errs alike about bodies that differ in their length alone, at all speeds, and in one direction: its error does not average down, over cases or over configurations. So each load has one, of the size that it has in each row. What an endless domain changes is known with its sign; loads are not corrected for it, so it lies between nothing and all of it.
+/// A mesh errs in one direction about bodies that differ in their length alone, and at all speeds: its error does not average down, over cases or over configurations. (It is no constant: all configurations have as many stations, so that the cells of a longer body are longer.) So each load has one, of the size that it has in each row. What an endless domain changes is known with its sign; loads are not corrected for it, so it lies between nothing and all of it.
 fn of_grid(observations: &Observations, collected: &Collected) -> Vec<SharedError> {
     let rows: BTreeMap<&str, &Row> = collected.rows.iter().map(|row| (row.case.id.as_str(), row)).collect();
     let of = |case: &dyn Fn(&Case) -> Option<Loads>, load: usize| -> Option<Vec<f64>> {

@@ -1,6 +1,6 @@
 //! Loads that the symmetry of body and motion leaves no mean of.
 //!
-//! A body that moves in a plane of its own symmetry has with each flow the mirrored one: both are solutions. Where a steady flow leans to one side of the plane, as behind short bodies across the flow, the loads that change sign with it are those of one of two states, and which of them a computation comes to depends on where it starts from. Their mean is zero, and so is the load over a time in which a wake goes from one to the other.
+//! A body that moves in a plane of its own symmetry has with each flow the mirrored one: both are solutions. Where a steady flow leans to one side of the plane, as behind short bodies across the flow, the loads that change sign with it are those of one of two states; which of them a computation comes to may depend on where it starts from. The mean of both is zero. It is that of an ensemble; how long a wake stays in one of them a steady flow does not say, so that half the distance between the two counts as an error of the load. Loads that do not change sign are those of the leaning state.
 //!
 //! With the plane's normal along the axis k, the force along k and the moments about the two other axes change sign: a force is a polar vector, a moment an axial one.
 
@@ -41,6 +41,9 @@ pub(super) fn take_means(rows: &mut [Row]) -> Vec<OneSided> {
             for load in odd(axis) {
                 if row.loads[load] != 0.0 {
                     out.push(OneSided { case: row.case.id.clone(), load, value: row.loads[load] });
+                    if let Some(std) = &mut row.outcome.std_iterative {
+                        std[load] = std[load].max(row.loads[load].abs());
+                    }
                     row.loads[load] = 0.0;
                 }
             }
