@@ -7,6 +7,7 @@
 //! **Model.** By the Reynolds number of the width, Re = U W/ν: laminar below one bound, with and without a model of turbulence between that and another, as campaigns say (`[source.cfd]`). The two are limits and no interval.
 
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 
 use froude_records::campaign::Source;
 use froude_records::cfd::{CfdSpec, FineSpec, StudySpec};
@@ -182,7 +183,7 @@ fn points(source: &Source, configuration: &str) -> Vec<Point> {
         .flat_map(|block| {
             block.speed_m_s.iter().flat_map(move |&speed_m_s| {
                 block.angle_rad.iter().flat_map(move |&angle_rad| {
-                    block.pitch_rad.iter().map(move |&pitch_rad| Point { speed_m_s, angle_rad, pitch_rad })
+                    block.pitch_rad.iter().map(move |&pitch_rad| ahead(Point { speed_m_s, angle_rad, pitch_rad }))
                 })
             })
         })
@@ -195,6 +196,15 @@ fn points(source: &Source, configuration: &str) -> Vec<Point> {
         is_same(a.speed_m_s, b.speed_m_s) && is_same(a.angle_rad, b.angle_rad) && is_same(a.pitch_rad, b.pitch_rad)
     });
     all
+}
+
+/// The same velocity with a speed above zero: who goes astern at an angle goes ahead at the one opposite.
+fn ahead(point: Point) -> Point {
+    if point.speed_m_s >= 0.0 {
+        return point;
+    }
+    let turn = if point.angle_rad > 0.0 { -PI } else { PI };
+    Point { speed_m_s: -point.speed_m_s, angle_rad: point.angle_rad + turn, pitch_rad: -point.pitch_rad }
 }
 
 fn is_same(a: f64, b: f64) -> bool {
@@ -318,6 +328,21 @@ mod tests {
     /// Table 2 of the USR paper: 174 settings of each configuration.
     const TABLE_2: &str = "[[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nspeed = { start = \"0.02 m/s\", stop = \"1 m/s\", step = \"0.02 m/s\" }\n\
          [[source.plan]]\nconfigurations = [\"H1LT\", \"H2LT\"]\nspeed = [\"0.1 m/s\", \"0.2 m/s\", \"0.3 m/s\", \"0.4 m/s\"]\nangle = { start = \"0 deg\", stop = \"90 deg\", step = \"3 deg\" }\n";
+
+    #[test]
+    fn astern_is_ahead_at_the_opposite_angle() {
+        for (speed_m_s, angle_rad, pitch_rad) in
+            [(-0.3, 0.0, 0.0), (-0.3, 0.7, 0.2), (-0.3, -0.7, -0.2), (0.3, 0.7, 0.2)]
+        {
+            let flow = |p: &Point| Flow { speed_m_s: p.speed_m_s, angle_rad: p.angle_rad, pitch_rad: p.pitch_rad };
+            let point = Point { speed_m_s, angle_rad, pitch_rad };
+            let (before, after) = (flow(&point).velocity_m_s(), flow(&ahead(point)));
+            assert!(after.speed_m_s > 0.0 && after.angle_rad.abs() <= PI);
+            for (a, b) in before.iter().zip(after.velocity_m_s()) {
+                assert!((a - b).abs() < 1e-15, "{before:?} {after:?}");
+            }
+        }
+    }
 
     #[test]
     fn the_matrix_of_the_paper_has_each_setting_once_behind_the_one_it_starts_from() {

@@ -228,7 +228,10 @@ fn source_facts(s: &SourceFacts) {
             format!(", {kept} of {} {} fitted", observations(rows), if kept == 1 { "is" } else { "are" })
         }
         (_, _, true) => String::new(),
-        (_, _, false) => ", not there yet: froude simulate makes it".to_owned(),
+        (_, _, false) => {
+            let verb = if s.input == "cases" { "froude cfd plan" } else { "froude simulate" };
+            format!(", not there yet: {verb} makes it")
+        }
     };
     sentence(&format!("{}: {}{there}", s.input, s.path));
     if let Some(runs) = s.planned_runs {

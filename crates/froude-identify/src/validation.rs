@@ -290,12 +290,14 @@ fn is_of_its_angles(computed: &Estimate, data: &Estimate) -> bool {
 
 /// Whether a flow lies in the ranges that an estimate states; one that it states none of is covered.
 fn is_covered(estimate: &Estimate, data: &Dataset, row: usize) -> bool {
-    ["speed", "angle", "n_links"].iter().all(|name| match (estimate.validity.get(*name), data.values(name)) {
-        (Some(range), Some(values)) => {
-            let margin = ROUNDING * range.low.abs().max(range.high.abs());
-            (range.low - margin..=range.high + margin).contains(&values[row])
+    ["speed", "angle", "n_links", "v_x", "v_y", "v_z"].iter().all(|name| {
+        match (estimate.validity.get(*name), data.values(name)) {
+            (Some(range), Some(values)) => {
+                let margin = ROUNDING * range.low.abs().max(range.high.abs());
+                (range.low - margin..=range.high + margin).contains(&values[row])
+            }
+            _ => true,
         }
-        _ => true,
     })
 }
 

@@ -135,7 +135,7 @@ fn an_error_of_the_mesh_widens_a_coefficient_by_as_much() {
     let c = &estimate.coefficients["Y_vav"];
     assert!((c.value.unwrap() / (K_KG_M * (1.0 + ERROR)) - 1.0).abs() < 1e-6, "{c:?}");
     let expected = 0.5 * 1.25 * ERROR / (1.0 + ERROR);
-    assert!((part(&estimate, "mesh") / expected - 1.0).abs() < 1e-4, "{:?}", estimate.errors);
+    assert!((part(&estimate, "mesh (f_y)") / expected - 1.0).abs() < 1e-4, "{:?}", estimate.errors);
     let relative = c.standard_uncertainty.unwrap() / c.value.unwrap();
     assert!((relative / expected - 1.0).abs() < 1e-4, "{c:?}");
 }
@@ -156,7 +156,7 @@ fn a_finer_mesh_at_some_cases_corrects_all() {
     let value = estimate.coefficients["Y_vav"].value.unwrap();
     assert!((value / (K_KG_M * (1.0 + at(8.0 * OWN_CELLS))) - 1.0).abs() < 1e-6, "{value}");
     // A quarter of the error is left, and what leaving an angle out of three misses.
-    assert!(part(&estimate, "mesh") > 0.5 * 1.25 * 0.25 * ERROR / (1.0 + ERROR), "{:?}", estimate.errors);
+    assert!(part(&estimate, "mesh (f_y)") > 0.5 * 1.25 * 0.25 * ERROR / (1.0 + ERROR), "{:?}", estimate.errors);
 }
 
 /// Where nothing is computed again the error of the mesh is unknown, and that is said.
@@ -169,7 +169,7 @@ fn a_mesh_that_nothing_is_known_of_is_said() {
     assert!(words.iter().any(|w| w.starts_with("the error of the mesh is in no interval")), "{words:?}");
     let table = std::fs::read_to_string(folder.path().join("flow/observations.csv")).unwrap();
     assert!(!table.contains("std_numerical"), "{table}");
-    assert_eq!(part(&fitted(&path), "mesh"), 0.0);
+    assert_eq!(part(&fitted(&path), "mesh (f_y)"), 0.0);
     let refused = |again: &str| {
         std::fs::write(&path, CAMPAIGN.replace("STUDY", again)).unwrap();
         plan::plan(&path, None, &AtomicBool::new(false), &|_| ()).unwrap_err().to_string()

@@ -26,7 +26,7 @@ pub(super) const LOADS: [&str; 6] = ["f_x", "f_y", "f_z", "m_x", "m_y", "m_z"];
 const OF_HALF: [usize; 3] = [0, 1, 5];
 /// Name of the table.
 const TABLE: &str = "observations.csv";
-/// Part of the largest load beyond which a flow that leans to one side is worth a sentence.
+/// Part of ½ρU²A beyond which a flow that leans to one side is worth a sentence.
 const SEEN: f64 = 0.01;
 
 /// What was collected.
@@ -193,12 +193,10 @@ fn table(rows: &[Row], numerical: &Numerical, path: &Path) -> Table {
 }
 
 impl Collected {
-    /// Flows that lean to a side of a plane of symmetry by more than a hundredth of the largest load.
+    /// Flows that lean to a side of a plane of symmetry by more than a hundredth of ½ρU²A.
     fn of_one_side(&self) -> Option<String> {
-        let largest = |k: usize| self.rows.iter().map(|r| r.loads[k].abs()).fold(0.0, f64::max);
-        let seen: Vec<&OneSided> =
-            self.one_sided.iter().filter(|o| o.value.abs() > SEEN * largest(o.load) && o.load < 3).collect();
-        let most = seen.iter().max_by(|a, b| a.value.abs().total_cmp(&b.value.abs()))?;
+        let seen: Vec<&OneSided> = self.one_sided.iter().filter(|o| o.part.abs() > SEEN && o.load < 3).collect();
+        let most = seen.iter().max_by(|a, b| a.part.abs().total_cmp(&b.part.abs()))?;
         Some(format!(
             "{} to one side of a plane of symmetry that the body moves in ({} of {} is {} {}); the mirrored flow is a solution as well, and the loads that change sign with it are set to the mean of both, zero",
             counted(seen.len(), "force leans", "forces lean"),

@@ -114,11 +114,14 @@ fn of_grid(observations: &Observations, collected: &Collected) -> Vec<SharedErro
     let mut out = Vec::new();
     for (k, load) in LOADS.iter().enumerate().filter(|(_, load)| observations.data.values(load).is_some()) {
         if let Some(standard) = of(&|case| collected.numerical.std_of_mesh(case), k) {
-            let error = SharedError::of_load("mesh", load, &standard, 1.0, f64::INFINITY);
+            let error = SharedError::of_load(&format!("mesh ({load})"), load, &standard, 1.0, f64::INFINITY);
             out.push(error.evaluated_as(Kind::Numerical));
         }
         if let Some(change) = of(&|case| collected.numerical.endless(case), k) {
-            out.push(SharedError::between("domain", load, &change, [-1.0, 0.0]).evaluated_as(Kind::Numerical));
+            out.push(
+                SharedError::between(&format!("domain ({load})"), load, &change, [-1.0, 0.0])
+                    .evaluated_as(Kind::Numerical),
+            );
         }
     }
     out

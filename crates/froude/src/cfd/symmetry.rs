@@ -23,6 +23,8 @@ pub struct OneSided {
     pub load: usize,
     /// What was computed, N or N m.
     pub value: f64,
+    /// The same over ½ρU²A, and ½ρU²A L of a moment \[-\].
+    pub part: f64,
 }
 
 /// Whether the body is symmetric about all three planes through its middle, as the shapes of body files are: a robot's ends are alike. Of a surface nobody knows it.
@@ -40,7 +42,8 @@ pub(super) fn take_means(rows: &mut [Row]) -> Vec<OneSided> {
         for axis in axes.filter(|k| velocity_m_s[*k].abs() <= IN_PLANE * row.case.flow.speed_m_s) {
             for load in odd(axis) {
                 if row.loads[load] != 0.0 {
-                    out.push(OneSided { case: row.case.id.clone(), load, value: row.loads[load] });
+                    let part = row.loads[load] / row.case.load_scales()[load];
+                    out.push(OneSided { case: row.case.id.clone(), load, value: row.loads[load], part });
                     if let Some(std) = &mut row.outcome.std_iterative {
                         std[load] = std[load].max(row.loads[load].abs());
                     }
