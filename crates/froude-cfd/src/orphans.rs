@@ -37,20 +37,26 @@ mod tests {
     #[test]
     fn what_belongs_to_an_attempt_is_ended_and_nothing_else() {
         let folder = tempfile::tempdir().unwrap();
-        let sleeper = |of: &Path| {
-            std::process::Command::new("sh").args(["-c", "sleep 30 & wait"]).env(ATTEMPT, mark(of)).spawn().unwrap()
+        // A file says that the program which the shell starts is there too.
+        let sleeper = |of: &str| {
+            let started = folder.path().join(format!("{of} started"));
+            let child = std::process::Command::new("sh")
+                .args(["-c", "sleep 30 & : > \"$0\"; wait"])
+                .arg(&started)
+                .env(ATTEMPT, mark(&folder.path().join(of)))
+                .spawn()
+                .unwrap();
+            let start = std::time::Instant::now();
+            while !started.exists() && start.elapsed().as_secs() < 60 {
+                std::thread::sleep(std::time::Duration::from_millis(5));
+            }
+            child
         };
-        let other = folder.path().join("attempt-0010");
-        let (mut its, mut another) = (sleeper(&folder.path().join("attempt-001")), sleeper(&other));
-        let start = std::time::Instant::now();
-        let mut ended = 0;
-        // The shell and the program that it starts.
-        while ended < 2 && start.elapsed().as_secs() < 10 {
-            ended += end(&folder.path().join("attempt-001"));
-        }
-        assert!(ended >= 2 && !its.wait().unwrap().success());
+        let (mut its, mut another) = (sleeper("attempt-001"), sleeper("attempt-0010"));
+        assert_eq!(end(&folder.path().join("attempt-001")), 2);
+        assert!(!its.wait().unwrap().success());
         assert_eq!(another.try_wait().unwrap(), None);
-        end(&other);
+        end(&folder.path().join("attempt-0010"));
         another.wait().unwrap();
     }
 }
