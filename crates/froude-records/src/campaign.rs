@@ -582,11 +582,13 @@ impl Campaign {
         }
     }
 
-    /// A table with a plan may still have to be simulated or run, and cases to be computed; everything else must be there.
+    /// A table with a plan may still have to be simulated or run, and cases to be computed, those of this source or of another that reads them; everything else must be there.
     pub(crate) fn check_files(&self) -> Result<(), RecordError> {
+        let is_planned = |input: &Input| self.sources.iter().any(|s| s.input == *input && !s.plan.is_empty());
         for source in &self.sources {
             let key = match source.input {
-                Input::Table(_) | Input::Cases(_) if !source.plan.is_empty() => continue,
+                Input::Table(_) if !source.plan.is_empty() => continue,
+                Input::Cases(_) if is_planned(&source.input) => continue,
                 Input::Runs { .. } if source.plans_runs() => continue,
                 Input::Table(_) => "table",
                 Input::Record { .. } => "record",
