@@ -3,7 +3,7 @@
 //! **Order.** With `φ = φ₀ + α hᵖ` on the three finest grids, `(φ₃ − φ₂)/(φ₂ − φ₁) = (h₃ᵖ − h₂ᵖ)/(h₂ᵖ − h₁ᵖ)`; the right side grows with p, and the order is where both are equal. It is claimed only where all grids approach the limit from one side, by steps above their iterative error, and 0.5 < p < 3.
 //! **Uncertainty**, of 95 % coverage. With an order, 1.25 times the distance to the limit, that of order 2 where p is larger, and the misfit of the grids that had no part in it. Without, 3 times the spread of all grids. Both with the iterative error of the finest, squares added.
 //!
-//! Source: the factors, and the care about orders above 2, are those of Eça and Hoekstra, J. Comput. Phys. 262 (2014) 104–130; the least squares over all grids there are the three finest and a misfit here.
+//! Source: the factor 1.25, and the care about orders above 2, are those of Eça and Hoekstra, J. Comput. Phys. 262 (2014) 104–130; the least squares over all grids there are the three finest and a misfit here. Where no order is claimed they fit other laws and multiply by 3; 3 times the spread of the grids is the rule of their earlier procedures, and needs no fit.
 
 use serde::{Deserialize, Serialize};
 

@@ -28,6 +28,7 @@
 //! | [`meridian`] | the meridian of a body of elliptic sections, and where a mesh cuts it |
 //! | [`mesh_error`] | why there is no mesh |
 //! | [`midplane`] | speeds in the plane z = 0 through the body |
+//! | [`mirror`] | loads that the symmetry of body and motion leaves no mean of |
 //! | [`numerical`] | what the mesh does to the forces of a campaign: their correction and what it leaves |
 //! | [`o_grid`] | O-grids around bodies of elliptic sections |
 //! | [`openfoam`] | where it is, which it is, running its programs |
@@ -87,6 +88,7 @@ pub mod matrix;
 pub mod meridian;
 pub mod mesh_error;
 pub mod midplane;
+pub mod mirror;
 pub mod numerical;
 pub mod o_grid;
 pub mod openfoam;

@@ -62,7 +62,8 @@ impl Numerical {
         let difference =
             OverAngles::new(fine.iter().map(|[own, fine]| (own.case.clone(), each(|k| fine.loads[k] - own.loads[k]))));
         let left_out = difference.left_out();
-        let mesh = OverAngles::new(mesh_errors(&studies, &fine));
+        let least = spec.fine.map_or(f64::INFINITY, |fine| fine.mesh.refinement(spec.mesh));
+        let mesh = OverAngles::new(mesh_errors(&studies, &fine, least));
         let endless = OverAngles::new(studies.iter().filter_map(|study| {
             let radius = domain_radius(spec, study.first.case.reference);
             Some((study.first.case.clone(), study.endless(radius)?))
@@ -98,7 +99,9 @@ impl Numerical {
 }
 
 /// Standard uncertainty of the mesh that forces stand on, at the settings where it is known, N and N m.
-fn mesh_errors(studies: &[Study], fine: &[[Collected; 2]]) -> Vec<(Case, Loads)> {
+///
+/// The meshes of a pair need not be similar: their index is taken with the refinement of the direction that is refined least, `least`, which is on the safe side.
+fn mesh_errors(studies: &[Study], fine: &[[Collected; 2]], least: f64) -> Vec<(Case, Loads)> {
     let of_study = |study: &Study| {
         let own = fine.iter().find(|[own, _]| own.case.configuration == study.first.case.configuration);
         let on = own.or_else(|| fine.first()).map_or(&study.first, |[_, fine]| fine);
@@ -112,7 +115,7 @@ fn mesh_errors(studies: &[Study], fine: &[[Collected; 2]]) -> Vec<(Case, Loads)>
         return found;
     }
     let of_pair = |[own, fine]: &[Collected; 2]| {
-        let refinement = refinement_ratio(fine.outcome.cells, own.outcome.cells, DIRECTIONS);
+        let refinement = refinement_ratio(fine.outcome.cells, own.outcome.cells, DIRECTIONS).min(least);
         let loads = each(|k| two_grids(fine.loads[k] - own.loads[k], refinement) / COVERAGE);
         (own.case.clone(), loads)
     };
@@ -121,6 +124,8 @@ fn mesh_errors(studies: &[Study], fine: &[[Collected; 2]]) -> Vec<(Case, Loads)>
 
 #[cfg(test)]
 mod tests {
+    use froude_records::cfd::{FineSpec, MeshSpec};
+
     use super::*;
     use crate::case::{Flow, Model, Reference, Stop, Water};
     use crate::outcome::{Outcome, Status};
@@ -213,6 +218,17 @@ mod tests {
                 assert!((std - 10.0 * expected * ERROR).abs() < 1e-4, "{has_study} {angle}: {std}");
             }
         }
+    }
+
+    /// Coarse to medium is refined by 48/35 where it is refined least, and by 1.6 on the average of all directions.
+    #[test]
+    fn a_pair_that_is_not_similar_is_taken_by_its_least_refinement() {
+        let rows = rows(false, true);
+        let spec = |fine| CfdSpec { fine: Some(FineSpec { mesh: fine, every: 1 }), ..CfdSpec::default() };
+        let std = |spec: &CfdSpec| Numerical::of(&rows, spec).std_of_mesh(&rows[0].case).unwrap()[0];
+        let twice = MeshSpec { stations: 80, layers: 70, azimuth: 32, ..MeshSpec::COARSE };
+        let expected = (2.0_f64.powi(2) - 1.0) / ((48.0_f64 / 35.0).powi(2) - 1.0);
+        assert!((std(&spec(MeshSpec::MEDIUM)) / std(&spec(twice)) / expected - 1.0).abs() < 1e-6);
     }
 
     #[test]

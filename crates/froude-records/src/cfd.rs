@@ -47,7 +47,7 @@ const MOST_ITERATIONS: u64 = 100_000;
 const GRIDS: [u64; 2] = [3, 6];
 /// Grids of a study that does not say.
 const USUAL_GRIDS: usize = 4;
-/// Least refinement of a fine mesh in each direction: below it the difference of two meshes is mostly rounding of their counts.
+/// Least refinement of a fine mesh in any direction: below it the difference of two meshes is mostly rounding of their counts.
 const LEAST_REFINEMENT: f64 = 1.2;
 /// Of how many cases one is computed on the fine mesh, where the campaign does not say.
 const USUAL_EVERY: usize = 5;
@@ -174,6 +174,13 @@ impl MeshSpec {
     /// 263,712 cells.
     pub const FINE: Self = Self { stations: 82, layers: 67, azimuth: 48, first_layer_m: 7e-5 };
 
+    /// How much finer it is than another in the direction in which it is refined least \[-\]: what the error of a pair that is not similar is taken by.
+    #[must_use]
+    pub fn refinement(self, other: Self) -> f64 {
+        let of = |own: usize, other: usize| own as f64 / other as f64;
+        of(self.stations, other.stations).min(of(self.layers, other.layers)).min(of(self.azimuth, other.azimuth))
+    }
+
     /// Cells over half a turn.
     #[must_use]
     pub const fn cells(self) -> usize {
@@ -282,10 +289,10 @@ fn fine(s: &Section<'_>, own: MeshSpec) -> Result<FineSpec, RecordError> {
         let problem = "asks for cubes, which are not similar to another mesh; write \"medium\", \"fine\" or an O-grid";
         return Err(s.wrong("mesh", value, problem));
     }
-    let refinement = (finer.cells() as f64 / own.cells() as f64).cbrt();
+    let refinement = finer.refinement(own);
     if let Some(value) = s.get("mesh").filter(|_| refinement < LEAST_REFINEMENT) {
         let problem = format!(
-            "has {} cells, and the mesh of the campaign {}: {refinement:.2} times as fine in each direction; a difference of meshes needs {LEAST_REFINEMENT} at least",
+            "has {} cells, and the mesh of the campaign {}: {refinement:.2} times as fine where it is refined least; a difference of meshes needs {LEAST_REFINEMENT} at least",
             finer.cells(),
             own.cells()
         );
@@ -468,7 +475,7 @@ mod tests {
     #[test]
     fn what_cannot_be_is_refused_where_it_stands() {
         for (from, to, said) in [
-            ("\"full\"", "\"full\"\nfine = { mesh = \"coarse\", every = 5 }", "0.62 times as fine"),
+            ("\"full\"", "\"full\"\nfine = { mesh = \"coarse\", every = 5 }", "0.50 times as fine"),
             ("\"full\"", "\"full\"\nfine = { every = 5 }", "mesh"),
             ("\"full\"", "\"full\"\n[[source.cfd.study]]\nspeed = \"0.4 m/s\"\ngrids = 2", "3 to 6"),
             ("\"full\"", "\"full\"\n[[source.cfd.study]]\nspeed = \"0.4 m/s\"\nradius = [0.5]", "from 1 to 1000"),

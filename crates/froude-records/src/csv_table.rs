@@ -15,7 +15,7 @@
 //! a row is skipped in silence. The tests compare it with the `csv` crate.
 
 use std::borrow::Cow;
-use std::io::Write as _;
+use std::io::Write;
 use std::path::Path;
 
 use crate::assemble::{Room, Want, assemble, number, plan};
@@ -250,8 +250,25 @@ pub fn write_csv(table: &Table, path: &Path) -> Result<(), RecordError> {
     prepare_csv(table, path)?.take_place()
 }
 
+/// The same as bytes, for a file that lies among others.
+///
+/// # Errors
+///
+/// A number that is not finite.
+pub fn csv_bytes(table: &Table) -> Result<Vec<u8>, RecordError> {
+    all_finite(table, &table.path)?;
+    let mut out = Vec::new();
+    write_rows(table, &mut out).map_err(|e| RecordError::Write { path: table.path.clone(), reason: e.to_string() })?;
+    Ok(out)
+}
+
 /// The same, up to taking its place.
 pub(crate) fn prepare_csv(table: &Table, path: &Path) -> Result<Prepared, RecordError> {
+    all_finite(table, path)?;
+    Prepared::new(path, |file| write_rows(table, file))
+}
+
+fn all_finite(table: &Table, path: &Path) -> Result<(), RecordError> {
     for column in &table.columns {
         if let ColumnData::Number { si, .. } = &column.data
             && let Some((row, value)) = si.iter().enumerate().find(|(_, v)| !v.is_finite())
@@ -263,27 +280,29 @@ pub(crate) fn prepare_csv(table: &Table, path: &Path) -> Result<Prepared, Record
             });
         }
     }
-    Prepared::new(path, |file| {
-        let header: Vec<_> = table.columns.iter().map(|c| quoted(guarded(c.header()))).collect();
-        writeln!(file, "{}", header.join(","))?;
-        for row in 0..table.n_rows {
-            for (j, column) in table.columns.iter().enumerate() {
-                if j > 0 {
-                    file.write_all(b",")?;
+    Ok(())
+}
+
+fn write_rows(table: &Table, file: &mut dyn Write) -> std::io::Result<()> {
+    let header: Vec<_> = table.columns.iter().map(|c| quoted(guarded(c.header()))).collect();
+    writeln!(file, "{}", header.join(","))?;
+    for row in 0..table.n_rows {
+        for (j, column) in table.columns.iter().enumerate() {
+            if j > 0 {
+                file.write_all(b",")?;
+            }
+            match &column.data {
+                ColumnData::Number { unit, si, .. } => {
+                    write!(file, "{}", si.get(row).map_or_else(String::new, |si| shortest(unit, *si)))?;
                 }
-                match &column.data {
-                    ColumnData::Number { unit, si, .. } => {
-                        write!(file, "{}", si.get(row).map_or_else(String::new, |si| shortest(unit, *si)))?;
-                    }
-                    ColumnData::Text(texts) => {
-                        write!(file, "{}", quoted(guarded(texts.get(row).cloned().unwrap_or_default())))?;
-                    }
+                ColumnData::Text(texts) => {
+                    write!(file, "{}", quoted(guarded(texts.get(row).cloned().unwrap_or_default())))?;
                 }
             }
-            writeln!(file)?;
         }
-        Ok(())
-    })
+        writeln!(file)?;
+    }
+    Ok(())
 }
 
 /// A text that no spreadsheet takes for a formula.

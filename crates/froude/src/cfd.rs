@@ -9,7 +9,6 @@ pub mod plan;
 pub mod report;
 pub mod run;
 pub mod status;
-pub mod symmetry;
 
 use std::path::{Path, PathBuf};
 

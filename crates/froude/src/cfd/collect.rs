@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use froude_cfd::again::Again;
 use froude_cfd::case::Model;
 use froude_cfd::collect::{Collected as Row, collect as results};
+use froude_cfd::mirror::{OneSided, is_symmetric, take_means};
 use froude_cfd::numerical::Numerical;
 use froude_cfd::outcome::Status;
 use froude_cfd::store::Store;
@@ -16,7 +17,6 @@ use froude_records::text::counted;
 use froude_records::units::{Dimension, Unit, parse_unit};
 use serde_json::{Value, json};
 
-use super::symmetry::{OneSided, is_symmetric, take_means};
 use super::{Asked, numerical};
 use crate::Error;
 

@@ -1,5 +1,7 @@
 //! Computed sources of a campaign held against its measured ones, by ASME V&V 20.
 
+use std::path::PathBuf;
+
 use froude_identify::IdentifyError;
 use froude_identify::answer::Answer;
 use froude_identify::compare::Named;
@@ -9,9 +11,12 @@ use froude_identify::source::SourceResult;
 use froude_identify::validation::{ComparedFlow, Simulation, validate};
 use froude_records::campaign::{Campaign, Input, Source, SourceKind};
 use froude_records::comparison::Validation;
+use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::EstimateFile;
 use froude_records::page::DocumentSection;
+use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::in_a_file_name;
+use froude_records::units::{Dimension, Unit};
 
 /// What the comparison came to, of all computed sources.
 #[derive(Default)]
@@ -56,43 +61,63 @@ pub(super) fn against(
             Some(_) => out.others.extend(pages.next()),
         }
         out.others.extend(pages);
-        if !found.flows.is_empty() {
-            let name = format!("validation-{}.csv", in_a_file_name(&result.name));
-            out.exports.push(Export { name, content: table(&found.flows, result).into_bytes() });
+        for (what, dimension) in [("", Dimension::FORCE), ("-moments", Dimension::MOMENT)] {
+            let is_meant = |flow: &&ComparedFlow| result.data.dimension(&flow.load) == Some(dimension);
+            let flows: Vec<&ComparedFlow> = found.flows.iter().filter(is_meant).collect();
+            if !flows.is_empty() {
+                let name = format!("validation-{}{what}.csv", in_a_file_name(&result.name));
+                out.exports.push(Export { content: table(&flows, dimension, result, &name)?, name });
+            }
         }
         out.numbers.extend(found.numbers);
     }
     Ok(out)
 }
 
-/// The flows as a table, a row per load and flow.
-fn table(flows: &[ComparedFlow], result: &SourceResult) -> String {
-    let mut out = "configuration,speed [m/s],angle [rad],load,unit,measured,S,D,E,u_num,u_input,u_D,u_val\n".to_owned();
+/// The flows of loads of one dimension as a table, a row per load and flow; our own reader takes no empty cell.
+fn table(flows: &[&ComparedFlow], of: Dimension, result: &SourceResult, name: &str) -> Result<Vec<u8>, IdentifyError> {
     let data = &result.data;
-    let at = |name: &str, row: usize| data.values(name).map_or_else(String::new, |values| values[row].to_string());
-    for flow in flows {
-        let cells = [
-            data.configuration.get(flow.row).cloned().unwrap_or_default(),
-            at("speed", flow.row),
-            at("angle", flow.row),
-            flow.load.clone(),
-            flow.unit.clone(),
-            flow.data.clone(),
-            flow.computed.to_string(),
-            flow.measured.to_string(),
-            flow.error().to_string(),
-            flow.u_numerical.to_string(),
-            flow.u_input.to_string(),
-            flow.u_data.map_or_else(String::new, |u| u.to_string()),
-            flow.u_validation().to_string(),
-        ];
-        out += &cells.map(|cell| quoted(&cell)).join(",");
-        out.push('\n');
+    let text = |name: &str, of: &dyn Fn(&ComparedFlow) -> String| Column {
+        name: name.to_owned(),
+        data: ColumnData::Text(flows.iter().map(|flow| of(flow)).collect()),
+    };
+    let number = |name: &str, dimension: Dimension, of: &dyn Fn(&ComparedFlow) -> f64| Column {
+        name: name.to_owned(),
+        data: ColumnData::Number {
+            unit: Unit::si(dimension),
+            dimension,
+            si: flows.iter().map(|flow| of(flow)).collect(),
+        },
+    };
+    let configuration = |f: &ComparedFlow| data.configuration.get(f.row).cloned().unwrap_or_default();
+    // A body of one form has none.
+    let has_configurations = flows.iter().all(|flow| !configuration(flow).is_empty());
+    let mut columns: Vec<Column> =
+        has_configurations.then(|| text("configuration", &configuration)).into_iter().collect();
+    for (name, dimension) in [("speed", Dimension::SPEED), ("angle", Dimension::ONE)] {
+        columns.extend(data.values(name).map(|values| number(name, dimension, &|f| values[f.row])));
     }
-    out
-}
-
-/// A cell as RFC 4180 has it.
-fn quoted(cell: &str) -> String {
-    if cell.contains([',', '"', '\n', '\r']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
+    columns.extend([text("load", &|f| f.load.clone()), text("measured", &|f| f.data.clone())]);
+    columns.extend([
+        number("S", of, &|f| f.computed),
+        number("D", of, &|f| f.measured),
+        number("E", of, &ComparedFlow::error),
+        number("u_num", of, &|f| f.u_numerical),
+        number("u_input", of, &|f| f.u_input),
+        if flows.iter().all(|f| f.u_data.is_some()) {
+            number("u_D", of, &|f| f.u_data.unwrap_or_default())
+        } else {
+            text("u_D", &|f| f.u_data.map_or_else(|| "not stated".to_owned(), |u| u.to_string()))
+        },
+        number("u_val", of, &ComparedFlow::u_validation),
+    ]);
+    let table = Table {
+        path: PathBuf::from(name),
+        columns,
+        n_rows: flows.len(),
+        line_of_row: (2..2 + flows.len()).collect(),
+        sidecar: None,
+        left_out: Vec::new(),
+    };
+    Ok(csv_bytes(&table)?)
 }

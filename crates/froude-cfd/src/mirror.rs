@@ -6,10 +6,9 @@
 
 use std::path::Path;
 
-use froude_cfd::collect::Collected as Row;
 use froude_records::cfd::CfdSpec;
 
-use super::collect::LOADS;
+use crate::collect::Collected;
 
 /// Velocity over speed below which a body moves in the plane.
 const IN_PLANE: f64 = 1e-9;
@@ -28,12 +27,13 @@ pub struct OneSided {
 }
 
 /// Whether the body is symmetric about all three planes through its middle, as the shapes of body files are: a robot's ends are alike. Of a surface nobody knows it.
-pub(super) fn is_symmetric(spec: &CfdSpec) -> bool {
+#[must_use]
+pub fn is_symmetric(spec: &CfdSpec) -> bool {
     spec.body.as_deref().and_then(Path::extension).is_some_and(|extension| extension == "toml")
 }
 
 /// Sets the loads of a symmetric body that change sign in the mirror to their mean, and says which they were.
-pub(super) fn take_means(rows: &mut [Row]) -> Vec<OneSided> {
+pub fn take_means(rows: &mut [Collected]) -> Vec<OneSided> {
     let mut out = Vec::new();
     for row in rows {
         let velocity_m_s = row.case.flow.velocity_m_s();
@@ -57,7 +57,7 @@ pub(super) fn take_means(rows: &mut [Row]) -> Vec<OneSided> {
 
 /// Loads that change sign in a mirror whose normal is along an axis.
 fn odd(axis: usize) -> impl Iterator<Item = usize> {
-    (0..LOADS.len()).filter(move |load| if *load < 3 { *load == axis } else { *load - 3 != axis })
+    (0..6).filter(move |load| if *load < 3 { *load == axis } else { *load - 3 != axis })
 }
 
 #[cfg(test)]
