@@ -68,23 +68,27 @@ pub fn fields(case: &Case) -> Vec<Field> {
     fields
 }
 
-/// The fields of water at rest around a wall that moves: open to water at rest at the outer boundary, whose pressure is 0.
+/// The fields around a wall that moves with the mesh, in a stream from ahead or in water at rest, whose pressure at the outer boundary is 0.
 ///
 /// The turbulence is that of the case's own speed.
 #[must_use]
-pub fn fields_at_rest(case: &Case) -> Vec<Field> {
-    let of_type = |kind: &str, zero: &str| Dictionary::default().with("type", kind).with("value", zero);
+pub fn fields_about_a_moving_wall(case: &Case, stream_m_s: f64) -> Vec<Field> {
+    let of_type = |kind: &str| Dictionary::default().with("type", kind);
     let mut fields = fields(case);
     for field in &mut fields {
-        let (zero, wall, open) = match field.name {
-            "U" => ("uniform (0 0 0)", Some("movingWallVelocity"), "pressureInletOutletVelocity"),
-            "p" => ("uniform 0", None, "fixedValue"),
-            _ => continue,
-        };
-        zero.clone_into(&mut field.inflow);
-        field.open = of_type(open, zero);
-        if let Some(wall) = wall {
-            field.wall = of_type(wall, zero);
+        match field.name {
+            "U" => {
+                field.inflow = format!("uniform {}", vector([0.0 - stream_m_s, 0.0, 0.0]));
+                field.wall = of_type("movingWallVelocity").with("value", "uniform (0 0 0)");
+                // At rest there is no direction that in- and outflow could be told by.
+                field.open = if stream_m_s == 0.0 {
+                    of_type("pressureInletOutletVelocity").with("value", "uniform (0 0 0)")
+                } else {
+                    of_type("freestreamVelocity").with("freestreamValue", field.inflow.as_str())
+                };
+            }
+            "p" if stream_m_s == 0.0 => field.open = of_type("fixedValue").with("value", "uniform 0"),
+            _ => {}
         }
     }
     fields

@@ -26,7 +26,7 @@ const RISE: f64 = 10.0;
 /// Drift over ½ρU²A that a case which has done all its iterations may still have: a wake that goes over from one state to another does so for thousands of them.
 const SLOW: f64 = 0.01;
 /// An oscillation has this many windows to die down before its case is ended.
-const PATIENCE: usize = 5;
+const PATIENCE: usize = 3;
 
 /// All that a case is judged on.
 #[derive(Debug, Clone, Copy)]
@@ -309,7 +309,7 @@ mod tests {
         assert_eq!(cycle(0.24, 100).status, Status::Converged);
         let early = cycle(0.28, 100);
         assert_eq!((early.status, early.is_final), (Status::Oscillating, false), "{}", early.reason);
-        assert!(cycle(0.28, 200).is_final);
+        assert!(cycle(0.28, 120).is_final);
     }
 
     #[test]

@@ -33,7 +33,7 @@
 //! | [`o_grid`] | O-grids around bodies of elliptic sections |
 //! | [`openfoam`] | where it is, which it is, running its programs |
 //! | [`orphans`] | solvers that outlived their coordinator |
-//! | [`oscillation`] | a body that swings in water at rest: added mass and damping of each period |
+//! | [`oscillation`] | a body that swings, at rest or in a stream: added mass and damping of each period |
 //! | [`outcome`] | what a case came to: its forces, how far they are known, and why it ended |
 //! | [`over_angles`] | a number a load, known at some settings and wanted at all |
 //! | [`plate`] | a flat plate in two dimensions, for validation |
@@ -50,6 +50,7 @@
 //! | [`store`] | the folder of a campaign |
 //! | [`store_error`] | why that cannot be worked with |
 //! | [`study`] | settings on a family of grids and in several domains |
+//! | [`suggest`] | which settings to compute next |
 //! | [`surface_pressure`] | the pressure on the body's surface |
 //! | [`surface`] | a closed surface as a body: its lengths, its symmetry |
 //! | [`transient`] | a case in time |
@@ -113,6 +114,7 @@ pub mod status;
 pub mod store;
 pub mod store_error;
 pub mod study;
+pub mod suggest;
 pub mod surface;
 pub mod surface_pressure;
 pub mod transient;

@@ -169,6 +169,12 @@ fn settings(study: &StudySpec) -> impl Iterator<Item = (f64, f64, f64)> {
     })
 }
 
+/// The model of a case of a Reynolds number; where both are asked for, that with turbulence.
+#[must_use]
+pub fn model(spec: &CfdSpec, reynolds: f64) -> Model {
+    if models(spec, reynolds)[0] { SST } else { Model::Laminar }
+}
+
 /// Whether a case of a Reynolds number is computed with and without a model of turbulence.
 fn models(spec: &CfdSpec, reynolds: f64) -> [bool; 2] {
     let is_between = !spec.is_laminar && (spec.laminar_below..spec.both_below).contains(&reynolds);

@@ -1,6 +1,6 @@
-//! A body that swings along a line in water at rest: the computed twin of a forced oscillation.
+//! A body that swings along a line, in water at rest or while it goes forward: the computed twin of a forced oscillation.
 //!
-//! **Setting.** The body's place is A sin ωt along a direction in its axes, from the start on; what the start leaves has gone after a period or two. The whole mesh moves with the body without changing its shape, and its outer boundary, which goes along, is open to water at rest.
+//! **Setting.** The body's place is A sin ωt along a direction in its axes, from the start on; what the start leaves has gone after a period or two. The whole mesh moves with the body without changing its shape, and its outer boundary, which goes along, is open to the water. Forward speed is a stream from ahead.
 //! **Forces.** The pressure is that of an axes system at rest, so that the loads are those of the water on the body, and nothing is to be added. In axes that move with the body, with the inflow −v(t) and no force on the water but its pressure p̃, one would have p̃ = p + ρ a·x, and on the closed surface F = F̃ + ρ V a with the body's acceleration a: the added mass would come out too large by the displaced mass.
 //! **Fit.** Over each period F = −μ a − b v by its first harmonics: μ = (2/nAω²) Σ F sin ωt, b = −(2/nAω) Σ F cos ωt. A drag d v|v| is in b as 8/(3π) d Aω.
 
@@ -13,7 +13,7 @@ use crate::attempt::{Attempt, How, SOLVER_LOG, SolveError};
 use crate::case::Case;
 use crate::dictionary::{Dictionary, vector};
 use crate::foam_case::{self, write_dictionary};
-use crate::foam_fields::fields_at_rest;
+use crate::foam_fields::fields_about_a_moving_wall;
 use crate::foam_system::Pace;
 use crate::history::{self, Sample};
 use crate::openfoam::End;
@@ -25,6 +25,8 @@ pub struct Swing {
     pub amplitude_m: Vec3,
     /// ω/2π, Hz.
     pub frequency_hz: f64,
+    /// Speed forward through the water meanwhile, m/s.
+    pub forward_m_s: f64,
     /// Steps of a period.
     pub steps: usize,
     /// Periods.
@@ -32,7 +34,7 @@ pub struct Swing {
 }
 
 impl Swing {
-    /// Largest speed Aω, m/s.
+    /// Largest speed Aω of the swing, m/s.
     #[must_use]
     pub fn speed_m_s(&self) -> f64 {
         TAU * self.frequency_hz * norm(self.amplitude_m)
@@ -96,7 +98,7 @@ pub struct Swung {
 
 /// Computes a swing on one processor, in an empty folder.
 ///
-/// The case's own velocity sets the turbulence of the water at rest, and nothing else; give it the speed Aω.
+/// The case's own speed sets the turbulence of the water, and nothing else; give it the largest one through the water, √(U² + A²ω²).
 ///
 /// # Errors
 ///
@@ -107,7 +109,7 @@ pub fn swing(case: &Case, swing: &Swing, mesh: &Path, folder: &Path, how: &How) 
     let pace = Pace::Transient { step_s };
     let one = How { openfoam: how.openfoam, ranks: 1, cancel: how.cancel, tell: how.tell };
     let attempt = Attempt::begin(case, mesh, None, folder, &one, pace, steps)?;
-    foam_case::write_fields(&fields_at_rest(case), &attempt.mesh, folder)?;
+    foam_case::write_fields(&fields_about_a_moving_wall(case, swing.forward_m_s), &attempt.mesh, folder)?;
     write_dictionary(folder, "constant/dynamicMeshDict", &swing.dictionary())?;
     let end = attempt.run([0.0, step_s * steps as f64])?;
     let log = attempt.log()?;
@@ -120,9 +122,12 @@ pub fn swing(case: &Case, swing: &Swing, mesh: &Path, folder: &Path, how: &How) 
     Ok(Swung { periods: periods(&samples, swing), samples, cpu_s: log.cpu_s })
 }
 
-/// The first harmonics of whole periods.
+/// The first harmonics of whole periods; none of a body that does not swing.
 fn periods(samples: &[Sample], swing: &Swing) -> Vec<Period> {
     let amplitude_m = norm(swing.amplitude_m);
+    if amplitude_m <= 0.0 || swing.frequency_hz <= 0.0 {
+        return Vec::new();
+    }
     let along = scale(swing.amplitude_m, 1.0 / amplitude_m);
     let omega = TAU * swing.frequency_hz;
     samples
@@ -150,7 +155,8 @@ mod tests {
     /// μ = 3 kg, b = 2 N s/m, d = 5 N s²/m², along (0.6, −0.8, 0).
     #[test]
     fn mass_and_damping_are_those_that_made_the_force() {
-        let swing = Swing { amplitude_m: [0.06, -0.08, 0.0], frequency_hz: 0.7, steps: 200, periods: 2 };
+        let swing =
+            Swing { amplitude_m: [0.06, -0.08, 0.0], frequency_hz: 0.7, forward_m_s: 0.0, steps: 200, periods: 2 };
         let omega = TAU * 0.7;
         let sample = |i: usize| {
             let time = i as f64 / (200.0 * 0.7);
@@ -162,7 +168,9 @@ mod tests {
                 viscous: [0.0, -0.8 * force, 0.0, 0.0, 0.0, 0.0],
             }
         };
-        let found = periods(&(1..=400).map(sample).collect::<Vec<_>>(), &swing);
+        let samples: Vec<Sample> = (1..=400).map(sample).collect();
+        assert_eq!(periods(&samples, &Swing { amplitude_m: [0.0; 3], ..swing }), []);
+        let found = periods(&samples, &swing);
         assert_eq!(found.len(), 2);
         for period in found {
             assert!((period.added_mass_kg - 3.0).abs() < 1e-9, "{period:?}");

@@ -27,7 +27,7 @@ fn a_cylinder_has_the_added_mass_and_damping_of_wang() {
             return;
         }
     };
-    let how = Swing { amplitude_m: [0.04, -0.03, 0.0], frequency_hz: 1.0, steps: 100, periods: 2 };
+    let how = Swing { amplitude_m: [0.04, -0.03, 0.0], frequency_hz: 1.0, forward_m_s: 0.0, steps: 100, periods: 2 };
     let water = Water { density_kg_m3: 1000.0, viscosity_m2_s: 1.0 / 1035.0 };
     assert!((how.stokes(1.0, water.viscosity_m2_s) - 1035.0).abs() < 1e-9);
     assert!((how.keulegan_carpenter(1.0) - TAU * 0.05).abs() < 1e-12);
@@ -55,8 +55,9 @@ fn a_cylinder_has_the_added_mass_and_damping_of_wang() {
     let [mass, damping] = wang(1035.0);
     let displaced_kg = 1000.0 * FRAC_PI_4;
     let last = swung.periods[1];
-    // Twice the differences of a mesh of 1760 cells with 200 steps: +0.1 % and +5 %.
     let found = [last.added_mass_kg / displaced_kg, last.damping_n_s_m / (displaced_kg * TAU)];
-    assert!((found[0] / mass - 1.0).abs() < 0.01, "C_a {} of {mass}", found[0]);
+    println!("C_a {:.4} of {mass:.4}, damping {:.4} of {damping:.4}", found[0], found[1]);
+    // A mesh of 1760 cells with 100 steps a period is 0.1 % above in the added mass, and 7 % in the damping, which is the friction of a thin layer.
+    assert!((found[0] / mass - 1.0).abs() < 0.005, "C_a {} of {mass}", found[0]);
     assert!((found[1] / damping - 1.0).abs() < 0.1, "damping {} of {damping}", found[1]);
 }

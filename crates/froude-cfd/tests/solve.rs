@@ -146,9 +146,10 @@ fn what_it_left_is_the_flow_of_its_forces(room: &Room, case: &Case, attempt: &Pa
     println!("C_p {} at {}° from the stagnation point", most.pressure_coefficient, cosine.acos().to_degrees());
     // A cell of the meridian is 11°, one around 22°.
     assert!(cosine > 12_f64.to_radians().cos(), "{cosine}");
-    // 1, and by viscosity some 0.06 more at this Reynolds number. Potential flow has 0.04 less in the middle of the first
-    // layer, 0.08 radii off the wall, and 9/4 sin² 5° = 0.02 less half a cell off the point. The mesh errs by a tenth, as in its drag.
-    assert!((most.pressure_coefficient - 1.0).abs() < 0.1, "{}", most.pressure_coefficient);
+    // Homann (1936): 1 + 6/(Re + 0.455 √Re) at the point itself, Re of the radius: 1.113. On this mesh 0.903 is found, on one twice as fine
+    // in all directions 1.037: the mesh's error. A wrong ½ρU² or pressure far away would be off by more.
+    let homann = 1.0 + 6.0 / (50.0 + 0.455 * 50.0_f64.sqrt());
+    assert!((homann - 0.25..homann).contains(&most.pressure_coefficient), "{} of {homann}", most.pressure_coefficient);
 
     let slice = Midplane::of(case, &field);
     assert_eq!((slice.cells.len(), slice.body_m.len()), (2 * 16 * 20, 2 * 16));

@@ -215,6 +215,28 @@ pub enum CfdJob {
         #[command(flatten)]
         of: CfdCampaign,
     },
+    /// Say which settings to compute next: those beside settings that the others foretell worst, as blocks of a plan.
+    #[command(after_help = "Example: froude cfd suggest campaign.toml --count 8")]
+    Suggest {
+        /// Which campaign.
+        #[command(flatten)]
+        of: CfdCampaign,
+        /// New settings at most.
+        #[arg(long, default_value_t = 6, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000))]
+        count: usize,
+    },
+    /// Compute the planned runs of a forced oscillation, as logs that identify takes like those of a tank; run again, it goes on with those that have none.
+    #[command(after_help = "Example: froude cfd swing campaign.toml && froude identify campaign.toml")]
+    Swing {
+        /// The campaign, with a source of `method = "forced_oscillation"` that has a [source.cfd].
+        campaign: PathBuf,
+        /// Which source, where several swing.
+        #[arg(long)]
+        source: Option<String>,
+        /// Runs side by side [default: one for each processor].
+        #[arg(long, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+        jobs: Option<usize>,
+    },
     /// Write a page of a campaign: status, meshes, forces against angle and speed, convergence, surface pressure and wake.
     #[command(
         after_help = "Examples:\n  froude cfd report campaign.toml\n  froude cfd report campaign.toml --case H5LT-u0.4-a45 --case H5LT-u0.4-a90"

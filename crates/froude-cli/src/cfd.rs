@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use std::thread::available_parallelism;
 
 use froude::cfd::run::{Engine, Job, Running, SlurmOptions, run, run_case};
-use froude::cfd::{collect, plan, report, retry, status};
+use froude::cfd::{collect, plan, report, retry, status, suggest, swing};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
@@ -84,6 +84,33 @@ pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
             }
             say!("{} to be computed again: froude cfd run {}", again.len(), of.campaign.display());
         }
+        CfdJob::Suggest { of, count } => {
+            let found = suggest::suggest(&of.campaign, of.source.as_deref(), count)?;
+            if json {
+                return print::json(&found.as_json());
+            }
+            print::summary(&found.section());
+            if !found.next.is_empty() {
+                say!("");
+                for line in found.plan().lines() {
+                    say!("{line}");
+                }
+            }
+        }
+        CfdJob::Swing { campaign, source, jobs } => {
+            let (bar, cancel) = (Spinner::new(), cancel()?);
+            let now = |what: &str| bar.set_message(what);
+            let found = swing::swing(&campaign, source.as_deref(), processors(jobs), &cancel, &now)?;
+            bar.finish_and_clear();
+            if json {
+                print::json(&found.as_json())?;
+            } else {
+                print::summary(&found.section());
+            }
+            if found.was_cancelled {
+                return Err(Failure::Cancelled { verb: "swing", again: campaign });
+            }
+        }
         CfdJob::Case { folders, ranks } => return cases(&folders, ranks),
     }
     Ok(())
@@ -121,7 +148,7 @@ fn start(of: &CfdCampaign, engine: Engine, json: bool) -> Result<(), Failure> {
         return print::json(&ran.as_json());
     }
     print::summary(&ran.section());
-    if ran.was_cancelled { Err(Failure::Cancelled { again: of.campaign.clone() }) } else { Ok(()) }
+    if ran.was_cancelled { Err(Failure::Cancelled { verb: "run", again: of.campaign.clone() }) } else { Ok(()) }
 }
 
 /// What any queue runs: each folder is one case.

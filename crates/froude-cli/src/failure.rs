@@ -31,8 +31,10 @@ pub enum Failure {
     Program(std::io::Error),
 
     /// Stopped as asked.
-    #[error("stopped as asked, nothing is lost: froude cfd run {} goes on where it was", .again.display())]
+    #[error("stopped as asked, nothing is lost: froude cfd {verb} {} goes on where it was", .again.display())]
     Cancelled {
+        /// What was stopped.
+        verb: &'static str,
         /// The campaign.
         again: PathBuf,
     },
@@ -139,11 +141,12 @@ where
 }
 
 impl Failure {
-    /// True where the input is at fault (exit code 2), false where the machine is (exit code 1).
-    pub fn is_bad_input(&self) -> bool {
+    /// 2 where the input is at fault, 1 where the machine is, and 130 of what was stopped as asked, as a shell has it after Ctrl-C.
+    pub fn exit_code(&self) -> u8 {
         match self {
-            Self::Froude(error) => error.is_bad_input(),
-            _ => true,
+            Self::Froude(error) => 1 + u8::from(error.is_bad_input()),
+            Self::Cancelled { .. } => 130,
+            _ => 2,
         }
     }
 }

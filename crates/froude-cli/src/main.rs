@@ -39,7 +39,7 @@ fn main() -> ExitCode {
             Ok(()) => ExitCode::SUCCESS,
             Err(error) => {
                 out::note!("froude: {error}");
-                ExitCode::from(if error.is_bad_input() { 2 } else { 1 })
+                ExitCode::from(error.exit_code())
             }
         }
     })

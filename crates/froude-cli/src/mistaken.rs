@@ -80,7 +80,7 @@ impl Takes {
     /// The same error, or what was named instead of what the verb takes.
     pub fn explain(&self, error: impl Into<Failure>, paths: &[PathBuf]) -> Failure {
         let error = error.into();
-        if !error.is_bad_input() {
+        if error.exit_code() != 2 {
             return error;
         }
         // A folder with logs of other programs is one of runs, of another method: the reader has said which reads them.

@@ -4,6 +4,8 @@
 use std::io::Write as _;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use clap::CommandFactory as _;
 use clap::builder::Styles;
@@ -62,8 +64,15 @@ pub fn usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
 }
 
-/// A spinner on standard error; silent where that is no terminal.
-pub struct Spinner(ProgressBar);
+/// How often a file or a pipe hears what a spinner shows.
+const UNSEEN: Duration = Duration::from_secs(30);
+
+/// A spinner on standard error; where that is no terminal, a line every half a minute.
+pub struct Spinner {
+    bar: ProgressBar,
+    /// When a line was last written, or the spinner began.
+    written: Mutex<Instant>,
+}
 
 impl Spinner {
     pub fn new() -> Self {
@@ -71,21 +80,29 @@ impl Spinner {
         if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed} {msg}") {
             bar.set_style(style);
         }
-        bar.enable_steady_tick(std::time::Duration::from_millis(100));
-        Self(bar)
+        bar.enable_steady_tick(Duration::from_millis(100));
+        Self { bar, written: Mutex::new(Instant::now()) }
     }
 
     pub fn set_message(&self, step: impl Into<String>) {
-        self.0.set_message(visible(&step.into()).into_owned());
+        let step = step.into();
+        if self.bar.is_hidden() {
+            let mut written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+            if written.elapsed() >= UNSEEN {
+                *written = Instant::now();
+                error_line(format_args!("{step}"));
+            }
+        }
+        self.bar.set_message(visible(&step).into_owned());
     }
 
     /// Does something that writes lines of its own.
     pub fn suspend(&self, write: impl FnOnce()) {
-        self.0.suspend(write);
+        self.bar.suspend(write);
     }
 
     pub fn finish_and_clear(&self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 
@@ -100,7 +117,7 @@ impl Bar {
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }
-        bar.enable_steady_tick(std::time::Duration::from_millis(200));
+        bar.enable_steady_tick(Duration::from_millis(200));
         Self(bar)
     }
 

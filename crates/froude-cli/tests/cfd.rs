@@ -98,8 +98,8 @@ fn a_campaign_is_priced_before_anything_runs() {
             (row["cells"].as_u64(), row["cases"].as_u64(), row["open"].as_u64()),
             (Some(3200), Some(3), Some(3))
         );
-        // One of 150 iterations and two of 70, at 3.2 µs a cell.
-        assert!((row["cpu_s"].as_f64().unwrap() - 290.0 * 3200.0 * 3.2e-6).abs() < 1e-9, "{row}");
+        // Three of 250 iterations, at 3.2 µs a cell.
+        assert!((row["cpu_s"].as_f64().unwrap() - 750.0 * 3200.0 * 3.2e-6).abs() < 1e-9, "{row}");
     }
     let said = done(&["cfd", "plan", text(&folder.path().join("campaign.toml"))]);
     assert!(said.contains("6 cases are kept"), "{said}");
@@ -150,6 +150,8 @@ fn a_campaign_that_was_killed_goes_on_and_is_identified() {
     assert!((0.08..0.3).contains(&c("C_d")) && (0.0..0.02).contains(&c("C_f")), "{coefficients}");
 
     reported(&path);
+    let said = done(&["cfd", "suggest", text(&path)]);
+    assert!(said.contains("plan five angles"), "{said}");
 
     // Edited by hand: it reaches no fit, and is said.
     let result = std::fs::read_dir(folder.path().join("flow/cases/H1LT-u0.4-a90")).unwrap();
@@ -242,6 +244,85 @@ fn reported(path: &Path) {
             "{load}"
         );
     }
+}
+
+const SWING: &str = r#"schema = 1
+name = "swung"
+[fluid]
+density = "1025 kg/m^3"
+kinematic_viscosity = "1.19e-6 m^2/s"
+[body]
+link = { major_semi_axis = "58.8 mm", minor_semi_axis = "39.4 mm", half_length = "90 mm" }
+head_side_area = "0.011 m^2"
+tail_side_area = "0.008 m^2"
+link_volume = "1.2723e-3 m^3"
+[[source]]
+name   = "computed"
+kind   = "cfd"
+runs   = "runs"
+method = "forced_oscillation"
+models = ["f1"]
+[source.forced_oscillation]
+pivot    = "stream"
+radius   = "476 mm"
+mass     = "1.5 kg"
+buoyancy = "0 N"
+delay    = "0 ms"
+cycles   = { skip = 1, fewest = 2 }
+[source.cfd]
+body = "body.toml"
+mesh = { stations = 20, layers = 20, azimuth = 8, first_layer = "0.5 mm" }
+[[source.plan]]
+configurations = ["H1LT"]
+amplitude = "2 deg"
+frequency = ["60 deg/s", "70 deg/s", "80 deg/s"]
+flow      = "0 m/s"
+periods   = 3
+"#;
+
+/// Three runs, stopped by SIGKILL on the way and gone on with; identify has the added mass of potential flow and of a thin layer that goes along.
+#[test]
+fn a_swing_is_computed_and_identified_as_a_tank_s() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("body.toml"), BODY).unwrap();
+    let path = folder.path().join("campaign.toml");
+    let with = |from: &str, to: &str| std::fs::write(&path, SWING.replacen(from, to, 1)).unwrap();
+    with("\"stream\"", "\"upright\"");
+    assert!(refused(&["cfd", "swing", text(&path)]).contains("pivot = \"stream\""));
+    with("[source.cfd]\nbody = \"body.toml\"", "[source.none]");
+    assert!(refused(&["cfd", "swing", text(&path)]).contains("none"));
+    with("", "");
+    if is_left_out() {
+        return;
+    }
+    let mut child = Command::new(env!("CARGO_BIN_EXE_froude"))
+        .args(["cfd", "swing", text(&path)])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let forces = folder.path().join("runs-cfd/001/postProcessing/forces/0/force.dat");
+    let start = Instant::now();
+    while std::fs::metadata(&forces).map_or(0, |f| f.len()) < 2000 && start.elapsed() < Duration::from_mins(1) {
+        sleep(Duration::from_millis(20));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let found = json(&["cfd", "swing", text(&path)]);
+    assert_eq!((found["runs"].as_array().unwrap().len(), found["open"].as_u64()), (3, Some(0)), "{found}");
+    let again = json(&["cfd", "swing", text(&path)]);
+    assert!(again["runs"][0]["cpu_s"].is_null() && again["open"].as_u64() == Some(0), "{again}");
+
+    let estimate = &json(&["identify", text(&path)])["estimates"][0];
+    let added = estimate["coefficients"]["C_A"]["value"].as_f64().unwrap();
+    // 1.385 by panels (froude added-mass), and a twentieth to a tenth more by Stokes' layer, which a cylinder has 4/√(πβ) of.
+    let layer = 4.0 / (std::f64::consts::PI * 1010.0_f64).sqrt();
+    println!("C_A {added}, by panels with the layer of a cylinder {}", 1.385 * (1.0 + layer));
+    assert!((added / (1.385 * (1.0 + layer)) - 1.0).abs() < 0.05, "{estimate}");
+
+    // Another plan: runs that it did not make are neither taken nor written over.
+    with("\"2 deg\"", "\"3 deg\"");
+    assert!(refused(&["cfd", "swing", text(&path)]).contains("other inputs"));
 }
 
 #[test]

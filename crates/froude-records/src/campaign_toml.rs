@@ -243,9 +243,8 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
             "says what is asked of a mesh, but the source names none: write mesh = \"hull.stl\", or a body file";
         return Err(s.wrong("added_mass", value, problem));
     }
-    if let (Some(value), false) = (s.get("cfd"), matches!(input, Input::Cases(_))) {
-        let problem =
-            "says how a flow is computed, but the source names no cases: write cases = \"cases\", the folder for them";
+    if let (Some(value), false) = (s.get("cfd"), matches!(input, Input::Cases(_)) || is_method(FORCED_OSCILLATION)) {
+        let problem = "says how a flow is computed, but the source names no cases: write cases = \"cases\", the folder for them, or method = \"forced_oscillation\"";
         return Err(s.wrong("cfd", value, problem));
     }
     if let (Some(value), false) = (s.get("decay"), is_decay) {

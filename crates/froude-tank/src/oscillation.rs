@@ -19,6 +19,7 @@
 //! | [`froude_hydro::swing`] | velocity and acceleration of the body through the water | USR eq. 5 and 19 (consistent form) |
 //! | [`forces`]    | the regressors of the equation above                        | USR eq. 16, 17 and 20                 |
 //! | [`mod@fit`]   | coefficients, their scatter, what declared errors do        | Bell & McCaffrey 2002, GUM            |
+//! | [`computed`]  | the runs that a computation of the flow gives               | –                                     |
 //! | [`simulate`]  | the runs that a campaign would give                         | –                                     |
 //! | [`mod@forecast`] | the intervals to expect of a plan                           | Fisher 1922                           |
 //! | [`plan`]      | run matrix, time, intervals, for a person                   | –                                     |
@@ -29,6 +30,7 @@
 //!
 //! Not here: moments, two axes at once, the memory of the free surface (C_A is that of the frequencies driven), rods that bend.
 
+pub mod computed;
 pub mod error;
 pub mod findings;
 pub mod fit;

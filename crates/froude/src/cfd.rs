@@ -9,12 +9,14 @@ pub mod plan;
 pub mod report;
 pub mod run;
 pub mod status;
+pub mod suggest;
+pub mod swing;
 
 use std::path::{Path, PathBuf};
 
 use froude_cfd::case::Water;
 use froude_cfd::store::Store;
-use froude_records::campaign::{Input, Source, read_campaign};
+use froude_records::campaign::{Campaign, Input, Source, read_campaign};
 use froude_records::cfd::CfdSpec;
 
 pub(crate) use self::computed::Computed;
@@ -76,6 +78,19 @@ impl Asked {
                 .find(|s| s.name == name)
                 .ok_or_else(|| refused(format!("has no source {name:?} with cases; it has {}", names())))?,
         };
+        if source.plan.is_empty() {
+            let problem = format!(
+                "source {:?} plans nothing: add a [[source.plan]] with configurations, speed and angle",
+                source.name
+            );
+            return Err(refused(problem).into());
+        }
+        Self::of(&campaign, source, source.input.path().to_owned())
+    }
+
+    /// Of a source, whose cases are in a folder.
+    fn of(campaign: &Campaign, source: &Source, folder: PathBuf) -> Result<Self, Error> {
+        let refused = |problem: String| CfdInput { path: campaign.path.clone(), problem };
         let need = |what: &str, example: &str| {
             refused(format!("[fluid] states no {what}, which a flow depends on; write {example}"))
         };
@@ -99,13 +114,6 @@ impl Asked {
                 );
             }
         };
-        if source.plan.is_empty() {
-            let problem = format!(
-                "source {:?} plans nothing: add a [[source.plan]] with configurations, speed and angle",
-                source.name
-            );
-            return Err(refused(problem).into());
-        }
         let spec = source.cfd.clone().unwrap_or_default();
         let body = spec.body.clone().ok_or_else(|| {
             refused(format!("source {:?} names no body: write body = \"body.toml\" in [source.cfd]", source.name))
@@ -120,8 +128,7 @@ impl Asked {
         }
         let stated = campaign.body.as_ref();
         let reference = [stated.and_then(|b| b.reference_length_m), stated.and_then(|b| b.reference_area_m2)];
-        let (folder, source) = (source.input.path().to_owned(), source.clone());
-        Ok(Self { title: campaign.name, source, spec, folder, body, water, reference })
+        Ok(Self { title: campaign.name.clone(), source: source.clone(), spec, folder, body, water, reference })
     }
 }
 

@@ -257,12 +257,15 @@ pub fn files(campaign: &Campaign, source: &Source) -> Result<Vec<Export>, Method
     let mut out = Vec::new();
     for run in simulated(&planned, &setup, &truth, sensors, seed) {
         out.push(Export { name: format!("{}.csv", run.planned.id), content: log(&run.trace).into_bytes() });
-        out.push(Export { name: format!("{}.toml", run.planned.id), content: sidecar(&run, &setup).into_bytes() });
+        out.push(Export {
+            name: format!("{}.toml", run.planned.id),
+            content: sidecar(&run.planned, &setup, "A run of the twin.").into_bytes(),
+        });
     }
     Ok(out)
 }
 
-fn log(trace: &OscillationTrace) -> String {
+pub(super) fn log(trace: &OscillationTrace) -> String {
     let mut out = String::from("time,phi,force\n");
     for ((t, angle), force) in trace.time_s.iter().zip(&trace.angle_rad).zip(&trace.force_n) {
         out += &format!("{t:.6},{angle:.8},{force:.6}\n");
@@ -270,19 +273,20 @@ fn log(trace: &OscillationTrace) -> String {
     out
 }
 
-fn sidecar(run: &Simulated, setup: &Setup) -> String {
-    let role = if run.planned.swing.medium == Medium::Air { Role::DryAir } else { Role::Test }.name();
-    let configuration = &setup.bodies[run.planned.body].name;
+/// `said` is a line for people.
+pub(super) fn sidecar(run: &Planned, setup: &Setup, said: &str) -> String {
+    let role = if run.swing.medium == Medium::Air { Role::DryAir } else { Role::Test }.name();
+    let configuration = &setup.bodies[run.body].name;
     let mounted = if configuration.is_empty() {
         String::new()
     } else {
         format!("\n[mounted]\nconfiguration = {configuration:?}\n")
     };
     format!(
-        "# A run of the twin.\nschema = 1\nmethod = \"{FORCED_OSCILLATION}\"\nrole = \"{role}\"\n{mounted}\n[conditions]\nflow = \"{} m/s\"\n\n[columns]\n\
+        "# {said}\nschema = 1\nmethod = \"{FORCED_OSCILLATION}\"\nrole = \"{role}\"\n{mounted}\n[conditions]\nflow = \"{} m/s\"\n\n[columns]\n\
          time  = {{ name = \"time\", unit = \"s\" }}\n\
          phi   = {{ name = \"angle\", unit = \"rad\", sign = 1, frame = \"sensor\", clock = \"log\" }}   # positive towards +y\n\
          force = {{ name = \"force\", unit = \"N\", sign = 1, frame = \"body\", clock = \"log\" }}       # of the rig on the body, along +y\n",
-        run.planned.swing.flow_m_s
+        run.swing.flow_m_s
     )
 }

@@ -11,7 +11,9 @@ mod accelerated;
 mod bodies;
 mod carriage;
 mod cfd;
+mod cfd_evidence;
 mod cfd_laws;
+mod cfd_swing;
 mod claims;
 mod clocks;
 // Its own example tells more of each row.

@@ -19,10 +19,10 @@ use crate::Error;
 /// Faults of a mesh that are told one by one.
 const MOST_TOLD: usize = 6;
 
-/// The bodies that the plan names, in the order in which it does.
-pub(super) fn bodies(asked: &Asked) -> Result<Vec<Shaped>, Error> {
+/// The bodies of configurations, in the order in which they are named first.
+pub(super) fn bodies<'a>(asked: &Asked, named: impl IntoIterator<Item = &'a String>) -> Result<Vec<Shaped>, Error> {
     let mut names: Vec<&String> = Vec::new();
-    for name in asked.source.plan.iter().flat_map(|block| &block.configurations) {
+    for name in named {
         if !names.contains(&name) {
             names.push(name);
         }

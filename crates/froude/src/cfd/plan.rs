@@ -87,7 +87,8 @@ pub struct PlannedConfiguration {
 pub fn plan(campaign: &Path, source: Option<&str>, cancel: &AtomicBool, tell: &dyn Fn(&str)) -> Result<Planned, Error> {
     let asked = Asked::read(campaign, source)?;
     let mut meshed: Vec<Group> = Vec::new();
-    for body in bodies::bodies(&asked)? {
+    let named = asked.source.plan.iter().flat_map(|block| &block.configurations);
+    for body in bodies::bodies(&asked, named)? {
         meshed.extend(of_body(&asked, &body, cancel, tell)?);
     }
     let bodies: Vec<Meshed> = meshed.iter().map(|group| group.meshed.clone()).collect();

@@ -1,0 +1,53 @@
+//! Runs that a computation of the flow gives in place of a tank: what is to be computed of a source, and the log and sidecar of what was.
+//!
+//! The body goes to and fro along y by r φ(t), φ = φ_A sin ωt, and forward at U: v_y = r φ̇ in body axes, as on the arc of a pivot along the stream. That the arc also rolls the body by φ about its own axis is left out. The log has the force of a rig on a body of the declared mass and buoyancy, f_m = m r φ̈ − F_y − B sin φ, so that what reduces runs of a tank reduces these.
+
+use froude_identify::method::{Export, MethodError};
+use froude_records::campaign::{Campaign, Source};
+use froude_rig::oscillation::OscillationTrace;
+
+use super::setup::Setup;
+use super::simulate::{Planned, configurations, log, planned, sidecar};
+use super::source::{declared, setup_of};
+use froude_hydro::swing::{Medium, Pivot};
+
+/// The setup of a source and those of its planned runs that are in water.
+///
+/// # Errors
+///
+/// What the campaign does not declare; a body that turns its heading; no run in water.
+pub fn asked(campaign: &Campaign, source: &Source) -> Result<(Setup, Vec<Planned>), MethodError> {
+    let setup = setup_of(campaign, source, declared(source)?, &configurations(source))?;
+    let undeclared = |what: &str| MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() };
+    if setup.pivot != Pivot::Stream {
+        return Err(undeclared(
+            "an upright pivot turns the body's heading, which is not computed; write pivot = \"stream\", a swing across the stream",
+        ));
+    }
+    let mut runs = planned(source, &setup);
+    runs.retain(|run| run.swing.medium == Medium::Water);
+    if runs.is_empty() {
+        return Err(undeclared("plans no run in water: add a [[source.plan]] with amplitude, frequency and flow"));
+    }
+    Ok((setup, runs))
+}
+
+/// The log and the sidecar of a run, of which F_y of the water on the body is known over time; `said` is a line for people at the head of the sidecar.
+#[must_use]
+pub fn files(run: &Planned, setup: &Setup, time_s: &[f64], fluid_n: &[f64], said: &str) -> [Export; 2] {
+    let (radius_m, body) = (setup.radius_m.value, &setup.bodies[run.body]);
+    let omega = run.swing.omega_rad_s;
+    let angle = |t: f64| run.swing.amplitude_rad * (omega * t).sin();
+    let buoyancy_n = body.buoyancy_n.map_or(0.0, |b| b.value);
+    let of_rig = |(&t, &fluid): (&f64, &f64)| {
+        let phi = angle(t);
+        -body.mass_kg.value * radius_m * omega * omega * phi - fluid - buoyancy_n * phi.sin()
+    };
+    let trace = OscillationTrace {
+        time_s: time_s.to_vec(),
+        angle_rad: time_s.iter().map(|t| angle(*t)).collect(),
+        force_n: time_s.iter().zip(fluid_n).map(of_rig).collect(),
+    };
+    let export = |end: &str, text: String| Export { name: format!("{}.{end}", run.id), content: text.into_bytes() };
+    [export("csv", log(&trace)), export("toml", sidecar(run, setup, said))]
+}
