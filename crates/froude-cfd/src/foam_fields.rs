@@ -68,7 +68,7 @@ pub fn fields(case: &Case) -> Vec<Field> {
     fields
 }
 
-/// The fields around a wall that moves with the mesh, in a stream from ahead or in water at rest, whose pressure at the outer boundary is 0.
+/// The fields around a wall that moves with the mesh, in a stream from ahead or in water at rest. The pressure at the outer boundary is 0 at rest, and that of a free stream else, whose in- and outflow is told by the velocity in axes at rest.
 ///
 /// The turbulence is that of the case's own speed.
 #[must_use]
@@ -117,5 +117,40 @@ impl Field {
         };
         let patches = mesh.patches.iter().fold(Dictionary::default(), |all, p| all.with(&p.name, condition(p)));
         Dictionary::default().with("boundaryField", patches).text()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Flow, Reference, Stop, Water};
+
+    #[test]
+    fn the_stream_comes_from_ahead_and_the_wall_moves_with_its_mesh() {
+        let case = Case {
+            id: String::new(),
+            configuration: String::new(),
+            mesh: String::new(),
+            is_half: true,
+            flow: Flow { speed_m_s: 0.3, angle_rad: 0.0, pitch_rad: 0.0 },
+            water: Water { density_kg_m3: 1000.0, viscosity_m2_s: 1e-6 },
+            model: Model::Laminar,
+            stop: Stop { iterations: 1, window: 1, drift: 0.0, spread: 0.0 },
+            reference: Reference { length_m: 1.0, width_m: 1.0, area_m2: 1.0, point_m: [0.0; 3] },
+            start_from: None,
+        };
+        let of = |stream: f64| {
+            let fields = fields_about_a_moving_wall(&case, stream);
+            fields.iter().map(|f| (f.inflow.clone(), f.wall.text(), f.open.text())).collect::<Vec<_>>()
+        };
+        let [(inflow, wall, open), (_, still, pressure)] = &of(0.2)[..] else { panic!("U and p") };
+        assert_eq!(inflow, "uniform (-2e-1 0e0 0e0)");
+        assert!(wall.contains("movingWallVelocity") && still.contains("zeroGradient"));
+        assert!(open.contains("freestreamVelocity") && open.contains("uniform (-2e-1 0e0 0e0)"), "{open}");
+        assert!(pressure.contains("freestreamPressure"), "{pressure}");
+        let [(inflow, _, open), (_, _, pressure)] = &of(0.0)[..] else { panic!("U and p") };
+        assert!(inflow == "uniform (0e0 0e0 0e0)" && open.contains("pressureInletOutletVelocity"), "{inflow} {open}");
+        assert!(pressure.contains("fixedValue"), "{pressure}");
+        assert_eq!(of(-0.2)[0].0, "uniform (2e-1 0e0 0e0)");
     }
 }

@@ -102,7 +102,7 @@ pub struct Swung {
 ///
 /// # Errors
 ///
-/// [`SolveError`]; also where the solver did not reach the end.
+/// [`SolveError`]; also where the solver did not reach the end, or its forces are not those of all steps.
 pub fn swing(case: &Case, swing: &Swing, mesh: &Path, folder: &Path, how: &How) -> Result<Swung, SolveError> {
     let steps = swing.steps.max(1) * swing.periods.max(1);
     let step_s = 1.0 / (swing.frequency_hz * swing.steps.max(1) as f64);
@@ -119,6 +119,11 @@ pub fn swing(case: &Case, swing: &Swing, mesh: &Path, folder: &Path, how: &How) 
     }
     attempt.end()?;
     let samples = history::read(folder, case.is_half)?;
+    let is_whole = samples.len() == steps && samples.iter().all(|s| s.total().iter().all(|load| load.is_finite()));
+    if !is_whole {
+        let said = format!("forces of {} of {steps} steps that are all numbers; is the disk full?", samples.len());
+        return Err(SolveError::Part { program: pace.program(), end, log: folder.join(SOLVER_LOG), said });
+    }
     Ok(Swung { periods: periods(&samples, swing), samples, cpu_s: log.cpu_s })
 }
 

@@ -147,7 +147,7 @@ fn what_it_left_is_the_flow_of_its_forces(room: &Room, case: &Case, attempt: &Pa
     // A cell of the meridian is 11°, one around 22°.
     assert!(cosine > 12_f64.to_radians().cos(), "{cosine}");
     // Homann (1936): 1 + 6/(Re + 0.455 √Re) at the point itself, Re of the radius: 1.113. On this mesh 0.903 is found, on one twice as fine
-    // in all directions 1.037: the mesh's error. A wrong ½ρU² or pressure far away would be off by more.
+    // in all directions 1.037: the mesh's error. This tests the place and the size; that values are read right, the sum above tests.
     let homann = 1.0 + 6.0 / (50.0 + 0.455 * 50.0_f64.sqrt());
     assert!((homann - 0.25..homann).contains(&most.pressure_coefficient), "{} of {homann}", most.pressure_coefficient);
 

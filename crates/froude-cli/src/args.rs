@@ -60,6 +60,23 @@ pub enum Verb {
         #[arg(long)]
         out: Option<PathBuf>,
     },
+    /// Predict the loads of a table's rows by a record's law, with bands, errors, E_n and one χ² over all rows.
+    #[command(after_help = "Example: froude predict monday-results/estimate.json tuesday.csv --out predicted")]
+    Predict {
+        /// The record (estimate.json).
+        record: PathBuf,
+        /// The table (.csv, .parquet); where it has loads, they are compared.
+        table: PathBuf,
+        /// Sidecar of the table [default: the .toml of the same name beside it].
+        #[arg(long)]
+        sidecar: Option<PathBuf>,
+        /// A law or an estimate's id, once for each [default: the recommended ones].
+        #[arg(long = "law")]
+        laws: Vec<String>,
+        /// Folder for a table of all rows; without it nothing is written.
+        #[arg(long)]
+        out: Option<PathBuf>,
+    },
     /// Show what a table, campaign, record, run (.mcap) or folder of runs contains, with units, ranges and every finding.
     #[command(after_help = "Example: froude inspect tow.csv")]
     Inspect {

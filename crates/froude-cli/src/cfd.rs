@@ -110,6 +110,9 @@ pub fn job(job: CfdJob, json: bool) -> Result<(), Failure> {
             if found.was_cancelled {
                 return Err(Failure::Cancelled { verb: "swing", again: campaign });
             }
+            if !found.failed.is_empty() {
+                return Err(Failure::RunsFailed { count: found.failed.len() });
+            }
         }
         CfdJob::Case { folders, ranks } => return cases(&folders, ranks),
     }
@@ -145,9 +148,10 @@ fn start(of: &CfdCampaign, engine: Engine, json: bool) -> Result<(), Failure> {
     let ran = run(&job, &cancel, &running)?;
     bar.finish_and_clear();
     if json {
-        return print::json(&ran.as_json());
+        print::json(&ran.as_json())?;
+    } else {
+        print::summary(&ran.section());
     }
-    print::summary(&ran.section());
     if ran.was_cancelled { Err(Failure::Cancelled { verb: "run", again: of.campaign.clone() }) } else { Ok(()) }
 }
 

@@ -39,6 +39,13 @@ pub enum Failure {
         again: PathBuf,
     },
 
+    /// Runs without a result, each with its reason among what was printed.
+    #[error("{count} of the runs failed, each for the reason above; the others are done")]
+    RunsFailed {
+        /// How many.
+        count: usize,
+    },
+
     /// An option that is called otherwise now.
     #[error("{old} is now {new}: write {instead}")]
     Renamed {
@@ -146,6 +153,7 @@ impl Failure {
         match self {
             Self::Froude(error) => 1 + u8::from(error.is_bad_input()),
             Self::Cancelled { .. } => 130,
+            Self::RunsFailed { .. } => 1,
             _ => 2,
         }
     }

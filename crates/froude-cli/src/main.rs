@@ -27,7 +27,7 @@ use failure::Failure;
 use froude::pipeline::{self, Input, Job};
 use froude::records::text::counted;
 use froude::swim::look::look;
-use froude::{demo, inspect, plan, twin};
+use froude::{demo, inspect, plan, predict, twin};
 
 fn main() -> ExitCode {
     last_word::guarded(|| {
@@ -65,6 +65,21 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Verb::Compare { estimates, all, out } => {
             let job = Job { out, ..Job::of(Input::Records(estimates.clone())) };
             identify(job, cli.json, all).map_err(|error| mistaken::COMPARE.explain(error, &estimates))?;
+        }
+        Verb::Predict { record, table, sidecar, laws, out } => {
+            let job = predict::Job { record: record.clone(), table: table.clone(), sidecar, laws, out };
+            // Which of the two is no such file says the reader; that they were taken for each other is said here.
+            let found = predict::predict(&job).map_err(|error| mistaken::PREDICT.explain(error, &[record, table]))?;
+            if cli.json {
+                return print::json(&found.as_json());
+            }
+            print::findings(&found.findings);
+            for predicted in &found.estimates {
+                print::summary(&found.section(predicted));
+            }
+            for path in &found.written {
+                out::say!("\nrows       {}", path.display());
+            }
         }
         Verb::Inspect { file, sidecar } => {
             let inspection = inspect::inspect(&file, sidecar.as_deref())

@@ -48,6 +48,11 @@ pub const INSPECT: Takes = Takes {
     words: "a table (.csv, .parquet), a campaign (.toml), a record (.json), a run (.mcap) or a folder of runs",
 };
 pub const COMPARE: Takes = Takes { verb: "compare", kinds: &[Kind::Record], words: "records (estimate.json)" };
+pub const PREDICT: Takes = Takes {
+    verb: "predict",
+    kinds: &[Kind::Record, Kind::Table],
+    words: "a record (estimate.json) and then a table (.csv, .parquet)",
+};
 pub const SIMULATE: Takes =
     Takes { verb: "simulate", kinds: &[Kind::Campaign, Kind::Drive], words: "a campaign with plan and truth (.toml)" };
 pub const PLAN: Takes =

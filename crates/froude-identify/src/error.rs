@@ -127,6 +127,17 @@ pub enum IdentifyError {
         model: String,
     },
 
+    /// A coefficient that a prediction needs and its record has no value of.
+    #[error(
+        "estimate {id}: {coefficient} has no value, as its data do not determine it; forces follow from a law whose coefficients all have one"
+    )]
+    NoValue {
+        /// Id of the estimate.
+        id: String,
+        /// The coefficient.
+        coefficient: String,
+    },
+
     /// Nothing is left to fit.
     #[error("source {source_name:?}: no observation is left after `keep`; {n_read} were read")]
     NothingKept {

@@ -33,6 +33,7 @@ pub mod method;
 pub mod observations;
 mod outlying;
 pub mod page;
+pub mod predict;
 pub mod record;
 pub mod reduce;
 pub mod regression;

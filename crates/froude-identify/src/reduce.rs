@@ -2,6 +2,8 @@
 //!
 //! Every step that changes a number or drops a row is reported as a finding.
 
+use std::path::Path;
+
 use froude_hydro::fluid::Water;
 use froude_records::campaign::{Campaign, Comparison, Input, Keep, KeepValue, Source};
 use froude_records::finding::{Finding, Severity};
@@ -87,6 +89,19 @@ pub fn reduce_table(
     }
     let findings = findings.into_iter().map(|f| f.of_source(&source.name)).collect();
     Ok(Observations { data, n_read, findings, shared_errors, files })
+}
+
+/// All rows of a table that no campaign names, as observations, with what was found on the way.
+///
+/// # Errors
+///
+/// Whatever the table reader finds; impossible water.
+pub fn rows_of(path: &Path, sidecar: Option<&Path>) -> Result<(Dataset, Vec<Finding>), IdentifyError> {
+    let table = read_table(path, sidecar)?;
+    let campaign = Campaign::of_table(path, sidecar.map(Path::to_owned));
+    let mut findings = Vec::new();
+    let data = observed(&table, &campaign, &campaign.sources[0], &mut findings)?;
+    Ok((data, findings))
 }
 
 /// All rows of a table as observations: motion, water, zeros subtracted.

@@ -39,6 +39,7 @@ pub mod inspect;
 mod method;
 pub mod pipeline;
 pub mod plan;
+pub mod predict;
 mod registry;
 pub mod results;
 mod steps_page;

@@ -2,6 +2,8 @@
 //!
 //! The body goes to and fro along y by r φ(t), φ = φ_A sin ωt, and forward at U: v_y = r φ̇ in body axes, as on the arc of a pivot along the stream. That the arc also rolls the body by φ about its own axis is left out. The log has the force of a rig on a body of the declared mass and buoyancy, f_m = m r φ̈ − F_y − B sin φ, so that what reduces runs of a tank reduces these.
 
+use std::collections::BTreeSet;
+
 use froude_identify::method::{Export, MethodError};
 use froude_records::campaign::{Campaign, Source};
 use froude_rig::oscillation::OscillationTrace;
@@ -11,11 +13,11 @@ use super::simulate::{Planned, configurations, log, planned, sidecar};
 use super::source::{declared, setup_of};
 use froude_hydro::swing::{Medium, Pivot};
 
-/// The setup of a source and those of its planned runs that are in water.
+/// The setup of a source and those of its planned runs that are in water, named by what they are: `H1LT-a10-w70-u0.2`, angle and angular frequency in degrees and per second.
 ///
 /// # Errors
 ///
-/// What the campaign does not declare; a body that turns its heading; no run in water.
+/// What the campaign does not declare; a body that turns its heading; no run in water; a run twice; too few periods for the cycles that are asked for.
 pub fn asked(campaign: &Campaign, source: &Source) -> Result<(Setup, Vec<Planned>), MethodError> {
     let setup = setup_of(campaign, source, declared(source)?, &configurations(source))?;
     let undeclared = |what: &str| MethodError::Undeclared { place: source.place.to_string(), what: what.to_owned() };
@@ -26,6 +28,28 @@ pub fn asked(campaign: &Campaign, source: &Source) -> Result<(Setup, Vec<Planned
     }
     let mut runs = planned(source, &setup);
     runs.retain(|run| run.swing.medium == Medium::Water);
+    for run in &mut runs {
+        let (name, swing) = (&setup.bodies[run.body].name, &run.swing);
+        let before = if name.is_empty() { String::new() } else { format!("{name}-") };
+        // Of degrees the conversion's rounding is no digit.
+        let degrees = |rad: f64| (1e9 * rad.to_degrees()).round() / 1e9;
+        run.id =
+            format!("{before}a{}-w{}-u{}", degrees(swing.amplitude_rad), degrees(swing.omega_rad_s), swing.flow_m_s);
+    }
+    let mut names = BTreeSet::new();
+    if let Some(twice) = runs.iter().find(|run| !names.insert(run.id.clone())) {
+        return Err(undeclared(&format!(
+            "plans {} twice: a computation gives the same again, which is no second observation; leave repeats out",
+            twice.id
+        )));
+    }
+    let needed = (setup.cycles.skip + setup.cycles.fewest) as f64;
+    if setup.cycles.skip == 0 || runs.iter().any(|run| run.swing.periods < needed) {
+        return Err(undeclared(&format!(
+            "a computed body starts at once, so that one cycle at least is to be left out, and {needed} periods are needed for cycles = {{ skip = {}, fewest = {} }}; write skip = 1 or more, and as many periods",
+            setup.cycles.skip, setup.cycles.fewest
+        )));
+    }
     if runs.is_empty() {
         return Err(undeclared("plans no run in water: add a [[source.plan]] with amplitude, frequency and flow"));
     }

@@ -1,10 +1,11 @@
-//! What else than the law may lie between computed and measured forces: the body's necks, the walls of a tank, the model of turbulence, the steady flow, each by two computations that differ in it alone.
+//! What else than the law may lie between computed and measured forces: the body's necks, the walls of a tank, the model of turbulence, the plane of symmetry and the steady flow, each by two computations of two links that differ in it alone, as far as meshes allow.
 
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use froude_cfd::again::Again;
 use froude_cfd::body::shaped;
 use froude_cfd::case::Case;
 use froude_cfd::collect::collect;
@@ -15,6 +16,8 @@ use froude_cfd::store::Store;
 use froude_cfd::transient::{Times, solve_in_time};
 use froude_records::body::read_body;
 use froude_records::cfd::CfdSpec;
+use froude_records::hash::sha256_of_bytes;
+use froude_records::write::write_atomically;
 
 use crate::cfd::{campaign, example, finish};
 use crate::claims::{Claims, Verdict};
@@ -32,76 +35,113 @@ const TANK: &str = "tank = { width = \"0.8 m\", depth = \"0.75 m\", submergence 
 /// Loads of one flow with and without a thing.
 pub struct Pair {
     /// What differs.
-    pub what: &'static str,
-    pub speed_m_s: f64,
-    pub angle_deg: f64,
-    /// f_x and f_y with it and without, N.
-    pub with: [f64; 2],
-    pub without: [f64; 2],
+    what: &'static str,
+    speed_m_s: f64,
+    angle_deg: f64,
+    /// f_x and f_y with it, N; `None`: the computation has no result that counts.
+    with: Option<[f64; 2]>,
+    /// Standard deviations of these means, N.
+    std: [f64; 2],
+    /// Without it.
+    without: [f64; 2],
+    /// ½ρU²A, N.
+    scale_n: f64,
 }
 
 impl Pair {
-    /// With over without, of the loads that are not zero by symmetry.
-    fn ratios(&self) -> String {
-        let of = |k: usize| format!("{:.3}", self.with[k] / self.without[k]);
-        match self.angle_deg {
-            0.0 => format!("f_x × {}", of(0)),
-            90.0 => format!("f_y × {}", of(1)),
-            _ => format!("f_x × {}, f_y × {}", of(0), of(1)),
-        }
+    /// The change over ½ρU²A, and of a load that is far from zero over itself too.
+    fn change(&self) -> String {
+        let Some(with) = self.with else { return "no result: the flow diverges".to_owned() };
+        // Head on there is no force across, and across none along.
+        let loads: &[usize] = match self.angle_deg {
+            0.0 => &[0],
+            90.0 => &[1],
+            _ => &[0, 1],
+        };
+        let of = |k: &usize| {
+            let over = (with[*k] - self.without[*k]) / self.scale_n;
+            let std =
+                if self.std[*k] > 0.0 { format!(" ± {:.4}", self.std[*k] / self.scale_n) } else { String::new() };
+            let part = 100.0 * (with[*k] / self.without[*k] - 1.0);
+            // f_x changes its sign between 33° and 60°.
+            let part = if loads.len() == 1 || *k == 1 { format!(" ({part:+.1} %)") } else { String::new() };
+            format!("{} {over:+.4}{std}{part}", ["f_x", "f_y"][*k])
+        };
+        loads.iter().map(of).collect::<Vec<_>>().join(", ")
     }
 }
 
 /// All of them; `reduced` is the folder of the campaign's cases.
 pub fn evidence(claims: &mut Claims, root: &Path, reduced: &Path) -> Result<Vec<Pair>, Failed> {
     let smooth = loads(reduced)?;
+    let of = |name: &str, cfd: &str, body: &str, speeds: &[&str], angles: &[f64]| {
+        computed(root, name, cfd, body, speeds, angles)
+    };
+    let at = ["0.4 m/s"];
     let laminar =
-        computed(root, "laminar", "model = \"laminar\"\nmesh = \"coarse\"", "body.toml", &["0.1 m/s", "0.4 m/s"])?;
-    let cubes = computed(root, "cubes", CUBES, "body.toml", &["0.4 m/s"])?;
-    let necked = computed(root, "necked", CUBES, "necked.toml", &["0.4 m/s"])?;
-    let tank = computed(root, "tank", &format!("{CUBES}\n{TANK}"), "body.toml", &["0.4 m/s"])?;
+        of("laminar", "model = \"laminar\"\nmesh = \"coarse\"", "body.toml", &["0.1 m/s", "0.4 m/s"], &ANGLES)?;
+    let cubes = of("cubes", CUBES, "body.toml", &at, &ANGLES)?;
+    let necked = of("necked", CUBES, "necked.toml", &at, &ANGLES)?;
+    // At other angles the cubes of a tank are turned against the body.
+    let tank = of("tank", &format!("{CUBES}\n{TANK}"), "body.toml", &at, &[0.0, 90.0])?;
+    let whole = of("whole", "mesh = \"coarse\"\ndomain = \"full\"", "body.toml", &at, &[66.0, 90.0])?;
     let mut out = Vec::new();
     for (what, with, without) in [
         ("cubes in place of an O-grid", &cubes, &smooth),
         ("necks between the links", &necked, &cubes),
         ("the walls of a tank of 0.8 by 0.75 m", &tank, &cubes),
-        ("a laminar layer", &laminar, &smooth),
+        ("no model of turbulence", &laminar, &smooth),
+        ("no plane of symmetry", &whole, &smooth),
     ] {
-        out.extend(pairs(what, with, without));
+        out.extend(with.iter().filter_map(|case| pair(what, case, without)));
     }
     let dir = reduced.with_file_name("in-time");
-    for angle_deg in [66.0, 90.0] {
-        let id = format!("{CONFIGURATION}-u0.4-a{angle_deg}");
-        let Some((case, without)) = smooth.iter().find(|(case, _)| case.id == id) else { continue };
-        let with = in_time(root, case, &dir)?;
+    for (case, loads) in &whole {
+        let Some(without) = loads else { continue };
+        let [with, std] = in_time(root, case, &dir)?;
         out.push(Pair {
-            what: "the whole flow in time",
-            speed_m_s: 0.4,
-            angle_deg,
-            with,
+            what: "in time, without a plane of symmetry, of the steady flow without one",
+            speed_m_s: case.flow.speed_m_s,
+            angle_deg: case.flow.angle_rad.to_degrees().round(),
+            with: Some(with),
+            std,
             without: [without[0], without[1]],
+            scale_n: case.load_scales()[0],
         });
     }
     for pair in &out {
         claims.add(
             ROOM,
-            &format!("{}: {CONFIGURATION} at {} m/s and {}°", pair.what, pair.speed_m_s, pair.angle_deg),
+            &format!(
+                "{}: {CONFIGURATION} at {} m/s and {}°, change over ½ρU²A",
+                pair.what, pair.speed_m_s, pair.angle_deg
+            ),
             &format!("without: f_x {:.4} N, f_y {:.4} N", pair.without[0], pair.without[1]),
-            format!("f_x {:.4} N, f_y {:.4} N: {}", pair.with[0], pair.with[1], pair.ratios()),
+            pair.change(),
             Verdict::Measured,
         );
     }
     Ok(out)
 }
 
+/// A case with its loads, where it has a result that counts.
+type Computed = (Case, Option<Loads>);
+
 /// A campaign of the configuration alone.
-fn computed(root: &Path, name: &str, cfd: &str, body: &str, speeds: &[&str]) -> Result<Vec<(Case, Loads)>, Failed> {
+fn computed(
+    root: &Path,
+    name: &str,
+    cfd: &str,
+    body: &str,
+    speeds: &[&str],
+    angles: &[f64],
+) -> Result<Vec<Computed>, Failed> {
     let text = example(root)?;
     let head = text.split("[[source]]").next().unwrap_or_default();
-    let (speeds, angles) = (format!("{speeds:?}"), ANGLES.map(|a| format!("{a} deg")));
+    let angles: Vec<String> = angles.iter().map(|a| format!("{a} deg")).collect();
     let text = format!(
         "{head}[[source]]\nname = \"CFD\"\nkind = \"cfd\"\ncases = \"cfd\"\n[source.cfd]\nbody = \"{body}\"\n{cfd}\ncold = 0\n\
-         [[source.plan]]\nconfigurations = [\"{CONFIGURATION}\"]\nspeed = {speeds}\nangle = {angles:?}\n"
+         [[source.plan]]\nconfigurations = [\"{CONFIGURATION}\"]\nspeed = {speeds:?}\nangle = {angles:?}\n"
     );
     let path = campaign(root, name, &text)?;
     std::fs::copy(root.join("examples/mamba-necked/body.toml"), path.with_file_name("necked.toml"))?;
@@ -109,58 +149,64 @@ fn computed(root: &Path, name: &str, cfd: &str, body: &str, speeds: &[&str]) -> 
     loads(&path.with_file_name("cfd"))
 }
 
-fn loads(folder: &Path) -> Result<Vec<(Case, Loads)>, Failed> {
-    Ok(collect(&Store::open(folder)?).rows.into_iter().map(|row| (row.case, row.loads)).collect())
-}
-
-/// Flows that both have.
-fn pairs(what: &'static str, with: &[(Case, Loads)], without: &[(Case, Loads)]) -> Vec<Pair> {
-    let of = |(case, loads): &(Case, Loads)| {
-        let is_same = |other: &&(Case, Loads)| {
-            other.0.configuration == case.configuration && other.0.flow == case.flow && !other.0.id.ends_with("cold")
-        };
-        let (_, other) = without.iter().find(is_same)?;
-        Some(Pair {
-            what,
-            speed_m_s: case.flow.speed_m_s,
-            angle_deg: case.flow.angle_rad.to_degrees().round(),
-            with: [loads[0], loads[1]],
-            without: [other[0], other[1]],
-        })
+fn loads(folder: &Path) -> Result<Vec<Computed>, Failed> {
+    let store = Store::open(folder)?;
+    let found = collect(&store).rows;
+    let of = |id: &str| {
+        let loads = found.iter().find(|row| row.case.id == id).map(|row| row.loads);
+        Ok((store.case(id)?, loads))
     };
-    with.iter().filter_map(of).collect()
+    store.ids().map(of).collect()
 }
 
-/// Mean f_x and f_y of the whole flow in time over its second half; kept in a file, as it takes minutes.
-fn in_time(root: &Path, half: &Case, dir: &Path) -> Result<[f64; 2], Failed> {
-    let file = dir.join(format!("{}.json", half.id));
-    if let Ok(text) = std::fs::read_to_string(&file) {
-        return Ok(serde_json::from_str(&text)?);
-    }
-    let body = shaped(&read_body(&root.join("examples/mamba-cfd/body.toml"))?, &half.configuration)?;
+/// The same flow in another set, where that has a result.
+fn pair(what: &'static str, (case, loads): &Computed, without: &[Computed]) -> Option<Pair> {
+    let is_same = |(other, _): &&Computed| {
+        other.configuration == case.configuration && other.flow == case.flow && Again::of(&other.id).is_none()
+    };
+    let other = without.iter().find(is_same)?.1?;
+    Some(Pair {
+        what,
+        speed_m_s: case.flow.speed_m_s,
+        angle_deg: case.flow.angle_rad.to_degrees().round(),
+        with: loads.map(|loads| [loads[0], loads[1]]),
+        std: [0.0; 2],
+        without: [other[0], other[1]],
+        scale_n: case.load_scales()[0],
+    })
+}
+
+/// Mean f_x and f_y of a whole flow in time over its second half, and their standard deviations; kept in a file named after all inputs, as it takes minutes.
+fn in_time(root: &Path, steady: &Case, dir: &Path) -> Result<[[f64; 2]; 2], Failed> {
+    let body = shaped(&read_body(&root.join("examples/mamba-cfd/body.toml"))?, &steady.configuration)?;
     let grid = body.grid(&CfdSpec { is_half: false, ..CfdSpec::default() });
     let sections = body.sections.as_ref().ok_or("a body of sections")?;
     std::fs::create_dir_all(dir.join("meshes"))?;
     let mesh = grid.mesh(sections)?.0.write(&dir.join("meshes"))?;
-    let folder = tempfile::tempdir_in(dir)?;
-    let case = Case { is_half: false, start_from: None, ..half.clone() };
-    let openfoam = OpenFoam::find()?;
-    let how = How { openfoam: &openfoam, ranks: 1, cancel: &AtomicBool::new(false), tell: &|_| {} };
     // A tenth of the width a step; the wake has gone by 35 widths when the mean begins.
     let times = Times { step_s: 0.02, from_s: 7.0, to_s: 14.0 };
-    let found = solve_in_time(&case, times, &mesh, None, folder.path(), &how)?;
-    let mean = [found.window.mean[0], found.window.mean[1]];
-    std::fs::write(&file, serde_json::to_string(&mean)?)?;
-    Ok(mean)
+    let inputs = format!("{} {times:?}", steady.hash());
+    let file = dir.join(format!("{}-{}.json", steady.id, &sha256_of_bytes(inputs.as_bytes())[..12]));
+    if let Ok(text) = std::fs::read_to_string(&file) {
+        return Ok(serde_json::from_str(&text)?);
+    }
+    let folder = tempfile::tempdir_in(dir)?;
+    let case = Case { start_from: None, ..steady.clone() };
+    let openfoam = OpenFoam::find()?;
+    let how = How { openfoam: &openfoam, ranks: 1, cancel: &AtomicBool::new(false), tell: &|_| {} };
+    let found = solve_in_time(&case, times, &mesh, None, folder.path(), &how)?.window;
+    let means = [found.mean, found.std_of_mean].map(|loads| [loads[0], loads[1]]);
+    write_atomically(&file, serde_json::to_string(&means)?.as_bytes())?;
+    Ok(means)
 }
 
 /// The same as a table of the chapter.
 pub fn table(pairs: &[Pair]) -> String {
     let mut out =
-        "| what is changed | speed, m/s | angle | forces, changed over unchanged |\n| --- | --- | --- | --- |\n"
+        "| what is changed | speed, m/s | angle | change of the force over ½ρU²A |\n| --- | --- | --- | --- |\n"
             .to_owned();
     for pair in pairs {
-        let _ = writeln!(out, "| {} | {} | {}° | {} |", pair.what, pair.speed_m_s, pair.angle_deg, pair.ratios());
+        let _ = writeln!(out, "| {} | {} | {}° | {} |", pair.what, pair.speed_m_s, pair.angle_deg, pair.change());
     }
     out
 }

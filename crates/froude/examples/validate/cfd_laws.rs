@@ -209,7 +209,7 @@ fn page(found: &Outcome, pairs: &[Pair]) -> Result<String, Box<dyn Error>> {
          ## What each law leaves\n\n\
          Standard deviation of the residuals; the recommended law of each range is bold.\n\n{}\n\
          ## Walls, necks and the model\n\n\
-         Two computations each, of two links, that differ in one thing alone. Cubes are what snappyHexMesh cuts, as an O-grid does not follow necks; in time is the whole flow without the plane of symmetry, mean over seven seconds.\n\n{}\n\
+         Two computations each, of two links, that differ in one thing, as far as meshes allow: cubes are what snappyHexMesh cuts, as an O-grid does not follow necks (8 mm at the surface, so that the necks' ramps of 4 mm are steps), and the far cubes of a tank are those that fit into it. In time is the mean over seven seconds, four or five periods of shedding, with its standard deviation. In per cent is the change of the force itself, where that is far from zero.\n\n{}\n\
          ## What remains\n\n\
          Forces in the range of the tank, by ASME V&V 20, stand on the [validation page](validation.md). What remains between computed and measured forces there may come from: the module's geometry, which is not published in full (joints, screws and cables add area and separate the flow); the rig (struts and mounting in the water, surface, blockage of a narrow tank, none of which the paper states); the model of turbulence, which has the layer turbulent nominally from the nose on; the steady flow, which cannot shed; and the mesh. The steady flows of short bodies have two mirrored states at 90°, of which each has a force along the body; their mean has none.\n",
         table(found)?,

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use froude_cfd::store::Store;
 use froude_cfd::suggest::{Miss, misses, suggested};
 use froude_records::number::{percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use serde_json::{Value, json};
 
+use super::Asked;
 use super::collect::{LOADS, collect};
 use crate::Error;
 
@@ -29,7 +31,9 @@ pub struct Suggested {
 /// As [`collect`].
 pub fn suggest(campaign: &Path, source: Option<&str>, most: usize) -> Result<Suggested, Error> {
     let found = collect(campaign, source)?;
-    let misses = misses(&found.rows);
+    let store = Store::open(&Asked::read(campaign, source)?.folder)?;
+    let flow = |id: &str| store.case(id).ok().map(|case| (case.configuration, case.flow));
+    let misses = misses(&found.rows, &store.ids().filter_map(flow).collect::<Vec<_>>());
     Ok(Suggested { next: suggested(&misses, most), misses })
 }
 
@@ -47,13 +51,10 @@ impl Suggested {
         let block = |(name, speed_m_s, angles): &(&str, f64, Vec<f64>)| {
             let mut degrees: Vec<f64> = angles.iter().map(|a| a.to_degrees()).collect();
             degrees.sort_by(f64::total_cmp);
-            let angles: Vec<String> = degrees.iter().map(|d| format!("\"{} deg\"", significant(*d, 4))).collect();
+            // A halfway angle is chosen here and may be rounded; the speed is that of the line, to its last digit.
+            let angles: Vec<String> = degrees.iter().map(|d| format!("\"{} deg\"", (1e3 * d).round() / 1e3)).collect();
             let of = if name.is_empty() { String::new() } else { format!("configurations = [\"{name}\"]\n") };
-            format!(
-                "[[source.plan]]\n{of}speed = \"{} m/s\"\nangle = [{}]\n",
-                significant(*speed_m_s, 4),
-                angles.join(", ")
-            )
+            format!("[[source.plan]]\n{of}speed = \"{speed_m_s} m/s\"\nangle = [{}]\n", angles.join(", "))
         };
         blocks.iter().map(block).collect()
     }
@@ -67,14 +68,14 @@ impl Suggested {
                 significant(miss.speed_m_s, 3),
                 significant(miss.angle_rad.to_degrees(), 3),
                 LOADS[miss.load].to_owned(),
-                percent(miss.part),
+                percent(miss.missed_part),
                 percent(miss.std),
             ]
         };
         let said = match (self.misses.is_empty(), self.next.is_empty()) {
             (true, _) => "no setting lies between others at its speed: plan five angles or five speeds at least",
             (_, true) => {
-                "no setting is foretold worse by the others than twice its own uncertainty: more settings tell nothing new"
+                "no setting is foretold worse than by a hundredth or twice the uncertainty of its iterations, or what lies beside it is planned already: more settings tell nothing new"
             }
             _ => "put these blocks under those of the source, and run it again; cases that are there are kept",
         };
@@ -100,7 +101,7 @@ impl Suggested {
                 "speed_m_s": m.speed_m_s,
                 "angle_rad": m.angle_rad,
                 "load": LOADS[m.load],
-                "missed_by": m.part,
+                "missed_by": m.missed_part,
                 "uncertainty": m.std,
             })
         };
@@ -120,11 +121,15 @@ mod tests {
     #[test]
     fn settings_of_one_speed_are_one_block() {
         let at = |speed: f64, degrees: f64| ("H1LT".to_owned(), [speed, f64::to_radians(degrees)]);
-        let found = Suggested { misses: Vec::new(), next: vec![at(0.4, 61.5), at(0.2, 51.0), at(0.4, 51.0)] };
+        // 0.77 kn has no short form.
+        let odd = 0.77 * 1852.0 / 3600.0;
+        let found = Suggested { misses: Vec::new(), next: vec![at(odd, 61.5), at(0.2, -51.0), at(odd, 51.0)] };
         let block = |speed: &str, angle: &str| {
             format!("[[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = \"{speed} m/s\"\nangle = [{angle}]\n")
         };
-        let expected = block("0.4000", "\"51.00 deg\", \"61.50 deg\"") + &block("0.2000", "\"51.00 deg\"");
+        let expected = block(&odd.to_string(), "\"51 deg\", \"61.5 deg\"") + &block("0.2", "\"-51 deg\"");
         assert_eq!(found.plan(), expected);
+        let back = froude_records::units::parse_quantity(&format!("{odd} m/s")).unwrap();
+        assert_eq!(back.value_si, odd);
     }
 }

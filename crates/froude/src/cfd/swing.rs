@@ -1,10 +1,10 @@
 //! `froude cfd swing`: the planned runs of a forced oscillation by OpenFOAM, as logs that `froude identify` takes like those of a tank.
 //!
-//! A run is done when its log and its sidecar are in the folder of the runs; the sidecar is written last. The flow is in a folder beside it, which is emptied when its run is begun again.
+//! A run is done when its log and its sidecar are in the folder of the runs; the sidecar is written last, and holds the hash of the run's inputs. Its flow is in a folder beside, which is emptied when the run is begun again. Runs are named by what they are, so that a plan that grows keeps them. A run that fails stops no other.
 
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use froude_cfd::case::{Case, Flow, Stop};
 use froude_cfd::lock::Lock;
@@ -13,7 +13,8 @@ use froude_cfd::openfoam::OpenFoam;
 use froude_cfd::orphans;
 use froude_cfd::oscillation::{Period, Swing, swing as compute};
 use froude_cfd::solve::{How, Progress};
-use froude_records::campaign::{Input, Source, read_campaign};
+use froude_cfd::surface::bounds_m;
+use froude_records::campaign::{Input, Source, SourceKind, read_campaign};
 use froude_records::hash::sha256_of_bytes;
 use froude_records::number::significant;
 use froude_records::page::{DocumentSection, TextTable};
@@ -31,7 +32,7 @@ use crate::Error;
 /// Steps of time in a period.
 const STEPS: usize = 200;
 /// What the sidecar of a computed run says before the hash of its inputs.
-const SAID: &str = "Computed by froude cfd swing from the inputs ";
+const STAMP: &str = "Computed by froude cfd swing from the inputs ";
 
 /// A run that was computed, or was there.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,8 +47,10 @@ pub struct Run {
     pub frequency_hz: f64,
     /// Speed forward, m/s.
     pub forward_m_s: f64,
-    /// Keulegan-Carpenter and Stokes numbers of the width \[-\].
-    pub numbers: [f64; 2],
+    /// Keulegan-Carpenter number 2πA/D of the height D, which lies across the motion \[-\].
+    pub keulegan_carpenter: f64,
+    /// Stokes number f D²/ν likewise \[-\].
+    pub stokes: f64,
     /// What its last period says of added mass and damping; `None` of a run that was there.
     pub last: Option<Period>,
     /// Time of a processor, s; likewise.
@@ -63,6 +66,8 @@ pub struct Swung {
     pub runs: Vec<Run>,
     /// Planned runs without one.
     pub open: usize,
+    /// Runs that failed now, and why.
+    pub failed: Vec<(String, String)>,
     /// Whether it was stopped.
     pub was_cancelled: bool,
     volume_m3: Vec<f64>,
@@ -75,14 +80,16 @@ struct Job {
     case: Case,
     swing: Swing,
     mesh: PathBuf,
-    said: String,
+    /// Across the motion, m.
+    height_m: f64,
+    stamp: String,
 }
 
 /// Computes the runs of a campaign's forced oscillation that have no log yet, `jobs` at a time. `now` hears how far it is.
 ///
 /// # Errors
 ///
-/// A campaign without such a source, or that does not say how its flow is computed; OpenFOAM is not there; a solver that does not reach its end; logs that other inputs gave; another process computes it.
+/// A campaign without such a source, or that does not say how its flow is computed; OpenFOAM is not there; logs that the plan does not have, or that other inputs gave; another process computes it.
 pub fn swing(
     campaign: &Path,
     name: Option<&str>,
@@ -102,27 +109,21 @@ pub fn swing(
     }
     let all = prepared(&asked, &setup, planned, cancel, now)?;
     let _lock = Lock::take(&asked.folder)?;
-    let is_open = |job: &&Job| !runs.join(format!("{}.toml", job.planned.id)).exists();
-    for job in all.iter().filter(|job| !is_open(job)) {
-        let path = runs.join(format!("{}.toml", job.planned.id));
-        let text = std::fs::read_to_string(&path).map_err(|source| Error::Output { path: path.clone(), source })?;
-        if !text.starts_with(&format!("# {}", job.said)) {
-            let problem = "is a run that this plan does not compute, or that other inputs gave; take it and its log away, or name another folder in `runs`";
-            return Err(CfdInput { path, problem: problem.to_owned() }.into());
-        }
-    }
+    let of = |job: &Job, end: &str| runs.join(format!("{}.{end}", job.planned.id));
+    let is_open = |job: &&Job| !(of(job, "toml").exists() && of(job, "csv").exists());
+    check_logs(runs, &all)?;
     let open: Vec<&Job> = all.iter().filter(is_open).collect();
-    let done = every(&open, jobs, &asked.folder, runs, &setup, &programs, cancel, now)?;
+    let (done, failed) = every(&open, jobs, &asked.folder, runs, &setup, &programs, cancel, now);
     let row = |job: &Job| {
         let found = done.iter().find(|(id, _)| *id == job.planned.id).map(|(_, found)| *found);
-        let width_m = job.case.reference.width_m;
         Run {
             id: job.planned.id.clone(),
             configuration: job.case.configuration.clone(),
             amplitude_m: job.swing.amplitude_m[1],
             frequency_hz: job.swing.frequency_hz,
             forward_m_s: job.swing.forward_m_s,
-            numbers: [job.swing.keulegan_carpenter(width_m), job.swing.stokes(width_m, job.case.water.viscosity_m2_s)],
+            keulegan_carpenter: job.swing.keulegan_carpenter(job.height_m),
+            stokes: job.swing.stokes(job.height_m, job.case.water.viscosity_m2_s),
             last: found.and_then(|(last, _)| last),
             cpu_s: found.map(|(_, cpu_s)| cpu_s),
         }
@@ -132,15 +133,36 @@ pub fn swing(
         folder: runs.to_owned(),
         runs: ended.iter().map(|job| row(job)).collect(),
         open: all.len() - ended.len(),
-        was_cancelled: cancel.load(Ordering::Relaxed),
+        was_cancelled: cancel.load(Ordering::Relaxed) && ended.len() + failed.len() < all.len(),
+        failed,
         volume_m3: ended.iter().map(|job| setup.bodies[job.planned.body].reference_volume_m3).collect(),
         density_kg_m3: setup.density_kg_m3.value,
     })
 }
 
-/// The only source that is a forced oscillation and says how its flow is computed, or the one of a name.
+/// Everything in the folder of the runs must be of this plan and of these inputs: `froude identify` fits whatever lies there.
+fn check_logs(runs: &Path, all: &[Job]) -> Result<(), Error> {
+    let failed = |source| Error::Output { path: runs.to_owned(), source };
+    for entry in std::fs::read_dir(runs).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let job = all.iter().find(|job| path.file_stem().is_some_and(|stem| *stem == *job.planned.id));
+        let is_sidecar = path.extension().is_some_and(|end| end == "toml");
+        let has_stamp = |job: &Job| {
+            std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(&format!("# {}\n", job.stamp)))
+        };
+        if job.is_none_or(|job| is_sidecar && !has_stamp(job)) {
+            let problem = "is not of a run that this plan computes from these inputs, and froude identify would fit it with the others; take the run's log and sidecar away, or name another folder in `runs`";
+            return Err(CfdInput { path, problem: problem.to_owned() }.into());
+        }
+    }
+    Ok(())
+}
+
+/// The only computed source that is a forced oscillation and says how its flow is computed, or the one of a name.
 fn chosen<'a>(sources: &'a [Source], name: Option<&str>) -> Result<&'a Source, String> {
-    let is_it = |s: &&Source| s.oscillation.is_some() && s.cfd.is_some() && matches!(s.input, Input::Runs { .. });
+    let is_it = |s: &&Source| {
+        s.kind == SourceKind::Cfd && s.oscillation.is_some() && s.cfd.is_some() && matches!(s.input, Input::Runs { .. })
+    };
     let found: Vec<&Source> = sources.iter().filter(is_it).filter(|s| name.is_none_or(|name| s.name == name)).collect();
     match found[..] {
         [only] => {
@@ -150,7 +172,7 @@ fn chosen<'a>(sources: &'a [Source], name: Option<&str>) -> Result<&'a Source, S
             }
             Ok(only)
         }
-        [] => Err("has no source that swings and says how its flow is computed: write method = \"forced_oscillation\", runs = \"runs\", [source.forced_oscillation], [[source.plan]] and [source.cfd] with a body".to_owned()),
+        [] => Err("has no source that swings and says how its flow is computed: write kind = \"cfd\", method = \"forced_oscillation\", runs = \"runs\", [source.forced_oscillation], [[source.plan]] and [source.cfd] with a body".to_owned()),
         _ => {
             let names = found.iter().map(|s| format!("{:?}", s.name)).collect::<Vec<_>>().join(", ");
             Err(format!("has the sources {names} that swing; say which with --source"))
@@ -195,15 +217,18 @@ fn prepared(
             start_from: None,
         };
         let rig = (setup.bodies[planned.body].mass_kg.value, setup.bodies[planned.body].buoyancy_n.map(|b| b.value));
-        let inputs = format!("{} {swing:?} {rig:?}", case.hash());
-        let said = format!("{SAID}{}", sha256_of_bytes(inputs.as_bytes()));
-        Some(Job { planned, mesh: asked.folder.join(MESHES).join(&case.mesh), case, swing, said })
+        // The log has the angle, which the swing knows only times the radius.
+        let inputs = format!("{} {swing:?} {rig:?} {}", case.hash(), planned.swing.amplitude_rad);
+        let stamp = format!("{STAMP}{}", sha256_of_bytes(inputs.as_bytes()));
+        let [low, high] = bounds_m(&body.body.surface);
+        let mesh = asked.folder.join(MESHES).join(&case.mesh);
+        Some(Job { planned, mesh, case, swing, height_m: high[2] - low[2], stamp })
     };
     Ok(planned.into_iter().filter_map(job).collect())
 }
 
-/// The last period of each run that was computed, with its cost; what was cancelled is left out.
-type Found = Vec<(String, (Option<Period>, f64))>;
+/// The last period of each run that was computed, with its cost; and those that failed, with the reason. What was cancelled is in neither.
+type Found = (Vec<(String, (Option<Period>, f64))>, Vec<(String, String)>);
 
 fn every(
     open: &[&Job],
@@ -214,37 +239,23 @@ fn every(
     programs: &OpenFoam,
     cancel: &AtomicBool,
     now: &(dyn Fn(&str) + Sync),
-) -> Result<Found, Error> {
+) -> Found {
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
-    let found: Mutex<Result<Found, Error>> = Mutex::new(Ok(Vec::new()));
-    let has_failed = AtomicBool::new(false);
+    let found: Mutex<Found> = Mutex::default();
     let work = || {
-        while !cancel.load(Ordering::Relaxed) && !has_failed.load(Ordering::Relaxed) {
+        while !cancel.load(Ordering::Relaxed) {
             let Some(job) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             let tell = |p: Progress| {
-                let ended = done.load(Ordering::Relaxed);
-                now(&format!(
-                    "{ended} of {} runs done; {} at step {} of {}",
-                    open.len(),
-                    job.case.id,
-                    p.iteration,
-                    p.of
-                ));
+                let (ended, all) = (done.load(Ordering::Relaxed), open.len());
+                now(&format!("{ended} of {all} runs done; {} at step {} of {}", job.case.id, p.iteration, p.of));
             };
             let how = How { openfoam: programs, ranks: 1, cancel, tell: &tell };
             let one = one(job, folder, runs, setup, &how);
             done.fetch_add(1, Ordering::Relaxed);
-            let mut found = found.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let (ended, failed) = &mut *found.lock().unwrap_or_else(PoisonError::into_inner);
             match one {
-                Ok(last) => {
-                    if let Ok(all) = found.as_mut() {
-                        all.extend(last.map(|last| (job.planned.id.clone(), last)));
-                    }
-                }
-                Err(error) => {
-                    has_failed.store(true, Ordering::Relaxed);
-                    *found = Err(error);
-                }
+                Ok(last) => ended.extend(last.map(|last| (job.planned.id.clone(), last))),
+                Err(error) => failed.push((job.planned.id.clone(), error.to_string())),
             }
         }
     };
@@ -253,7 +264,7 @@ fn every(
             scope.spawn(work);
         }
     });
-    found.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
+    found.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Computes a run and writes its log; `None` where it was cancelled.
@@ -275,13 +286,12 @@ fn one(
         Ok(swung) => swung,
         Err(error) if error.is_cancelled() => return Ok(None),
         Err(error) => {
-            let problem = format!("run {} has no end: {error}", job.planned.id);
-            return Err(CfdInput { path: own, problem }.into());
+            return Err(CfdInput { path: own, problem: error.to_string() }.into());
         }
     };
     let time_s: Vec<f64> = swung.samples.iter().map(|s| s.time).collect();
     let fluid_n: Vec<f64> = swung.samples.iter().map(|s| s.total()[1]).collect();
-    for file in computed::files(&job.planned, setup, &time_s, &fluid_n, &job.said) {
+    for file in computed::files(&job.planned, setup, &time_s, &fluid_n, &job.stamp) {
         write_atomically(&runs.join(&file.name), &file.content)?;
     }
     Ok(Some((swung.periods.last().copied(), swung.cpu_s)))
@@ -298,15 +308,14 @@ impl Swung {
     pub fn section(&self) -> DocumentSection {
         let dash = || "–".to_owned();
         let row = |(i, run): (usize, &Run)| {
-            let [kc, beta] = run.numbers;
             vec![
                 run.id.clone(),
                 run.configuration.clone(),
                 significant(run.amplitude_m, 3),
                 significant(run.frequency_hz, 3),
                 significant(run.forward_m_s, 3),
-                significant(kc, 3),
-                significant(beta, 3),
+                significant(run.keulegan_carpenter, 3),
+                significant(run.stokes, 3),
                 self.added(i).map_or_else(dash, |c| significant(c, 4)),
                 run.last.map_or_else(dash, |last| significant(last.damping_n_s_m, 3)),
                 run.cpu_s.map_or_else(dash, |s| significant(s, 3)),
@@ -325,7 +334,8 @@ impl Swung {
             "CPU, s",
         ];
         let mut paragraphs =
-            vec!["C_A and damping are of the last period alone, by its first harmonic; froude identify fits all runs at once, with the drag law and intervals.".to_owned()];
+            vec!["C_A and damping are of the last period alone, by its first harmonic; froude identify fits all runs at once, with the drag law and intervals. No interval holds the error of the mesh and of the step: compute a finer mesh, and see.".to_owned()];
+        paragraphs.extend(self.failed.iter().map(|(id, why)| format!("{id} failed: {why}")));
         if self.open > 0 {
             paragraphs.push(format!("{} no log yet", counted(self.open, "run has", "runs have")));
         }
@@ -351,8 +361,8 @@ impl Swung {
                 "amplitude_m": run.amplitude_m,
                 "frequency_hz": run.frequency_hz,
                 "forward_m_s": run.forward_m_s,
-                "keulegan_carpenter": run.numbers[0],
-                "stokes": run.numbers[1],
+                "keulegan_carpenter": run.keulegan_carpenter,
+                "stokes": run.stokes,
                 "added_mass_kg": run.last.map(|last| last.added_mass_kg),
                 "C_A": self.added(i),
                 "damping_n_s_m": run.last.map(|last| last.damping_n_s_m),
@@ -363,6 +373,7 @@ impl Swung {
             "folder": self.folder,
             "runs": self.runs.iter().enumerate().map(row).collect::<Vec<_>>(),
             "open": self.open,
+            "failed": self.failed.iter().map(|(id, why)| json!({"run": id, "reason": why})).collect::<Vec<_>>(),
             "was_cancelled": self.was_cancelled,
         })
     }

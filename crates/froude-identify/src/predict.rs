@@ -1,0 +1,267 @@
+//! What a record's law gives on rows that it was not fitted to, beside what was measured there.
+//!
+//! In a row the law gives F = F(x; β) with Cov(F) = X·Cov(β)·Xᵀ, X = ∂F/∂β: scatter and every declared error of the record. A single measurement scatters about it by s: its own standard uncertainty where the table states one (`std_f_x`), and else the residual standard deviation of the record, which holds what the law itself misses. The band is that of the law, F ± k u_law; the error e = measured − F has u² = u_law² + s², and E_n = e/(k u), beyond ±1 in one row of twenty by chance. k is Student's at the degrees of freedom of Welch and Satterthwaite.
+//!
+//! Rows of one record err together: a coefficient that is too large is so in all of them. So one number judges all rows, χ² = eᵀ(X Cov(β) Xᵀ + diag s²)⁻¹e, which has a mean of as many as there are rows. Where s was estimated, χ²/n is compared with F(n, ν) and not with χ².
+//!
+//! An error that the table has too (the same balance, the same tank) is counted as if it had none: the record cannot know it.
+//!
+//! Sources: GUM (JCGM 100:2008) 5.2.2 and G.4; ISO 13528:2022, 9.7 (E_n).
+
+use faer::Mat;
+use faer::linalg::solvers::Solve as _;
+use froude_fit::distribution::{coverage_factor, f_upper};
+use froude_records::estimate::Estimate;
+use froude_records::units::Dimension;
+
+use crate::dataset::{Dataset, unit_text};
+use crate::error::IdentifyError;
+use crate::law::ForceLaw;
+
+/// Ranges of a record that rows are compared with.
+const RANGES: [&str; 9] = ["speed", "angle", "n_links", "v_x", "v_y", "v_z", "w_x", "w_y", "w_z"];
+/// Beyond the end of a range by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A law on the rows of a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Predicted {
+    /// Id of the estimate.
+    pub id: String,
+    /// Name of its law.
+    pub law: String,
+    /// Loads, row by row.
+    pub rows: Vec<Row>,
+    /// All rows with a measurement inside of what the record covers; `None` where there is none, or no scatter is known.
+    pub joint: Option<Joint>,
+}
+
+/// A load in a row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Of the data set.
+    pub row: usize,
+    /// Name of the load.
+    pub load: String,
+    /// Its unit, and that of all numbers here.
+    pub unit: String,
+    /// F.
+    pub predicted: f64,
+    /// Standard uncertainty of F; `None` where the record states no covariance.
+    pub u_law: Option<f64>,
+    /// Half-width of the 95 % band of F.
+    pub half_width_95: Option<f64>,
+    /// What was measured.
+    pub measured: Option<f64>,
+    /// Standard deviation of a single measurement; `None` where neither table nor record states one.
+    pub scatter: Option<f64>,
+    /// E_n of the error \[-\].
+    pub e_n: Option<f64>,
+    /// What the record does not cover: the names of its ranges that the row lies outside of.
+    pub outside: Vec<String>,
+}
+
+impl Row {
+    /// Measured less predicted.
+    #[must_use]
+    pub fn error(&self) -> Option<f64> {
+        Some(self.measured? - self.predicted)
+    }
+}
+
+/// One number over all rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Joint {
+    /// χ² \[-\].
+    pub chi_squared: f64,
+    /// Loads in rows, n.
+    pub n: usize,
+    /// Degrees of freedom of the scatter, least of the loads; infinite where the table states it.
+    pub dof: f64,
+    /// How often chance alone gives as much.
+    pub p: f64,
+}
+
+/// A record's law on the rows of a data set.
+///
+/// # Errors
+///
+/// A law that is none of forces; a channel that it reads and the data lack; a coefficient without a value.
+pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, IdentifyError> {
+    let data = &with_loads(estimate, data);
+    let law = ForceLaw::of_estimate(estimate, data)?;
+    let value = |name: &str| estimate.coefficients.get(name).and_then(|c| c.value);
+    let values = law.coefficients.iter().map(|c| {
+        value(&c.name).ok_or_else(|| IdentifyError::NoValue { id: estimate.id.clone(), coefficient: c.name.clone() })
+    });
+    let values: Vec<f64> = values.collect::<Result<_, _>>()?;
+    let forces = law.predict(data, &values)?;
+    let slopes = Slopes::of(estimate, &law, &law.regressors(data, &values)?);
+    let mut rows = Vec::with_capacity(forces.len());
+    let mut inside = Vec::new();
+    let mut dof = f64::INFINITY;
+    for (response, load) in law.responses.iter().enumerate() {
+        let measured = data.values(load).unwrap_or_default();
+        let stated = data.values(&format!("std_{load}"));
+        let sigma = estimate.sigma.get(load).map(|s| s.value);
+        let of_sigma = estimate.dof.get(load).copied().flatten().unwrap_or(f64::INFINITY);
+        for row in 0..data.rows {
+            let place = response * data.rows + row;
+            let scatter = stated.map(|stated| stated[row]).or(sigma).filter(|s| *s > 0.0);
+            let parts = slopes.as_ref().map(|slopes| slopes.parts(place));
+            let u_law = parts.as_ref().map(|parts| combined(parts).0);
+            let measured = measured.get(row).copied().filter(|v| v.is_finite());
+            let outside = outside(estimate, data, row);
+            let own = (scatter.unwrap_or(0.0), if stated.is_some() { f64::INFINITY } else { of_sigma });
+            let (u, all_dof) = combined(&[parts.clone().unwrap_or_default(), vec![own]].concat());
+            let e_n = measured.filter(|_| u > 0.0).map(|m| (m - forces[place]) / (coverage_factor(0.95, all_dof) * u));
+            if measured.is_some() && scatter.is_some() && outside.is_empty() {
+                inside.push((place, measured.unwrap_or_default() - forces[place], own.0));
+                dof = dof.min(own.1);
+            }
+            rows.push(Row {
+                row,
+                load: load.clone(),
+                unit: unit_text(data, load),
+                predicted: forces[place],
+                u_law,
+                half_width_95: parts.map(|parts| combined(&parts)).map(|(u, dof)| coverage_factor(0.95, dof) * u),
+                measured,
+                scatter,
+                e_n,
+                outside,
+            });
+        }
+    }
+    let joint = chi_squared(slopes.as_ref(), &inside).map(|chi_squared| {
+        let n = inside.len();
+        Joint { chi_squared, n, dof, p: f_upper(chi_squared / n as f64, n as f64, dof) }
+    });
+    Ok(Predicted { id: estimate.id.clone(), law: estimate.law.name.clone(), rows, joint })
+}
+
+/// The data with a channel for each load of the law: formulas need its unit, and what was not measured is no number.
+fn with_loads(estimate: &Estimate, data: &Dataset) -> Dataset {
+    let mut data = data.clone();
+    let mut loads: Vec<String> = estimate.law.outputs.keys().cloned().collect();
+    loads.extend(["f_x", "f_y"].map(str::to_owned));
+    for load in loads {
+        if data.values(&load).is_none() {
+            let dimension = if load.starts_with("m_") { Dimension::MOMENT } else { Dimension::FORCE };
+            data.put(&load, vec![f64::NAN; data.rows], dimension);
+        }
+    }
+    data
+}
+
+/// The ranges of a record that a row lies outside of.
+fn outside(estimate: &Estimate, data: &Dataset, row: usize) -> Vec<String> {
+    let is_out = |name: &str| match (estimate.validity.get(name), data.values(name)) {
+        (Some(range), Some(values)) => {
+            let margin = ROUNDING * range.low.abs().max(range.high.abs());
+            !(range.low - margin..=range.high + margin).contains(&values[row])
+        }
+        _ => false,
+    };
+    RANGES.into_iter().filter(|name| is_out(name)).map(str::to_owned).collect()
+}
+
+/// Standard uncertainty of a sum of independent parts, and its degrees of freedom by Welch and Satterthwaite.
+fn combined(parts: &[(f64, f64)]) -> (f64, f64) {
+    let square: f64 = parts.iter().map(|(u, _)| u * u).sum();
+    let fourth: f64 = parts.iter().map(|(u, dof)| u.powi(4) / dof).sum();
+    (square.sqrt(), if fourth > 0.0 { square * square / fourth } else { f64::INFINITY })
+}
+
+/// The covariance of a record as rows of forces see it.
+struct Slopes<'a> {
+    estimate: &'a Estimate,
+    /// A column per name of the covariance.
+    x: Mat<f64>,
+    covariance: Mat<f64>,
+}
+
+impl<'a> Slopes<'a> {
+    fn of(estimate: &'a Estimate, law: &ForceLaw, regressors: &Mat<f64>) -> Option<Self> {
+        let stated = estimate.covariance()?;
+        let places: Vec<Option<usize>> = stated.names.iter().map(|name| law.position(name)).collect();
+        let p = places.len();
+        let x = Mat::from_fn(regressors.nrows(), p, |i, j| places[j].map_or(0.0, |place| regressors[(i, place)]));
+        let covariance = Mat::from_fn(p, p, |i, j| stated.matrix[i][j]);
+        Some(Self { estimate, x, covariance })
+    }
+
+    /// Standard uncertainty of a force by its scatter and by each declared error, with their degrees of freedom.
+    fn parts(&self, row: usize) -> Vec<(f64, f64)> {
+        let x: Vec<f64> = (0..self.x.ncols()).map(|j| self.x[(row, j)]).collect();
+        let own = self.estimate.type_a.as_ref().map(|own| {
+            let along = |line: &Vec<f64>| line.iter().zip(&x).map(|(c, x)| c * x).sum::<f64>();
+            let square: f64 = own.matrix.iter().zip(&x).map(|(line, x)| x * along(line)).sum();
+            let moves = own.dof.iter().zip(&x).filter(|(_, x)| **x != 0.0);
+            // The least certain of the coefficients that the force goes with.
+            let dof = moves.filter_map(|(dof, _)| *dof).fold(f64::INFINITY, f64::min);
+            (square.max(0.0).sqrt(), dof)
+        });
+        let declared = self.estimate.errors.values().map(|error| {
+            let q = error.covariance.len();
+            let moved: Vec<f64> = (0..q)
+                .map(|k| error.sensitivity.iter().zip(&x).map(|(s, x)| s.get(k).copied().unwrap_or(0.0) * x).sum())
+                .collect();
+            (error.between(&moved, &moved).max(0.0).sqrt(), error.dof.unwrap_or(f64::INFINITY))
+        });
+        own.into_iter().chain(declared).collect()
+    }
+}
+
+/// eᵀ(X C Xᵀ + D)⁻¹e of rows (place, e, s), D = diag s²: by the matrix of p × p, `eᵀD⁻¹e − gᵀ(1 + C G)⁻¹C g` with `G = XᵀD⁻¹X` and `g = XᵀD⁻¹e` (Woodbury).
+fn chi_squared(slopes: Option<&Slopes<'_>>, rows: &[(usize, f64, f64)]) -> Option<f64> {
+    if rows.is_empty() {
+        return None;
+    }
+    let alone: f64 = rows.iter().map(|(_, e, s)| (e / s).powi(2)).sum();
+    let Some(Slopes { x, covariance, .. }) = slopes else { return Some(alone) };
+    let p = x.ncols();
+    let sum = |of: &dyn Fn(&(usize, f64, f64)) -> f64| rows.iter().map(of).sum::<f64>();
+    let g = Mat::from_fn(p, 1, |j, _| sum(&|(row, e, s)| x[(*row, j)] * e / (s * s)));
+    let gram = Mat::from_fn(p, p, |i, j| sum(&|(row, _, s)| x[(*row, i)] * x[(*row, j)] / (s * s)));
+    let one = Mat::<f64>::identity(p, p);
+    let moved = covariance * &g;
+    let solved = (one + covariance * gram).partial_piv_lu().solve(&moved);
+    let taken: f64 = (0..p).map(|j| g[(j, 0)] * solved[(j, 0)]).sum();
+    Some((alone - taken).max(0.0)).filter(|found| found.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use froude_fit::distribution::chi_squared_upper;
+
+    /// (X C Xᵀ + D)⁻¹ written out.
+    #[test]
+    fn the_joint_number_is_that_of_the_whole_matrix() {
+        let x = Mat::from_fn(5, 2, |i, j| ((1 + i + 3 * j) as f64).sin() + j as f64);
+        let covariance = Mat::from_fn(2, 2, |i, j| [[0.3, 0.1], [0.1, 0.2]][i][j]);
+        let rows: Vec<(usize, f64, f64)> = (0..5).map(|i| (i, (i as f64).cos(), 0.2 + 0.1 * i as f64)).collect();
+        let estimate = Estimate::default();
+        let slopes = Slopes { estimate: &estimate, x: x.clone(), covariance: covariance.clone() };
+        let whole = Mat::from_fn(5, 5, |i, j| {
+            let d = if i == j { rows[i].2 * rows[i].2 } else { 0.0 };
+            d + (0..2).map(|a| (0..2).map(|b| x[(i, a)] * covariance[(a, b)] * x[(j, b)]).sum::<f64>()).sum::<f64>()
+        });
+        let e = Mat::from_fn(5, 1, |i, _| rows[i].1);
+        let solved = whole.partial_piv_lu().solve(&e);
+        let expected: f64 = (0..5).map(|i| e[(i, 0)] * solved[(i, 0)]).sum();
+        let found = chi_squared(Some(&slopes), &rows).unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        assert_eq!(chi_squared(Some(&slopes), &[]), None);
+        assert!((f_upper(1.2, 5.0, f64::INFINITY) - chi_squared_upper(6.0, 5.0)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn parts_combine_by_welch_and_satterthwaite() {
+        assert_eq!(combined(&[(3.0, f64::INFINITY), (4.0, f64::INFINITY)]), (5.0, f64::INFINITY));
+        let (u, dof) = combined(&[(1.0, 4.0), (1.0, 4.0)]);
+        assert!((u - 2.0_f64.sqrt()).abs() < 1e-15 && (dof - 8.0).abs() < 1e-12);
+        assert_eq!(combined(&[]), (0.0, f64::INFINITY));
+    }
+}

@@ -1,0 +1,319 @@
+//! `froude predict`: a record's forces on the rows of any table, with bands, errors and one number over all rows.
+
+use std::path::{Path, PathBuf};
+
+use froude_identify::dataset::Dataset;
+use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
+use froude_identify::reduce::rows_of;
+use froude_records::csv_table::csv_bytes;
+use froude_records::estimate::Estimate;
+use froude_records::finding::Finding;
+use froude_records::json::read_estimates;
+use froude_records::number::{dof, p_value, percent, significant};
+use froude_records::page::{DocumentSection, TextTable};
+use froude_records::table::{Column, ColumnData, Table};
+use froude_records::text::{counted, in_a_file_name};
+use froude_records::units::{Dimension, Unit, parse_unit};
+use froude_records::write::write_atomically;
+use serde_json::{Value, json};
+
+use crate::Error;
+
+/// Rows that a person sees of those that are predicted worst.
+const SHOWN: usize = 8;
+
+/// A record that forces of a table are wanted of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Job {
+    /// The record.
+    pub record: PathBuf,
+    /// The table.
+    pub table: PathBuf,
+    /// A sidecar that is not beside it.
+    pub sidecar: Option<PathBuf>,
+    /// Laws or ids of estimates; empty: the recommended ones, and of a record that recommends none all of them.
+    pub laws: Vec<String>,
+    /// Folder of a table of all rows for each estimate; `None`: nothing is written.
+    pub out: Option<PathBuf>,
+}
+
+/// What was predicted.
+#[derive(Debug, Clone)]
+pub struct Prediction {
+    /// One for each estimate.
+    pub estimates: Vec<Predicted>,
+    /// What the reader of the table found.
+    pub findings: Vec<Finding>,
+    /// Tables that were written.
+    pub written: Vec<PathBuf>,
+    data: Dataset,
+}
+
+/// Predicts.
+///
+/// # Errors
+///
+/// A record or a table that cannot be read; a law that the record does not have, that is none of forces, or that reads what the table lacks; a folder that cannot be written.
+pub fn predict(job: &Job) -> Result<Prediction, Error> {
+    let record = read_estimates(&job.record)?;
+    let (data, findings) = rows_of(&job.table, job.sidecar.as_deref())?;
+    let chosen = chosen(&record.estimates, &job.laws).map_err(|what| refused(&job.record, what))?;
+    let mut estimates = Vec::new();
+    for estimate in chosen {
+        estimates.push(of_estimate(estimate, &with_density(&data, estimate))?);
+    }
+    let mut out = Prediction { estimates, findings, written: Vec::new(), data };
+    if let Some(folder) = &job.out {
+        std::fs::create_dir_all(folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
+        for predicted in &out.estimates {
+            let path = folder.join(format!("predicted-{}.csv", in_a_file_name(&predicted.id)));
+            write_atomically(&path, &csv_bytes(&out.table(predicted, &path))?)?;
+            out.written.push(path);
+        }
+    }
+    Ok(out)
+}
+
+fn refused(record: &Path, what: String) -> Error {
+    froude_identify::IdentifyError::Campaign { place: record.display().to_string(), what }.into()
+}
+
+fn chosen<'a>(all: &'a [Estimate], laws: &[String]) -> Result<Vec<&'a Estimate>, String> {
+    if laws.is_empty() {
+        let recommended: Vec<&Estimate> = all.iter().filter(|e| e.recommended).collect();
+        return Ok(if recommended.is_empty() { all.iter().collect() } else { recommended });
+    }
+    let mut out = Vec::new();
+    for law in laws {
+        let found: Vec<&Estimate> = all.iter().filter(|e| e.id == *law || e.law.name == *law).collect();
+        if found.is_empty() {
+            let names: Vec<&str> = all.iter().map(|e| e.id.as_str()).collect();
+            return Err(format!("has no estimate or law {law:?}; it has {}", names.join(", ")));
+        }
+        out.extend(found);
+    }
+    Ok(out)
+}
+
+/// A table that states no density is in the water that the coefficients refer to.
+fn with_density(data: &Dataset, estimate: &Estimate) -> Dataset {
+    let mut data = data.clone();
+    if let (None, Some(density)) = (data.values("density"), estimate.density()) {
+        data.put("density", vec![density.value; data.rows], Dimension::DENSITY);
+    }
+    data
+}
+
+/// What the rows of a load come to.
+struct OfLoad {
+    load: String,
+    unit: String,
+    rows: usize,
+    measured: usize,
+    outside: usize,
+    /// Mean, and root of the mean square, of measured less predicted.
+    errors: Option<[f64; 2]>,
+    /// Root of the mean square of what was measured.
+    size: f64,
+    beyond: usize,
+    u_law: Option<f64>,
+}
+
+fn by_load(predicted: &Predicted) -> Vec<OfLoad> {
+    let mut out: Vec<OfLoad> = Vec::new();
+    let mut loads: Vec<&String> = Vec::new();
+    for row in &predicted.rows {
+        if !loads.contains(&&row.load) {
+            loads.push(&row.load);
+        }
+    }
+    for load in loads {
+        let all: Vec<&Row> = predicted.rows.iter().filter(|row| row.load == *load).collect();
+        let inside: Vec<&Row> =
+            all.iter().copied().filter(|row| row.outside.is_empty() && row.measured.is_some()).collect();
+        let n = inside.len() as f64;
+        let mean = |of: &dyn Fn(&Row) -> f64| inside.iter().map(|row| of(row)).sum::<f64>() / n;
+        let error = |row: &Row| row.error().unwrap_or_default();
+        let u_laws: Option<Vec<f64>> = all.iter().map(|row| row.u_law).collect();
+        out.push(OfLoad {
+            load: load.clone(),
+            unit: all.first().map(|row| row.unit.clone()).unwrap_or_default(),
+            rows: all.len(),
+            measured: inside.len(),
+            outside: all.iter().filter(|row| !row.outside.is_empty()).count(),
+            errors: (!inside.is_empty()).then(|| [mean(&error), mean(&|row| error(row).powi(2)).sqrt()]),
+            size: mean(&|row| row.measured.unwrap_or_default().powi(2)).sqrt(),
+            beyond: inside.iter().filter(|row| row.e_n.is_some_and(|e| e.abs() > 1.0)).count(),
+            u_law: u_laws.map(|u| (u.iter().map(|u| u * u).sum::<f64>() / u.len().max(1) as f64).sqrt()),
+        });
+    }
+    out
+}
+
+impl Prediction {
+    /// What a person reads of an estimate.
+    #[must_use]
+    pub fn section(&self, predicted: &Predicted) -> DocumentSection {
+        let dash = || "–".to_owned();
+        let number = |x: Option<f64>| x.map_or_else(dash, |x| significant(x, 3));
+        let row = |of: &OfLoad| {
+            vec![
+                format!("{}, {}", of.load, of.unit),
+                of.rows.to_string(),
+                of.outside.to_string(),
+                number(of.u_law),
+                number(of.errors.map(|[mean, _]| mean)),
+                number(of.errors.map(|[_, root]| root)),
+                of.errors.map_or_else(dash, |[_, root]| percent(root / of.size)),
+                if of.measured > 0 { format!("{} of {}", of.beyond, of.measured) } else { dash() },
+            ]
+        };
+        let loads = by_load(predicted);
+        let head =
+            ["load", "rows", "outside", "u of the law", "mean error", "rms error", "of the rms load", "|E_n| > 1"];
+        let mut tables = vec![TextTable {
+            caption: format!("{} on {}", predicted.id, counted(self.data.rows, "row", "rows")),
+            head: head.map(str::to_owned).to_vec(),
+            rows: loads.iter().map(row).collect(),
+        }];
+        let mut worst: Vec<&Row> = predicted.rows.iter().filter(|row| row.e_n.is_some()).collect();
+        worst.sort_by(|a, b| b.e_n.unwrap_or_default().abs().total_cmp(&a.e_n.unwrap_or_default().abs()));
+        let line = |row: &&Row| {
+            vec![
+                self.data.row_name(row.row),
+                format!("{}, {}", row.load, row.unit),
+                number(row.measured),
+                number(Some(row.predicted)),
+                number(row.half_width_95),
+                number(row.error()),
+                number(row.e_n),
+                if row.outside.is_empty() { String::new() } else { row.outside.join(", ") },
+            ]
+        };
+        if !worst.is_empty() {
+            let head = ["row", "load", "measured", "predicted", "± 95 %", "error", "E_n", "outside in"];
+            tables.push(TextTable {
+                caption: "predicted worst".to_owned(),
+                head: head.map(str::to_owned).to_vec(),
+                rows: worst.iter().take(SHOWN).map(line).collect(),
+            });
+        }
+        let mut paragraphs: Vec<String> = predicted.joint.iter().map(joint).collect();
+        let outside = predicted.rows.iter().filter(|row| !row.outside.is_empty()).count();
+        if outside > 0 {
+            paragraphs.push(format!(
+                "{} outside of the ranges of the record: extrapolated, and counted in no error and in no χ²",
+                counted(outside, "load lies", "loads lie")
+            ));
+        }
+        if predicted.rows.iter().any(|row| row.u_law.is_none()) {
+            paragraphs.push(
+                "the record states no covariance, so that there is no band and E_n holds the scatter alone".to_owned(),
+            );
+        }
+        if predicted.rows.iter().any(|row| row.measured.is_some() && row.scatter.is_none()) {
+            paragraphs
+                .push("neither the table (std_f_x) nor the record states a scatter, so that there is no χ²".to_owned());
+        }
+        DocumentSection { title: format!("Predicted by {}", predicted.id), paragraphs, tables, charts: Vec::new() }
+    }
+
+    /// All rows of an estimate.
+    fn table(&self, predicted: &Predicted, path: &Path) -> Table {
+        let data = &self.data;
+        let of_unit = |name: &str, unit: &str, si: Vec<f64>| {
+            let unit = parse_unit(unit).unwrap_or_else(|_| Unit::one());
+            Column { name: name.to_owned(), data: ColumnData::Number { dimension: unit.dimension, unit, si } }
+        };
+        let mut columns = vec![of_unit("line", "1", data.line.iter().map(|l| *l as f64).collect())];
+        for (name, texts) in [("configuration", &data.configuration), ("run", &data.run)] {
+            if texts.iter().any(|text| !text.is_empty()) {
+                columns.push(Column { name: name.to_owned(), data: ColumnData::Text(texts.clone()) });
+            }
+        }
+        for (name, unit) in [("speed", "m/s"), ("angle", "deg")] {
+            columns.extend(data.values(name).map(|values| of_unit(name, unit, values.to_vec())));
+        }
+        for load in by_load(predicted) {
+            let rows: Vec<&Row> = predicted.rows.iter().filter(|row| row.load == load.load).collect();
+            let mut put = |end: &str, unit: &str, of: &dyn Fn(&Row) -> Option<f64>| {
+                let values: Option<Vec<f64>> = rows.iter().map(|row| of(row)).collect();
+                columns.extend(values.map(|values| of_unit(&format!("{}{end}", load.load), unit, values)));
+            };
+            put("", &load.unit, &|row| row.measured);
+            put("_predicted", &load.unit, &|row| Some(row.predicted));
+            put("_u_law", &load.unit, &|row| row.u_law);
+            put("_half_width_95", &load.unit, &|row| row.half_width_95);
+            put("_scatter", &load.unit, &|row| row.scatter);
+            put("_error", &load.unit, &Row::error);
+            put("_e_n", "1", &|row| row.e_n);
+        }
+        let first = predicted.rows.iter().take(data.rows);
+        let outside = first.map(|row| if row.outside.is_empty() { "no".to_owned() } else { row.outside.join(" ") });
+        columns.push(Column { name: "outside".to_owned(), data: ColumnData::Text(outside.collect()) });
+        Table {
+            path: path.to_owned(),
+            columns,
+            n_rows: data.rows,
+            line_of_row: data.line.clone(),
+            sidecar: None,
+            left_out: Vec::new(),
+        }
+    }
+
+    /// The same for a program.
+    #[must_use]
+    pub fn as_json(&self) -> Value {
+        let row = |row: &Row| {
+            json!({
+                "line": self.data.line.get(row.row),
+                "load": row.load,
+                "unit": row.unit,
+                "predicted": row.predicted,
+                "u_law": row.u_law,
+                "half_width_95": row.half_width_95,
+                "measured": row.measured,
+                "scatter": row.scatter,
+                "error": row.error(),
+                "e_n": row.e_n,
+                "outside": row.outside,
+            })
+        };
+        let of = |predicted: &Predicted| {
+            let joint = predicted.joint.map(|j| {
+                json!({"chi_squared": j.chi_squared, "n": j.n, "dof": froude_records::number::finite(Some(j.dof)), "p": j.p})
+            });
+            json!({
+                "estimate": predicted.id,
+                "law": predicted.law,
+                "joint": joint,
+                "rows": predicted.rows.iter().map(row).collect::<Vec<_>>(),
+            })
+        };
+        json!({
+            "estimates": self.estimates.iter().map(of).collect::<Vec<_>>(),
+            "findings": self.findings,
+            "written": self.written,
+        })
+    }
+}
+
+fn joint(found: &Joint) -> String {
+    let Joint { chi_squared, n, dof: of_scatter, p } = found;
+    let verdict = if *p < 0.01 {
+        "the record does not hold here: its errors and its scatter together do not explain what was measured"
+    } else {
+        "no more than its errors and its scatter together explain"
+    };
+    let with = if of_scatter.is_finite() {
+        format!("F({n}, {}), as the scatter was estimated", dof(*of_scatter))
+    } else {
+        format!("χ²({n})")
+    };
+    format!(
+        "χ² = {} over {}, with the covariance between rows; p = {} by {with}: {verdict}",
+        significant(*chi_squared, 4),
+        counted(*n, "load in a row", "loads in rows"),
+        p_value(*p)
+    )
+}

@@ -1,0 +1,122 @@
+//! Predictions at the verb's own function: the band covers, E_n and χ² reject as often as they say, and what the table does not have is said.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use froude::pipeline::{Job, identify};
+use froude::predict::{Job as Asked, Prediction, predict};
+use rand::{RngExt, SeedableRng};
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64Mcg;
+
+const SIGMA_N: f64 = 0.4;
+/// D_I and D_II of the truth, N s/m and N s²/m².
+const TRUTH: [f64; 2] = [2.0, 55.0];
+
+/// Runs at the speeds, each so often, with noise.
+fn table(path: &Path, speeds: &[f64], repeats: usize, rng: &mut Pcg64Mcg) {
+    let mut text = "speed [m/s],f_x [N]\n".to_owned();
+    for u in speeds {
+        for _ in 0..repeats {
+            let z: f64 = rng.sample(StandardNormal);
+            let force = -TRUTH[0] * u - TRUTH[1] * u * u + SIGMA_N * z;
+            writeln!(text, "{u},{force}").unwrap();
+        }
+    }
+    std::fs::write(path, text).unwrap();
+}
+
+fn asked(record: PathBuf, table: PathBuf) -> Asked {
+    Asked { record, table, sidecar: None, laws: Vec::new(), out: None }
+}
+
+fn fitted(folder: &Path, rng: &mut Pcg64Mcg) -> PathBuf {
+    let fit = folder.join("fit.csv");
+    table(&fit, &[0.2, 0.4, 0.6, 0.8, 1.0], 4, rng);
+    let out = folder.join("results");
+    let models = vec!["linear_quadratic".to_owned()];
+    identify(&Job { out: Some(out.clone()), models, ..Job::new(&fit) }, &|_| {}).unwrap();
+    out.join("estimate.json")
+}
+
+/// 300 records, each held against ten runs of its own: the error of a coefficient is in all ten of them, so that single rows may be beyond together, while χ² counts it once.
+#[test]
+fn one_number_over_all_rows_rejects_as_often_as_it_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(20_261_126);
+    let (mut rejected, mut beyond, mut rows, mut outside_band) = (0, 0, 0, 0);
+    let draws = 300;
+    for _ in 0..draws {
+        let record = fitted(folder.path(), &mut rng);
+        let new = folder.path().join("new.csv");
+        table(&new, &[0.3, 0.5, 0.7, 0.9, 1.0], 2, &mut rng);
+        let found = predict(&asked(record, new)).unwrap();
+        let predicted = &found.estimates[0];
+        let joint = predicted.joint.unwrap();
+        assert_eq!((joint.n, joint.dof), (10, 18.0));
+        rejected += usize::from(joint.p < 0.05);
+        for row in &predicted.rows {
+            rows += 1;
+            beyond += usize::from(row.e_n.unwrap().abs() > 1.0);
+            let u = [0.3, 0.5, 0.7, 0.9, 1.0][row.row / 2];
+            let truth = -TRUTH[0] * u - TRUTH[1] * u * u;
+            outside_band += usize::from((truth - row.predicted).abs() > row.half_width_95.unwrap());
+        }
+    }
+    let part = |n: usize, of: usize| n as f64 / of as f64;
+    println!(
+        "rejected {:.3}, beyond E_n {:.3}, outside of the band {:.3}",
+        part(rejected, draws),
+        part(beyond, rows),
+        part(outside_band, rows)
+    );
+    // Three standard deviations of 300 draws at 5 %: 3.8 %; rows of one record go together.
+    assert!((part(rejected, draws) - 0.05).abs() < 0.038);
+    assert!((part(beyond, rows) - 0.05).abs() < 0.03 && (part(outside_band, rows) - 0.05).abs() < 0.038);
+}
+
+fn joint_p(found: &Prediction) -> Option<f64> {
+    found.estimates[0].joint.map(|joint| joint.p)
+}
+
+#[test]
+fn what_lies_outside_is_flagged_and_a_changed_body_is_seen() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    let record = fitted(folder.path(), &mut rng);
+    let at = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    };
+    // A tenth more drag, and a speed beyond those that were fitted.
+    let changed = at("changed.csv", "speed [m/s],f_x [N]\n0.8,-40.5\n1.0,-62.7\n1.6,-158\n");
+    let found = predict(&asked(record.clone(), changed)).unwrap();
+    assert!(joint_p(&found).unwrap() < 1e-6, "{found:?}");
+    let rows = &found.estimates[0].rows;
+    assert_eq!(rows.iter().map(|row| row.outside.len()).collect::<Vec<_>>()[..2], [0, 0]);
+    assert!(rows[2].outside.contains(&"speed".to_owned()) && found.estimates[0].joint.unwrap().n == 2);
+    // Without loads there are forces with their bands, and nothing is compared.
+    let bare = at("bare.csv", "speed [m/s]\n0.5\n0.9\n");
+    let out = folder.path().join("predicted");
+    let found = predict(&Asked { out: Some(out.clone()), ..asked(record.clone(), bare) }).unwrap();
+    assert!(joint_p(&found).is_none() && found.estimates[0].rows.iter().all(|row| row.measured.is_none()));
+    let text = std::fs::read_to_string(&found.written[0]).unwrap();
+    assert!(
+        text.starts_with("line [1],speed [m/s]") && text.contains("f_x_half_width_95 [N]") && !text.contains("f_x_e_n"),
+        "{text}"
+    );
+    assert_eq!(text.lines().count(), 3);
+    // Its own uncertainty of each row, where the table states one.
+    let stated = at("stated.csv", "speed [m/s],f_x [N],std_f_x [N]\n0.8,-36.8,10\n1.0,-57.0,10\n");
+    let found = predict(&asked(record.clone(), stated)).unwrap();
+    let joint = found.estimates[0].joint.unwrap();
+    assert!(joint.dof.is_infinite() && joint.p > 0.9, "{joint:?}");
+    // What the law reads and the table lacks, and a law that the record does not have.
+    let lacking = at("lacking.csv", "f_x [N]\n-3\n");
+    assert!(predict(&asked(record.clone(), lacking)).is_err());
+    let table = at("again.csv", "speed [m/s]\n0.5\n");
+    let refused = predict(&Asked { laws: vec!["f4".to_owned()], ..asked(record, table) }).unwrap_err();
+    assert!(refused.to_string().contains("linear_quadratic") && refused.is_bad_input(), "{refused}");
+}
