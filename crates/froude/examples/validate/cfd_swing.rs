@@ -10,15 +10,15 @@ use froude_cfd::collect::collect;
 use froude_cfd::history;
 use froude_cfd::store::Store;
 
-use crate::cfd::campaign;
+use crate::cfd::{campaign, finish};
 use crate::claims::{Claims, Verdict};
 
 const ROOM: &str = "Computed flows: a body that swings";
 /// A22 of H1LT by panels (`froude added-mass examples/mamba-cfd/body.toml --links 1`, ± 0.0009 kg), over the reference volume of a link.
 const PANELS: f64 = 1.80673 / (1025.0 * 1.2723e-3);
 
-/// `steady` is the folder of the campaign's cases. The example, and the same body by a tenth of its width: in water at rest, and in the stream.
-pub fn swung(claims: &mut Claims, root: &Path, steady: &Path) -> Result<(), Box<dyn Error>> {
+/// The example, and the same body by a tenth of its width: in water at rest, and in the stream.
+pub fn swung(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
     let text = std::fs::read_to_string(root.join("examples/mamba-swing-cfd/campaign.toml"))?;
     let small = text
         .replace("[\"10 deg\", \"20 deg\"]", "\"1 deg\"")
@@ -48,8 +48,16 @@ pub fn swung(claims: &mut Claims, root: &Path, steady: &Path) -> Result<(), Box<
     let history = history::read(&path.with_file_name("runs-cfd/H1LT-a1-w70-u0.2"), true)?;
     let last = history.get(history.len().saturating_sub(200)..).ok_or("no steps")?;
     let swung = last.iter().map(|s| s.total()[0]).sum::<f64>() / last.len() as f64;
-    let rows = collect(&Store::open(steady)?).rows;
-    let head_on = rows.iter().find(|row| row.case.id == "H1LT-u0.2-a0").map_or(f64::NAN, |row| row.loads[0]);
+    // The same flow steady, by a campaign of one case.
+    let (head, _) = text.split_once("[[source]]").ok_or("no source")?;
+    let steady = format!(
+        "{head}[[source]]\nname = \"CFD\"\nkind = \"cfd\"\ncases = \"cfd\"\n[source.cfd]\nbody = \"body.toml\"\nmesh = \"coarse\"\n\
+         [[source.plan]]\nconfigurations = [\"H1LT\"]\nspeed = \"0.2 m/s\"\n"
+    );
+    let path = campaign(root, "swing-steady", &steady)?;
+    finish(&path)?;
+    let rows = collect(&Store::open(&path.with_file_name("cfd"))?).rows;
+    let head_on = rows.first().map_or(f64::NAN, |row| row.loads[0]);
     claims.holds(
         ROOM,
         "mean f_x of H1LT in a stream of 0.2 m/s while it swings by 1°, of the steady flow head on",

@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-campaign, clocks,
 //! dynamic, potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -137,8 +137,11 @@ fn main() -> ExitCode {
             swim_coverage::all(claims, &root, if full { 200 } else { 10 })?;
         }
         if wants("cfd") {
+            cfd::all(claims, &root, full)?;
+        }
+        if full && wants("cfd-campaign") {
             let pages = root.join("book/src");
-            cfd::all(claims, &root, full, (full && (chosen.is_empty() || is_part)).then_some(pages.as_path()))?;
+            cfd::campaigns(claims, &root, (chosen.is_empty() || is_part).then_some(pages.as_path()))?;
         }
         if wants("clocks") {
             clocks::all(claims, &shared)?;
