@@ -214,8 +214,8 @@ domain = "full"
 cold   = 0
 [[source.plan]]
 speed = "0.4 m/s"
-angle = ["0 deg", "15 deg", "30 deg"]
-pitch = ["0 deg", "15 deg", "30 deg"]
+angle = ["0 deg", "7.5 deg", "15 deg"]
+pitch = ["0 deg", "7.5 deg", "15 deg"]
 [[source.plan]]
 speed = "0.4 m/s"
 angle = "TURNED_ANGLE deg"
@@ -264,7 +264,7 @@ fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
         };
         rows.iter().find(is_it).map_or([f64::NAN; 6], |row| row.loads)
     };
-    for angle in [15.0, 30.0] {
+    for angle in [7.5, 15.0] {
         let (level, upright) = (at(angle, 0.0), at(0.0, angle));
         let scale = level[1].abs();
         for (what, a, b, scale) in [

@@ -194,7 +194,7 @@ fn ratios(found: &Outcome) -> Result<String, Box<dyn Error>> {
 fn page(found: &Outcome, pairs: &[Pair]) -> Result<String, Box<dyn Error>> {
     Ok(format!(
         "# Which law do computed forces support?\n\n\
-         This page is written by `cargo xtask validate --full cfd --page`; no figure is typed by hand. It takes the campaign of `examples/mamba-cfd`: the smooth stand-in of the snake robot Mamba, nine configurations, k-ω SST on 22,400 cells over half a turn ([computed flows](cfd.md)). \
+         This page is written by `cargo xtask validate --full cfd-campaign --page`; no figure is typed by hand. It takes the campaign of `examples/mamba-cfd`: the smooth stand-in of the snake robot Mamba, nine configurations, k-ω SST on 22,400 cells over half a turn ([computed flows](cfd.md)). \
          The paper's CFD coefficients lie 1.4 to 6 times below those of its tanks. The question is why, and which of the six laws the computed forces support.\n\n\
          ## Two ranges of angles\n\n\
          The paper fits its CFD to angles from 0 to 90°, its towing rig and its circulation tank to 39° at most. The same computed flows are fitted here over both ranges.\n\n{}\n\
