@@ -103,11 +103,14 @@ pub fn predict(estimate: &Estimate, data: &Dataset) -> Result<Predicted, Identif
     for (response, load) in law.responses.iter().enumerate() {
         let measured = data.values(load).unwrap_or_default();
         let stated = data.values(&format!("std_{load}"));
-        let sigma = estimate.sigma.get(load).map(|s| s.value);
+        // That of a fit in logarithms is a part of the load.
+        let sigma = |force: f64| {
+            estimate.sigma.get(load).map(|s| if law.in_logarithms() { s.value * force.abs() } else { s.value })
+        };
         let of_sigma = estimate.dof.get(load).copied().flatten().unwrap_or(f64::INFINITY);
         for row in 0..data.rows {
             let place = response * data.rows + row;
-            let scatter = stated.map(|stated| stated[row]).or(sigma).filter(|s| *s > 0.0);
+            let scatter = stated.map(|stated| stated[row]).or_else(|| sigma(forces[place])).filter(|s| *s > 0.0);
             let parts = slopes.as_ref().map(|slopes| slopes.parts(place));
             let u_law = parts.as_ref().map(|parts| combined(parts).0);
             let measured = measured.get(row).copied().filter(|v| v.is_finite());

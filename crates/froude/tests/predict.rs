@@ -35,8 +35,12 @@ fn fitted(folder: &Path, rng: &mut Pcg64Mcg) -> PathBuf {
     let fit = folder.join("fit.csv");
     table(&fit, &[0.2, 0.4, 0.6, 0.8, 1.0], 4, rng);
     let out = folder.join("results");
-    let models = vec!["linear_quadratic".to_owned()];
-    identify(&Job { out: Some(out.clone()), models, ..Job::new(&fit) }, &|_| {}).unwrap();
+    fit_by(&fit, out, "linear_quadratic")
+}
+
+fn fit_by(fit: &Path, out: PathBuf, law: &str) -> PathBuf {
+    let models = vec![law.to_owned()];
+    identify(&Job { out: Some(out.clone()), models, ..Job::new(fit) }, &|_| {}).unwrap();
     out.join("estimate.json")
 }
 
@@ -74,6 +78,19 @@ fn one_number_over_all_rows_rejects_as_often_as_it_says() {
     // Three standard deviations of 300 draws at 5 %: 3.8 %; rows of one record go together.
     assert!((part(rejected, draws) - 0.05).abs() < 0.038);
     assert!((part(beyond, rows) - 0.05).abs() < 0.03 && (part(outside_band, rows) - 0.05).abs() < 0.038);
+}
+
+/// The scatter of a fit in logarithms is a part of the load, not newtons.
+#[test]
+fn a_law_in_logarithms_scatters_by_a_part_of_its_force() {
+    let folder = tempfile::tempdir().unwrap();
+    let fit = folder.path().join("fit.csv");
+    table(&fit, &[0.2, 0.4, 0.6, 0.8, 1.0], 4, &mut Pcg64Mcg::seed_from_u64(3));
+    let record = fit_by(&fit, folder.path().join("log"), "power_law_log");
+    let found = predict(&asked(record, fit)).unwrap();
+    let rows = &found.estimates[0].rows;
+    let part: Vec<f64> = rows.iter().map(|row| row.scatter.unwrap() / row.predicted.abs()).collect();
+    assert!(part.iter().all(|p| (p / part[0] - 1.0).abs() < 1e-12 && (0.01..0.3).contains(p)), "{part:?}");
 }
 
 fn joint_p(found: &Prediction) -> Option<f64> {
