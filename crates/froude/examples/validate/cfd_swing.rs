@@ -12,14 +12,19 @@ use froude_cfd::store::Store;
 
 use crate::cfd::{campaign, finish};
 use crate::claims::{Claims, Verdict};
+use crate::potential::{run as panels, sway_kg};
 
 const ROOM: &str = "Computed flows: a body that swings";
-/// A22 of H1LT by panels (`froude added-mass examples/mamba-cfd/body.toml --links 1`, ± 0.0009 kg), over the reference volume of a link.
-const PANELS: f64 = 1.80673 / (1025.0 * 1.2723e-3);
+/// ρμ_n, which C_A refers to, kg.
+const LINK_KG: f64 = 1025.0 * 1.2723e-3;
+/// From the pivot to the middle of the link, m.
+const RADIUS_M: f64 = 0.476;
 
 /// The example, and the same body by a tenth of its width: in water at rest, and in the stream.
 pub fn swung(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
     let text = std::fs::read_to_string(root.join("examples/mamba-swing-cfd/campaign.toml"))?;
+    let found = panels(&root.join("examples/mamba-swing-cfd/body.toml"), vec![1])?;
+    let panels = sway_kg(found.configurations.first().ok_or("no panels")?) / LINK_KG;
     let small = text
         .replace("[\"10 deg\", \"20 deg\"]", "\"1 deg\"")
         .replace("[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]", "\"70 deg/s\"");
@@ -35,7 +40,7 @@ pub fn swung(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
     let (path, _) = compute("swing-small", &still)?;
     // Of the log, which is there whether it was computed now or before.
     let log = path.with_file_name("runs/H1LT-a1-w70-u0.csv");
-    let ratio = last_period(&log, 70_f64.to_radians(), 0.476 * 1_f64.to_radians())? / (1025.0 * 1.2723e-3) / PANELS;
+    let ratio = last_period(&log, 70.0, 1.0)? / LINK_KG / panels;
     claims.holds(
         ROOM,
         "added mass of H1LT swung at rest by a tenth of its width, KC 0.44, β 2250, over that by panels",
@@ -80,8 +85,27 @@ pub fn swung(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
                 found.runs.len(),
                 estimate.law.name
             ),
-            &format!("circulation tank 1.277 of the paper (Table 12), its simulation 1.267; panels {PANELS:.3}"),
+            &format!("circulation tank 1.277 of the paper (Table 12), its simulation 1.267; panels {panels:.3}"),
             format!("C_A {}, C_d {}", of("C_A"), of("C_d")),
+            Verdict::Measured,
+        );
+    }
+    let one = text.replace("[\"10 deg\", \"20 deg\"]", "\"10 deg\"").replace(
+        "[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]",
+        "\"70 deg/s\"",
+    );
+    for (what, name, text) in [
+        ("as the example", "swing", one.clone()),
+        ("in the whole domain", "swing-whole", one.replace("mesh = \"coarse\"", "mesh = \"coarse\"\ndomain = \"full\"")),
+        ("on 92,160 cells", "swing-medium", one.replace("mesh = \"coarse\"", "mesh = \"medium\"")),
+    ] {
+        let path = if name == "swing" { path.clone() } else { compute(name, &text)?.0 };
+        let mass = last_period(&path.with_file_name("runs/H1LT-a10-w70-u0.2.csv"), 70.0, 10.0)?;
+        claims.add(
+            ROOM,
+            &format!("C_A of one run of it (10°, 70°/s), first harmonic of its last period, {what}"),
+            "what the plane of symmetry and the mesh do to it",
+            format!("{:.3}", mass / LINK_KG),
             Verdict::Measured,
         );
     }
@@ -89,7 +113,8 @@ pub fn swung(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
 }
 
 /// Added mass by the first harmonic of the last period of a log, kg: the force of the rig is that of the water with its sign turned.
-fn last_period(log: &Path, omega: f64, amplitude_m: f64) -> Result<f64, Box<dyn Error>> {
+fn last_period(log: &Path, omega_deg_s: f64, amplitude_deg: f64) -> Result<f64, Box<dyn Error>> {
+    let (omega, amplitude_m) = (omega_deg_s.to_radians(), RADIUS_M * amplitude_deg.to_radians());
     let text = std::fs::read_to_string(log)?;
     let rows: Vec<[f64; 2]> = text
         .lines()

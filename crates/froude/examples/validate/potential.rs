@@ -52,7 +52,7 @@ pub fn all(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Box<dyn E
     smooth(claims)
 }
 
-fn run(body: &Path, links_of: Vec<usize>) -> Result<LinksOutcome, Box<dyn Error>> {
+pub fn run(body: &Path, links_of: Vec<usize>) -> Result<LinksOutcome, Box<dyn Error>> {
     let wanted = Wanted { tolerance: 0.005, ..Wanted::default() };
     let asked = Asked { links: links_of, wanted, ..Asked::of(body) };
     Ok(links(&asked, &Water::default(), "", &|_| {})?)
@@ -87,7 +87,7 @@ fn independent(claims: &mut Claims, section: &'static str, c: &Configuration, sw
     );
 }
 
-fn sway_kg(c: &Configuration) -> f64 {
+pub fn sway_kg(c: &Configuration) -> f64 {
     1025.0 * c.refined.value[1][1]
 }
 
