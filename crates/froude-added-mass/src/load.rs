@@ -15,7 +15,7 @@ use froude_panel::family::Family;
 use froude_records::body::{Shape, read_body};
 use froude_records::finding::{Finding, Severity};
 
-use super::options::Asked;
+use super::options::{Asked, unit_of};
 use super::shape::family;
 use crate::error::AddedMassError;
 
@@ -139,7 +139,7 @@ pub fn load(job: &Asked) -> Result<Loaded, AddedMassError> {
             wrong.push(format!(
                 "  froude added-mass {}{} --repair repaired.obj writes a mesh with the unambiguous faults corrected",
                 job.input.display(),
-                job.unit_m.map_or_else(String::new, |m| format!(" --unit \"{m} m\""))
+                job.unit_m.map_or_else(String::new, |m| format!(" --unit {}", unit_of(m)))
             ));
         }
         return Err(AddedMassError::Unfit { path: job.input.clone(), troubles: wrong });

@@ -190,6 +190,13 @@ fn unit(text: &str) -> Result<f64, String> {
     unit.map(|unit| unit.to_si(1.0)).ok_or_else(|| "write a unit of length: mm, cm, m, in".to_owned())
 }
 
+/// How `--unit` writes a unit of so many metres.
+#[must_use]
+pub fn unit_of(metres: f64) -> String {
+    let named = ["mm", "cm", "m", "in", "ft"].into_iter().find(|name| unit(name).is_ok_and(|m| m == metres));
+    named.map_or_else(|| format!("{metres:?} m"), str::to_owned)
+}
+
 /// `3`, `1..9` (both ends), `1,3,6`.
 fn link_numbers(text: &str) -> Result<Vec<usize>, String> {
     let bad = || format!("write a number of links, \"1..9\" or \"1,3,6\", between 1 and {MOST_LINKS}");

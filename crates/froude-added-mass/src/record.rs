@@ -184,6 +184,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
             ..Diagnostics::default()
         },
         recommended: true,
+        formula_of: None,
         reason: Some("the only model of its source".to_owned()),
         ..Estimate::default()
     }

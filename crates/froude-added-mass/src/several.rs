@@ -475,6 +475,7 @@ fn record(
         coefficients,
         diagnostics: froude_records::estimate::Diagnostics { notes: notes.to_vec(), ..Default::default() },
         recommended: true,
+        formula_of: None,
         reason: Some("the only model of its source".to_owned()),
         ..Estimate::default()
     }

@@ -95,7 +95,12 @@ impl Store {
         let wrong = |problem: String| {
             StoreError::file(&path, format!("{problem}: the file of a CFD campaign is written by froude cfd plan"))
         };
-        let text = std::fs::read_to_string(&path).map_err(|e| wrong(e.to_string()))?;
+        let text = std::fs::read_to_string(&path).map_err(|e| match e.kind() {
+            std::io::ErrorKind::NotFound => {
+                StoreError::file(&path, "is not there: nothing is planned yet; froude cfd plan plans it".to_owned())
+            }
+            _ => wrong(e.to_string()),
+        })?;
         let index: Index = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
         match index.cases.iter().find(|c| !is_name(&c.id)) {
             Some(case) => Err(wrong(format!("{:?} is no name of a case", case.id))),

@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, Parser, Subcommand};
 use froude::records::added_mass_options::{ADDED_MASS_OPTIONS, GivenOption};
 
 /// What stands below the help.
-const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input.";
+const EXIT_CODES: &str = "Exit code: 0 done, whatever the findings say; 1 failed; 2 bad input; 130 stopped by Ctrl-C, where the same command goes on.";
 
 /// Froude turns tank tests, tows and potential flow into drag and added-mass coefficients with realistic uncertainties, and drives the towing carriage.
 #[derive(Debug, Parser)]

@@ -229,7 +229,11 @@ fn source_facts(s: &SourceFacts) {
         }
         (_, _, true) => String::new(),
         (_, _, false) => {
-            let verb = if s.input == "cases" { "froude cfd plan" } else { "froude simulate" };
+            let verb = match (s.input.as_str(), s.kind.as_str()) {
+                ("cases", _) => "froude cfd plan",
+                ("runs", "cfd") => "froude cfd swing",
+                _ => "froude simulate",
+            };
             format!(", not there yet: {verb} makes it")
         }
     };

@@ -80,8 +80,9 @@ fn your_own_data_of_the_readme_runs_as_printed() {
     assert_eq!(inspected["sources"][0]["budget"][0]["standard"], "2 %");
     assert_eq!(inspected["sources"][0]["rows"], 8);
     let identified = results.next().unwrap();
-    let quadratic = &identified["estimates"][0]["coefficients"]["D_x_II"];
-    let (value, type_b) = (quadratic["value"].as_f64().unwrap(), quadratic["type_b"].as_f64().unwrap());
+    let recommended = identified["estimates"].as_array().unwrap().iter().find(|e| e["recommended"] == true).unwrap();
+    let drag = &recommended["coefficients"]["D_x_II"];
+    let (value, type_b) = (drag["value"].as_f64().unwrap(), drag["type_b"].as_f64().unwrap());
     assert!((type_b / value - 0.02).abs() < 1e-9, "the calibration does not average down: {type_b} of {value}");
     let grave = |f: &&serde_json::Value| f["severity"] != "note";
     let doubts: Vec<_> = identified["findings"].as_array().unwrap().iter().filter(grave).collect();

@@ -60,6 +60,11 @@ fn value(estimate: &Value, coefficient: &str) -> f64 {
     estimate["coefficients"][coefficient]["value"].as_f64().unwrap()
 }
 
+/// The simplest law that the data support, beside the recommended one.
+fn formula(out: &Value) -> &Value {
+    out["estimates"].as_array().unwrap().iter().find(|e| e["formula_of"].is_object()).unwrap()
+}
+
 fn recommended(out: &Value) -> &Value {
     out["estimates"].as_array().unwrap().iter().find(|e| e["recommended"] == true).unwrap()
 }
@@ -569,7 +574,7 @@ fn laws_of_different_loads_are_compared_load_by_load() {
         [[identify.model]]\nname = \"along\"\nf_x = \"X_uu*u*abs(u)\"\n\
         [[identify.model]]\nname = \"both\"\nf_x = \"X_uu*u*abs(u)\"\nf_y = \"Y_0 + Y_u*u + Y_uu*u*u\"\n";
     let out = json(&[("t.csv", &ahead), ("c.toml", campaign)], &["identify", "c.toml"]);
-    assert_eq!(recommended(&out)["law"]["name"], "along", "{}", recommended(&out)["reason"]);
+    assert_eq!(formula(&out)["law"]["name"], "along", "{}", recommended(&out)["reason"]);
 }
 
 /// Drag of a round strut, N s²/m²: along the flow at every angle, so that 6 % of the body's Y_uv is the strut's.
@@ -1110,7 +1115,7 @@ fn a_run_astern_is_judged_as_a_run_ahead() {
     uneven
         .iter_mut()
         .enumerate()
-        .for_each(|(i, row)| row[3] += if i > 7 { 0.8 * (1.0 - 2.0 * (i % 2) as f64) } else { 0.0 });
+        .for_each(|(i, row)| row[3] *= 1.0 + 0.1 * (1.0 - 2.0 * (i / 2 % 2) as f64) * (i % 2) as f64);
     for (rows, expected) in [
         (&clean, None),
         (&fast, Some("implausible-speed")),
@@ -1144,7 +1149,7 @@ fn one_magnitude_of_drift_leaves_the_quadratic_law_a_candidate() {
     // N_uv stands for the moment at that angle: m_z = N_uv u v + N_vv v|v| with |v| = u tan 10°.
     let whole = N_UV + N_VV * f64::to_radians(10.0).tan();
     assert!((value(quadratic, "N_uv") / whole - 1.0).abs() < 0.02, "{}", quadratic["coefficients"]);
-    assert_eq!(recommended(&out)["law"]["name"], "quadratic", "{}", recommended(&out)["reason"]);
+    assert_eq!(formula(&out)["law"]["name"], "quadratic", "{}", recommended(&out)["reason"]);
 }
 
 #[test]

@@ -235,7 +235,7 @@ fn what_compare_sets_beside_nothing_is_said() {
     let said = |f: &&serde_json::Value| f["code"] == "beside-no-other";
     let finding =
         out["findings"].as_array().unwrap().iter().find(said).unwrap()["message"].as_str().unwrap().to_owned();
-    assert!(finding.contains("/linear_quadratic (linear_quadratic): no other source has its model"), "{finding}");
+    assert!(finding.contains("/power_law (power_law): no other source has its model"), "{finding}");
     let both = json(&froude(folder.path(), &["--json", "compare", &monday, "tuesday-results/estimate.json"]));
     assert!(both["findings"].as_array().unwrap().iter().all(|f| f["code"] != "beside-no-other"), "{both}");
 }

@@ -14,7 +14,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 
 use crate::distribution::coverage_factor;
-use crate::propagate::{effective_dof, expanded};
+use crate::propagate::effective_dof;
 
 /// Draws for an interval: its ends then scatter by 1.9 % of the standard uncertainty at 95 %, by 4.5 % over ten looks.
 const DRAWS: usize = 20_000;
@@ -198,14 +198,24 @@ pub fn combine(parts: &[Part], j: usize, outside: f64) -> Combined {
             Shape::Normal => None,
         })
         .collect();
-    let half = expanded(&normal, 1.0 - outside).expanded;
+    let of_normal = rounded_dof(counted().filter(|part| part.shape == Shape::Normal).map(|p| (entry(p), p.kind)));
+    let half = coverage_factor(1.0 - outside, of_normal) * normal.iter().map(|e| e.0).sum::<f64>().sqrt();
     Combined {
         type_a: of_type(false),
         type_b: of_type(true),
         standard: entries.iter().map(|e| e.0).sum::<f64>().sqrt(),
-        dof: effective_dof(&entries),
+        dof: rounded_dof(counted().map(|part| (entry(part), part.kind))),
         arms: if limits.is_empty() { [half, half] } else { drawn(half, &limits, outside) },
     }
+}
+
+/// Effective degrees of freedom of variances with their own, rounded down where an error of type B has finitely many (GUM G.4.1): the formula then takes a quadratic form for a χ²
+/// that it is not, and is too large as often as too small.
+pub fn rounded_dof(entries: impl Iterator<Item = ((f64, f64), Kind)>) -> f64 {
+    let all: Vec<((f64, f64), Kind)> = entries.collect();
+    let is_mixed = all.iter().any(|((variance, dof), kind)| *variance > 0.0 && dof.is_finite() && kind.is_type_b());
+    let dof = effective_dof(&all.iter().map(|(entry, _)| *entry).collect::<Vec<_>>());
+    if is_mixed && dof.is_finite() { dof.floor().max(1.0) } else { dof }
 }
 
 /// Arms of an interval with errors between limits beside one normal error of half-width `half`.

@@ -14,6 +14,7 @@
 //!
 //! `Δ_g` is the change of the estimate when cluster `g` is left out: exact for
 //! squares with σ held, one Newton step for Huber. Prior rows are taken at their stated variance.
+//! Degrees of freedom of HC3 and CR3 are those of [`freedom`](crate::freedom).
 
 use std::collections::BTreeMap;
 
@@ -23,12 +24,15 @@ use crate::block::Block;
 use crate::dense::{Cholesky, dot, row};
 use crate::error::FitError;
 use crate::estimate::Estimate;
+use crate::freedom::{Cluster, Freedom, Row};
 use crate::options::{CovarianceKind, Loss};
 use crate::problem::Problem;
 use crate::robust::psi;
 
-/// Fewest clusters for which CR3 is given.
+/// Fewest clusters for which a variance over clusters is given that takes their number less one for its degrees of freedom.
 pub const FEWEST_CLUSTERS: usize = 5;
+/// Fewest for CR3 with degrees of freedom of its own: they are two where clusters are equal.
+pub(crate) const FEWEST_WITH_FREEDOM: usize = 3;
 
 /// A part left out determines something alone when a pivot falls below this.
 const ALONE: f64 = 1e-10;
@@ -40,8 +44,8 @@ pub(crate) struct Core {
     pub covariance: Mat<f64>,
     /// The `rank × n` influence of each data row on the coordinates: `M⁻¹ q d`.
     pub influence: Mat<f64>,
-    /// Degrees of freedom of the t distribution, where one number serves all.
-    pub dof: Option<f64>,
+    /// Where the degrees of freedom of a combination come from.
+    pub freedom: Freedom,
     /// `φ` of each component.
     pub dispersion: Vec<Option<f64>>,
 }
@@ -80,15 +84,16 @@ pub(crate) fn core(
     for q in &rows.q[..n_priors] {
         add_outer(&mut covariance, &apply(q), 1.0);
     }
-    let dof = match kind {
+    let freedom = match kind {
         CovarianceKind::Classical => {
             for (i, q) in rows.q[n_priors..].iter().enumerate() {
                 let phi = rows.dispersion[block.row_component[i]];
                 add_outer(&mut covariance, &apply(q), phi.unwrap_or(f64::NAN));
             }
-            None
+            Freedom::OfComponents
         }
         CovarianceKind::Hc3 => {
+            let mut kept = Vec::with_capacity(block.rows.len());
             for (i, q) in rows.q.iter().enumerate().skip(n_priors) {
                 let moved = apply(q);
                 let rest = 1.0 - rows.curvature[i] * dot(q, &moved);
@@ -97,12 +102,14 @@ pub(crate) fn core(
                 }
                 let factor = rows.score[i] / rest;
                 add_outer(&mut covariance, &moved, factor * factor);
+                kept.push(Row { name: block.rows[i - n_priors], q: q.clone(), moved, rest, score: rows.score[i] });
             }
-            None
+            Freedom::OfRows { rows: kept, bread: bread.clone() }
         }
         CovarianceKind::Cr3 => {
-            let clusters = clusters(problem, block)?;
+            let clusters = clusters(problem, block, FEWEST_WITH_FREEDOM)?;
             let count = clusters.len() as f64;
+            let mut kept = Vec::with_capacity(clusters.len());
             for (cluster, members) in clusters {
                 let members: Vec<usize> = members.iter().map(|i| i + n_priors).collect();
                 let part = gram(&rows, members.iter().copied(), rank);
@@ -117,8 +124,9 @@ pub(crate) fn core(
                 }
                 factor.solve(&mut change);
                 add_outer(&mut covariance, &change, (count - 1.0) / count);
+                kept.push(Cluster { name: cluster, gram: part, without: factor.inverse(), change });
             }
-            Some(count - 1.0)
+            Freedom::OfClusters { clusters: kept, bread: bread.clone() }
         }
     };
     let n = block.rows.len();
@@ -129,22 +137,22 @@ pub(crate) fn core(
             influence[(k, i)] = moved[k] * rows.curvature[n_priors + i];
         }
     }
-    Ok(Core { covariance, influence, dof, dispersion: rows.dispersion })
+    Ok(Core { covariance, influence, freedom, dispersion: rows.dispersion })
 }
 
-/// Local rows of each cluster of a block.
-pub(crate) fn clusters(problem: &Problem, block: &Block) -> Result<BTreeMap<usize, Vec<usize>>, FitError> {
+/// Local rows of each cluster of a block; so many of them at least.
+pub(crate) fn clusters(
+    problem: &Problem,
+    block: &Block,
+    needed: usize,
+) -> Result<BTreeMap<usize, Vec<usize>>, FitError> {
     let cluster = problem.cluster.as_ref().ok_or(FitError::NoClusters)?;
     let mut out: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (k, &i) in block.rows.iter().enumerate() {
         out.entry(cluster[i]).or_default().push(k);
     }
-    if out.len() < FEWEST_CLUSTERS {
-        return Err(FitError::TooFewClusters {
-            component: component_names(problem, block),
-            found: out.len(),
-            needed: FEWEST_CLUSTERS,
-        });
+    if out.len() < needed {
+        return Err(FitError::TooFewClusters { component: component_names(problem, block), found: out.len(), needed });
     }
     Ok(out)
 }

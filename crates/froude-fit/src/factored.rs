@@ -4,12 +4,13 @@
 //! factored once; each response then costs two products with `Q`.
 
 use crate::block::blocks;
-use crate::covariance::clusters;
+use crate::covariance::{FEWEST_WITH_FREEDOM, clusters};
 use crate::dense::{Cholesky, mul, row};
 use crate::determined::Indeterminacy;
 use crate::distribution::coverage_factor;
 use crate::error::FitError;
 use crate::estimate::estimate;
+use crate::freedom::Form;
 use crate::options::{Bound, CovarianceKind, Loss, Options};
 use crate::problem::Problem;
 
@@ -101,7 +102,7 @@ impl Factored {
                     Some((groups, n))
                 }
                 CovarianceKind::Cr3 => {
-                    let clusters = clusters(problem, &block)?;
+                    let clusters = clusters(problem, &block, FEWEST_WITH_FREEDOM)?;
                     let mut groups = vec![0; n];
                     for (g, members) in clusters.values().enumerate() {
                         for &i in members {
@@ -118,14 +119,14 @@ impl Factored {
                         .map_err(|g| decides(problem, &block, kind, g))
                 })
                 .transpose()?;
-            let part_dof = match (kind, &leave_out) {
-                (CovarianceKind::Cr3, Some((_, _, count))) => (count - 1) as f64,
-                _ => (n - rank) as f64,
-            };
             for (l, &j) in block.columns.iter().enumerate() {
                 determined[j] = null.determined[l];
-                if null.determined[l] && part_dof > 0.0 {
-                    dof[j] = part_dof;
+                let of_part = match &leave_out {
+                    Some((moves, groups, count)) => freedom(&q, rank, &moves[l * n..(l + 1) * n], groups, *count),
+                    None => (n - rank) as f64,
+                };
+                if null.determined[l] && of_part > 0.0 {
+                    dof[j] = of_part;
                 }
             }
             parts.push(FactoredPart {
@@ -240,11 +241,30 @@ impl FactoredPart {
     }
 }
 
+/// Degrees of freedom of the sum of squared moves of a coefficient: see [`crate::freedom`].
+fn freedom(q: &[f64], rank: usize, moves: &[f64], groups: &[usize], count: usize) -> f64 {
+    let one = faer::Mat::identity(rank, rank);
+    let mut parts = vec![(0.0, vec![0.0; rank]); count];
+    for (i, (&g, m)) in groups.iter().zip(moves).enumerate() {
+        let (d, u) = &mut parts[g];
+        *d += m * m;
+        for (u, q) in u.iter_mut().zip(&q[i * rank..(i + 1) * rank]) {
+            *u += m * q;
+        }
+    }
+    let mut form = Form::new(rank);
+    for (d, u) in &parts {
+        form.add(*d, u, &one);
+    }
+    form.dof(&one)
+}
+
 fn decides(problem: &Problem, block: &crate::block::Block, kind: CovarianceKind, group: usize) -> FitError {
     if kind == CovarianceKind::Hc3 {
         return FitError::RowDecides { row: block.rows[group] };
     }
-    let cluster = clusters(problem, block).ok().and_then(|c| c.keys().nth(group).copied()).unwrap_or(group);
+    let cluster =
+        clusters(problem, block, FEWEST_WITH_FREEDOM).ok().and_then(|c| c.keys().nth(group).copied()).unwrap_or(group);
     FitError::ClusterDecides { cluster, component: crate::covariance::component_names(problem, block) }
 }
 

@@ -22,6 +22,7 @@
 //! | [`wild`]        | wild cluster bootstrap                                               |
 //! | [`propagate`]   | shared input errors, effective degrees of freedom                    |
 //! | [`budget`]      | what each error does to the coefficients, intervals, jackknife       |
+//! | [`residuals`], [`ratio`] | residuals of a component, exact tests of their independence and equal variances |
 //! | [`replicates`]  | scatter from replicates left out in turn, sums of such, a floor      |
 //! | [`series`]      | mean of a correlated series                                          |
 //! | [`serial`]      | scatter of few runs whose errors are correlated in time              |
@@ -55,6 +56,7 @@ pub mod distribution;
 mod error;
 mod estimate;
 pub mod factored;
+mod freedom;
 pub mod jackknife;
 pub mod linear;
 pub mod long_run;
@@ -65,8 +67,10 @@ mod outcome;
 mod problem;
 pub mod propagate;
 pub mod rank;
+pub mod ratio;
 pub mod replicates;
 mod report;
+pub mod residuals;
 pub mod robust;
 pub mod select;
 pub mod serial;

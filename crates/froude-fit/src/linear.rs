@@ -124,10 +124,12 @@ impl Part {
 
     /// Degrees of freedom of `Σ_l a_l β_l`, where `a` comes as its row of the lift.
     ///
-    /// Welch–Satterthwaite over the components; priors count as exactly known.
+    /// Those of a robust variance, else Welch–Satterthwaite over the components; priors count as exactly known.
     pub(crate) fn dof_of(&self, lifted: &[f64]) -> f64 {
-        if let Some(dof) = self.core.dof {
-            return dof;
+        if let Some(robust) = self.core.freedom.of(lifted) {
+            let total = dot(lifted, &mul_vec(self.core.covariance.as_ref(), lifted));
+            // A fit without scatter has the degrees of freedom that one would have.
+            return robust.dof * if robust.scatter > 0.0 { (total / robust.scatter).powi(2) } else { 1.0 };
         }
         if self.block.components.len() == 1 && self.estimate.n_priors == 0 {
             return self.estimate.dof[0];
@@ -304,6 +306,7 @@ fn held_coefficients(problem: &Problem, options: &Options) -> Vec<FitCoefficient
             dof: None,
             unconstrained: None,
             inflation: None,
+            most: None,
         })
         .collect();
     for &(j, value) in &options.fixed {
@@ -326,6 +329,7 @@ fn coefficient(problem: &Problem, options: &Options, part: &Part, l: usize, valu
             dof: None,
             unconstrained: None,
             inflation: None,
+            most: None,
         };
     }
     let free = part.block.offset[l] + dot(&row(part.block.basis.as_ref(), l), &part.estimate.gamma);
@@ -360,6 +364,7 @@ fn coefficient(problem: &Problem, options: &Options, part: &Part, l: usize, valu
         dof,
         unconstrained: Some(free),
         inflation: is_plain.then_some(alone * alone),
+        most: part.core.freedom.of(&lifted).and_then(|robust| robust.most),
     }
 }
 

@@ -183,6 +183,7 @@ fn finish<M: InputModel>(
                     dof: None,
                     unconstrained: None,
                     inflation: None,
+                    most: None,
                 };
             }
             let value = state.beta[j];
@@ -198,6 +199,7 @@ fn finish<M: InputModel>(
                 dof: Some(dof),
                 unconstrained: Some(value),
                 inflation: None,
+                most: None,
             }
         })
         .collect();

@@ -49,6 +49,8 @@ pub struct FitCoefficient {
     pub unconstrained: Option<f64>,
     /// Variance relative to that of the same column alone, ≥ 1.
     pub inflation: Option<f64>,
+    /// The row (HC3) or cluster (CR3) that tells most of its variance, and how much of it \[-\].
+    pub most: Option<(usize, f64)>,
 }
 
 /// One response component of a fit.

@@ -5,8 +5,8 @@
 //! t of the cluster jackknife (CR3), whose distribution is then no longer
 //! taken from a table.
 //!
-//! - **p value**: residuals of the fit with the null hypothesis imposed.
-//! - **interval**: percentile-t from the residuals of the full fit.
+//! The residuals are those of the fit with the null hypothesis imposed, and the answer is a p value. An interval by quantiles of such t's was
+//! tried: of one cluster of forty rows and five of four it holds the truth 71 to 75 times in 100. Intervals are those of CR3 with degrees of freedom of their own.
 //!
 //! Every resample has its own generator, seeded from the seed and its number:
 //! the result is the same on any number of threads, bit for bit.
@@ -44,7 +44,7 @@ pub enum WildWeights {
 /// What to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WildOptions {
-    /// Resamples; `(1 − confidence)/2 · (resamples + 1)` is best an integer.
+    /// Resamples.
     pub resamples: usize,
     /// Seed.
     pub seed: u64,
@@ -71,8 +71,6 @@ pub struct WildResult {
     pub t: f64,
     /// Two-sided probability of such a t under the null hypothesis.
     pub p: f64,
-    /// Percentile-t interval at the confidence of the options.
-    pub interval: [f64; 2],
     /// Weights used.
     pub weights: WildWeights,
     /// Number of clusters.
@@ -108,23 +106,17 @@ pub fn wild_cluster(
         chosen => chosen,
     };
     let t = (free.estimate - wild.null) / free.standard;
-    let drawn = |sums: &Sums| -> Vec<f64> {
-        (0..wild.resamples as u64).into_par_iter().map(|b| sums.resample(weights, wild.seed, b)).collect()
-    };
     // Ties with the sample itself (all signs equal) differ by rounding only.
     let threshold = t.abs() * (1.0 - 1e-10);
-    let beyond = drawn(&held).iter().filter(|b| b.abs() >= threshold).count();
-    let mut t_free = drawn(&free);
-    t_free.sort_by(f64::total_cmp);
-    let tail = 0.5 * (1.0 - options.confidence);
-    let low = order_statistic(&t_free, tail);
-    let high = -order_statistic(&t_free.iter().rev().map(|t| -t).collect::<Vec<_>>(), tail);
+    let beyond = (0..wild.resamples as u64)
+        .into_par_iter()
+        .filter(|&b| held.resample(weights, wild.seed, b).abs() >= threshold)
+        .count();
     Ok(WildResult {
         estimate: free.estimate,
         standard: free.standard,
         t,
         p: (beyond + 1) as f64 / (wild.resamples + 1) as f64,
-        interval: [free.estimate - high * free.standard, free.estimate - low * free.standard],
         weights,
         n_clusters: free.count(),
         resamples: wild.resamples,
@@ -149,12 +141,6 @@ fn check(problem: &Problem, options: &Options, index: usize, wild: &WildOptions)
         return Err(FitError::Option { option: "the null hypothesis", value: wild.null, must: "finite" });
     }
     Ok(())
-}
-
-/// The `k`-th smallest, `k = probability · (B + 1)` rounded, at least the first.
-fn order_statistic(sorted: &[f64], probability: f64) -> f64 {
-    let k = (probability * (sorted.len() + 1) as f64).round() as usize;
-    sorted[k.clamp(1, sorted.len()) - 1]
 }
 
 /// Sums per cluster from which each resample is made in `O(G · rank)`.
@@ -193,7 +179,7 @@ impl Sums {
                 restricted_residual(&part.estimate.design, &part.estimate.response, &basis_row, value)
             }
         };
-        let clusters = clusters(problem, &part.block)?;
+        let clusters = clusters(problem, &part.block, FEWEST_CLUSTERS)?;
         debug_assert!(clusters.len() >= FEWEST_CLUSTERS);
         let rank = part.estimate.qr.rank;
         let q = &part.estimate.qr.q;
@@ -347,12 +333,5 @@ mod tests {
             // Five standard deviations of the mean of 60,000.
             assert!(mean.abs() < 0.021 && (variance - 1.0).abs() < 0.021);
         }
-    }
-
-    #[test]
-    fn the_order_statistic_of_nineteen_at_five_percent_is_the_first() {
-        let sorted: Vec<f64> = (1..=19).map(f64::from).collect();
-        assert_eq!(order_statistic(&sorted, 0.05), 1.0);
-        assert_eq!(order_statistic(&sorted, 0.5), 10.0);
     }
 }

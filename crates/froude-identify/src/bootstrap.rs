@@ -1,8 +1,9 @@
-//! Intervals by the wild cluster bootstrap, beside those of the fit.
+//! Whether coefficients differ from zero by the wild cluster bootstrap, beside the intervals of the fit.
 //!
 //! With few or unequal clusters (configurations, tank days) the quantiles of Student's t
 //! are not those of the cluster-robust t. The bootstrap takes them from the residuals:
-//! see [`froude_fit::wild`] for method and source.
+//! see [`froude_fit::wild`] for method and source. Its intervals do not hold there, those of
+//! CR3 with degrees of freedom of its own do.
 
 use froude_fit as fit;
 use froude_fit::wild::{WildOptions, wild_cluster};
@@ -13,9 +14,7 @@ use crate::regression::ModelFit;
 /// Seed of the resamples; the same campaign gives the same interval on any number of threads.
 const SEED: u64 = 1;
 
-/// The interval and p-value of every determined coefficient, in words, or a finding that says why there is none.
-///
-/// The units of the interval are those of the coefficient.
+/// The p value of every determined coefficient against zero, in words, or a finding that says why there is none.
 ///
 /// # Errors
 ///
@@ -46,12 +45,11 @@ pub fn note(model: &ModelFit, resamples: usize) -> Result<String, Finding> {
         }
         let result = wild_cluster(&model.problem, &model.options, j, &options).map_err(|e| refuse(e.to_string()))?;
         clusters = result.n_clusters;
-        let [low, high] = result.interval;
-        parts.push(format!("{} [{low:.4}, {high:.4}] {} (zero: p = {:.4})", spec.name, spec.unit, result.p));
+        parts.push(format!("{} {:.4}", spec.name, result.p));
     }
     Ok(format!(
-        "95 % intervals of the scatter alone (without the budget) by {resamples} wild cluster resamples over {clusters} \
-         clusters, bounds left out: {}",
+        "p against zero, of the scatter alone (without the budget), by {resamples} wild cluster resamples over {clusters} clusters, bounds left \
+         out: {}",
         parts.join(", ")
     ))
 }

@@ -4,20 +4,22 @@ use froude_fit as fit;
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{Diagnostics, NamedCorrelation};
 use froude_records::finding::{Finding, Severity};
+use froude_records::number::{percent, plain, significant};
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, distinct};
 use crate::error::IdentifyError;
 use crate::law::Kind;
 use crate::outlying::outlying_rows;
-use crate::regression::ModelFit;
+use crate::regression::{ModelFit, Scatter};
 use crate::selection::{Score, aicc};
-use crate::{dissipation, lint};
+use crate::{dissipation, lint, scatter_tests};
 
-/// Durbin–Watson below which residuals in run order are plainly not independent (lower 1 % bound is about 1.0 for
-/// 15 to 25 rows and one to two regressors: Savin and White 1977).
-const SERIAL_BELOW: f64 = 1.0;
 /// Condition number of the scaled design above which digits are lost to collinearity (Belsley, Kuh, Welsch 1980: 30).
 const COLLINEAR_ABOVE: f64 = 30.0;
+/// Degrees of freedom below which HC3 stands on few rows.
+const FEW_DOF: f64 = 4.0;
+/// Standard uncertainties above zero of an added mass of the wrong sign: 0.4 % by chance, one-sided.
+const SIGN_ABOVE: f64 = 2.65;
 /// Rank correlation of |residual| with speed that calls the scatter uneven, in standard errors.
 const UNEVEN_ABOVE_Z: f64 = 2.0;
 /// Fewest observations from which the error model is judged.
@@ -85,22 +87,10 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
 pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagnostics) -> Vec<Finding> {
     let name = &model.law.name;
     let mut out = Vec::new();
-    for (component, dw) in &d.durbin_watson {
-        let has_order = data.rows >= 8 && !model.is_in_time(data);
-        if *dw < SERIAL_BELOW && has_order {
-            out.push(Finding::new(
-                Severity::Warning,
-                "serial-correlation",
-                format!(
-                    "{name}, {component}: residuals of successive rows are correlated (Durbin–Watson {dw:.2}, 2 when independent): \
-                     the stated interval assumes independence and is too narrow; use covariance = \"cluster\" over blocks of runs, \
-                     or a model that follows the drift"
-                ),
-            ));
-        }
-    }
+    out.extend(scatter_tests::findings(model, data));
+    out.extend(decided_by_one(model, data));
+    out.extend(added_mass_sign(model, data));
     out.extend(outlying_rows(model, data));
-    out.extend(uneven_scatter(model, data));
     if let Some(c) = d.condition_number
         && c > COLLINEAR_ABOVE
         && let Some(pair) = &d.largest_correlation
@@ -115,8 +105,9 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
             ),
         ));
     }
+    let loads = d.lack_of_fit_p.len().max(1) as f64;
     for (component, p) in &d.lack_of_fit_p {
-        if *p < 0.01 {
+        if *p < scatter_tests::ALARM / loads && !scatter_tests::declares_groups(model) {
             out.push(Finding::new(
                 Severity::Warning,
                 "lack-of-fit",
@@ -136,14 +127,14 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
             ),
         ));
     }
-    for (spec, c) in model.specs.iter().zip(&model.fit.coefficients) {
-        if c.status == fit::Status::BoundContradicted {
+    for (j, spec) in model.specs.iter().enumerate() {
+        if let Some(bound) = model.contradicted_bound(j) {
             out.push(Finding::new(
                 Severity::Warning,
                 "bound-contradicted",
                 format!(
-                    "{name}: the data put {} outside its bounds with 95 % confidence; the bound or the model is wrong",
-                    spec.name
+                    "{name}: the data put {} beyond its bound of {bound} {} (1 % level over all bounds); the bound or the model is wrong",
+                    spec.name, spec.unit
                 ),
             ));
         }
@@ -192,33 +183,65 @@ pub fn unevenness(model: &ModelFit, data: &Dataset, load: &str) -> Option<Uneven
     Some(Unevenness::of(&size, &speed))
 }
 
-/// Whether |residual| grows with speed.
-fn uneven_scatter(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
+/// A row, or a group, that gives a coefficient nearly all of its scatter.
+fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
     let mut out = Vec::new();
-    for component in &model.law.responses {
-        let Some(found) = unevenness(model, data, component) else { continue };
-        let Unevenness { rho, z } = found;
-        if found.contradicts() {
-            let is_weighted = model.problem.weight.is_some();
-            let (assumed, advice) = match (model.law.in_logarithms(), is_weighted) {
-                (true, false) => ("equal relative errors", "compare with the fit in newtons"),
-                (true, true) => ("relative errors as in the std columns", "compare with the fit in newtons"),
-                (false, false) => ("equal absolute errors", "use HC3, std columns, or a fit in logarithms"),
-                (false, true) => ("errors as in the std columns", "check these columns, or use HC3"),
-            };
-            out.push(Finding::new(
-                Severity::Warning,
-                "uneven-scatter",
-                format!(
-                    "{}, {component}: |residual|{} {} with speed (rank correlation {rho:.2}, {:.1} standard errors{}): {assumed} \
-                     are not what the data show; {advice}",
-                    model.law.name,
-                    if is_weighted { " over its std" } else { "" },
-                    if rho > 0.0 { "grows" } else { "falls" },
-                    z.abs(),
-                    if data.sample.is_some() { format!(", in a sample of {}", data.rows) } else { String::new() },
-                ),
-            ));
+    for (j, c) in model.fit.coefficients.iter().enumerate() {
+        let (Some((which, part)), Some(dof)) = (c.most, c.dof) else { continue };
+        let name = &model.specs[j].name;
+        let numbers = format!("{}, {name}: {} degrees of freedom", model.law.name, plain(dof, 2));
+        if model.is_refused(j) {
+            let groups = data.group.as_ref().map(|group| distinct(group)).unwrap_or_default();
+            let group = groups.get(which).cloned().unwrap_or_default();
+            let text = format!(
+                "{numbers} over {} groups, of which {group:?} makes {} of the scatter: no interval is given below two. Record more runs of other groups, \
+                 or estimate an offset of each group (group_offset = \"estimate\")",
+                data.clusters(),
+                percent(part)
+            );
+            out.push(Finding::new(Severity::Warning, "one-group-decides", text));
+        } else if model.scatter == Scatter::Hc3 && dof < FEW_DOF {
+            let row = data.row_name(which % data.rows);
+            let text = format!(
+                "{numbers}: {row} alone makes {} of the scatter; its interval is as wide as that",
+                percent(part)
+            );
+            out.push(Finding::new(Severity::Note, "one-row-decides", text));
+        }
+    }
+    out
+}
+
+/// A load that grows with the acceleration along its own axis: an added mass below zero.
+fn added_mass_sign(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
+    let mut out = Vec::new();
+    let coefficients = model.law_coefficients();
+    for (load, motion) in crate::source::models::PAIRS {
+        let channel = format!("{motion}_dot");
+        let (Some(r), true) =
+            (model.law.responses.iter().position(|l| l == load), model.law.channels().contains(&channel.as_str()))
+        else {
+            continue;
+        };
+        let (Ok(here), Ok(moved)) = (
+            model.law.regressors(data, coefficients),
+            model.law.regressors(&data.shifted(&channel, &vec![1.0; data.rows]), coefficients),
+        ) else {
+            continue;
+        };
+        // Of a law that is linear in the acceleration every row says the same.
+        let step: Vec<f64> = (0..here.ncols()).map(|j| moved[(r * data.rows, j)] - here[(r * data.rows, j)]).collect();
+        let slope: f64 = step.iter().zip(coefficients).map(|(x, c)| x * c).sum();
+        let standard = model.prediction_std(&step);
+        if standard > 0.0 && slope > SIGN_ABOVE * standard {
+            let text = format!(
+                "{}: {load} grows by {} per unit of {channel}, {:.1} standard uncertainties above zero: water resists an acceleration, so this added mass is below \
+                 zero. Check the sign of {load} or of {channel}, or whether the body's own inertia was subtracted the wrong way",
+                model.law.name,
+                significant(slope, 3),
+                slope / standard
+            );
+            out.push(Finding::new(Severity::Warning, "negative-added-mass", text));
         }
     }
     out

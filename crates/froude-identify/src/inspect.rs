@@ -185,10 +185,11 @@ fn columns(table: &Table) -> Vec<ColumnFacts> {
 fn doubts(campaign: &Campaign, source: &Source, reduced: &Observations) -> Vec<Finding> {
     let mut findings = reduced.findings.clone();
     findings.extend(validity::ranges(&reduced.data, campaign).1);
-    findings.extend(lint::observations(&reduced.data, campaign));
     // A table that cannot be fitted as it is says so when it is fitted.
-    if let Ok(laws) = laws(campaign, source, &reduced.data) {
-        findings.extend(columns::unused(&reduced.data, campaign, source, &laws));
+    let laws = laws(campaign, source, &reduced.data);
+    findings.extend(lint::observations(&reduced.data, campaign, laws.as_deref().unwrap_or_default()));
+    if let Ok(laws) = &laws {
+        findings.extend(columns::unused(&reduced.data, campaign, source, laws));
     }
     findings.into_iter().map(|f| f.of_source(&source.name)).collect()
 }

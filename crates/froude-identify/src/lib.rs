@@ -39,6 +39,7 @@ pub mod reduce;
 pub mod regression;
 mod result;
 pub mod runs;
+mod scatter_tests;
 pub mod seam;
 pub mod select;
 pub mod selection;

@@ -12,6 +12,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::plausible::AIR_KG_M3;
 
 use crate::dataset::{Dataset, LOADS};
+use crate::law::ForceLaw;
 use crate::lint::motion::{force_along_motion, largest, moving};
 use crate::lint::repeats::{AHEAD, repeats};
 use crate::lint::volumes::{volume_channel, volumes};
@@ -46,12 +47,12 @@ const FASTEST_IN_AIR_M_S: f64 = 100.0;
 ///
 /// A finding for each doubt; an empty list says that none of these checks found anything.
 #[must_use]
-pub fn observations(data: &Dataset, campaign: &Campaign) -> Vec<Finding> {
+pub fn observations(data: &Dataset, campaign: &Campaign, laws: &[ForceLaw]) -> Vec<Finding> {
     let mut findings = Vec::new();
-    findings.extend(force_along_motion(data));
+    findings.extend(force_along_motion(data, laws));
     findings.extend(saturation(data));
     findings.extend(angle_in_radians(data));
-    findings.extend(distinct_speeds(data));
+    findings.extend(distinct_speeds(data, laws));
     findings.extend(repeats(data));
     findings.extend(of_ends(data, campaign));
     findings
@@ -174,6 +175,12 @@ pub(crate) fn saturated(load: &str, end: &str, extreme: f64, there: usize, n_row
 /// Angles so small that they look like radians in a column of degrees.
 fn angle_in_radians(data: &Dataset) -> Option<Finding> {
     let angle = data.values("angle")?;
+    // One that follows from velocities was typed by nobody.
+    let is_typed =
+        data.headers.is_empty() || data.headers.iter().any(|header| header.split(" [").next() == Some("angle"));
+    if !is_typed {
+        return None;
+    }
     in_radians(distinct_count(angle), largest(angle))
 }
 
@@ -192,11 +199,13 @@ pub(crate) fn in_radians(distinct: usize, largest: f64) -> Option<Finding> {
     })
 }
 
-/// Too few distinct speeds to distinguish a linear from a quadratic term.
-fn distinct_speeds(data: &Dataset) -> Option<Finding> {
-    let speed = data.values("speed")?;
+/// Too few distinct speeds to distinguish a linear from a quadratic term, along every axis that a law reads.
+fn distinct_speeds(data: &Dataset, laws: &[ForceLaw]) -> Option<Finding> {
+    data.values("speed")?;
     // The laws are odd in the speed: ahead and astern are one.
-    few_speeds(distinct_count(&speed.iter().map(|u| u.abs()).collect::<Vec<_>>()))
+    let distinct = |name: &str| Some(distinct_count(&data.values(name)?.iter().map(|u| u.abs()).collect::<Vec<_>>()));
+    let is_motion = |name: &str| name == "speed" || name.starts_with("v_") && !name.ends_with("_dot");
+    few_speeds(laws.iter().flat_map(ForceLaw::channels).filter(|name| is_motion(name)).filter_map(distinct).max()?)
 }
 
 /// Whether so many speeds are too few.

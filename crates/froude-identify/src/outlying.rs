@@ -2,7 +2,7 @@
 //!
 //! The residual of row i over its own standard deviation, that one from the other rows (externally studentised):
 //! t = r √w / (s₍ᵢ₎ √(1 − h)), s₍ᵢ₎² = ((n − p) s² − w r²/(1 − h))/(n − p − 1). It is of Student's t with n − p − 1 degrees of freedom; of n rows one is named
-//! where n P(|T| ≥ |t|) is below 1 %.
+//! where n P(|T| ≥ |t|) is below 0.4 % over the loads of the law.
 //!
 //! Nothing is left out: whether a row is a mistake is in its log, not in its residual. A slip at a large speed makes the scatter look uneven, so a row is
 //! named where the scatter is even without it, and not where it is uneven even so (large errors lie at large speeds then). Not asked where rows follow each
@@ -18,8 +18,8 @@ use crate::dataset::Dataset;
 use crate::diagnosis::{FEWEST_FOR_SCATTER, Unevenness};
 use crate::regression::ModelFit;
 
-/// Chance of naming a row of a load in which all are sound.
-const FALSE_ALARM: f64 = 0.01;
+/// Chance of naming a row where all are sound, over all loads of a law.
+const FALSE_ALARM: f64 = 0.004;
 /// Fewest degrees of freedom of the other rows.
 const FEWEST_DOF: f64 = 4.0;
 /// A fit without error has no scatter to compare with.
@@ -90,7 +90,8 @@ fn outlying(model: &ModelFit, n: usize, r: usize) -> Option<Outlying> {
         (free > ALONE).then_some(Outlying { row, residual, t })
     };
     let most = (0..n).filter_map(of_row).filter(|found| !found.t.is_nan()).max_by(|a, b| a.t.total_cmp(&b.t))?;
-    (t_two_sided(most.t, dof) * (n as f64) < FALSE_ALARM).then_some(most)
+    let loads = model.law.responses.len() as f64;
+    (t_two_sided(most.t, dof) * n as f64 * loads < FALSE_ALARM).then_some(most)
 }
 
 /// How the residuals go with speed in the fit without a row: `r_i + x_i S_k r_k/(1 − h_k)`.

@@ -4,20 +4,26 @@ use froude_fit as fit;
 use froude_fit::budget::{Kind as Evaluation, Part};
 use froude_fit::faer::Mat;
 use froude_records::estimate::{
-    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured, MethodUsed, OWN, Output,
-    SharedError, Signs, Status, TypeA,
+    self as of_record, Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Interval, Law, Measured,
+    MethodUsed, OWN, Output, SharedError, Signs, Status, TypeA,
 };
 use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, unit_text};
 use crate::law::{Kind, REFERENCE_SPEED_M_S, geometry_of};
-use crate::regression::{ModelFit, Scatter};
+use crate::regression::{FormulaOf, ModelFit, Scatter};
 use crate::seam::reduced::{self, Choice, Reduced};
 use crate::selection::Recommendation;
 
-/// The record of one fitted model; `chosen` says why the data recommend it, where they do.
+/// The record of one fitted model; `chosen` says why the data recommend it, where they do, `formula` what it is of the recommended one.
 #[must_use]
-pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen: Option<&Recommendation>) -> Estimate {
+pub fn estimate(
+    model: &ModelFit,
+    of: &Reduced,
+    diagnostics: Diagnostics,
+    chosen: Option<&Recommendation>,
+    formula: Option<&FormulaOf>,
+) -> Estimate {
     let Reduced { data, stated, .. } = of;
     let mut constants = IndexMap::new();
     let mut refers_to = IndexMap::new();
@@ -74,6 +80,16 @@ pub fn estimate(model: &ModelFit, of: &Reduced, diagnostics: Diagnostics, chosen
         diagnostics,
         recommended: chosen.is_some(),
         reason: chosen.map(|r| r.reason.clone()),
+        formula_of: formula.map(|f| formula_of(f, &of.source, data)),
+    }
+}
+
+fn formula_of(formula: &FormulaOf, source: &str, data: &Dataset) -> of_record::FormulaOf {
+    let difference = |(load, x): &(String, f64)| (load.clone(), Measured { value: *x, unit: unit_text(data, load) });
+    of_record::FormulaOf {
+        estimate: format!("{source}/{}", formula.law),
+        largest_difference: formula.largest_difference.iter().map(difference).collect(),
+        widened: formula.widened,
     }
 }
 
@@ -156,14 +172,14 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
         .enumerate()
         .map(|(j, spec)| {
             let fitted = &model.fit.coefficients[j];
+            let is_refused = model.is_refused(j);
             let status = match fitted.status {
                 fit::Status::Free => Status::Free,
-                fit::Status::AtBound => Status::AtBound,
+                fit::Status::AtBound | fit::Status::BoundContradicted => Status::AtBound,
                 fit::Status::Fixed => Status::Fixed,
                 fit::Status::Excluded => Status::Excluded,
                 fit::Status::Prior => Status::Prior,
                 fit::Status::Undetermined => Status::Undetermined,
-                fit::Status::BoundContradicted => Status::BoundContradicted,
             };
             let combined = model.combined[j];
             // The interval is the unconstrained one, widened by the budget, cut by the bounds.
@@ -172,12 +188,14 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
                 (Some(c), Some(u)) => {
                     let [low, high] = c.interval(u);
                     let bound = model.options.bounds.get(j).copied().unwrap_or(fit::Bound::FREE);
-                    let (low, high) = (low.max(bound.lower), high.min(bound.upper));
-                    (low <= high).then_some([low, high])
+                    let within = |x: f64| x.max(bound.lower).min(bound.upper);
+                    Some([within(low), within(high)])
                 }
                 _ => None,
             };
-            let status = if combined.is_some() && interval_95.is_none() { Status::BoundContradicted } else { status };
+            let is_contradicted = model.contradicted_bound(j).is_some();
+            let status = if is_contradicted { Status::BoundContradicted } else { status };
+            let interval_95 = interval_95.filter(|_| !is_contradicted && !is_refused);
             let coefficient = Coefficient {
                 label: labels.get(&spec.name).cloned(),
                 nuisance: j >= model.law.coefficients.len(),

@@ -1,6 +1,9 @@
 //! One force law fitted to one source: problem, fit, combined uncertainty.
 
 mod fitted;
+mod fitted_weights;
+pub(crate) mod formula_of;
+mod generalised;
 mod held;
 mod job;
 mod problem;
@@ -13,13 +16,14 @@ use froude_records::finding::{Finding, Severity};
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
-use crate::regression::held::{MOST_CUTS, contradicted_priors, hold};
+use crate::regression::held::{MOST_CUTS, beside_priors, hold};
 use crate::regression::job::Job;
 use crate::regression::problem::step;
 use crate::regression::uncertain::Uncertainty;
 use crate::{dissipation, eiv};
 
 pub use crate::regression::fitted::{Condensed, ModelFit, Scatter, Settings, Weight};
+pub use crate::regression::formula_of::FormulaOf;
 
 /// Fits `law` to `data`.
 ///
@@ -35,10 +39,18 @@ pub use crate::regression::fitted::{Condensed, ModelFit, Scatter, Settings, Weig
 /// Golub & Van Loan, Matrix Computations, ch. 5 (factorisation); JCGM 100:2008 (GUM), 5.2 and G.4.1 (budget); MacKinnon & White (1985) (HC3);
 /// Bell & McCaffrey (2002) (CR3).
 pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result<ModelFit, IdentifyError> {
-    let job = Job::new(law, data, settings)?;
+    let mut job = Job::new(law, data, settings)?;
     let mut findings = Vec::new();
     let mut options = options(law, &job.specs, settings);
-    let (problem, mut fitted) = job.solve(&options, &mut findings)?;
+    let (mut problem, mut fitted) = job.solve(&options, &mut findings)?;
+    if settings.identify.fitted_weights {
+        for _ in 0..fitted_weights::ROUNDS {
+            let weights = fitted_weights::weights(&problem, &fitted);
+            let Some(weights) = weights.filter(|_| settings.condensed.is_none() && !law.in_logarithms()) else { break };
+            job.weight = Some(weights);
+            (problem, fitted) = job.solve(&options, &mut findings)?;
+        }
+    }
     if settings.identify.dissipative && law.factor_symbols().is_some() {
         let rows = dissipation::constraints(law, data, job.specs.len())?;
         if !hold(&problem, &mut options, &mut fitted, &rows).map_err(|e| job.refusal(e))? {
@@ -49,6 +61,11 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     }
     let in_variables = settings.identify.errors_in_variables
         && errors_in_variables(law, data, settings, &problem, &options, &mut fitted, &mut findings)?;
+    let whitened = if in_variables || !options.inequalities.is_empty() {
+        None
+    } else {
+        generalised::generalised(law, data, settings, (&problem, &options), &mut fitted)?
+    };
     if fitted.report.end != fit::End::Converged {
         let end = fitted.report.end;
         findings
@@ -58,7 +75,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     if law.is_nonlinear() {
         relative_residual(law, data, &coefficients, &job.newtons, &problem, &mut fitted)?;
     }
-    findings.extend(contradicted_priors(law, data, settings, &problem, &options, &job.specs)?);
+    findings.extend(beside_priors(law, data, settings, &problem, &options, &job.specs)?);
     let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), in_variables)?;
     let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
     let numbers = coefficients.iter().copied().chain(of_fit).chain(uncertainty.variances());
@@ -73,6 +90,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         problem,
         options,
         fit: fitted,
+        whitened,
         coefficients,
         combined: uncertainty.combined,
         covariance: uncertainty.covariance,

@@ -6,12 +6,16 @@
 
 pub(crate) mod reduced;
 
+use std::fmt::Write as _;
+
 use froude_records::campaign::Identify;
 use froude_records::finding::{Finding, Severity};
+use froude_records::number::significant;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
-use crate::regression::{ModelFit, Settings, regress};
+use crate::regression::formula_of::as_formula;
+use crate::regression::{FormulaOf, ModelFit, Settings, regress};
 use crate::result::{NotFitted, SourceResult};
 use crate::selection::{Recommendation, Score, leave_one_out, nested_tests, range_block, recommend};
 use crate::{bootstrap, diagnosis, record, uncertainty};
@@ -71,8 +75,11 @@ pub(crate) fn conclude(
         .collect();
     let recommendation = match &reduced.choice {
         Choice::Selection => recommend(&models, data, &tests),
-        Choice::Method(words) => Some(Recommendation { index: 0, reason: words.clone() }),
+        Choice::Method(words) => Some(Recommendation { index: 0, formula: None, reason: words.clone() }),
     };
+    let mut recommendation = recommendation;
+    let formula =
+        recommendation.as_mut().map(|r| with_formula(&mut models, r, data, reduced.looks)).transpose()?.flatten();
     let by_data = recommendation.as_ref().filter(|_| reduced.choice == Choice::Selection);
     let mut estimates = Vec::new();
     for (i, model) in models.iter().enumerate() {
@@ -89,7 +96,8 @@ pub(crate) fn conclude(
                 Err(finding) => findings.push(finding),
             }
         }
-        estimates.push(record::estimate(model, &reduced, diagnostics, chosen));
+        let is_formula = by_data.is_some_and(|r| r.formula == Some(i));
+        estimates.push(record::estimate(model, &reduced, diagnostics, chosen, formula.as_ref().filter(|_| is_formula)));
     }
     Ok(SourceResult {
         findings: findings.into_iter().map(|f| f.of_source(&reduced.source)).collect(),
@@ -107,6 +115,25 @@ pub(crate) fn conclude(
         validity: reduced.validity,
         files: reduced.files,
     })
+}
+
+/// Widens the smaller law that the data support to a formula of the recommended one, and says how far it is from that.
+fn with_formula(
+    models: &mut [ModelFit],
+    recommendation: &mut Recommendation,
+    data: &Dataset,
+    looks: usize,
+) -> Result<Option<FormulaOf>, IdentifyError> {
+    let Some(formula) = recommendation.formula else { return Ok(None) };
+    let full = models[recommendation.index].clone();
+    let found = as_formula(&mut models[formula], &full, data, looks)?;
+    let differences: Vec<String> = found
+        .largest_difference
+        .iter()
+        .map(|(load, x)| format!("{} {} in {load}", significant(*x, 2), unit_text(data, load)))
+        .collect();
+    let _ = write!(recommendation.reason, "; it differs from {} by at most {}", found.law, differences.join(", "));
+    Ok(Some(found))
 }
 
 /// Why an error came about, without the source and the model that it names: where it is shown, they stand beside it.

@@ -1,9 +1,15 @@
 //! Which force model the data support, and why.
 //!
-//! Candidates are the models whose coefficients are all determined. The one with
-//! the fewest coefficients is taken among those whose AICc lies within 2 of the
-//! smallest: smaller differences are no evidence (Burnham and Anderson 2002,
-//! § 2.6), unless an F test rejects it inside the best one at 1 % in some load.
+//! Candidates are the models whose coefficients are all determined. Recommended is the
+//! largest of them that the data do not contradict (AICc at most 10 above the smallest:
+//! beyond that a model has essentially no support, Burnham and Anderson 2002, § 2.6).
+//! Nothing chose it but the list, so that its intervals hold whichever of the laws
+//! within it is true; those of a law that the scatter has chosen do not.
+//!
+//! The simplest law stands beside it as a formula: the one with the fewest
+//! coefficients among those whose AICc lies within 2 of the smallest (smaller
+//! differences are no evidence), unless an F test rejects it inside the best one
+//! at 1 % in some load.
 //!
 //! Models are compared load by load, over every load that some candidate explains.
 //! A model that says nothing of a load says that it is zero, and has the AICc of
@@ -22,6 +28,8 @@ use crate::regression::ModelFit;
 
 /// Level below which an F test rejects the simpler model.
 const REJECTED_BELOW: f64 = 0.01;
+/// AICc differences beyond this leave a model essentially no support.
+const NO_SUPPORT_ABOVE: f64 = 10.0;
 /// AICc differences below this are no evidence.
 pub(crate) const NO_EVIDENCE_BELOW: f64 = 2.0;
 
@@ -52,10 +60,20 @@ pub struct BlockScore {
 /// What the selection says.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recommendation {
-    /// Index of the recommended model.
+    /// Index of the recommended model, whose numbers and intervals count.
     pub index: usize,
+    /// Index of a smaller model that the data support as well: a formula of the recommended one.
+    pub formula: Option<usize>,
     /// Why, with numbers.
     pub reason: String,
+}
+
+impl Recommendation {
+    /// The simplest model that the data support.
+    #[must_use]
+    pub fn simplest(&self) -> usize {
+        self.formula.unwrap_or(self.index)
+    }
 }
 
 /// AICc of a fit in the units of its loads; a fit in logarithms is carried over by its Jacobian.
@@ -306,10 +324,10 @@ fn p_value(p: f64) -> String {
     if p < 1e-9 { "p < 1e-9".to_owned() } else { format!("p = {p:.1e}") }
 }
 
-/// The model that the data support.
+/// The models that the data support.
 ///
-/// Of the determined models whose summed AICc lies within 2 of the smallest, the one with the fewest coefficients, unless an F test at 1 % rejects it inside the leading model.
-/// `None` without a determined model.
+/// Recommended is, of the determined models whose summed AICc lies within 10 of the smallest, the one with the most loads and coefficients; of several the linear one, then the
+/// first. Its formula is, of those within 2, the one with the fewest coefficients, unless an F test at 1 % rejects it inside the leading model. `None` without a determined model.
 ///
 /// # Source
 ///
@@ -390,7 +408,25 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
         reason += &format!("; {} not in the running, the data do not determine all coefficients", out.join(", "));
     }
     reason += &load_by_load(models, data, &loads);
-    Some(Recommendation { index: chosen, reason })
+    let rank = |i: &usize| {
+        let m = &models[*i];
+        (std::cmp::Reverse(m.law.responses.len()), std::cmp::Reverse(size(m)), m.law.is_nonlinear())
+    };
+    let full = (0..models.len())
+        .filter(|&i| determined(&models[i]))
+        .filter(|&i| i == chosen || behind(i).is_none_or(|d| d.is_nan() || d <= NO_SUPPORT_ABOVE))
+        .min_by_key(rank)
+        .unwrap_or(chosen);
+    // Of equals the one that the data prefer needs no other.
+    let is_larger = size(&models[full]) > size(&models[chosen]) || rank(&full) < rank(&chosen);
+    if full == chosen || !is_larger {
+        return Some(Recommendation { index: chosen, formula: None, reason });
+    }
+    let reason = format!(
+        "{} is the largest law that these data determine and do not contradict: its intervals hold whichever law within it is true. Formula: {reason}",
+        models[full].law.name
+    );
+    Some(Recommendation { index: full, formula: Some(chosen), reason })
 }
 
 /// Every load that one of the models explains, in the order of the axes; user-written ones after them.

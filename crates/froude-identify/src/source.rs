@@ -12,7 +12,7 @@ use crate::law::ForceLaw;
 use crate::reduce::{Observations, reduce};
 use crate::regression::Scatter;
 use crate::seam::{Choice, Reduced, fit};
-use crate::source::handed::{no_budget, of_table, scatter};
+use crate::source::handed::{in_blocks, no_budget, of_table, scatter};
 use crate::{columns, diagnosis, lint, validity};
 
 pub use crate::result::{NotFitted, ReadFile, SourceResult};
@@ -47,11 +47,12 @@ pub fn identify_source(
 pub fn identify_observations(
     campaign: &Campaign,
     source: &Source,
-    observations: Observations,
+    mut observations: Observations,
     method: &str,
     progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
     let mut findings = Vec::new();
+    in_blocks(campaign, &mut observations.data);
     let laws = laws(campaign, source, &observations.data)?;
     let scatter = scatter(campaign, source, &observations.data, &mut findings)?;
     let observations = Observations { findings: [observations.findings, findings].concat(), ..observations };
@@ -110,8 +111,8 @@ fn reduced(
     let Observations { data, n_read, mut findings, shared_errors, files } = observations;
     let (validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
-    findings.extend(lint::observations(&data, campaign));
     let Asked { method, laws, scatter, choice, has_budget } = asked;
+    findings.extend(lint::observations(&data, campaign, &laws));
     findings.extend(no_budget(source, !shared_errors.is_empty()).filter(|_| !has_budget));
     check_budget(source, &data)?;
     findings.extend(columns::unused(&data, campaign, source, &laws));

@@ -266,7 +266,7 @@ fn as_logarithms(fit: Linearised<'_>, errors: &mut [f64], loads: &[f64]) {
 }
 
 /// Group of every row that shares the error.
-fn groups(data: &Dataset, shared: Shared) -> Vec<usize> {
+pub(crate) fn groups(data: &Dataset, shared: Shared) -> Vec<usize> {
     match shared {
         Shared::Sample => (0..data.rows).collect(),
         Shared::Run => {

@@ -294,11 +294,11 @@ fn scatter_that_the_std_columns_explain_is_not_uneven() {
         let result = identify(folder.path(), &table, QUADRATIC);
         finding(&result, "uneven-scatter").map(str::to_owned)
     };
-    assert!(told(table(&growing, None)).unwrap().contains("|residual| grows with speed"));
+    assert!(told(table(&growing, None)).unwrap().contains("errors grow with the fitted |f_x|"));
     assert_eq!(told(table(&growing, Some(&growing))), None, "over its std the scatter is even");
     assert_eq!(told(table(&even, None)), None);
     let wrong = told(table(&even, Some(&growing))).unwrap();
-    assert!(wrong.contains("|residual| over its std falls with speed"), "{wrong}");
+    assert!(wrong.contains("errors over their weights fall with the fitted |f_x|"), "{wrong}");
 }
 
 /// A slip is named with its run at any speed, also where it makes the scatter look uneven; sound campaigns are accused in one of a hundred.

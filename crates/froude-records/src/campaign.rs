@@ -384,8 +384,12 @@ pub struct Identify {
     pub exclude: Vec<String>,
     /// Published values used as priors.
     pub prior: Vec<PriorSpec>,
-    /// `classical`, `HC3` or `cluster`; `None` to choose by the data.
+    /// `classical`, `HC3`, `cluster` or `blocks`; `None` to choose by the data.
     pub covariance: Option<String>,
+    /// Whether rows are weighted by a variance that is fitted to the residuals (`weights = "fitted"`).
+    pub fitted_weights: bool,
+    /// Whether each group has an offset of its own in each load (`group_offset = "estimate"`).
+    pub group_offset: bool,
     /// Declared blocks: train inside, predict outside.
     pub cross_validation: Vec<RangeBlock>,
     /// What to do about the angle between sensor and body.

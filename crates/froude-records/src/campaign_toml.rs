@@ -35,7 +35,7 @@ use crate::units::Dimension;
 use crate::weight_tow::{weight_plan, weight_tow};
 
 /// Kinds of covariance that can be asked for.
-const COVARIANCES: [&str; 3] = ["classical", "HC3", "cluster"];
+const COVARIANCES: [&str; 4] = ["classical", "HC3", "cluster", "blocks"];
 
 /// Where the numbers of a source can lie.
 const INPUTS: [&str; 5] = ["table", "record", "runs", "cases", "mesh"];
@@ -459,6 +459,8 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         exclude: s.texts("exclude")?,
         prior: s.sections("prior")?.iter().map(prior).collect::<Result<_, _>>()?,
         covariance: one_of(s, "covariance", &COVARIANCES, &COVARIANCES)?.map(str::to_owned),
+        fitted_weights: one_of(s, "weights", &["std", "fitted"], &[false, true])?.unwrap_or_default(),
+        group_offset: one_of(s, "group_offset", &["ignore", "estimate"], &[false, true])?.unwrap_or_default(),
         cross_validation: s.sections("cross_validation")?.iter().map(range_block).collect::<Result<_, _>>()?,
         angle_offset,
         huber,

@@ -492,6 +492,21 @@ pub struct Estimate {
     /// Why it is recommended, or why it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
+    /// The larger law that it is a formula of: nearly the same loads by fewer coefficients, no narrower at any observation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula_of: Option<FormulaOf>,
+}
+
+/// What a law chosen by the data is of the larger one, whose intervals hold.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FormulaOf {
+    /// Id of the estimate of the larger law.
+    pub estimate: String,
+    /// Largest difference of the two laws over the observations, by load.
+    pub largest_difference: IndexMap<String, Measured>,
+    /// Factor by which its standard uncertainties are widened, so that its band holds that of the larger law \[-\].
+    pub widened: f64,
 }
 
 impl Estimate {

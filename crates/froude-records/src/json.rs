@@ -389,7 +389,14 @@ fn numbers(estimate: &Estimate, see: &mut dyn FnMut(&dyn Fn() -> String, f64)) {
         diagnostics,
         recommended: _,
         reason: _,
+        formula_of,
     } = estimate;
+    if let Some(formula) = formula_of {
+        for (name, m) in &formula.largest_difference {
+            see(&|| format!("formula_of.largest_difference.{name}"), m.value);
+        }
+        see(&|| "formula_of.widened".to_owned(), formula.widened);
+    }
     for (section, measured) in [("law.constants", constants), ("refers_to", refers_to), ("sigma", sigma)] {
         for (name, m) in measured {
             see(&|| format!("{section}.{name}"), m.value);

@@ -107,6 +107,7 @@ fn sample() -> EstimateFile {
             ..Diagnostics::default()
         },
         recommended: true,
+        formula_of: None,
         reason: Some("smallest AICc".to_owned()),
     };
     EstimateFile {

@@ -160,6 +160,7 @@ fn estimate(source: &str, model: &str, coefficients: &[(&str, Coefficient)]) -> 
         law: froude_records::estimate::Law { name: model.to_owned(), ..Default::default() },
         coefficients: coefficients.iter().map(|(n, c)| ((*n).to_owned(), c.clone())).collect(),
         recommended: true,
+        formula_of: None,
         ..Estimate::default()
     }
 }

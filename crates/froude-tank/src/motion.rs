@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use froude_records::run::marks::Mark;
 use froude_records::run::{Extremes, Stay};
+use froude_records::text::counted;
 use froude_signal::SignalError;
 use froude_signal::harmonic::Harmonics;
 
@@ -64,8 +65,9 @@ pub enum MotionError {
 
     /// Too few whole cycles.
     #[error(
-        "run {run:?} has {found} whole cycles of {period_s:.2} s after {skipped} of start-up; {fewest} are needed: record longer, or lower \
-         cycles.fewest and read the intervals with care"
+        "run {run:?} has {} of {period_s:.2} s after {skipped} of start-up; {fewest} are needed: record longer, or lower \
+         cycles.fewest and read the intervals with care",
+        counted(*found, "whole cycle", "whole cycles")
     )]
     TooFewCycles {
         /// The run.

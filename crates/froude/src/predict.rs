@@ -9,7 +9,7 @@ use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::Estimate;
 use froude_records::finding::Finding;
 use froude_records::json::read_estimates;
-use froude_records::number::{dof, p_value, percent, significant};
+use froude_records::number::{dof, p_equation, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
 use froude_records::table::{Column, ColumnData, Table};
 use froude_records::text::{counted, in_a_file_name};
@@ -303,7 +303,7 @@ fn joint(found: &Joint) -> String {
     let verdict = if *p < 0.01 {
         "the record does not hold here: its errors and its scatter together do not explain what was measured"
     } else {
-        "no more than its errors and its scatter together explain"
+        "no more than its errors and its scatter together explain (below 1 % it would be more)"
     };
     let with = if of_scatter.is_finite() {
         format!("F({n}, {}), as the scatter was estimated", dof(*of_scatter))
@@ -311,9 +311,9 @@ fn joint(found: &Joint) -> String {
         format!("χ²({n})")
     };
     format!(
-        "χ² = {} over {}, with the covariance between rows; p = {} by {with}: {verdict}",
+        "χ² = {} over {}, with the covariance between rows; {} by {with}: {verdict}",
         significant(*chi_squared, 4),
         counted(*n, "load in a row", "loads in rows"),
-        p_value(*p)
+        p_equation(*p)
     )
 }

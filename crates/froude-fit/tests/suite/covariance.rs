@@ -56,11 +56,12 @@ fn hc3_is_the_sum_of_moves_when_each_row_is_left_out() {
             assert_close(found.covariance[(i, j)], sum[i][j], 1e-11);
         }
     }
-    assert_eq!(found.coefficients[0].dof, Some(n as f64 - 3.0));
+    // Bell and McCaffrey's: fewer than those of equal errors, as some rows weigh more than others.
+    assert!(found.coefficients.iter().all(|c| c.dof.is_some_and(|d| d > 2.0 && d < n as f64 - 3.0)));
 }
 
 #[test]
-fn cr3_is_the_cluster_jackknife_with_t_of_clusters_less_one() {
+fn cr3_is_the_cluster_jackknife_with_degrees_of_freedom_of_its_own() {
     let problem = clustered();
     let all = values(&problem);
     let cluster = problem.cluster.clone().unwrap();
@@ -80,8 +81,9 @@ fn cr3_is_the_cluster_jackknife_with_t_of_clusters_less_one() {
             assert_close(found.covariance[(i, j)], sum[i][j], 1e-11);
         }
         let c = &found.coefficients[i];
-        assert_eq!(c.dof, Some(6.0));
-        let half = coverage_factor(0.95, 6.0) * sum[i][i].sqrt();
+        let dof = c.dof.unwrap();
+        assert!(dof > 1.0 && dof < 6.0, "{dof}");
+        let half = coverage_factor(0.95, dof) * sum[i][i].sqrt();
         assert_close(c.interval.unwrap()[1], c.value.unwrap() + half, 1e-11);
     }
 }
@@ -108,14 +110,14 @@ fn clusters_of_one_row_make_cr3_of_hc3() {
 }
 
 #[test]
-fn four_clusters_are_refused_in_words() {
+fn two_clusters_are_refused_in_words() {
     let problem = clustered();
     let cluster = problem.cluster.clone().unwrap();
-    let rows: Vec<usize> = (0..cluster.len()).filter(|&i| cluster[i] < 14).collect();
+    let rows: Vec<usize> = (0..cluster.len()).filter(|&i| cluster[i] < 12).collect();
     let error = fit(&problem.rows(&rows), &with(CovarianceKind::Cr3)).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "component \"y\" has 4 clusters; cluster-robust covariance (CR3) is refused below 5, \
+        "component \"y\" has 2 clusters; cluster-robust covariance (CR3) is refused below 3, \
          where its interval is unreliable"
     );
     let none = Problem { cluster: None, ..problem };
@@ -163,7 +165,7 @@ fn a_factored_design_gives_what_the_fit_gives() {
         for (j, c) in direct.coefficients.iter().enumerate() {
             assert_close(solution.value[j], c.value.unwrap(), 1e-12);
             assert_close(solution.standard[j], c.standard.unwrap(), 1e-11);
-            assert_eq!(Some(factored.dof()[j]), c.dof);
+            assert_close(factored.dof()[j], c.dof.unwrap(), 1e-9);
             let cut = froude_fit::Bound::NON_NEGATIVE;
             let interval = Factored::interval(&solution, j, k[j], froude_fit::Bound::FREE).unwrap();
             assert_close(interval[0], c.interval.unwrap()[0], 1e-11);

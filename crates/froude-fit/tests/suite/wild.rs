@@ -36,7 +36,7 @@ fn the_result_is_the_same_on_any_number_of_threads() {
         assert_eq!(on_threads(n, run), one);
     }
     let other = wild_cluster(&problem, &Options::default(), 1, &WildOptions { seed: 43, ..wild });
-    assert_ne!(other.unwrap().interval, one.interval);
+    assert_ne!(other.unwrap().p, one.p);
 }
 
 #[test]
@@ -49,11 +49,6 @@ fn standard_and_estimate_are_those_of_cr3() {
     assert_close(wild.estimate, c.value.unwrap(), 1e-13);
     assert_close(wild.standard, c.standard.unwrap(), 1e-12);
     assert_eq!((wild.weights, wild.n_clusters), (WildWeights::Webb, 10));
-    // Ten clusters: in the neighbourhood of the t-interval with nine degrees.
-    let [low, high] = c.interval.unwrap();
-    let width = (wild.interval[1] - wild.interval[0]) / (high - low);
-    assert!((0.6..1.6).contains(&width), "{width}");
-    assert!(wild.interval[0] < wild.estimate && wild.estimate < wild.interval[1]);
 }
 
 /// The sums per cluster against refits of explicitly resampled responses:

@@ -79,7 +79,8 @@ fn both(campaign: &Campaign) -> [SourceResult; 2] {
 
 /// What is not judged in chunks, or from the sample.
 const LEFT_OUT: [&str; 3] = ["lack_of_fit_p", "cross_validation_rmse", "cross_validation_note"];
-const OF_ROWS: [&str; 5] = ["read-in-chunks", "uneven-scatter", "lack-of-fit", "no-repeats", "not-fitted"];
+const OF_ROWS: [&str; 6] =
+    ["setup-offset", "read-in-chunks", "uneven-scatter", "lack-of-fit", "no-repeats", "not-fitted"];
 
 fn agree(at: &str, a: &Value, b: &Value) {
     match (a, b) {

@@ -6,6 +6,7 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::table::{ColumnData, Table};
 
 use crate::dataset::Dataset;
+use crate::law::ForceLaw;
 
 /// An angle that differs from that of the velocity by more says something else, 1°.
 pub(crate) const ANGLE_CONTRADICTS_RAD: f64 = std::f64::consts::PI / 180.0;
@@ -91,8 +92,33 @@ pub(crate) fn moving(speed: &[f64], part: f64) -> Vec<usize> {
     (0..speed.len()).filter(|&i| speed[i].abs() > part * fastest).collect()
 }
 
-/// Forces with the velocity along the same axis.
-pub(crate) const ALONG: [(&str, &str); 3] = [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z")];
+/// Loads with the velocity along or about the same axis.
+pub(crate) const ALONG: [(&str, &str); 6] =
+    [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z"), ("m_x", "w_x"), ("m_y", "w_y"), ("m_z", "w_z")];
+
+/// Channels of the motion itself and of what it moves through: a load that goes with these alone is a resistance.
+const OF_RESISTANCE: [&str; 14] = [
+    "speed",
+    "angle",
+    "v_x",
+    "v_y",
+    "v_z",
+    "w_x",
+    "w_y",
+    "w_z",
+    "density",
+    "kinematic_viscosity",
+    "temperature",
+    "n_links",
+    "depth",
+    "volume",
+];
+
+/// Whether some law explains a load by more than motion: a propeller, an acceleration, a rudder may point along it.
+pub(crate) fn has_other_cause(load: &str, laws: &[ForceLaw]) -> bool {
+    let of_load = laws.iter().filter(|law| law.responses.iter().any(|r| r == load));
+    of_load.flat_map(ForceLaw::channels).any(|channel| !OF_RESISTANCE.contains(&channel))
+}
 
 /// Rows in which a load points along the motion.
 #[derive(Debug, Clone, Default)]
@@ -127,8 +153,11 @@ pub(crate) fn largest(values: &[f64]) -> f64 {
 }
 
 /// Loads along the motion: a drag that pushes.
-pub(crate) fn force_along_motion(data: &Dataset) -> Vec<Finding> {
+pub(crate) fn force_along_motion(data: &Dataset, laws: &[ForceLaw]) -> Vec<Finding> {
     let counted = |(load, motion): (&'static str, &'static str)| {
+        if has_other_cause(load, laws) {
+            return None;
+        }
         let (f, v) = (data.values(load)?, data.values(motion)?);
         // What slows down is pushed by the water that goes with it.
         if data.values(&format!("{motion}_dot")).is_some_and(|a| a.iter().any(|a| *a != 0.0)) {

@@ -1,12 +1,18 @@
 //! Rows that repeat a setting, and rows that are copies.
 
 use froude_records::finding::{Finding, Severity};
+use froude_records::number::percent;
 use indexmap::IndexMap;
 
 use crate::dataset::{Dataset, LOADS, distinct};
 
 /// How well rigs repeat a setting, as part of the largest: 2 mm/s in 1 m/s moves a drag by 0.4 % there.
 pub(crate) const REPEATS_WITHIN: f64 = 2e-3;
+
+/// Rows whose repeats read the same with a larger chance may repeat without being copies.
+const BY_CHANCE: f64 = 0.01;
+/// Differences below this part of a range are rounding.
+const ROUNDED: f64 = 1e-9;
 
 /// Share of the speed along x from which a body shows its frontal area: within 8°.
 pub(crate) const AHEAD: f64 = 0.99;
@@ -35,6 +41,15 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
     if copies.is_empty() {
         return (keep, None);
     }
+    if let Some(chance) = coarse(data) {
+        let text = format!(
+            "{} of {} rows repeat an earlier one in every column, and are kept: by the steps of the readings two real repeats read the same with a chance of {}",
+            copies.len(),
+            data.rows,
+            percent(chance)
+        );
+        return ((0..data.rows).collect(), Some(Finding::new(Severity::Note, "identical-rows", text)));
+    }
     let line = |i: usize| data.line.get(i).copied().unwrap_or(i + 1);
     let shown: Vec<String> = copies.iter().take(4).map(|&(a, b)| format!("{} = {}", line(b), line(a))).collect();
     let more = if copies.len() > 4 { ", …" } else { "" };
@@ -54,6 +69,34 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
         ),
     );
     (keep, Some(finding))
+}
+
+/// Chance that two true repeats read the same in every load, where it is no small one: a sensor of coarse steps.
+///
+/// With the step Δ of the readings and the scatter σ of repeats that differ, two repeats read the same with a chance of Δ/(2√π σ).
+fn coarse(data: &Dataset) -> Option<f64> {
+    let settings = repeat_groups(data);
+    let chance = |load: &&str| {
+        let values = data.values(load)?;
+        let (mut squares, mut count) = (0.0, 0);
+        for i in 0..data.rows {
+            for j in i + 1..data.rows {
+                if settings[i] == settings[j] && values[i] != values[j] {
+                    squares += 0.5 * (values[i] - values[j]).powi(2);
+                    count += 1;
+                }
+            }
+        }
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let range = sorted.last()? - sorted.first()?;
+        let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|d| *d > ROUNDED * range);
+        let step = steps.fold(f64::INFINITY, f64::min);
+        let sigma = (squares / f64::from(count)).sqrt();
+        (count > 0).then(|| (step / (2.0 * std::f64::consts::PI.sqrt() * sigma)).min(1.0))
+    };
+    let all: Option<f64> = LOADS.iter().filter(|load| data.values(load).is_some()).map(chance).product();
+    all.filter(|p| *p > BY_CHANCE)
 }
 
 /// How many settings were repeated, which is what pure error comes from.

@@ -1,6 +1,5 @@
 //! Lines of the recommended law with their 95 % bands.
 
-use froude_fit::faer::Mat;
 use froude_records::page::{Against, Curve};
 use froude_records::units::Dimension;
 
@@ -9,7 +8,6 @@ use super::settings::{frequent, settings_of_angle, settings_of_speed};
 use crate::IdentifyError;
 use crate::dataset::{Dataset, unit_text};
 use crate::regression::ModelFit;
-use crate::uncertainty::coverage_factor;
 
 /// Places along a curve.
 const CURVE_POINTS: usize = 60;
@@ -104,26 +102,9 @@ fn bands(
     let n = places.rows;
     let mut out = Vec::new();
     for (r, response) in model.law.responses.iter().enumerate() {
-        // Of the scatter: the fewest among the coefficients of this load, those of the clusters, for example.
-        let touches = |j: usize| (0..n).any(|i| slopes[(r * n + i, j)] != 0.0);
-        let scatter_dof =
-            (0..slopes.ncols()).filter(|&j| touches(j)).map(|j| model.budget[0].dof[j]).fold(f64::INFINITY, f64::min);
-        let arms: Vec<[f64; 2]> = (0..n)
-            .map(|i| {
-                let row: Vec<f64> = (0..slopes.ncols()).map(|j| slopes[(r * n + i, j)]).collect();
-                // A law of one coefficient has the interval of that, with looks and errors to one side.
-                if let ([slope], Some(Some(combined))) = (row.as_slice(), model.combined.first()) {
-                    let [below, above] = combined.arms.map(|arm| arm * slope.abs());
-                    return if *slope < 0.0 { [above, below] } else { [below, above] };
-                }
-                let standard = model.prediction_std(&row);
-                // Welch–Satterthwaite (GUM G.4.1) with a budget of infinitely many degrees of freedom.
-                let scatter = spread(&model.budget[0].covariance, &row);
-                let share = if scatter > 0.0 { (standard / scatter).powi(4) } else { f64::INFINITY };
-                let half = coverage_factor(scatter_dof * share) * standard;
-                [half, half]
-            })
-            .collect();
+        let scatter_dof = model.scatter_dof(&slopes, r * n..(r + 1) * n);
+        let row = |i: usize| (0..slopes.ncols()).map(|j| slopes[(r * n + i, j)]).collect::<Vec<f64>>();
+        let arms: Vec<[f64; 2]> = (0..n).map(|i| model.arms(&row(i), scatter_dof)).collect();
         let y = &y[r * n..(r + 1) * n];
         out.push(Curve {
             configuration: configuration.to_owned(),
@@ -138,14 +119,4 @@ fn bands(
         });
     }
     Ok(out)
-}
-
-/// √(xᵀCx) of the coefficients that x belongs to.
-fn spread(covariance: &Mat<f64>, x: &[f64]) -> f64 {
-    let variance: f64 = x
-        .iter()
-        .enumerate()
-        .map(|(a, p)| x.iter().enumerate().map(|(b, q)| p * q * covariance[(a, b)]).sum::<f64>())
-        .sum();
-    variance.max(0.0).sqrt()
 }

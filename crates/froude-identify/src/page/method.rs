@@ -51,8 +51,10 @@ pub fn sentences(campaign: &Campaign, answers: &[Answer], records: &[Estimate]) 
     }
     if sources.iter().any(|s| s.models.len() > 1) {
         out.push(
-            "Of the force models whose AICc lies within 2 of the smallest (smaller differences are no evidence) the one with the fewest coefficients is \
-             recommended, unless an F test against the best model rejects it at the 1 % level for some load."
+            "Recommended is the largest force model that the data determine and do not contradict (AICc at most 10 above the smallest): nothing but the list chose it, so that its \
+             intervals hold whichever of the models within it is true. Of the models whose AICc lies within 2 of the smallest (smaller differences are no evidence) the one with \
+             the fewest coefficients stands beside it as a formula, unless an F test against the best model rejects it at the 1 % level for some load; it is widened to hold the \
+             band of the recommended one."
                 .to_owned(),
         );
     }

@@ -74,7 +74,8 @@ fn aicc_is_compared_load_by_load() {
     assert_eq!(names, ["quadratic", "linear_quadratic", "power_law_x", "power_law_y"]);
     let aicc = |i: usize| source.estimates[i].diagnostics.aicc.unwrap();
     assert!(aicc(2) < aicc(0).min(aicc(1)), "the trap is not there: {} {} {}", aicc(0), aicc(1), aicc(2));
-    assert_eq!(source.recommendation.as_ref().unwrap().index, 0, "the law of both loads, which made them");
+    let chosen = source.recommendation.as_ref().unwrap();
+    assert_eq!((chosen.index, chosen.formula), (1, Some(0)), "the laws of both loads, the smaller of which made them");
     let reason = &source.recommendation.as_ref().unwrap().reason;
     assert!(reason.contains("for single responses the smallest AICc is that of: "), "{reason}");
     let rows = rows(&source);

@@ -2,14 +2,20 @@
 
 use faer::Mat;
 use froude_fit as fit;
-use froude_fit::budget::{Combined, Part};
+use froude_fit::budget::{Combined, Part, rounded_dof};
+use froude_fit::distribution::t_two_sided;
 use froude_fit::replicates::Replicates;
 use froude_records::campaign::{BudgetEntry, Identify, SourceKind};
 use froude_records::finding::Finding;
 
 use crate::dataset::Dataset;
 use crate::law::{CoefficientSpec, ForceLaw};
-use crate::uncertainty::SharedError;
+use crate::uncertainty::{SharedError, coverage_factor};
+
+/// Fewest degrees of freedom of an interval by clusters; two equal ones less one would have one.
+const FEWEST_DOF: f64 = 2.0 - 1e-6;
+/// Chance of calling a bound contradicted that holds, over all bounds of a law.
+const BOUND_ALARM: f64 = 0.01;
 
 /// What the observations weigh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,6 +123,8 @@ pub struct ModelFit {
     pub options: fit::Options,
     /// The fit.
     pub fit: fit::Fit,
+    /// The problem with rows whitened by declared errors that runs or setups share, where it was fitted so.
+    pub whitened: Option<fit::Problem>,
     /// Coefficient values, zero where undetermined, in the order of `specs`.
     pub coefficients: Vec<f64>,
     /// Combined uncertainty per coefficient, where it has one.
@@ -142,6 +150,26 @@ impl ModelFit {
         &self.coefficients[..self.law.coefficients.len()]
     }
 
+    /// Whether the interval of a coefficient is refused: of clusters that give it less than two degrees of freedom, where one of them decides.
+    #[must_use]
+    pub fn is_refused(&self, j: usize) -> bool {
+        self.scatter == Scatter::Cluster && self.fit.coefficients[j].dof.is_some_and(|dof| dof < FEWEST_DOF)
+    }
+
+    /// Which bound the data put a coefficient outside of; at most 1 % of laws whose coefficients lie within all of theirs have one.
+    #[must_use]
+    pub fn contradicted_bound(&self, j: usize) -> Option<f64> {
+        let bounds = &self.options.bounds;
+        let count =
+            bounds.iter().map(|b| usize::from(b.lower.is_finite()) + usize::from(b.upper.is_finite())).sum::<usize>();
+        let (bound, combined) = (bounds.get(j)?, self.combined[j]?);
+        let free = self.fit.coefficients[j].unconstrained?;
+        let beyond = if free < bound.lower { bound.lower } else { bound.upper };
+        let is_outside = free < bound.lower || free > bound.upper;
+        let p = 0.5 * t_two_sided((free - beyond).abs() / combined.standard, combined.dof);
+        (is_outside && p < BOUND_ALARM / count.max(1) as f64).then_some(beyond)
+    }
+
     /// Whether its rows follow each other in time, and its scatter knows.
     #[must_use]
     pub fn is_in_time(&self, data: &Dataset) -> bool {
@@ -150,6 +178,40 @@ impl ModelFit {
             Scatter::Cluster => data.group.as_ref() == Some(&data.run) && data.rows >= 2 * data.clusters(),
             Scatter::Classical | Scatter::Hc3 | Scatter::Replicates { .. } => false,
         }
+    }
+
+    /// How far the 95 % band of a predicted response reaches below and above it, for one row of regressors; `scatter_dof` are those of [`Self::scatter_dof`].
+    ///
+    /// k u with Student's t at the Welch–Satterthwaite degrees of freedom of all parts of the budget; N or N m.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), G.4.1.
+    #[must_use]
+    pub fn arms(&self, row: &[f64], scatter_dof: f64) -> [f64; 2] {
+        // A law of one coefficient has the interval of that, with looks and errors to one side.
+        if let ([slope], Some(Some(combined))) = (row, self.combined.first()) {
+            let [below, above] = combined.arms.map(|arm| arm * slope.abs());
+            return if *slope < 0.0 { [above, below] } else { [below, above] };
+        }
+        let standard = self.prediction_std(row);
+        let touched = |part: &Part| {
+            let of = row.iter().zip(&part.dof).filter(|(x, _)| **x != 0.0).map(|(_, dof)| *dof);
+            of.fold(f64::INFINITY, f64::min)
+        };
+        let entries = self.budget.iter().enumerate().filter(|(_, part)| !part.in_scatter).map(|(k, part)| {
+            let dof = if k == 0 { scatter_dof } else { touched(part) };
+            ((spread(&part.covariance, row).powi(2), dof), part.kind)
+        });
+        let half = coverage_factor(rounded_dof(entries)) * standard;
+        [half, half]
+    }
+
+    /// Degrees of freedom of the scatter of a load: the fewest among the coefficients that its rows of regressors touch.
+    #[must_use]
+    pub fn scatter_dof(&self, slopes: &Mat<f64>, rows: std::ops::Range<usize>) -> f64 {
+        let touches = |j: usize| rows.clone().any(|row| slopes[(row, j)] != 0.0);
+        (0..slopes.ncols()).filter(|&j| touches(j)).map(|j| self.budget[0].dof[j]).fold(f64::INFINITY, f64::min)
     }
 
     /// Standard uncertainty of the predicted response for one row of regressors.
@@ -161,12 +223,12 @@ impl ModelFit {
     /// JCGM 100:2008 (GUM), 5.2.2.
     #[must_use]
     pub fn prediction_std(&self, row: &[f64]) -> f64 {
-        let mut variance = 0.0;
-        for (a, x) in row.iter().enumerate() {
-            for (b, y) in row.iter().enumerate() {
-                variance += x * y * self.covariance[(a, b)];
-            }
-        }
-        variance.max(0.0).sqrt()
+        spread(&self.covariance, row)
     }
+}
+
+/// √(xᵀCx) of the coefficients that x belongs to.
+fn spread(covariance: &Mat<f64>, x: &[f64]) -> f64 {
+    let of = |(a, p): (usize, &f64)| x.iter().enumerate().map(|(b, q)| p * q * covariance[(a, b)]).sum::<f64>();
+    x.iter().enumerate().map(of).sum::<f64>().max(0.0).sqrt()
 }

@@ -2,8 +2,10 @@
 
 use froude_fit as fit;
 use froude_fit::budget::{OUTSIDE_95, Part, combine};
+use froude_fit::distribution::t_two_sided;
 use froude_records::campaign::SourceKind;
 use froude_records::finding::{Finding, Severity};
+use froude_records::number::p_equation;
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
@@ -18,12 +20,13 @@ pub(crate) const VIOLATED: f64 = 1e-9;
 /// Cosine above which two cuts say the same.
 pub(crate) const NEARLY_PARALLEL: f64 = 0.999;
 
-/// Distance of a prior from what the data say, in standard uncertainties, that is no chance.
-pub(crate) const PRIOR_CONTRADICTED_ABOVE: f64 = 3.0;
+/// Chance of calling a prior contradicted that is not, over all priors of a law.
+pub(crate) const PRIOR_ALARM: f64 = 0.01;
 
-/// Priors that the data alone, with their budget, contradict: the two then have no common answer, and σ grows to cover
-/// the gap.
-pub(crate) fn contradicted_priors(
+/// What the data alone say beside each prior; a warning where they contradict it: the two then have no common answer, and σ grows to cover the gap.
+///
+/// |prior − data|/√(u_p² + u_d²) is compared with Student's t at the degrees of freedom of u_d, Welch–Satterthwaite, the prior's being infinite.
+pub(crate) fn beside_priors(
     law: &ForceLaw,
     data: &Dataset,
     settings: Settings<'_>,
@@ -49,23 +52,26 @@ pub(crate) fn contradicted_priors(
     for prior in &options.priors {
         let c = &free.coefficients[prior.index];
         let (Some(value), Some(_)) = (c.unconstrained, c.standard) else { continue };
-        let standard = combine(&parts, prior.index, OUTSIDE_95).standard;
-        let apart = (value - prior.value).abs() / standard.hypot(prior.standard);
-        if apart > PRIOR_CONTRADICTED_ABOVE {
-            findings.push(Finding::new(
-                Severity::Warning,
-                "prior-contradicted",
-                format!(
-                    "{}: the data alone give {} = {value:.4} ± {standard:.4} {unit}, the prior is {:.4} ± {:.4} {unit}: \
-                     {apart:.1} standard uncertainties apart; the fit between them agrees with neither",
-                    law.name,
-                    specs[prior.index].name,
-                    prior.value,
-                    prior.standard,
-                    unit = specs[prior.index].unit
-                ),
-            ));
-        }
+        let own = combine(&parts, prior.index, OUTSIDE_95);
+        let both = own.standard.hypot(prior.standard);
+        let apart = (value - prior.value).abs() / both;
+        let p = t_two_sided(apart, own.dof * (both / own.standard).powi(4));
+        let numbers = format!(
+            "{}: the data alone give {} = {value:.4} ± {:.4} {unit}, the prior is {:.4} ± {:.4} {unit}: {apart:.1} standard uncertainties apart ({})",
+            law.name,
+            specs[prior.index].name,
+            own.standard,
+            prior.value,
+            prior.standard,
+            p_equation(p),
+            unit = specs[prior.index].unit
+        );
+        findings.push(if p < PRIOR_ALARM / options.priors.len() as f64 {
+            let text = format!("{numbers}; the fit between them agrees with neither");
+            Finding::new(Severity::Warning, "prior-contradicted", text)
+        } else {
+            Finding::new(Severity::Note, "prior-beside-data", numbers)
+        });
     }
     Ok(findings)
 }

@@ -3,11 +3,13 @@
 use froude_fit as fit;
 use froude_records::finding::{Finding, Severity};
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw, Kind};
 use crate::regression::fitted::Settings;
-use crate::regression::problem::{OffsetSetups, logarithms, offset_setups, problem, start, step, weights};
+use crate::regression::problem::{
+    GroupOffsets, OffsetSetups, group_offsets, logarithms, offset_setups, problem, start, step, weights,
+};
 
 /// Iterations of the non-linear parts (power law, angle offset); both converge quadratically.
 const MOST_ITERATIONS: usize = 50;
@@ -23,9 +25,10 @@ pub(crate) struct Job<'a> {
     pub(crate) newtons: Vec<f64>,
     /// What is fitted: the loads, or the logarithms of their absolute values.
     measured: Vec<f64>,
-    weight: Option<Vec<f64>>,
+    pub(crate) weight: Option<Vec<f64>>,
     setups: OffsetSetups,
-    /// Coefficients of the law, then the angle offset of each setup.
+    groups: GroupOffsets,
+    /// Coefficients of the law, then the angle offset of each setup, then the offset of each group in each load.
     pub(crate) specs: Vec<CoefficientSpec>,
 }
 
@@ -39,8 +42,17 @@ impl<'a> Job<'a> {
             name: format!("angle_offset{}{s}", if s.is_empty() { "" } else { "_" }),
             unit: "rad".to_owned(),
         }));
+        let groups = group_offsets(law, data, settings.identify);
+        for load in &law.responses {
+            specs.extend(
+                groups.names.iter().map(|group| CoefficientSpec {
+                    name: format!("offset_{load}_{group}"),
+                    unit: unit_text(data, load),
+                }),
+            );
+        }
         let weight = weights(law, data, settings.weight)?;
-        Ok(Self { law, data, settings, newtons, measured, weight, setups, specs })
+        Ok(Self { law, data, settings, newtons, measured, weight, setups, groups, specs })
     }
 
     /// The last linear problem and its fit. A non-linear law or an angle offset is linearised again until nothing changes.
@@ -75,7 +87,15 @@ impl<'a> Job<'a> {
 
     /// The linear problem at `beta`.
     fn linear(&self, beta: &[f64]) -> Result<fit::Problem, IdentifyError> {
-        problem(self.law, self.data, &self.specs, &self.measured, self.weight.clone(), &self.setups, beta)
+        problem(
+            self.law,
+            self.data,
+            &self.specs,
+            &self.measured,
+            self.weight.clone(),
+            (&self.setups, &self.groups),
+            beta,
+        )
     }
 
     pub(crate) fn not_converged(&self, what: &str) -> Finding {

@@ -53,6 +53,22 @@ pub(crate) fn offset_setups(law: &ForceLaw, data: &Dataset, identify: &Identify)
     OffsetSetups { names: distinct(&data.setup), of_row: labels(&data.setup) }
 }
 
+/// Groups that have an offset of their own in each load, and the group of each row.
+pub(crate) struct GroupOffsets {
+    pub(crate) names: Vec<String>,
+    of_row: Vec<usize>,
+}
+
+/// Those of `group_offset = "estimate"`; none for a law that is fitted by steps, whose start knows no offset.
+pub(crate) fn group_offsets(law: &ForceLaw, data: &Dataset, identify: &Identify) -> GroupOffsets {
+    match &data.group {
+        Some(group) if identify.group_offset && !law.is_nonlinear() => {
+            GroupOffsets { names: distinct(group), of_row: labels(group) }
+        }
+        _ => GroupOffsets { names: Vec::new(), of_row: Vec::new() },
+    }
+}
+
 /// The stacked, weighted linear problem at the current coefficients.
 ///
 /// With an angle offset δ between sensor and body, f_sensor = Rᵀ(δ) f_body: the measured pair is rotated
@@ -63,7 +79,7 @@ pub(crate) fn problem(
     specs: &[CoefficientSpec],
     measured: &[f64],
     weight: Option<Vec<f64>>,
-    setups: &OffsetSetups,
+    (setups, groups): (&OffsetSetups, &GroupOffsets),
     beta: &[f64],
 ) -> Result<fit::Problem, IdentifyError> {
     let n = data.rows;
@@ -103,6 +119,12 @@ pub(crate) fn problem(
             // Solved for the whole offset, so that a fixed value or a prior means the offset and not its last step.
             response[i] += beta[p + s] * design[(i, p + s)];
             response[n + i] += beta[p + s] * design[(n + i, p + s)];
+        }
+    }
+    if !groups.names.is_empty() {
+        let first = p + setups.names.len();
+        for row in 0..measured.len() {
+            design[(row, first + row / n * groups.names.len() + groups.of_row[row % n])] = 1.0;
         }
     }
     let component: Vec<usize> = (0..measured.len()).map(|row| row / n).collect();

@@ -24,7 +24,7 @@ pub enum SimulateError {
     Identify(#[from] IdentifyError),
 
     /// Nothing is planned.
-    #[error("{}: no source has a [[source.plan]]: say which configurations, speeds and angles are run", .path.display())]
+    #[error("{}: no source of a tank has a [[source.plan]], which says the configurations, speeds and angles that are run (computed flows are planned by froude cfd plan)", .path.display())]
     NoPlan {
         /// The campaign.
         path: PathBuf,

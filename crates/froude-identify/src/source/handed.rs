@@ -38,6 +38,16 @@ pub(crate) fn no_budget(source: &Source, has_tare: bool) -> Option<Finding> {
     })
 }
 
+/// Blocks of `covariance = "blocks"`: with fewer rows each would hold too few, with more blocks neighbours would still be alike.
+const BLOCKS: usize = 4;
+
+/// Contiguous blocks of rows in place of the groups, where the campaign asks for them.
+pub(crate) fn in_blocks(campaign: &Campaign, data: &mut Dataset) {
+    if campaign.identify.covariance.as_deref() == Some("blocks") {
+        data.group = Some((0..data.rows).map(|i| format!("block {}", 1 + i * BLOCKS / data.rows)).collect());
+    }
+}
+
 /// The scatter that the campaign asks for, else what suits the source: residuals of a computation are model error, alike within a configuration.
 pub(crate) fn scatter(
     campaign: &Campaign,
@@ -48,11 +58,11 @@ pub(crate) fn scatter(
     match campaign.identify.covariance.as_deref() {
         Some("classical") => return Ok(Scatter::Classical),
         Some("HC3" | "hc3") => return Ok(Scatter::Hc3),
-        Some("cluster" | "CR3" | "cr3") => return Ok(Scatter::Cluster),
+        Some("cluster" | "CR3" | "cr3" | "blocks") => return Ok(Scatter::Cluster),
         Some(other) => {
             return Err(IdentifyError::Campaign {
                 place: "[identify]".to_owned(),
-                what: format!("covariance = {other:?} is not known; use classical, HC3 or cluster"),
+                what: format!("covariance = {other:?} is not known; use classical, HC3, cluster or blocks"),
             });
         }
         None if source.kind != SourceKind::Cfd => return Ok(Scatter::Classical),
@@ -63,8 +73,9 @@ pub(crate) fn scatter(
         return Ok(Scatter::Cluster);
     }
     let text = format!(
-        "residuals of CFD are model error, not noise; cluster-robust intervals need five configurations and a `group`, there are \
-         {clusters}: HC3 is used"
+        "residuals of CFD are model error, not noise, and alike within a configuration; intervals by cluster need a `group` of five and more, and \
+         this source has {}: HC3 takes each row for itself",
+        if clusters == 0 { "none".to_owned() } else { clusters.to_string() }
     );
     findings.push(Finding::new(Severity::Warning, "cfd-few-clusters", text));
     Ok(Scatter::Hc3)

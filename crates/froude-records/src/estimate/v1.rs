@@ -143,6 +143,7 @@ impl From<EstimateV1> for Estimate {
             diagnostics: e.diagnostics,
             recommended: e.recommended,
             reason: e.reason,
+            formula_of: None,
         }
     }
 }

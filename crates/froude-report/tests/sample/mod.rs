@@ -194,6 +194,7 @@ fn estimates(source: &str, kind: &str, table: &[(&str, [f64; 12])], relative: f6
                     ..Diagnostics::default()
                 },
                 recommended: *model == best,
+                formula_of: None,
                 ..Estimate::default()
             }
         })

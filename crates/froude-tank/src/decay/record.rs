@@ -54,7 +54,7 @@ pub fn result(
         tests: Vec::new(),
         scores: vec![leave_one_out(&model, &data)],
         blocks: Vec::new(),
-        recommendation: Some(Recommendation { index: 0, reason: fit.method.words().to_owned() }),
+        recommendation: Some(Recommendation { index: 0, formula: None, reason: fit.method.words().to_owned() }),
         validity: estimate.validity.clone(),
         findings: fit.findings.iter().cloned().chain(as_exact(fit)).collect(),
         files: Vec::new(),
@@ -199,6 +199,7 @@ fn estimate(fit: &DecayFit, campaign: &Campaign, source: &Source, recommended: b
         ]),
         diagnostics: Diagnostics { notes: notes(fit, &budget), ..Diagnostics::default() },
         recommended,
+        formula_of: None,
         reason: recommended.then(|| fit.method.words().to_owned()),
     }
 }

@@ -130,6 +130,7 @@ pub fn estimate(at: &AtPeriod, context: &Context<'_>, is_recommended: bool) -> E
         validity: validity(at, runs),
         diagnostics: Diagnostics { largest_correlation, notes: notes(at, stated), ..Diagnostics::default() },
         recommended: is_recommended,
+        formula_of: None,
         reason: is_recommended
             .then(|| "the period whose A33 is known best; each period has an estimate of its own".to_owned()),
     }

@@ -107,6 +107,7 @@ pub fn estimate(fit: &RotationFit, context: &Context<'_>) -> Estimate {
         validity: validity(context),
         diagnostics: Diagnostics { notes, ..Diagnostics::default() },
         recommended: true,
+        formula_of: None,
         reason: Some("the only law of the fluid torque".to_owned()),
     }
 }

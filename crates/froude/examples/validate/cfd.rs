@@ -29,6 +29,7 @@ type Failed = Box<dyn Error>;
 
 const KNOWN: &str = "Computed flows: forces that are known";
 const CAPSULE: &str = "Computed flows: a capsule beside another program's grids";
+const MOVED: &str = "Computed flows: two angles and six loads";
 const ROBOT: &str = "Computed flows: the snake robot's campaign";
 const DESIGN: &str = "Computed flows: 44 settings in place of 170";
 
@@ -64,8 +65,8 @@ pub fn campaigns(claims: &mut Claims, root: &Path, pages: Option<&Path>) -> Resu
     design(claims, root)
 }
 
-/// Known flows, and in full the capsule and a body that swings too.
-pub fn all(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Failed> {
+/// Known flows, and in full the capsule too.
+pub fn all(claims: &mut Claims, full: bool) -> Result<(), Failed> {
     if is_absent(claims, KNOWN, "forces of known flows") {
         return Ok(());
     }
@@ -74,11 +75,17 @@ pub fn all(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Failed> {
     known(claims, &room, full)?;
     if full {
         of_capsule(claims, &room, &Room::new(folder.path().join("family"))?)?;
-        drop(folder);
-        two_angles(claims, root)?;
-        swung(claims, root)?;
     }
     Ok(())
+}
+
+/// Two angles, and a body that swings.
+pub fn moved(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
+    if is_absent(claims, MOVED, "oblique flows and swings") {
+        return Ok(());
+    }
+    two_angles(claims, root)?;
+    swung(claims, root)
 }
 
 fn known(claims: &mut Claims, room: &Room, full: bool) -> Result<(), Failed> {
@@ -249,7 +256,7 @@ fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
         let (a, b) = (of(one), of(two));
         // Oblique flows lean to one side, and not to the same in mirrored settings: that is seen, and no bar is set.
         claims.add(
-            CAPSULE,
+            MOVED,
             &format!("{one} and {two} of its six loads at two angles, by froude identify"),
             "one number for a body of revolution, as far as its flows do not lean",
             format!("{:.4} {:?} and {:.4} {:?}", a.0, a.1, b.0, b.1),
@@ -274,7 +281,7 @@ fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
             ("m_z and m_y", level[5], upright[4], level[5].abs()),
         ] {
             claims.holds(
-                CAPSULE,
+                MOVED,
                 &format!("{what}, turned by {angle}° in the plane and out of it"),
                 "the same within 1 %",
                 format!("{a:.5} and {b:.5} ({:+.2} %)", 100.0 * (b - a) / scale),
@@ -285,7 +292,7 @@ fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
     let (level, turned) = (at(15.0, 0.0), at(angle, pitch));
     let across = turned[1].hypot(turned[2]);
     claims.holds(
-        CAPSULE,
+        MOVED,
         "force across at 15° from the axis, in the plane and turned about the axis by 39.4°, which the mesh has no symmetry of",
         "the same within 2 %",
         format!("{:.5} N and {across:.5} N ({:+.2} %)", level[1], 100.0 * (across / level[1] - 1.0)),

@@ -5,14 +5,16 @@ use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
 use froude::cfd::swing::swing;
+use froude::methods::added_mass::water::Water;
 use froude::pipeline::{Job, identify};
+use froude::records::campaign::read_campaign;
 use froude_cfd::collect::collect;
 use froude_cfd::history;
 use froude_cfd::store::Store;
 
 use crate::cfd::{campaign, finish};
 use crate::claims::{Claims, Verdict};
-use crate::potential::{run as panels, sway_kg};
+use crate::potential::{in_water, sway_kg};
 
 const ROOM: &str = "Computed flows: a body that swings";
 /// ρμ_n, which C_A refers to, kg.
@@ -23,7 +25,8 @@ const RADIUS_M: f64 = 0.476;
 /// The example, and the same body by a tenth of its width: in water at rest, and in the stream.
 pub fn swung(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
     let text = std::fs::read_to_string(root.join("examples/mamba-swing-cfd/campaign.toml"))?;
-    let found = panels(&root.join("examples/mamba-swing-cfd/body.toml"), vec![1])?;
+    let water = Water::of(&read_campaign(&root.join("examples/mamba-swing-cfd/campaign.toml"))?);
+    let found = in_water(&root.join("examples/mamba-swing-cfd/body.toml"), vec![1], &water)?;
     let panels = sway_kg(found.configurations.first().ok_or("no panels")?) / LINK_KG;
     let small = text
         .replace("[\"10 deg\", \"20 deg\"]", "\"1 deg\"")
@@ -90,13 +93,16 @@ pub fn swung(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
             Verdict::Measured,
         );
     }
-    let one = text.replace("[\"10 deg\", \"20 deg\"]", "\"10 deg\"").replace(
-        "[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]",
-        "\"70 deg/s\"",
-    );
+    let one = text
+        .replace("[\"10 deg\", \"20 deg\"]", "\"10 deg\"")
+        .replace("[\"60 deg/s\", \"70 deg/s\", \"80 deg/s\"]", "\"70 deg/s\"");
     for (what, name, text) in [
         ("as the example", "swing", one.clone()),
-        ("in the whole domain", "swing-whole", one.replace("mesh = \"coarse\"", "mesh = \"coarse\"\ndomain = \"full\"")),
+        (
+            "in the whole domain",
+            "swing-whole",
+            one.replace("mesh = \"coarse\"", "mesh = \"coarse\"\ndomain = \"full\""),
+        ),
         ("on 92,160 cells", "swing-medium", one.replace("mesh = \"coarse\"", "mesh = \"medium\"")),
     ] {
         let path = if name == "swing" { path.clone() } else { compute(name, &text)?.0 };

@@ -1,8 +1,8 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-campaign, clocks,
-//! dynamic, potential, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
+//! dynamic, potential, intervals, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
 
@@ -31,6 +31,7 @@ mod flexible;
 #[path = "../../../froude-cfd/examples/known_flows/flows.rs"]
 mod flows;
 mod hour;
+mod intervals;
 mod kvlcc2;
 mod oscillation;
 mod potential;
@@ -137,7 +138,10 @@ fn main() -> ExitCode {
             swim_coverage::all(claims, &root, if full { 200 } else { 10 })?;
         }
         if wants("cfd") {
-            cfd::all(claims, &root, full)?;
+            cfd::all(claims, full)?;
+        }
+        if full && wants("cfd-moved") {
+            cfd::moved(claims, &root)?;
         }
         if full && wants("cfd-campaign") {
             let pages = root.join("book/src");
@@ -155,6 +159,9 @@ fn main() -> ExitCode {
         }
         if chosen.is_empty() {
             family::whole(claims);
+        }
+        if wants("intervals") {
+            intervals::all(claims, &root, if full { FULL_REPETITIONS as u64 } else { 200 })?;
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;

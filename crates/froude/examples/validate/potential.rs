@@ -52,10 +52,15 @@ pub fn all(claims: &mut Claims, root: &Path, full: bool) -> Result<(), Box<dyn E
     smooth(claims)
 }
 
-pub fn run(body: &Path, links_of: Vec<usize>) -> Result<LinksOutcome, Box<dyn Error>> {
+fn run(body: &Path, links_of: Vec<usize>) -> Result<LinksOutcome, Box<dyn Error>> {
+    in_water(body, links_of, &Water::default())
+}
+
+/// Configurations of a robot in the water of a campaign.
+pub fn in_water(body: &Path, links_of: Vec<usize>, water: &Water) -> Result<LinksOutcome, Box<dyn Error>> {
     let wanted = Wanted { tolerance: 0.005, ..Wanted::default() };
     let asked = Asked { links: links_of, wanted, ..Asked::of(body) };
-    Ok(links(&asked, &Water::default(), "", &|_| {})?)
+    Ok(links(&asked, water, "", &|_| {})?)
 }
 
 /// Against the other code: within its digits and ours a pass, within what two extrapolations may differ by a finding.

@@ -485,5 +485,5 @@ fn draw(
         })
         .collect::<Result<_, Box<dyn Error>>>()?;
     let chosen = recommend(&fits, &data, &nested_tests(&fits, &data)).ok_or("no recommendation")?;
-    Ok(Draw { recommended: chosen.index, reason: chosen.reason, squared_error })
+    Ok(Draw { recommended: chosen.simplest(), reason: chosen.reason, squared_error })
 }

@@ -2,7 +2,7 @@
 
 use froude_added_mass::frame::Axes;
 use froude_added_mass::load::{is_body_file, read_mesh};
-use froude_added_mass::options::Asked as Lies;
+use froude_added_mass::options::{Asked as Lies, unit_of};
 use froude_cfd::body::{Shaped, shaped};
 use froude_cfd::surface::asymmetry;
 use froude_mesh::check::{Trouble, check};
@@ -59,7 +59,11 @@ fn surface(asked: &Asked, name: &str) -> Result<Shaped, Error> {
     let (mesh, _) = read_mesh(&asked.body, lies.unit_m)?;
     let troubles = troubles(&mesh);
     if !troubles.is_empty() {
-        let repair = "froude added-mass FILE --repair repaired.obj writes a mesh with the unambiguous faults corrected";
+        let unit = lies.unit_m.map_or_else(String::new, |m| format!(" --unit {}", unit_of(m)));
+        let repair = format!(
+            "froude added-mass {}{unit} --repair repaired.obj writes a mesh with the unambiguous faults corrected",
+            asked.body.display()
+        );
         let problem = format!("encloses no body that water flows around:\n{}\n  {repair}", troubles.join("\n"));
         return Err(refused(problem).into());
     }

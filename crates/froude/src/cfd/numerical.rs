@@ -42,7 +42,8 @@ pub(super) fn sentences(numerical: &Numerical, rows: &[Row]) -> Vec<String> {
     let known = rows.first().and_then(|row| numerical.std_of_mesh(&row.case));
     match (known, numerical.fine.is_empty()) {
         (None, _) => out.push(
-            "the error of the mesh is in no interval: a [[source.cfd.study]] or fine = { mesh = \"medium\" } of [source.cfd] computes it"
+            "the error of the mesh is in no interval: of an O-grid a [[source.cfd.study]] or fine = { mesh = \"medium\" } of [source.cfd] computes it; of cubes a second campaign \
+             with a smaller surface_cell shows it"
                 .to_owned(),
         ),
         (Some(_), true) => out.push(format!(

@@ -333,8 +333,11 @@ impl Swung {
             "damping, N s/m",
             "CPU, s",
         ];
-        let mut paragraphs =
-            vec!["C_A and damping are of the last period alone, by its first harmonic; froude identify fits all runs at once, with the drag law and intervals. No interval holds the error of the mesh and of the step: compute a finer mesh, and see.".to_owned()];
+        let mut paragraphs = if self.runs.is_empty() {
+            Vec::new()
+        } else {
+            vec!["C_A and damping are of the last period alone, by its first harmonic; froude identify fits all runs at once, with the drag law and intervals. No interval holds the error of the mesh and of the step: compute a finer mesh, and see.".to_owned()]
+        };
         paragraphs.extend(self.failed.iter().map(|(id, why)| format!("{id} failed: {why}")));
         if self.open > 0 {
             paragraphs.push(format!("{} no log yet", counted(self.open, "run has", "runs have")));
@@ -342,11 +345,15 @@ impl Swung {
         DocumentSection {
             title: "Computed".to_owned(),
             paragraphs,
-            tables: vec![TextTable {
-                caption: format!("runs in {}; – of those that were there", self.folder.display()),
-                head: head.map(str::to_owned).to_vec(),
-                rows: self.runs.iter().enumerate().map(row).collect(),
-            }],
+            tables: if self.runs.is_empty() {
+                Vec::new()
+            } else {
+                vec![TextTable {
+                    caption: format!("runs in {}; – of those that were there", self.folder.display()),
+                    head: head.map(str::to_owned).to_vec(),
+                    rows: self.runs.iter().enumerate().map(row).collect(),
+                }]
+            },
             charts: Vec::new(),
         }
     }

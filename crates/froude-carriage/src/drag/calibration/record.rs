@@ -92,6 +92,7 @@ pub fn calibrated(source: &str, c: &Calibration, known: &Known) -> Estimate {
         derived: IndexMap::from([("efficiency".to_owned(), efficiency)]),
         diagnostics: Diagnostics { notes: c.notes.clone(), ..Diagnostics::default() },
         recommended: true,
+        formula_of: None,
         reason: Some("from known weights, gear and chain included".to_owned()),
         ..estimate(source, "calibration", "least squares of the command on known weights, both directions", coefficient)
     }

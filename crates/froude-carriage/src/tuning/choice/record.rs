@@ -77,6 +77,7 @@ fn estimate(source: &str, tuned: &Tuned, c: &Candidate, recommended: bool) -> Es
             ..Diagnostics::default()
         },
         recommended,
+        formula_of: None,
         reason: recommended.then(|| "it keeps all that is asked for".to_owned()),
         ..of_response
     }
