@@ -90,7 +90,7 @@ pub(crate) fn core(
                 let phi = rows.dispersion[block.row_component[i]];
                 add_outer(&mut covariance, &apply(q), phi.unwrap_or(f64::NAN));
             }
-            Freedom::OfComponents
+            Freedom::Components
         }
         CovarianceKind::Hc3 => {
             let mut kept = Vec::with_capacity(block.rows.len());
@@ -104,7 +104,7 @@ pub(crate) fn core(
                 add_outer(&mut covariance, &moved, factor * factor);
                 kept.push(Row { name: block.rows[i - n_priors], q: q.clone(), moved, rest, score: rows.score[i] });
             }
-            Freedom::OfRows { rows: kept, bread: bread.clone() }
+            Freedom::Rows { rows: kept, bread: bread.clone() }
         }
         CovarianceKind::Cr3 => {
             let clusters = clusters(problem, block, FEWEST_WITH_FREEDOM)?;
@@ -126,7 +126,7 @@ pub(crate) fn core(
                 add_outer(&mut covariance, &change, (count - 1.0) / count);
                 kept.push(Cluster { name: cluster, gram: part, without: factor.inverse(), change });
             }
-            Freedom::OfClusters { clusters: kept, bread: bread.clone() }
+            Freedom::Clusters { clusters: kept, bread: bread.clone() }
         }
     };
     let n = block.rows.len();

@@ -57,11 +57,11 @@ pub(crate) struct Cluster {
 #[derive(Debug, Clone)]
 pub(crate) enum Freedom {
     /// From σ of each component.
-    OfComponents,
+    Components,
     /// From squares of residuals.
-    OfRows { rows: Vec<Row>, bread: Mat<f64> },
+    Rows { rows: Vec<Row>, bread: Mat<f64> },
     /// From changes of the estimate.
-    OfClusters { clusters: Vec<Cluster>, bread: Mat<f64> },
+    Clusters { clusters: Vec<Cluster>, bread: Mat<f64> },
 }
 
 /// Degrees of freedom of a robust variance, and what tells most of it.
@@ -79,9 +79,9 @@ impl Freedom {
     /// Of the combination `a`; `None` where the components tell it.
     pub(crate) fn of(&self, a: &[f64]) -> Option<Robust> {
         match self {
-            Self::OfComponents => None,
-            Self::OfRows { rows, bread } => Some(of_rows(rows, bread, a)),
-            Self::OfClusters { clusters, bread } => Some(of_clusters(clusters, bread, a)),
+            Self::Components => None,
+            Self::Rows { rows, bread } => Some(of_rows(rows, bread, a)),
+            Self::Clusters { clusters, bread } => Some(of_clusters(clusters, bread, a)),
         }
     }
 }
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn equal_clusters_have_one_less_than_there_are() {
         let design = Mat::from_fn(24, 1, |_, _| 1.0);
-        let response = (0..24).map(|i| ((i * i) as f64).sin()).collect();
+        let response = (0..24).map(|i| f64::from(i * i).sin()).collect();
         let of = |count: usize| Problem {
             cluster: Some((0..24).map(|i| i % count).collect()),
             ..Problem::single(design.clone(), Clone::clone(&response), vec!["a".into()])

@@ -1,10 +1,11 @@
 //! How far a fit can be trusted: diagnostics for the record, findings for the reader.
 
 use froude_fit as fit;
+use froude_fit::distribution::t_two_sided;
 use froude_records::campaign::Campaign;
 use froude_records::estimate::{Diagnostics, NamedCorrelation};
 use froude_records::finding::{Finding, Severity};
-use froude_records::number::{percent, plain, significant};
+use froude_records::number::{p_equation, percent, plain, significant};
 
 use crate::dataset::{Dataset, distinct};
 use crate::error::IdentifyError;
@@ -282,25 +283,27 @@ fn negative_drag(model: &ModelFit) -> Vec<Finding> {
     if !matches!(model.law.name.as_str(), "quadratic" | "linear_quadratic") {
         return Vec::new();
     }
-    model
-        .specs
-        .iter()
-        .zip(&model.fit.coefficients)
-        .filter_map(|(spec, c)| Some((spec, c.value?, c.interval?)))
-        // A moment of drift may have either sign.
-        .filter(|(spec, _, [_, high])| spec.name.starts_with("D_") && *high < 0.0)
-        .map(|(spec, value, _)| {
-            Finding::new(
-                Severity::Warning,
-                "negative-drag",
-                format!(
-                    "{}: {} = {value:.4} {} is below zero: this term pushes the body. The law follows the data in their range and \
-                     must not be used below it; compare with the power law, or set bounds",
-                    model.law.name, spec.name, spec.unit
-                ),
-            )
-        })
-        .collect()
+    // A moment of drift may have either sign.
+    let of_drag: Vec<usize> = (0..model.specs.len()).filter(|j| model.specs[*j].name.starts_with("D_")).collect();
+    let level = scatter_tests::ALARM / of_drag.len().max(1) as f64;
+    let mut out = Vec::new();
+    for j in of_drag {
+        let (Some(value), Some(combined)) = (model.fit.coefficients[j].value, model.combined[j]) else { continue };
+        let p = 0.5 * t_two_sided(value.abs() / combined.standard, combined.dof);
+        if value < 0.0 && p < level {
+            let spec = &model.specs[j];
+            let text = format!(
+                "{}: {} = {value:.4} {} is below zero ({}): this term pushes the body. The law follows the data in their range and \
+                 must not be used below it; compare with the power law, or set bounds",
+                model.law.name,
+                spec.name,
+                spec.unit,
+                p_equation(p)
+            );
+            out.push(Finding::new(Severity::Warning, "negative-drag", text));
+        }
+    }
+    out
 }
 
 /// Quadratic coefficients in N s²/m² that no body of the stated area has.

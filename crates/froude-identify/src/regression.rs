@@ -78,7 +78,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     findings.extend(beside_priors(law, data, settings, &problem, &options, &job.specs)?);
     let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), in_variables)?;
     let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
-    let numbers = coefficients.iter().copied().chain(of_fit).chain(uncertainty.variances());
+    let numbers = coefficients.iter().copied().chain(of_fit).chain(uncertainty.variances()).chain(uncertainty.arms());
     if let Some(number) = numbers.into_iter().find(|x| !x.is_finite()) {
         return Err(job.no_fit(format!(
             "its numbers exceed the range of floating point ({number}): look for an absurdly large value in the table or in [identify]"

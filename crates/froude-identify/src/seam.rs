@@ -126,7 +126,10 @@ fn with_formula(
 ) -> Result<Option<FormulaOf>, IdentifyError> {
     let Some(formula) = recommendation.formula else { return Ok(None) };
     let full = models[recommendation.index].clone();
-    let found = as_formula(&mut models[formula], &full, data, looks)?;
+    let Some(found) = as_formula(&mut models[formula], &full, data, looks)? else {
+        recommendation.formula = None;
+        return Ok(None);
+    };
     let differences: Vec<String> = found
         .largest_difference
         .iter()

@@ -13,7 +13,7 @@
 //! Berk, Brown, Buja, Zhang & Zhao (2013), Valid post-selection inference, Ann. Stat. 41, 802: why intervals after selection do not hold; intervals of the largest model,
 //! which nothing has chosen, do.
 
-use froude_fit::budget::{Kind, OUTSIDE_95, Part, Shape, combine};
+use froude_fit::budget::{Kind, OUTSIDE_95, Part, combine};
 use froude_fit::faer::Mat;
 
 use crate::dataset::Dataset;
@@ -32,7 +32,7 @@ pub struct FormulaOf {
     pub widened: f64,
 }
 
-/// Makes `model` a formula of `full`: its uncertainty is widened. `looks` are those that its intervals pay for.
+/// Makes `model` a formula of `full`: its uncertainty is widened. `None` where no finite factor does that. `looks` are those that its intervals pay for.
 ///
 /// # Errors
 ///
@@ -42,7 +42,7 @@ pub(crate) fn as_formula(
     full: &ModelFit,
     data: &Dataset,
     looks: usize,
-) -> Result<FormulaOf, IdentifyError> {
+) -> Result<Option<FormulaOf>, IdentifyError> {
     let n = data.rows;
     let (own, larger) = (Loads::of(model, data)?, Loads::of(full, data)?);
     let normal = coverage_factor(f64::INFINITY);
@@ -64,6 +64,10 @@ pub(crate) fn as_formula(
         }
         largest_difference.push((load.clone(), largest));
     }
+    // One that knows a load to nothing where the larger law does not is no formula of it.
+    if !(widened * widened * model.covariance.norm_max()).is_finite() {
+        return Ok(None);
+    }
     let p = model.specs.len();
     let more = widened * widened - 1.0;
     let name = format!("terms of {} that it leaves out", full.law.name);
@@ -72,13 +76,12 @@ pub(crate) fn as_formula(
         dof: vec![f64::INFINITY; p],
         ..Part::of_one(name, "campaign", Kind::ModelForm, 0.0, f64::INFINITY)
     });
-    debug_assert!(model.budget.iter().all(|part| part.shape != Shape::Normal || part.dof.len() == p));
     let outside = OUTSIDE_95 / looks.max(1) as f64;
     for (j, combined) in model.combined.iter_mut().enumerate() {
         *combined = combined.map(|_| combine(&model.budget, j, outside));
     }
     model.covariance = Mat::from_fn(p, p, |a, b| (1.0 + more) * model.covariance[(a, b)]);
-    Ok(FormulaOf { law: full.law.name.clone(), largest_difference, widened })
+    Ok(Some(FormulaOf { law: full.law.name.clone(), largest_difference, widened }))
 }
 
 /// Loads of a law at all observations, with their slopes in its coefficients.

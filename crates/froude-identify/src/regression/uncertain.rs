@@ -79,6 +79,11 @@ impl Uncertainty {
         Ok(Self { covariance: covariance(&budget, &combined), budget, combined, kind })
     }
 
+    /// How far each interval reaches.
+    pub(crate) fn arms(&self) -> impl Iterator<Item = f64> {
+        self.combined.iter().flatten().flat_map(|combined| combined.arms)
+    }
+
     pub(crate) fn variances(&self) -> impl Iterator<Item = f64> {
         (0..self.combined.len()).map(|j| self.covariance[(j, j)])
     }

@@ -95,7 +95,7 @@ fn run(
 }
 
 /// A folder with a campaign, which is read once.
-fn room(text: &str) -> Result<(tempfile::TempDir, Campaign), String> {
+pub fn room(text: &str) -> Result<(tempfile::TempDir, Campaign), String> {
     let shared = Path::new("/dev/shm");
     let folder = if shared.is_dir() { tempfile::tempdir_in(shared) } else { tempfile::tempdir() };
     let folder = folder.map_err(|e| e.to_string())?;
@@ -108,7 +108,8 @@ fn room(text: &str) -> Result<(tempfile::TempDir, Campaign), String> {
     Ok((folder, campaign))
 }
 
-fn campaign(rest: &str) -> String {
+/// A campaign of one table, with more keys of its source and sections.
+pub fn campaign(rest: &str) -> String {
     format!(
         "schema = 1\nname = \"a known truth\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[[source]]\nname = \"tank\"\nkind = \"towing\"\ntable = \"table.csv\"\n{rest}"
     )
@@ -326,7 +327,7 @@ fn tares(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
                     let mut rng = Pcg64::new(u128::from(seed), 170 + runs as u128 * 100 + (10.0 * ratio) as u128);
                     let place = |name: &str| folder.path().join(name);
                     // u of a law of one coefficient is σ/√Σu⁴.
-                    let of_tare: Vec<f64> = (0..runs).map(|i| 0.4 + 1.6 * i as f64 / (runs - 1) as f64).collect();
+                    let of_tare: Vec<f64> = (0..runs).map(|i| 0.4 + 1.6 * f64::from(i) / f64::from(runs - 1)).collect();
                     let weight = |speed: &[f64]| speed.iter().map(|u| u.powi(4)).sum::<f64>();
                     let sigma = ratio * (weight(&of_tare) / weight(&speed)).sqrt();
                     let text = rows(&of_tare, |_, u| -7.0 * u * u + sigma * normal(&mut rng));
@@ -427,7 +428,7 @@ fn clusters(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
                 for (g, n) in sizes.iter().enumerate() {
                     let shared = normal(rng);
                     for i in 0..*n {
-                        let u = 0.2 + (i as f64 + 0.5) / f64::from(*n);
+                        let u = 0.2 + (f64::from(i) + 0.5) / f64::from(*n);
                         let _ = writeln!(out, "{u},{},day {g}", -20.0 * u * u + shared + normal(rng));
                     }
                 }
@@ -587,9 +588,9 @@ fn neighbours(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
             let what = format!("{n} rows in random order whose errors follow each other by {rho}");
             for tally in run(&campaign(law), seeds, 500 + n as u128, table(rho, 4.0), alarm("serial-correlation"))? {
                 if rho > 0.0 {
-                    judged(claims, &what, &tally, floor, false, "")
+                    judged(claims, &what, &tally, floor, false, "");
                 } else {
-                    rare(claims, &what, &tally, 0.6)
+                    rare(claims, &what, &tally, 0.6);
                 }
             }
         }
@@ -649,9 +650,9 @@ fn uneven(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
             {
                 let what = format!("{n} rows, errors {}", if is_uneven { "as the load" } else { "equal" });
                 if is_uneven {
-                    judged(claims, &what, &tally, floor, false, "")
+                    judged(claims, &what, &tally, floor, false, "");
                 } else {
-                    rare(claims, &what, &tally, 0.4)
+                    rare(claims, &what, &tally, 0.4);
                 }
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
 //! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
-//! dynamic, potential, intervals, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
+//! dynamic, potential, intervals, lints, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
 
@@ -33,6 +33,7 @@ mod flows;
 mod hour;
 mod intervals;
 mod kvlcc2;
+mod lints;
 mod oscillation;
 mod potential;
 mod potential_laws;
@@ -162,6 +163,10 @@ fn main() -> ExitCode {
         }
         if wants("intervals") {
             intervals::all(claims, &root, if full { FULL_REPETITIONS as u64 } else { 200 })?;
+        }
+        if wants("lints") {
+            lints::clean(claims, if full { 10_000 } else { 200 })?;
+            lints::short(claims, if full { 200_000 } else { 2_000 })?;
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;
