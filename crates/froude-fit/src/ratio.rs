@@ -83,7 +83,7 @@ impl Form<'_> {
 pub fn above(form: Form<'_>, q: MatRef<'_, f64>, statistic: f64) -> Option<f64> {
     let (n, rank) = q.shape();
     let left: f64 = n as f64 - (0..n).map(|i| (0..rank).map(|k| q[(i, k)].powi(2)).sum::<f64>()).sum::<f64>();
-    if n < 3 || left < 2.0 {
+    if n < 3 || left.is_nan() || left < 2.0 || !statistic.is_finite() {
         return None;
     }
     if n > EXACT { by_moments(form, q, statistic, left) } else { by_inversion(form, q, statistic) }
@@ -104,6 +104,9 @@ fn by_inversion(form: Form<'_>, q: MatRef<'_, f64>, statistic: f64) -> Option<f6
 /// √(1 − Q Qᵀ), symmetric.
 fn root_of_residual(q: MatRef<'_, f64>) -> Option<Mat<f64>> {
     let (n, rank) = q.shape();
+    if rank == 0 {
+        return Some(Mat::identity(n, n));
+    }
     let gram = mul(q.transpose(), q);
     let evd = gram.self_adjoint_eigen(Side::Lower).ok()?;
     // 1 − √(1 − s) over s, which is ½ of nothing.
@@ -239,5 +242,14 @@ mod tests {
     fn nothing_is_said_without_degrees_of_freedom() {
         let q = Mat::<f64>::identity(4, 3);
         assert_eq!(above(Form::Steps, q.as_ref(), 2.0), None);
+        assert_eq!(above(Form::Steps, Mat::zeros(4, 0).as_ref(), f64::NAN), None);
+    }
+
+    /// Of three free numbers (r₂ − r₁)² + (r₃ − r₂)² is symmetric about neither side: eigenvalues 0, 1 and 3 make P(d > 1) = P(2 χ²₁ > χ²₁) by hand.
+    #[test]
+    fn nothing_fitted_leaves_the_errors_themselves() {
+        let found = above(Form::Steps, Mat::zeros(3, 0).as_ref(), 1.0).unwrap();
+        let expected = 1.0 - 2.0 / std::f64::consts::PI * 0.5_f64.sqrt().atan();
+        assert!((found - expected).abs() < 1e-5, "{found} {expected}");
     }
 }

@@ -18,8 +18,8 @@ use crate::dataset::{Dataset, unit_text};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 
-/// Ranges of a record that rows are compared with.
-const RANGES: [&str; 9] = ["speed", "angle", "n_links", "v_x", "v_y", "v_z", "w_x", "w_y", "w_z"];
+/// Of the water, and not of the motion: no law is extrapolated in it.
+const OF_WATER: &str = "temperature";
 /// Beyond the end of a range by rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -166,7 +166,7 @@ fn outside(estimate: &Estimate, data: &Dataset, row: usize) -> Vec<String> {
         }
         _ => false,
     };
-    RANGES.into_iter().filter(|name| is_out(name)).map(str::to_owned).collect()
+    estimate.validity.keys().filter(|name| *name != OF_WATER && is_out(name)).cloned().collect()
 }
 
 /// Standard uncertainty of a sum of independent parts, and its degrees of freedom by Welch and Satterthwaite.

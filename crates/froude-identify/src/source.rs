@@ -109,9 +109,10 @@ fn reduced(
     asked: Asked<'_>,
 ) -> Result<Reduced, IdentifyError> {
     let Observations { data, n_read, mut findings, shared_errors, files } = observations;
-    let (validity, found) = validity::ranges(&data, campaign);
+    let (mut validity, found) = validity::ranges(&data, campaign);
     findings.extend(found);
     let Asked { method, laws, scatter, choice, has_budget } = asked;
+    validity.extend(validity::of_laws(&data, &laws));
     findings.extend(lint::observations(&data, campaign, &laws));
     findings.extend(no_budget(source, !shared_errors.is_empty()).filter(|_| !has_budget));
     check_budget(source, &data)?;

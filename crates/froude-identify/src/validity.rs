@@ -8,8 +8,9 @@ use froude_records::estimate::Range;
 use froude_records::finding::{Finding, Severity};
 use indexmap::IndexMap;
 
-use crate::dataset::Dataset;
-use crate::lint::motion::moving;
+use crate::dataset::{Dataset, unit_text};
+use crate::law::ForceLaw;
+use crate::lint::motion::{OF_RESISTANCE, moving};
 
 /// Blockage above which a correction or a remark is due (ITTC 7.5-02-02-01 corrects resistance for blockage well below it).
 pub const BLOCKAGE_LIMIT: f64 = 0.05;
@@ -29,6 +30,17 @@ pub const ALONG: &str = "v_x";
 /// Angle between a velocity and the x axis, ahead or astern, rad.
 pub(crate) fn off_axis([v_x, v_y]: [f64; 2]) -> f64 {
     v_y.abs().atan2(v_x.abs())
+}
+
+/// Ranges of what laws read beside the motion and the water, a tip speed ratio or the rate of a propeller, by name.
+pub(crate) fn of_laws(data: &Dataset, laws: &[ForceLaw]) -> IndexMap<String, Range> {
+    let is_other = |name: &&str| !OF_RESISTANCE.contains(name) && !name.ends_with("_dot");
+    let of = |name: &str| {
+        let values = data.values(name)?;
+        let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(*x), h.max(*x)]);
+        Some((name.to_owned(), Range { low, high, unit: unit_text(data, name) }))
+    };
+    laws.iter().flat_map(ForceLaw::channels).filter(is_other).filter_map(of).collect()
 }
 
 /// Ranges of the observations, by name, with the findings that they give rise to.

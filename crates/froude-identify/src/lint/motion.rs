@@ -97,7 +97,7 @@ pub(crate) const ALONG: [(&str, &str); 6] =
     [("f_x", "v_x"), ("f_y", "v_y"), ("f_z", "v_z"), ("m_x", "w_x"), ("m_y", "w_y"), ("m_z", "w_z")];
 
 /// Channels of the motion itself and of what it moves through: a load that goes with these alone is a resistance.
-const OF_RESISTANCE: [&str; 14] = [
+pub(crate) const OF_RESISTANCE: [&str; 14] = [
     "speed",
     "angle",
     "v_x",

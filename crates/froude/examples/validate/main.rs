@@ -1,7 +1,7 @@
 //! The validation page: every claim of the project beside the figure that a run gives.
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
-//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
+//! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, predict, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
 //! dynamic, potential, intervals, lints, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
@@ -37,6 +37,7 @@ mod lints;
 mod oscillation;
 mod potential;
 mod potential_laws;
+mod predicted;
 mod rm2;
 mod rotation;
 mod snake;
@@ -90,6 +91,9 @@ fn main() -> ExitCode {
             rm2::all(claims, &root)?;
             kvlcc2::hmri(claims, &shared)?;
             kvlcc2::fhr(claims, &shared)?;
+        }
+        if wants("predict") {
+            predicted::all(claims, &root)?;
         }
         if wants("servo") {
             emps::all(claims, &root)?;
