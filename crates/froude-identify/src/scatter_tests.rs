@@ -35,6 +35,8 @@ const ON_CHANNELS: f64 = 0.25;
 const LEAST_LOAD: f64 = 0.02;
 /// Fewest rows that a scatter is judged from.
 const FEWEST_ROWS: usize = 8;
+/// Rows times groups squared up to which offsets of groups are looked for: a tenth of a second.
+const MOST_WORK: usize = 100_000_000;
 /// A fit without error has no scatter.
 const ROUNDING: f64 = 1e-9;
 
@@ -193,7 +195,7 @@ fn offset(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
             size[*g] += 1;
         }
         // Single rows have no scatter within.
-        if count < 2 || size.iter().filter(|s| **s >= 2).count() < 2 {
+        if count < 2 || size.iter().filter(|s| **s >= 2).count() < 2 || of_row.len() * count * count > MOST_WORK {
             continue;
         }
         let Some((f, dof)) = between(residuals, &of_row, count) else { continue };

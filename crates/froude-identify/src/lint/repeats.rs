@@ -78,22 +78,26 @@ fn coarse(data: &Dataset) -> Option<f64> {
     let settings = repeat_groups(data);
     let chance = |load: &&str| {
         let values = data.values(load)?;
-        let (mut squares, mut count) = (0.0, 0);
-        for i in 0..data.rows {
-            for j in i + 1..data.rows {
-                if settings[i] == settings[j] && values[i] != values[j] {
-                    squares += 0.5 * (values[i] - values[j]).powi(2);
-                    count += 1;
-                }
-            }
+        // Of each setting the readings that differ: copies among them tell no scatter.
+        let mut by_setting: IndexMap<usize, Vec<f64>> = IndexMap::new();
+        for (setting, value) in settings.iter().zip(values) {
+            by_setting.entry(*setting).or_default().push(*value);
+        }
+        let (mut squares, mut count) = (0.0, 0.0);
+        for readings in by_setting.values_mut() {
+            readings.sort_by(f64::total_cmp);
+            readings.dedup();
+            let mean = readings.iter().sum::<f64>() / readings.len() as f64;
+            squares += readings.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
+            count += readings.len() as f64 - 1.0;
         }
         let mut sorted = values.to_vec();
         sorted.sort_by(f64::total_cmp);
         let range = sorted.last()? - sorted.first()?;
         let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|d| *d > ROUNDED * range);
         let step = steps.fold(f64::INFINITY, f64::min);
-        let sigma = (squares / f64::from(count)).sqrt();
-        (count > 0).then(|| (step / (2.0 * std::f64::consts::PI.sqrt() * sigma)).min(1.0))
+        let sigma = (squares / count).sqrt();
+        (count > 0.0).then(|| (step / (2.0 * std::f64::consts::PI.sqrt() * sigma)).min(1.0))
     };
     let all: Option<f64> = LOADS.iter().filter(|load| data.values(load).is_some()).map(chance).product();
     all.filter(|p| *p > BY_CHANCE)

@@ -27,10 +27,10 @@ use crate::regression::fitted::{Scatter, Settings};
 use crate::uncertainty::{Linearised, direction, groups};
 
 /// Rows of all loads together up to which it is done: matrices over all of them are kept.
-const MOST_ROWS: usize = 1200;
+const MOST_ROWS: usize = 600;
 /// Steps for σ, and the change at which they end.
 const STEPS: usize = 60;
-const CONVERGED: f64 = 1e-6;
+const CONVERGED: f64 = 1e-5;
 /// σ² falls to this part of what least squares give at most: the declared errors explain all scatter then.
 const LEAST: f64 = 1e-6;
 
