@@ -271,6 +271,19 @@ fn estimate_facts(e: &Estimate) {
     if let Some(reason) = &e.reason {
         sentence(reason);
     }
+    if let Some(formula) = &e.formula_of {
+        let apart: Vec<String> = formula
+            .largest_difference
+            .iter()
+            .map(|(load, m)| format!("{} {} in {load}", number::plain(m.value, 2), m.unit))
+            .collect();
+        sentence(&format!(
+            "a formula of {}: at most {} from it, and its uncertainties widened by {} to hold its band",
+            formula.estimate,
+            apart.join(", "),
+            number::plain(formula.widened, 3)
+        ));
+    }
     let mut about = vec![observations(e.n_observations)];
     about.extend(
         [e.kind.as_str(), &e.method.words, e.covariance_kind()]

@@ -122,6 +122,7 @@ impl Factored {
             for (l, &j) in block.columns.iter().enumerate() {
                 determined[j] = null.determined[l];
                 let of_part = match &leave_out {
+                    Some(_) if rank == 0 => f64::NAN,
                     Some((moves, groups, count)) => freedom(&q, rank, &moves[l * n..(l + 1) * n], groups, *count),
                     None => (n - rank) as f64,
                 };

@@ -15,18 +15,24 @@ pub struct Residuals {
     pub rows: Vec<usize>,
     /// Whitened residuals of the fit without bounds and inequalities.
     pub residual: Vec<f64>,
-    /// What that fit gives, in the problem's unit.
-    pub fitted: Vec<f64>,
     /// Their lines of an orthonormal basis of what was fitted, rows × rank.
     pub q: Mat<f64>,
 }
 
 impl Residuals {
-    /// Of every component; empty where σ of one is not known, and for condensed rows.
+    /// Of every component, with σ of the fit; empty for condensed rows.
     #[must_use]
     pub fn of(problem: &Problem, options: &Options, fit: &Fit) -> Vec<Self> {
-        let sigma: Option<Vec<f64>> = fit.components.iter().map(|c| c.sigma.filter(|s| *s > 0.0)).collect();
-        let Some(sigma) = sigma.filter(|_| options.observations.is_empty()) else { return Vec::new() };
+        let sigma: Vec<f64> = fit.components.iter().map(|c| c.sigma.filter(|s| *s > 0.0).unwrap_or(1.0)).collect();
+        Self::with(problem, options, &sigma)
+    }
+
+    /// The same with σ of each component; 1 where the rows are whitened already.
+    #[must_use]
+    pub fn with(problem: &Problem, options: &Options, sigma: &[f64]) -> Vec<Self> {
+        if !options.observations.is_empty() {
+            return Vec::new();
+        }
         let n = problem.n_rows();
         let is_held = |j: &usize| options.excluded.contains(j) || options.fixed.iter().any(|(k, _)| k == j);
         let free: Vec<usize> = (0..problem.n_coefficients()).filter(|j| !is_held(j)).collect();
@@ -46,7 +52,6 @@ impl Residuals {
                 let rows: Vec<usize> = (0..n).filter(|&i| problem.component[i] == c).collect();
                 Self {
                     residual: rows.iter().map(|&i| response[i] - onto[i]).collect(),
-                    fitted: rows.iter().map(|&i| onto[i] / factor(i) + of_held(i)).collect(),
                     q: Mat::from_fn(rows.len(), qr.rank, |i, k| qr.q[(rows[i], k)]),
                     rows,
                 }

@@ -6,6 +6,7 @@ use froude_records::campaign::Campaign;
 use froude_records::estimate::{Diagnostics, NamedCorrelation};
 use froude_records::finding::{Finding, Severity};
 use froude_records::number::{p_equation, percent, plain, significant};
+use froude_records::text::counted;
 
 use crate::dataset::{Dataset, distinct};
 use crate::error::IdentifyError;
@@ -19,8 +20,6 @@ use crate::{dissipation, lint, scatter_tests};
 const COLLINEAR_ABOVE: f64 = 30.0;
 /// Degrees of freedom below which HC3 stands on few rows.
 const FEW_DOF: f64 = 4.0;
-/// Standard uncertainties above zero of an added mass of the wrong sign: 0.4 % by chance, one-sided.
-const SIGN_ABOVE: f64 = 2.65;
 /// Rank correlation of |residual| with speed that calls the scatter uneven, in standard errors.
 const UNEVEN_ABOVE_Z: f64 = 2.0;
 /// Fewest observations from which the error model is judged.
@@ -88,10 +87,11 @@ fn lack_of_fit(model: &ModelFit, data: &Dataset) -> indexmap::IndexMap<String, f
 pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagnostics) -> Vec<Finding> {
     let name = &model.law.name;
     let mut out = Vec::new();
-    out.extend(scatter_tests::findings(model, data));
+    let (outlying, rows) = outlying_rows(model, data);
+    out.extend(scatter_tests::findings(model, data, &outlying));
     out.extend(decided_by_one(model, data));
     out.extend(added_mass_sign(model, data));
-    out.extend(outlying_rows(model, data));
+    out.extend(rows);
     if let Some(c) = d.condition_number
         && c > COLLINEAR_ABOVE
         && let Some(pair) = &d.largest_correlation
@@ -194,10 +194,14 @@ fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         if model.is_refused(j) {
             let groups = data.group.as_ref().map(|group| distinct(group)).unwrap_or_default();
             let group = groups.get(which).cloned().unwrap_or_default();
+            let advice = if group.starts_with("block ") {
+                "blocks hold too few rows of their own: take more rows, or runs in another order"
+            } else {
+                "record more runs of other groups, or estimate an offset of each (group_offset = \"estimate\", covariance = \"classical\")"
+            };
             let text = format!(
-                "{numbers} over {} groups, of which {group:?} makes {} of the scatter: no interval is given below two. Record more runs of other groups, \
-                 or estimate an offset of each group (group_offset = \"estimate\")",
-                data.clusters(),
+                "{numbers} over {}, of which {group:?} makes {} of the scatter: no interval is given below two; {advice}",
+                counted(data.clusters(), "group", "groups"),
                 percent(part)
             );
             out.push(Finding::new(Severity::Warning, "one-group-decides", text));
@@ -234,13 +238,21 @@ fn added_mass_sign(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         let step: Vec<f64> = (0..here.ncols()).map(|j| moved[(r * data.rows, j)] - here[(r * data.rows, j)]).collect();
         let slope: f64 = step.iter().zip(coefficients).map(|(x, c)| x * c).sum();
         let standard = model.prediction_std(&step);
-        if standard > 0.0 && slope > SIGN_ABOVE * standard {
+        let dof = model.budget[0]
+            .dof
+            .iter()
+            .zip(&step)
+            .filter(|(_, x)| **x != 0.0)
+            .map(|(dof, _)| *dof)
+            .fold(f64::INFINITY, f64::min);
+        let p = 0.5 * t_two_sided(slope.abs() / standard, dof);
+        if standard > 0.0 && slope > 0.0 && p < scatter_tests::ALARM / model.law.responses.len() as f64 {
             let text = format!(
-                "{}: {load} grows by {} per unit of {channel}, {:.1} standard uncertainties above zero: water resists an acceleration, so this added mass is below \
+                "{}: {load} grows by {} per unit of {channel} ({} against zero): water resists an acceleration, so this added mass is below \
                  zero. Check the sign of {load} or of {channel}, or whether the body's own inertia was subtracted the wrong way",
                 model.law.name,
                 significant(slope, 3),
-                slope / standard
+                p_equation(p)
             );
             out.push(Finding::new(Severity::Warning, "negative-added-mass", text));
         }

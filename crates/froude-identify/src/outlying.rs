@@ -36,18 +36,19 @@ struct Outlying {
     t: f64,
 }
 
-/// The most outlying row of each component that has one.
-pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
+/// The most outlying row of each component that has one, beside the names of these.
+pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<String>, Vec<Finding>) {
     if data.sample.is_some() || model.in_variables || model.is_in_time(data) {
-        return Vec::new();
+        return (Vec::new(), Vec::new());
     }
-    let mut out = Vec::new();
+    let (mut loads, mut out) = (Vec::new(), Vec::new());
     for (r, component) in model.law.responses.iter().enumerate() {
         let Some(found) = outlying(model, data.rows, r) else { continue };
         if uneven_without(model, data, r, found).is_some_and(Unevenness::contradicts) {
             continue;
         }
         let Outlying { row, residual, t } = found;
+        loads.push(component.clone());
         let unit = if model.law.in_logarithms() {
             ""
         } else if component.starts_with('m') {
@@ -68,7 +69,7 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
             ),
         ));
     }
-    out
+    (loads, out)
 }
 
 /// The row of a component that the others explain least, if by less than chance.

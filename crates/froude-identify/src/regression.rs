@@ -46,7 +46,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
     if settings.identify.fitted_weights {
         for _ in 0..fitted_weights::ROUNDS {
             let weights = fitted_weights::weights(&problem, &fitted);
-            let Some(weights) = weights.filter(|_| settings.condensed.is_none() && !law.in_logarithms()) else { break };
+            let Some(weights) = weights.filter(|_| settings.condensed.is_none() && !law.is_nonlinear()) else { break };
             job.weight = Some(weights);
             (problem, fitted) = job.solve(&options, &mut findings)?;
         }
@@ -76,7 +76,7 @@ pub fn regress(law: &ForceLaw, data: &Dataset, settings: Settings<'_>) -> Result
         relative_residual(law, data, &coefficients, &job.newtons, &problem, &mut fitted)?;
     }
     findings.extend(beside_priors(law, data, settings, &problem, &options, &job.specs)?);
-    let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), in_variables)?;
+    let uncertainty = Uncertainty::of(law, data, settings, (&problem, &fitted), [in_variables, whitened.is_some()])?;
     let of_fit = fitted.components.iter().flat_map(|c| c.sigma.into_iter().chain([c.rss]));
     let numbers = coefficients.iter().copied().chain(of_fit).chain(uncertainty.variances()).chain(uncertainty.arms());
     if let Some(number) = numbers.into_iter().find(|x| !x.is_finite()) {
@@ -143,7 +143,7 @@ fn errors_in_variables(
     if has_bounds || has_more || has_other || !options.excluded.is_empty() || problem.weight.is_some() {
         return Err(IdentifyError::Campaign {
             place: place(),
-            what: "errors_in_variables goes with neither bounds, priors, fixed or excluded coefficients, dissipative, Huber, HC3, cluster, nor \
+            what: "errors_in_variables goes with neither bounds, priors, fixed or excluded coefficients, dissipative, Huber, HC3, cluster, weights, nor \
                    std columns; leave one of them out"
                 .to_owned(),
         });

@@ -41,21 +41,33 @@ const MOST_WORK: usize = 100_000_000;
 const ROUNDING: f64 = 1e-9;
 
 /// What contradicts the scatter that the intervals assume.
-pub(crate) fn findings(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
-    let problem = model.whitened.as_ref().unwrap_or(&model.problem);
-    if data.rows < FEWEST_ROWS
-        || model.in_variables
-        || model.fit.components.iter().any(|c| c.relative_residual < ROUNDING)
-    {
+pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[String]) -> Vec<Finding> {
+    // Huber's loss answers for rows that do not fit in.
+    if data.rows < FEWEST_ROWS || model.in_variables || model.options.loss != fit::Loss::Squares {
         return Vec::new();
     }
-    let residuals =
-        if data.sample.is_some() { of_sample(model, data) } else { Residuals::of(problem, &model.options, &model.fit) };
+    let residuals = match &model.whitened {
+        _ if data.sample.is_some() => of_sample(model, data),
+        Some(problem) => Residuals::with(problem, &model.options, &vec![1.0; problem.components.len()]),
+        None => Residuals::of(&model.problem, &model.options, &model.fit),
+    };
+    let Ok(predicted) = model.law.predict(data, model.law_coefficients()) else { return Vec::new() };
     let loads = residuals.len().max(1) as f64;
+    let n = data.rows;
     let mut out = Vec::new();
-    for (load, residuals) in model.law.responses.iter().zip(&residuals) {
+    for (r, residuals) in residuals.iter().enumerate() {
+        let (component, predicted) = (&model.fit.components[r], &predicted[r * n..(r + 1) * n]);
+        let size = (predicted.iter().map(|f| f * f).sum::<f64>() / n as f64).sqrt();
+        // A load without scatter has none to judge.
+        if component.sigma.is_none_or(|sigma| sigma <= ROUNDING * size) {
+            continue;
+        }
+        let load = &model.law.responses[r];
         out.extend(serial(model, data, load, residuals, loads));
-        out.extend(uneven(model, data, load, residuals, loads));
+        // One row that lies apart is that, and no scatter that grows.
+        if !outlying.contains(load) {
+            out.extend(uneven(model, data, load, (residuals, predicted), loads));
+        }
         out.extend(offset(model, data, load, residuals, loads));
     }
     out
@@ -69,7 +81,6 @@ fn of_sample(model: &ModelFit, data: &Dataset) -> Vec<Residuals> {
         let weight = |i: usize| model.problem.weight.as_ref().map_or(1.0, |w| w[i]);
         Residuals {
             residual: rows.iter().map(|&i| model.fit.residuals[i] * weight(i).sqrt()).collect(),
-            fitted: rows.iter().map(|&i| model.fit.fitted[i]).collect(),
             q: Mat::zeros(n, 0),
             rows,
         }
@@ -90,9 +101,8 @@ fn has_declared_groups(model: &ModelFit) -> bool {
 
 /// Residuals that are alike from one row to the next.
 fn serial(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, loads: f64) -> Option<Finding> {
-    // Clusters and rows in time hold that already.
-    let knows = matches!(model.scatter, Scatter::Cluster | Scatter::Serial(_) | Scatter::Replicates { .. });
-    if knows || model.is_in_time(data) || has_declared_groups(model) {
+    // Clusters and rows in time hold that already; under HC3 errors are not of one size, which the test assumes.
+    if !matches!(model.scatter, Scatter::Classical) || model.is_in_time(data) || has_declared_groups(model) {
         return None;
     }
     let (statistic, p) = if data.sample.is_some() {
@@ -124,7 +134,13 @@ struct With {
 }
 
 /// Errors that grow or fall with the load, or with a channel of the law.
-fn uneven(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, loads: f64) -> Option<Finding> {
+fn uneven(
+    model: &ModelFit,
+    data: &Dataset,
+    load: &str,
+    (residuals, predicted): (&Residuals, &[f64]),
+    loads: f64,
+) -> Option<Finding> {
     // Variances from each residual, or each cluster, assume nothing of the kind.
     if !matches!(model.scatter, Scatter::Classical) {
         return None;
@@ -144,10 +160,10 @@ fn uneven(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
         with.level = ON_CHANNELS * ALARM / (loads * count);
     }
     // Of errors that go with the load the logarithm tells twice as many as the load itself: few large loads tell the latter.
-    let largest = residuals.fitted.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-    let z: Vec<f64> = residuals.fitted.iter().map(|f| f.abs().max(LEAST_LOAD * largest).ln()).collect();
+    let largest = predicted.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+    let z: Vec<f64> = predicted.iter().map(|f| f.abs().max(LEAST_LOAD * largest).ln()).collect();
     let on_load = if tried.is_empty() { 1.0 } else { 1.0 - ON_CHANNELS };
-    if !is_one(&z) {
+    if largest > 0.0 && !is_one(&z) {
         tried.insert(0, With { words: format!("the fitted |{load}|"), z, level: on_load * ALARM / loads });
     }
     let found = tried.into_iter().find_map(|with| {
@@ -158,11 +174,15 @@ fn uneven(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
     });
     let (words, grows, p) = found?;
     let is_weighted = model.problem.weight.is_some();
+    let has_std = data.values(&format!("std_{load}")).is_some();
     let (assumed, advice) = match (model.law.in_logarithms(), is_weighted) {
         (true, false) => ("equal relative errors", "compare with the fit in newtons"),
         (true, true) => ("relative errors as in the std columns", "compare with the fit in newtons"),
         (false, false) => ("equal absolute errors", "weights = \"fitted\", std columns, or covariance = \"HC3\""),
-        (false, true) => ("errors as in its weights", "check the std columns, or use covariance = \"HC3\""),
+        (false, true) if has_std => {
+            ("errors as in the std columns", "check these columns, or use covariance = \"HC3\"")
+        }
+        (false, true) => ("errors as in the fitted weights", "covariance = \"HC3\""),
     };
     let text = format!(
         "{}, {load}: errors{} {} with {words} ({}{}): {assumed} are not what the data show, and intervals assume them; use {advice}",
@@ -181,12 +201,17 @@ fn uneven(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
 
 /// An offset of each setup, or each group, that nobody declared.
 fn offset(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, loads: f64) -> Option<Finding> {
-    let is_classical = matches!(model.scatter, Scatter::Classical | Scatter::Hc3);
+    let is_classical = matches!(model.scatter, Scatter::Classical);
     if !is_classical || data.sample.is_some() || has_declared_groups(model) || model.whitened.is_some() {
         return None;
     }
     let n = data.rows;
-    for (by, texts) in groupings(data) {
+    let groupings = groupings(data);
+    // Columns that name the same rows are one.
+    let distinct_ones: std::collections::BTreeSet<Vec<usize>> =
+        groupings.iter().map(|(_, texts)| labels(texts)).collect();
+    let level = ALARM_OF_FEW / (loads * distinct_ones.len().max(1) as f64);
+    for (by, texts) in groupings {
         let group = labels(texts);
         let count = distinct(texts).len();
         let of_row: Vec<usize> = residuals.rows.iter().map(|row| group[row % n]).collect();
@@ -200,7 +225,7 @@ fn offset(model: &ModelFit, data: &Dataset, load: &str, residuals: &Residuals, l
         }
         let Some((f, dof)) = between(residuals, &of_row, count) else { continue };
         let p = f_upper(f, dof[0], dof[1]);
-        if p < ALARM_OF_FEW / loads {
+        if p < level {
             let shared = if by == "group" { "setup" } else { by };
             let text = format!(
                 "{}, {load}: offsets from {by} to {by} are larger than the scatter within (F({}, {}) = {f:.1}, {}), and no error of a {by} is \

@@ -85,7 +85,8 @@ pub(crate) fn conclude(
     for (i, model) in models.iter().enumerate() {
         let mut diagnostics = diagnosis::diagnostics(model, data, &scores[i])?;
         let chosen = by_data.filter(|r| r.index == i);
-        if let Some(draws) = identify.monte_carlo.filter(|_| chosen.is_some()) {
+        // Draws are fitted by least squares alone.
+        if let Some(draws) = identify.monte_carlo.filter(|_| chosen.is_some() && model.whitened.is_none()) {
             progress(&format!("{} by {draws} Monte Carlo draws", model.law.name));
             diagnostics.notes.extend(monte_carlo_note(model, data, settings, draws));
         }

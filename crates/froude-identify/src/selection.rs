@@ -1,10 +1,11 @@
 //! Which force model the data support, and why.
 //!
-//! Candidates are the models whose coefficients are all determined. Recommended is the
-//! largest of them that the data do not contradict (AICc at most 10 above the smallest:
-//! beyond that a model has essentially no support, Burnham and Anderson 2002, § 2.6).
-//! Nothing chose it but the list, so that its intervals hold whichever of the laws
-//! within it is true; those of a law that the scatter has chosen do not.
+//! Candidates are the models whose coefficients are all determined. The simplest law
+//! that they support is found first. Recommended is the largest one that contains it and
+//! that the data do not contradict (AICc at most 10 above the smallest: beyond that a
+//! model has essentially no support, Burnham and Anderson 2002, § 2.6), or that is not
+//! clearly less likely (AICc at most 6 above). Nothing within it chose it, so that its intervals hold
+//! whichever of the laws within it is true; those of a law that the scatter has chosen do not.
 //!
 //! The simplest law stands beside it as a formula: the one with the fewest
 //! coefficients among those whose AICc lies within 2 of the smallest (smaller
@@ -28,6 +29,9 @@ use crate::regression::ModelFit;
 
 /// Level below which an F test rejects the simpler model.
 const REJECTED_BELOW: f64 = 0.01;
+/// A law that does not contain the chosen one is preferred to it, where it is larger or linear, up to this difference of AICc: that it is true is less than one in twenty as likely
+/// beyond. Up to it the chosen law may be chosen by the scatter alone, and its intervals would not hold.
+const RIVAL_WITHIN: f64 = 6.0;
 /// AICc differences beyond this leave a model essentially no support.
 const NO_SUPPORT_ABOVE: f64 = 10.0;
 /// AICc differences below this are no evidence.
@@ -326,8 +330,9 @@ fn p_value(p: f64) -> String {
 
 /// The models that the data support.
 ///
-/// Recommended is, of the determined models whose summed AICc lies within 10 of the smallest, the one with the most loads and coefficients; of several the linear one, then the
-/// first. Its formula is, of those within 2, the one with the fewest coefficients, unless an F test at 1 % rejects it inside the leading model. `None` without a determined model.
+/// The formula is, of the determined models whose summed AICc lies within 2 of the smallest, the one with the fewest coefficients, unless an F test at 1 % rejects it inside the
+/// leading model. Recommended is, of those that contain it (within 10) or are not clearly less likely (6 above it) and have an interval for each coefficient, the one with the most loads and
+/// coefficients; of several the linear one. `None` without a determined model.
 ///
 /// # Source
 ///
@@ -412,14 +417,19 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
         let m = &models[*i];
         (std::cmp::Reverse(m.law.responses.len()), std::cmp::Reverse(size(m)), m.law.is_nonlinear())
     };
-    let full = (0..models.len())
-        .filter(|&i| determined(&models[i]))
-        .filter(|&i| i == chosen || behind(i).is_none_or(|d| d.is_nan() || d <= NO_SUPPORT_ABOVE))
-        .min_by_key(rank)
-        .unwrap_or(chosen);
-    // Of equals the one that the data prefer needs no other.
-    let is_larger = size(&models[full]) > size(&models[chosen]) || rank(&full) < rank(&chosen);
-    if full == chosen || !is_larger {
+    let has_intervals = |m: &ModelFit| (0..m.specs.len()).all(|j| m.combined[j].is_some() && !m.is_refused(j));
+    // One that contains the chosen law says no less; one that does not has to be as likely.
+    let contains = |i: usize| {
+        restrictions(&models[chosen].law, &models[i].law, data).is_some()
+            || adds_loads(&models[chosen].law, &models[i].law)
+    };
+    let is_rival = |i: usize| {
+        let (Some(own), Some(of_chosen)) = (behind(i).filter(|d| d.is_finite()), behind(chosen)) else { return false };
+        let most = if contains(i) { NO_SUPPORT_ABOVE } else { of_chosen + RIVAL_WITHIN };
+        own <= most && determined(&models[i]) && has_intervals(&models[i])
+    };
+    let full = (0..models.len()).filter(|&i| i == chosen || is_rival(i)).min_by_key(rank).unwrap_or(chosen);
+    if full == chosen || rank(&full) == rank(&chosen) {
         return Some(Recommendation { index: chosen, formula: None, reason });
     }
     let reason = format!(
@@ -427,6 +437,13 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
         models[full].law.name
     );
     Some(Recommendation { index: full, formula: Some(chosen), reason })
+}
+
+/// Whether a law has the formulas of another one and further loads.
+fn adds_loads(simple: &ForceLaw, general: &ForceLaw) -> bool {
+    let of = |law: &ForceLaw, load: &String| law.texts.get(load).cloned();
+    simple.responses.len() < general.responses.len()
+        && simple.responses.iter().all(|load| of(simple, load).is_some() && of(simple, load) == of(general, load))
 }
 
 /// Every load that one of the models explains, in the order of the axes; user-written ones after them.

@@ -52,6 +52,12 @@ pub fn identify_observations(
     progress: &dyn Fn(&str),
 ) -> Result<SourceResult, IdentifyError> {
     let mut findings = Vec::new();
+    if campaign.identify.group_offset && observations.data.group.is_none() {
+        return Err(IdentifyError::Campaign {
+            place: format!("source {:?}", source.name),
+            what: "group_offset = \"estimate\" needs groups: write group = \"COLUMN\", the column that says which rows share an offset".to_owned(),
+        });
+    }
     in_blocks(campaign, &mut observations.data);
     let laws = laws(campaign, source, &observations.data)?;
     let scatter = scatter(campaign, source, &observations.data, &mut findings)?;

@@ -9,8 +9,8 @@ use crate::dataset::{Dataset, LOADS, distinct};
 /// How well rigs repeat a setting, as part of the largest: 2 mm/s in 1 m/s moves a drag by 0.4 % there.
 pub(crate) const REPEATS_WITHIN: f64 = 2e-3;
 
-/// Rows whose repeats read the same with a larger chance may repeat without being copies.
-const BY_CHANCE: f64 = 0.01;
+/// So many copies, or settings, say how they came about.
+const FEW_COPIES: usize = 3;
 /// Differences below this part of a range are rounding.
 const ROUNDED: f64 = 1e-9;
 
@@ -41,9 +41,9 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
     if copies.is_empty() {
         return (keep, None);
     }
-    if let Some(chance) = coarse(data) {
+    if let Some(chance) = coarse(data, &copies) {
         let text = format!(
-            "{} of {} rows repeat an earlier one in every column, and are kept: by the steps of the readings two real repeats read the same with a chance of {}",
+            "{} of {} rows repeat an earlier one in every column, and are kept: by the steps of the readings real repeats read the same that often ({} of pairs)",
             copies.len(),
             data.rows,
             percent(chance)
@@ -71,10 +71,15 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
     (keep, Some(finding))
 }
 
-/// Chance that two true repeats read the same in every load, where it is no small one: a sensor of coarse steps.
+/// Chance that two true repeats read the same in every load, where that explains the copies: a sensor of coarse steps.
 ///
-/// With the step Δ of the readings and the scatter σ of repeats that differ, two repeats read the same with a chance of Δ/(2√π σ).
-fn coarse(data: &Dataset) -> Option<f64> {
+/// With the step Δ of the readings and the scatter σ of repeats that differ, two repeats read the same with a chance of Δ/(2√π σ). Where no repeats differ at all, and that at
+/// several settings, the steps are coarser than the scatter, unless one part of the table stands in it twice.
+fn coarse(data: &Dataset, copies: &[(usize, usize)]) -> Option<f64> {
+    let apart = copies.first().map_or(0, |(a, b)| b - a);
+    if copies.len() >= FEW_COPIES && apart >= FEW_COPIES && copies.iter().all(|(a, b)| b - a == apart) {
+        return None;
+    }
     let settings = repeat_groups(data);
     let chance = |load: &&str| {
         let values = data.values(load)?;
@@ -99,8 +104,20 @@ fn coarse(data: &Dataset) -> Option<f64> {
         let sigma = (squares / count).sqrt();
         (count > 0.0).then(|| (step / (2.0 * std::f64::consts::PI.sqrt() * sigma)).min(1.0))
     };
-    let all: Option<f64> = LOADS.iter().filter(|load| data.values(load).is_some()).map(chance).product();
-    all.filter(|p| *p > BY_CHANCE)
+    let mut size: IndexMap<usize, f64> = IndexMap::new();
+    for setting in &settings {
+        *size.entry(*setting).or_default() += 1.0;
+    }
+    let pairs: f64 = size.values().map(|n| 0.5 * n * (n - 1.0)).sum();
+    let repeated = size.values().filter(|n| **n > 1.0).count();
+    let of_loads: Vec<Option<f64>> = LOADS.iter().filter(|load| data.values(load).is_some()).map(chance).collect();
+    if of_loads.iter().all(Option::is_none) {
+        return (repeated >= FEW_COPIES).then_some(1.0);
+    }
+    // A load that repeats always says nothing.
+    let p: f64 = of_loads.into_iter().flatten().product();
+    let expected = p * pairs;
+    (copies.len() as f64 <= expected + 3.0 * expected.sqrt()).then_some(p)
 }
 
 /// How many settings were repeated, which is what pure error comes from.

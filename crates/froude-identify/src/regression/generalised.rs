@@ -51,6 +51,9 @@ pub(crate) fn generalised(
         && settings.condensed.is_none()
         && !law.is_nonlinear()
         && options.loss == fit::Loss::Squares
+        && options.priors.is_empty()
+        && options.fixed.is_empty()
+        && options.excluded.is_empty()
         && problem.n_rows() <= MOST_ROWS
         && problem.n_coefficients() == law.coefficients.len();
     let sigma: Option<Vec<f64>> = fitted.components.iter().map(|c| c.sigma.filter(|s| *s > 0.0)).collect();

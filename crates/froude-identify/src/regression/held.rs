@@ -10,7 +10,7 @@ use froude_records::number::p_equation;
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
-use crate::regression::fitted::Settings;
+use crate::regression::fitted::{Scatter, Settings};
 use crate::regression::problem::step;
 use crate::uncertainty::{Linearised, contributions, scatter};
 
@@ -34,6 +34,9 @@ pub(crate) fn beside_priors(
     options: &fit::Options,
     specs: &[CoefficientSpec],
 ) -> Result<Vec<Finding>, IdentifyError> {
+    if matches!(settings.scatter, Scatter::Serial(_) | Scatter::Replicates { .. }) {
+        return Ok(Vec::new());
+    }
     let alone = fit::Options { priors: Vec::new(), ..options.clone() };
     let Some(free) = (!options.priors.is_empty()).then(|| fit::fit(problem, &alone).ok()).flatten() else {
         return Ok(Vec::new());

@@ -43,6 +43,13 @@ impl<'a> Job<'a> {
             unit: "rad".to_owned(),
         }));
         let groups = group_offsets(law, data, settings.identify);
+        if settings.identify.group_offset && law.is_nonlinear() {
+            return Err(IdentifyError::NoFit {
+                source_name: settings.source_name.to_owned(),
+                model: law.name.clone(),
+                why: "group_offset = \"estimate\" needs a law that is linear in its coefficients".to_owned(),
+            });
+        }
         for load in &law.responses {
             specs.extend(
                 groups.names.iter().map(|group| CoefficientSpec {

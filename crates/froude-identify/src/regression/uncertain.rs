@@ -27,13 +27,13 @@ pub(crate) struct Uncertainty {
 }
 
 impl Uncertainty {
-    /// `in_variables`: row errors of speed and angle are in the regression's covariance already, also where there is no scatter.
+    /// `is_whitened`: rows that share declared errors were fitted together. `in_variables`: row errors of speed and angle are in the regression's covariance already, also where there is no scatter.
     pub(crate) fn of(
         law: &ForceLaw,
         data: &Dataset,
         settings: Settings<'_>,
         (problem, fitted): (&fit::Problem, &fit::Fit),
-        in_variables: bool,
+        [in_variables, is_whitened]: [bool; 2],
     ) -> Result<Self, IdentifyError> {
         let p = fitted.coefficients.len();
         let coefficients = step(fitted);
@@ -74,6 +74,9 @@ impl Uncertainty {
         let kind = match replicates {
             Some(_) => budget[0].name.clone(),
             None if in_variables => "model-based, errors in variables".to_owned(),
+            None if is_whitened => {
+                "of generalised least squares: declared errors of runs and setups weigh the rows".to_owned()
+            }
             None => residuals_in_words(data, settings),
         };
         Ok(Self { covariance: covariance(&budget, &combined), budget, combined, kind })

@@ -15,6 +15,7 @@ impl Tables {
         let has_lack = rows.iter().any(|r| r.lack_of_fit_p.is_some());
         let components = union(rows.iter().map(|r| &r.component));
         let best = crate::figures::drawing::recommended(source).map(|e| e.law.name.as_str());
+        let formula = source.estimates.iter().find(|e| e.formula_of.is_some()).map(|e| e.law.name.as_str());
         let has_scores = rows.iter().any(|r| r.cross_validation.is_ok());
         let scored = |r: &'a SelectionRow| r.cross_validation.as_ref().err().filter(|_| has_scores);
         let reasons = union(rows.iter().flat_map(|r| r.delta_aicc.as_ref().err().into_iter().chain(scored(r))));
@@ -31,7 +32,8 @@ impl Tables {
         let row = |r: &SelectionRow| {
             html! {
                 tr class=(if Some(r.model.as_str()) == best { "best" } else { "" }) {
-                    th scope="row" { (r.model) @if Some(r.model.as_str()) == best { " " span class="mark" { "recommended" } } }
+                    th scope="row" { (r.model) @if Some(r.model.as_str()) == best { " " span class="mark" { "recommended" } }
+                            @if Some(r.model.as_str()) == formula { " " span class="mark" { "formula" } } }
                     td class="num" { (r.n_coefficients) }
                     td class="num" { (number::significant(r.sigma, 3)) }
                     td class="num" { (number::percent(r.relative_residual)) }

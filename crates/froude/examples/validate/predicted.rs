@@ -30,7 +30,7 @@ pub fn all(claims: &mut Claims, root: &Path) -> Result<(), Box<dyn Error>> {
         for name in ["fitted.toml", "held.toml"] {
             std::fs::copy(data.join(format!("{table}.toml")), place(name))?;
         }
-        identify(&Job { out: Some(place("results")), ..Job::new(&place("fitted.csv")) }, &|_| {})?;
+        identify(&Job { out: Some(place("results")), ..Job::new(place("fitted.csv")) }, &|_| {})?;
         let job = Predict {
             record: place("results/estimate.json"),
             table: place("held.csv"),
