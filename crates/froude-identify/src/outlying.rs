@@ -36,8 +36,8 @@ struct Outlying {
     t: f64,
 }
 
-/// The most outlying row of each component that has one, beside the names of these.
-pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<String>, Vec<Finding>) {
+/// The most outlying row of each component that has one, beside component and row.
+pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<(String, usize)>, Vec<Finding>) {
     if data.sample.is_some() || model.in_variables || model.is_in_time(data) {
         return (Vec::new(), Vec::new());
     }
@@ -48,7 +48,7 @@ pub(crate) fn outlying_rows(model: &ModelFit, data: &Dataset) -> (Vec<String>, V
             continue;
         }
         let Outlying { row, residual, t } = found;
-        loads.push(component.clone());
+        loads.push((component.clone(), row));
         let unit = if model.law.in_logarithms() {
             ""
         } else if component.starts_with('m') {

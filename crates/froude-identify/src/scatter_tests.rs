@@ -41,7 +41,7 @@ const MOST_WORK: usize = 100_000_000;
 const ROUNDING: f64 = 1e-9;
 
 /// What contradicts the scatter that the intervals assume.
-pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[String]) -> Vec<Finding> {
+pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[(String, usize)]) -> Vec<Finding> {
     // Huber's loss answers for rows that do not fit in.
     if data.rows < FEWEST_ROWS || model.in_variables || model.options.loss != fit::Loss::Squares {
         return Vec::new();
@@ -64,13 +64,23 @@ pub(crate) fn findings(model: &ModelFit, data: &Dataset, outlying: &[String]) ->
         }
         let load = &model.law.responses[r];
         out.extend(serial(model, data, load, residuals, loads));
-        // One row that lies apart is that, and no scatter that grows.
-        if !outlying.contains(load) {
-            out.extend(uneven(model, data, load, (residuals, predicted), loads));
-        }
+        // One row that lies apart is that, and no scatter that grows: the others are asked.
+        let apart = outlying.iter().find(|(of, _)| of == load).map(|(_, row)| *row);
+        out.extend(uneven(model, data, load, (&without(residuals, apart), predicted), loads));
         out.extend(offset(model, data, load, residuals, loads));
     }
     out
+}
+
+/// The residuals of the other rows; what was fitted to all takes the same of them.
+fn without(residuals: &Residuals, row: Option<usize>) -> Residuals {
+    let n = residuals.rows.len();
+    let kept: Vec<usize> = (0..n).filter(|i| row.is_none_or(|row| residuals.rows[*i] % n != row)).collect();
+    Residuals {
+        rows: kept.iter().map(|&i| residuals.rows[i]).collect(),
+        residual: kept.iter().map(|&i| residuals.residual[i]).collect(),
+        q: Mat::from_fn(kept.len(), residuals.q.ncols(), |i, k| residuals.q[(kept[i], k)]),
+    }
 }
 
 /// The residuals of rows drawn from many: what was fitted takes next to nothing of them.
@@ -161,7 +171,8 @@ fn uneven(
     }
     // Of errors that go with the load the logarithm tells twice as many as the load itself: few large loads tell the latter.
     let largest = predicted.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-    let z: Vec<f64> = predicted.iter().map(|f| f.abs().max(LEAST_LOAD * largest).ln()).collect();
+    let z: Vec<f64> =
+        residuals.rows.iter().map(|row| predicted[row % n].abs().max(LEAST_LOAD * largest).ln()).collect();
     let on_load = if tried.is_empty() { 1.0 } else { 1.0 - ON_CHANNELS };
     if largest > 0.0 && !is_one(&z) {
         tried.insert(0, With { words: format!("the fitted |{load}|"), z, level: on_load * ALARM / loads });
