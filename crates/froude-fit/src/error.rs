@@ -169,8 +169,9 @@ pub enum FitError {
 
     /// Too few clusters for an interval that means anything.
     #[error(
-        "component {component:?} has {found} clusters; cluster-robust covariance (CR3) is \
-         refused below {needed}, where its interval is unreliable"
+        "component {component:?} has {found} {}; cluster-robust covariance (CR3) is \
+         refused below {needed}, where its interval is unreliable",
+        if *found == 1 { "cluster" } else { "clusters" }
     )]
     TooFewClusters {
         /// The component.

@@ -105,7 +105,7 @@ pub enum CovarianceKind {
     Classical,
     /// Independent errors of any variance (MacKinnon & White 1985, HC3).
     Hc3,
-    /// Errors correlated in clusters: cluster jackknife, t with `G − 1`.
+    /// Errors correlated in clusters: cluster jackknife, t with degrees of freedom of its own.
     Cr3,
 }
 

@@ -10,6 +10,7 @@ mod volumes;
 use froude_records::campaign::Campaign;
 use froude_records::finding::{Finding, Severity};
 use froude_records::plausible::AIR_KG_M3;
+use froude_records::text::counted;
 
 use crate::dataset::{Dataset, LOADS};
 use crate::law::ForceLaw;
@@ -214,7 +215,10 @@ pub(crate) fn few_speeds(n: usize) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "few-speeds",
-            format!("{n} distinct speeds: a linear and a quadratic term cannot be distinguished with fewer than {DISTINCT_SPEEDS_NEEDED}"),
+            format!(
+                "{}: a linear and a quadratic term cannot be distinguished with fewer than {DISTINCT_SPEEDS_NEEDED}",
+                counted(n, "distinct speed", "distinct speeds")
+            ),
         )
     })
 }

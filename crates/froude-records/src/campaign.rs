@@ -112,6 +112,8 @@ pub struct Source {
     pub name: String,
     /// What it is.
     pub kind: SourceKind,
+    /// Whether the fits of the others are only held against its rows (`role = "validation"`).
+    pub is_validation: bool,
     /// Where its numbers lie.
     pub input: Input,
     /// Sidecar of the table, where it is not the one beside it.
@@ -637,6 +639,7 @@ impl Source {
         Self {
             name,
             kind: SourceKind::Towing,
+            is_validation: false,
             place: Place::whole(input.path()),
             input,
             sidecar: None,

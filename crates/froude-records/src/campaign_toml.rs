@@ -150,6 +150,7 @@ const TANK_METHODS: [(&str, &[&str]); 6] = [
 const SOURCE_KEYS: &[&str] = &[
     "name",
     "kind",
+    "role",
     "table",
     "record",
     "runs",
@@ -205,6 +206,14 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     };
     if let (Some(value), false) = (s.get("select"), matches!(input, Input::Record { .. })) {
         return Err(s.wrong("select", value, "picks an estimate of a record, but the source names no record"));
+    }
+    let is_validation = one_of(s, "role", &["fit", "validation"], &[false, true])?.unwrap_or_default();
+    if let (Some(value), false) = (s.get("role").filter(|_| is_validation), matches!(input, Input::Table(_))) {
+        return Err(s.wrong(
+            "role",
+            value,
+            "holds fits against the rows of a table, but the source names none: write table = \"tomorrow.csv\"",
+        ));
     }
     let keep = s
         .get("keep")
@@ -266,6 +275,7 @@ fn read_source(s: &Section<'_>) -> Result<Source, RecordError> {
     Ok(Source {
         name,
         kind,
+        is_validation,
         sidecar: path("sidecar")?,
         models,
         model_places,

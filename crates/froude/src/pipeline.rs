@@ -10,6 +10,7 @@ use froude_identify::answer::Answer;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared};
 use froude_identify::data_files::DataFiles;
 use froude_identify::method::{Export, Found, Method, observes};
+use froude_identify::reduce::reduce;
 use froude_identify::{IdentifyError, asked, observations};
 use froude_records::campaign::{self, Campaign, Source, read_campaign};
 use froude_records::comparison::Comparison;
@@ -19,6 +20,7 @@ use froude_records::json::read_estimates;
 use froude_records::page::DocumentSection;
 use froude_records::text::in_a_file_name;
 
+use crate::predict::of_rows;
 use crate::{Error, campaign_page, method, results};
 
 pub(crate) use crate::pipeline::job::default_out;
@@ -65,8 +67,12 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         files.key(&campaign.path, "campaign")?;
     }
     let mut gathered = Gathered::default();
-    for source in &campaign.sources {
+    for source in campaign.sources.iter().filter(|source| !source.is_validation) {
         gathered.take(source, &campaign, &mut files, job, progress)?;
+    }
+    for source in campaign.sources.iter().filter(|source| source.is_validation) {
+        progress(&format!("{}: held against the fits", source.name));
+        gathered.validate(source, &campaign)?;
     }
     let Gathered { sources, mut summaries, mut blocks, mut exports, published, mut findings, beside, is_part } =
         gathered;
@@ -205,6 +211,27 @@ impl Gathered {
 }
 
 impl Gathered {
+    /// Holds the recommended estimates against the rows of a source that none of them was fitted to.
+    fn validate(&mut self, source: &Source, campaign: &Campaign) -> Result<(), Error> {
+        let observations = reduce(campaign, source)?;
+        let of_source = |f: Finding| f.of_source(&source.name);
+        self.findings.extend(observations.findings.into_iter().map(of_source));
+        let all: Vec<&Estimate> = self.sources.iter().flat_map(Answer::estimates).filter(|e| e.recommended).collect();
+        if all.is_empty() {
+            let what =
+                "has role = \"validation\", and no other source of the campaign gave an estimate to be held against it"
+                    .to_owned();
+            return Err(IdentifyError::Campaign { place: format!("source {:?}", source.name), what }.into());
+        }
+        let found = of_rows(&all, observations.data)?;
+        for predicted in &found.estimates {
+            self.findings.push(found.finding(predicted).of_source(&source.name));
+            let section = found.section(predicted);
+            self.blocks.push(DocumentSection { title: format!("{}: {}", source.name, section.title), ..section });
+        }
+        Ok(())
+    }
+
     /// A name that no other export has: the source's before the file's own, and a number where two sources come to the same one.
     fn export_name(&self, source: &str, name: &str) -> String {
         let source = in_a_file_name(source);

@@ -7,7 +7,7 @@ use froude_identify::predict::{Joint, Predicted, Row, predict as of_estimate};
 use froude_identify::reduce::rows_of;
 use froude_records::csv_table::csv_bytes;
 use froude_records::estimate::Estimate;
-use froude_records::finding::Finding;
+use froude_records::finding::{Finding, Severity};
 use froude_records::json::read_estimates;
 use froude_records::number::{dof, p_equation, percent, significant};
 use froude_records::page::{DocumentSection, TextTable};
@@ -19,6 +19,8 @@ use serde_json::{Value, json};
 
 use crate::Error;
 
+/// Chance below which a record does not hold.
+const CONTRADICTED: f64 = 0.01;
 /// Rows that a person sees of those that are predicted worst.
 const SHOWN: usize = 8;
 
@@ -58,11 +60,7 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
     let record = read_estimates(&job.record)?;
     let (data, findings) = rows_of(&job.table, job.sidecar.as_deref())?;
     let chosen = chosen(&record.estimates, &job.laws).map_err(|what| refused(&job.record, what))?;
-    let mut estimates = Vec::new();
-    for estimate in chosen {
-        estimates.push(of_estimate(estimate, &with_density(&data, estimate))?);
-    }
-    let mut out = Prediction { estimates, findings, written: Vec::new(), data };
+    let mut out = Prediction { findings, ..of_rows(&chosen, data)? };
     if let Some(folder) = &job.out {
         std::fs::create_dir_all(folder).map_err(|source| Error::Output { path: folder.clone(), source })?;
         for predicted in &out.estimates {
@@ -72,6 +70,17 @@ pub fn predict(job: &Job) -> Result<Prediction, Error> {
         }
     }
     Ok(out)
+}
+
+/// The same of rows that are reduced already.
+///
+/// # Errors
+///
+/// A law that reads what the rows lack.
+pub fn of_rows(estimates: &[&Estimate], data: Dataset) -> Result<Prediction, Error> {
+    let of = |estimate: &&Estimate| of_estimate(estimate, &with_density(&data, estimate));
+    let estimates = estimates.iter().map(of).collect::<Result<_, _>>()?;
+    Ok(Prediction { estimates, findings: Vec::new(), written: Vec::new(), data })
 }
 
 fn refused(record: &Path, what: String) -> Error {
@@ -151,6 +160,31 @@ fn by_load(predicted: &Predicted) -> Vec<OfLoad> {
 }
 
 impl Prediction {
+    /// What an estimate is worth on these rows, as a finding: its errors by load, |E_n| beyond 1, and the one number over all rows.
+    #[must_use]
+    pub fn finding(&self, predicted: &Predicted) -> Finding {
+        let of = |of: &OfLoad| {
+            let [mean, root] = of.errors?;
+            Some(format!(
+                "{} errs by {} {} in the mean, {} rms ({} of the load), |E_n| > 1 in {} of {}",
+                of.load,
+                significant(mean, 3),
+                of.unit,
+                significant(root, 3),
+                percent(root / of.size),
+                of.beyond,
+                counted(of.measured, "row", "rows")
+            ))
+        };
+        let loads: Vec<String> = by_load(predicted).iter().filter_map(of).collect();
+        let is_contradicted = predicted.joint.is_some_and(|joint| joint.p < CONTRADICTED);
+        let (severity, code) =
+            if is_contradicted { (Severity::Warning, "validation-fails") } else { (Severity::Note, "validation") };
+        let number = predicted.joint.as_ref().map_or_else(|| "no scatter is known, and so no χ²".to_owned(), joint);
+        let loads = if loads.is_empty() { "no load lies within its ranges".to_owned() } else { loads.join("; ") };
+        Finding::new(severity, code, format!("{} on rows that it was not fitted to: {loads}; {number}", predicted.id))
+    }
+
     /// What a person reads of an estimate.
     #[must_use]
     pub fn section(&self, predicted: &Predicted) -> DocumentSection {
@@ -300,7 +334,7 @@ impl Prediction {
 
 fn joint(found: &Joint) -> String {
     let Joint { chi_squared, n, dof: of_scatter, p } = found;
-    let verdict = if *p < 0.01 {
+    let verdict = if *p < CONTRADICTED {
         "the record does not hold here: its errors and its scatter together do not explain what was measured"
     } else {
         "no more than its errors and its scatter together explain (below 1 % it would be more)"

@@ -137,3 +137,50 @@ fn what_lies_outside_is_flagged_and_a_changed_body_is_seen() {
     let refused = predict(&Asked { laws: vec!["f4".to_owned()], ..asked(record, table) }).unwrap_err();
     assert!(refused.to_string().contains("linear_quadratic") && refused.is_bad_input(), "{refused}");
 }
+
+/// A source of `role = "validation"` is fitted by nothing: what was fitted is held against it, on the terminal and in the record.
+#[test]
+fn a_source_may_be_held_back_for_validation() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    table(&place("monday.csv"), &[0.2, 0.4, 0.6, 0.8, 1.0], 4, &mut rng);
+    table(&place("tuesday.csv"), &[0.3, 0.5, 0.7, 0.9], 3, &mut rng);
+    let wrong = std::fs::read_to_string(place("tuesday.csv")).unwrap();
+    let wrong: Vec<String> = wrong
+        .lines()
+        .map(|line| match line.split_once(',').map(|(u, f)| (u, f.parse::<f64>())) {
+            Some((u, Ok(f))) => format!("{u},{}", 1.3 * f),
+            _ => line.to_owned(),
+        })
+        .collect();
+    std::fs::write(place("wrong.csv"), wrong.join("\n") + "\n").unwrap();
+    let source = |name: &str, role: &str| {
+        format!("[[source]]\nname = \"{name}\"\nkind = \"towing\"\ntable = \"{name}.csv\"\n{role}")
+    };
+    let held = "role = \"validation\"\n";
+    let text = format!(
+        "schema = 1\nname = \"x\"\n{}{}{}",
+        source("monday", ""),
+        source("tuesday", held),
+        source("wrong", held)
+    );
+    std::fs::write(place("campaign.toml"), text).unwrap();
+    let found = identify(&Job { out: Some(place("results")), ..Job::new(place("campaign.toml")) }, &|_| {}).unwrap();
+    assert!(found.file.estimates.iter().all(|e| e.source == "monday"), "only Monday is fitted");
+    let of = |source: &str| found.file.findings.iter().find(|f| f.source.as_deref() == Some(source)).unwrap();
+    assert_eq!(
+        (of("tuesday").code.as_str(), of("wrong").code.as_str()),
+        ("validation", "validation-fails"),
+        "{:?}",
+        of("tuesday")
+    );
+    assert!(of("tuesday").message.contains("|E_n| > 1 in 0 of 12 rows"), "{}", of("tuesday").message);
+    let html = std::fs::read_to_string(place("results/report.html")).unwrap();
+    assert!(html.contains("tuesday: Predicted by monday/"), "the report has the rows that were predicted worst");
+
+    let alone = format!("schema = 1\nname = \"x\"\n{}", source("tuesday", held));
+    std::fs::write(place("alone.toml"), alone).unwrap();
+    let error = identify(&Job::new(place("alone.toml")), &|_| {}).unwrap_err().to_string();
+    assert!(error.contains("no other source of the campaign gave an estimate"), "{error}");
+}

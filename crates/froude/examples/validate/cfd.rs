@@ -204,6 +204,11 @@ fn of_capsule(claims: &mut Claims, room: &Room, of_family: &Room) -> Result<(), 
     Ok(())
 }
 
+/// An interval in words; nothing where there is none.
+fn ends(interval: Option<[f64; 2]>) -> String {
+    interval.map_or(String::new(), |[low, high]| format!(" [{low:.2}, {high:.2}]"))
+}
+
 /// A capsule at two angles in the whole domain: what turns with it turns its loads, which no law was told.
 const TWO_ANGLES: &str = r#"schema = 1
 name = "a capsule at two angles"
@@ -259,7 +264,7 @@ fn two_angles(claims: &mut Claims, root: &Path) -> Result<(), Failed> {
             MOVED,
             &format!("{one} and {two} of its six loads at two angles, by froude identify"),
             "one number for a body of revolution, as far as its flows do not lean",
-            format!("{:.4} {:?} and {:.4} {:?}", a.0, a.1, b.0, b.1),
+            format!("{:.4}{} and {:.4}{}", a.0, ends(a.1), b.0, ends(b.1)),
             Verdict::Measured,
         );
     }
