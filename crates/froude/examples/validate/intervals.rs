@@ -252,7 +252,7 @@ fn selection(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
         )?;
         for tally in &tallies {
             let what = format!("a linear term of {size} u beside 55 U², three laws");
-            judged(claims, &what, tally, 95.0, false, &format!(", mean width {:.3}", tally.width()));
+            judged(claims, &what, tally, 94.0, false, &format!(", mean width {:.3}", tally.width()));
         }
     }
     Ok(())
