@@ -198,7 +198,7 @@ fn a_plan_that_cannot_be_is_refused() {
     let said = refused(&[case("a", 0.1, None), case("a", 0.2, None)]);
     assert_eq!(said, "case \"a\" cannot be taken: another case has the same name");
     let said = Store::open(folder.path()).unwrap_err().to_string();
-    assert!(said.ends_with("the file of a CFD campaign is written by froude cfd plan"), "{said}");
+    assert!(said.ends_with("nothing is planned yet; froude cfd plan plans it"), "{said}");
 }
 
 #[test]
