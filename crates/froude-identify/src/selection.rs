@@ -417,7 +417,11 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
         let m = &models[*i];
         (std::cmp::Reverse(m.law.responses.len()), std::cmp::Reverse(size(m)), m.law.is_nonlinear())
     };
-    let has_intervals = |m: &ModelFit| (0..m.specs.len()).all(|j| m.combined[j].is_some() && !m.is_refused(j));
+    // What is held has no interval, and needs none.
+    let is_held =
+        |m: &ModelFit, j: usize| matches!(m.fit.coefficients[j].status, fit::Status::Fixed | fit::Status::Excluded);
+    let has_intervals =
+        |m: &ModelFit| (0..m.specs.len()).all(|j| is_held(m, j) || (m.combined[j].is_some() && !m.is_refused(j)));
     // One that contains the chosen law says no less; one that does not has to be as likely.
     let contains = |i: usize| {
         restrictions(&models[chosen].law, &models[i].law, data).is_some()
@@ -432,10 +436,17 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
     if full == chosen || rank(&full) == rank(&chosen) {
         return Some(Recommendation { index: chosen, formula: None, reason });
     }
-    let reason = format!(
-        "{} is the largest law that these data determine and do not contradict: its intervals hold whichever law within it is true. Formula: {reason}",
-        models[full].law.name
-    );
+    let larger = &models[full].law.name;
+    let why = if contains(full) {
+        format!(
+            "{larger} is the largest law that these data determine and do not contradict: its intervals hold whichever law within it is true"
+        )
+    } else {
+        format!(
+            "{larger} is not clearly less likely than {name}, which is no part of it: its intervals hold if it is true, or a law within it"
+        )
+    };
+    let reason = format!("{why}. Formula: {reason}");
     Some(Recommendation { index: full, formula: Some(chosen), reason })
 }
 
