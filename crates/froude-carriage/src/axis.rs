@@ -28,9 +28,12 @@ use crate::servo::{Chain, Friction, ServoCoefficient, ServoReport, identify_serv
 use crate::source::file_of;
 use crate::two_masses::{motor_of, pulses, servo_log, two_masses};
 
+mod cross;
 mod long;
 pub mod page;
 pub mod source;
+
+pub use cross::held_against;
 
 /// A model of an axis that can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -152,6 +155,7 @@ pub fn of_table(
     let mut findings = reported(&models, imported.findings);
     findings.extend(by_direction(&models));
     findings.extend(not_fitted);
+    findings.push(one_excitation());
     let files = files_of_table(path, sidecar);
     let rigid = |m: &Model| (record::rigid(name, &m.name, &m.report, gain), files.clone());
     Ok(AxisModels {
@@ -164,6 +168,13 @@ pub fn of_table(
         motor: None,
         findings,
     })
+}
+
+/// One log is one excitation: what another would show is in none of its residuals.
+fn one_excitation() -> Finding {
+    let text = "the intervals hold for this excitation alone: friction that the model leaves out moves the coefficients from one motion to the next by more than any block \
+                of one log shows; hold the fit against a log of another motion (--validate OTHER)";
+    Finding::new(Severity::Note, "one-excitation", text.to_owned())
 }
 
 /// The friction of a rigid model of a log: an offset of the current is not excluded.

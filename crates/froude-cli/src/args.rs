@@ -305,7 +305,9 @@ pub enum RobotJob {
 #[derive(Debug, Subcommand)]
 pub enum CarriageJob {
     /// Identify inertia, friction, flexibility and repeatability from runs, or inertia and friction from any servo log (CSV with a sidecar).
-    #[command(after_help = "Examples:\n  froude carriage identify campaign-runs\n  froude carriage identify servo.csv")]
+    #[command(
+        after_help = "Examples:\n  froude carriage identify campaign-runs\n  froude carriage identify servo.csv --validate pulses.csv"
+    )]
     Identify {
         /// Folders of runs, runs (.mcap), or one log (.csv).
         #[arg(required = true)]
@@ -313,6 +315,9 @@ pub enum CarriageJob {
         /// Sidecar of a log [default: the .toml of the same name beside it].
         #[arg(long)]
         sidecar: Option<PathBuf>,
+        /// Log of another motion of the same axis (.csv with a sidecar): the force error of each rigid model there, where nothing was fitted.
+        #[arg(long, value_name = "OTHER")]
+        validate: Option<PathBuf>,
         /// Folder of the results [default: INPUT-servo beside the input].
         #[arg(long)]
         out: Option<PathBuf>,

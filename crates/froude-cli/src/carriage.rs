@@ -241,8 +241,8 @@ fn minutes(seconds: f64) -> String {
 /// `froude carriage …`.
 pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
     match job {
-        CarriageJob::Identify { input, sidecar, out } => {
-            let job = Job { sidecar, purpose: Some(Purpose::Servo), ..servo(&input, out)? };
+        CarriageJob::Identify { input, sidecar, validate, out } => {
+            let job = Job { sidecar, validation: validate, purpose: Some(Purpose::Servo), ..servo(&input, out)? };
             crate::identify(job, is_json, false).map_err(|error| mistaken::SERVO.explain(error, &input))
         }
         CarriageJob::Drag { runs, campaign, out } => {

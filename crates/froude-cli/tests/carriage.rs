@@ -562,6 +562,60 @@ fn two_records_of_a_servo_are_compared() {
     assert!(itself["comparison"]["coefficients"][0]["e_n"].is_null(), "{itself}");
 }
 
+/// One log is one excitation: its record says so, and another log is predicted by it, at the verb and by a campaign alike.
+#[test]
+fn a_servo_is_held_against_a_log_that_it_was_not_fitted_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/emps");
+    let text_of = |name: &str| std::fs::read_to_string(example.join(name)).unwrap();
+    let log = text_of("emps.csv");
+    let (head, rows) = log.split_once('\n').unwrap();
+    let rows: Vec<&str> = rows.lines().collect();
+    let halves = rows.split_at(rows.len() / 2);
+    for (name, rows) in [("first", halves.0), ("second", halves.1)] {
+        let csv = folder.path().join(format!("{name}.csv"));
+        std::fs::write(&csv, format!("{head}\n{}\n", rows.join("\n"))).unwrap();
+        std::fs::write(csv.with_extension("toml"), text_of("emps.toml")).unwrap();
+    }
+    let [first, second] = ["first.csv", "second.csv"].map(|name| text(&folder.path().join(name)).to_owned());
+    let found = json(&["carriage", "identify", &first, "--validate", &second, "--json"]);
+    assert_eq!(found["estimates"][0]["interval"]["of"], "excitation");
+    let said = |found: &Value, code: &str| -> Vec<String> {
+        let all = found["findings"].as_array().unwrap().iter().filter(|f| f["code"] == code);
+        all.map(|f| f["message"].as_str().unwrap().to_owned()).collect()
+    };
+    assert_eq!(said(&found, "one-excitation").len(), 1);
+    let cross = said(&found, "cross-force-error");
+    // The publication's error of all four periods is 4.08 and 3.11 %.
+    assert!(
+        cross[0].contains("first.csv/servo_symmetric: cross force error 4.") && cross[1].contains("error 3."),
+        "{cross:?}"
+    );
+    let report = std::fs::read_to_string(folder.path().join("first-servo/report.html")).unwrap();
+    assert!(report.contains("second.csv: held against the fits") && report.contains("for this excitation"));
+
+    let campaign = folder.path().join("axis.toml");
+    let source = |name: &str, more: &str| {
+        format!("[[source]]\nname = \"{name}\"\nkind = \"towing\"\ntable = \"{name}\"\n{more}")
+    };
+    let head = "schema = 1\nname = \"axis\"\n";
+    std::fs::write(
+        &campaign,
+        format!("{head}{}{}", source("first.csv", ""), source("second.csv", "role = \"validation\"\n")),
+    )
+    .unwrap();
+    let by_campaign = json(&["identify", text(&campaign), "--json"]);
+    assert_eq!(said(&by_campaign, "cross-force-error"), cross);
+    // A log of a volt that is a Newton less predicts a force of another size.
+    std::fs::write(
+        folder.path().join("second.toml"),
+        text_of("emps.toml").replace("35.15065188 N/V", "17.57532594 N/V"),
+    )
+    .unwrap();
+    let other = json(&["carriage", "identify", &first, "--validate", &second, "--json"]);
+    assert!(said(&other, "cross-force-error")[0].contains("cross force error 1"), "{other}");
+}
+
 /// The drag of a carriage is a law like any other: set beside a table's, subtracted as a tare, the truth of a simulation.
 #[test]
 fn the_record_of_a_drag_is_a_law_for_the_other_verbs() {

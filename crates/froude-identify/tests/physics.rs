@@ -93,6 +93,28 @@ fn identical_copies_are_dropped_and_reported() {
     );
 }
 
+/// Each of eight speeds twice, the second reading equal to the first; a reading is a whole number of steps, N.
+fn doubled(step_n: f64) -> String {
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for i in 1..=8 {
+        let speed = 0.1 * f64::from(i);
+        let load = ((-10.0 * speed * speed + 0.1 * (7.0 * speed).sin()) / step_n).round() * step_n;
+        table += &format!("{speed},{load:.6}\n{speed},{load:.6}\n");
+    }
+    table
+}
+
+#[test]
+fn equal_repeats_of_a_fine_sensor_are_copies_and_those_of_a_coarse_one_are_not() {
+    let rows = |step_n: f64| {
+        let folder = tempfile::tempdir().unwrap();
+        let result = identify(folder.path(), &doubled(step_n), QUADRATIC);
+        (result.data.rows, result.findings.iter().any(|f| f.code == "identical-rows"))
+    };
+    assert_eq!(rows(1e-5), (8, false));
+    assert_eq!(rows(0.25), (16, true));
+}
+
 #[test]
 fn an_angle_offset_is_found_from_pairs_of_opposite_angle_and_taken_out_of_the_cross_term() {
     let folder = tempfile::tempdir().unwrap();

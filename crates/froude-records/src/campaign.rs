@@ -634,6 +634,13 @@ impl Source {
         is_runs && has_none.contains(&false)
     }
 
+    /// A table or a log that fits are held against, and that none is fitted to.
+    #[must_use]
+    pub fn of_validation(path: &Path) -> Self {
+        let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        Self { is_validation: true, ..Self::bare(name, Input::Table(path.to_owned())) }
+    }
+
     /// A source of which nothing but its input is known.
     fn bare(name: String, input: Input) -> Self {
         Self {

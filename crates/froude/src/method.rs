@@ -39,7 +39,7 @@ pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>
             Ok(vec![(method, method.names().to_vec())])
         }
         Input::Runs { .. } => named(source),
-        Input::Table(log) if purpose == Some(Purpose::Servo) || is_servo_log(log, source.sidecar.as_deref())? => of_log(source),
+        Input::Table(_) if is_of_a_servo(source, purpose)? => of_log(source),
         Input::Table(_) if !source.methods.is_empty() => Err(refused(
             source,
             0,
@@ -51,6 +51,16 @@ pub(crate) fn of(source: &Source, purpose: Option<Purpose>) -> Result<Vec<Asked>
         Input::Cases(_) => Ok(vec![(&Computed, Computed.names().to_vec())]),
         _ => Ok(vec![(&Table, vec!["table"])]),
     }
+}
+
+/// Whether a source is the log of a servo.
+///
+/// # Errors
+///
+/// A sidecar that cannot be read.
+pub(crate) fn is_of_a_servo(source: &Source, purpose: Option<Purpose>) -> Result<bool, Error> {
+    let Input::Table(log) = &source.input else { return Ok(false) };
+    Ok(purpose == Some(Purpose::Servo) || is_servo_log(log, source.sidecar.as_deref())?)
 }
 
 /// What is wrong with the name at `i` in `method`, with its place.

@@ -6,6 +6,7 @@ mod validation;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use froude_carriage::axis::held_against;
 use froude_identify::answer::Answer;
 use froude_identify::compare::{MOST_COMPARED, compare, left_out, named, nothing_compared};
 use froude_identify::data_files::DataFiles;
@@ -40,6 +41,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         results::can_be_written(out)?;
         reads_nothing_in(out, &campaign)?;
     }
+    campaign.sources.extend(job.validation.as_deref().map(Source::of_validation));
     if !job.models.is_empty() {
         campaign.identify.models.clone_from(&job.models);
         // No file names these.
@@ -72,7 +74,7 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
     }
     for source in campaign.sources.iter().filter(|source| source.is_validation) {
         progress(&format!("{}: held against the fits", source.name));
-        gathered.validate(source, &campaign)?;
+        gathered.validate(source, &campaign, job.purpose)?;
     }
     let Gathered { sources, mut summaries, mut blocks, mut exports, published, mut findings, beside, is_part } =
         gathered;
@@ -166,7 +168,8 @@ impl Gathered {
         }
         for (method, asked) in method::of(source, job.purpose)? {
             let found = method.identify(campaign, source, &asked, &step)?;
-            self.add(method, found, files, source, campaign.sources.len() == 1)?;
+            let fitted = campaign.sources.iter().filter(|source| !source.is_validation).count();
+            self.add(method, found, files, source, fitted == 1)?;
         }
         Ok(())
     }
@@ -212,7 +215,14 @@ impl Gathered {
 
 impl Gathered {
     /// Holds the recommended estimates against the rows of a source that none of them was fitted to.
-    fn validate(&mut self, source: &Source, campaign: &Campaign) -> Result<(), Error> {
+    fn validate(&mut self, source: &Source, campaign: &Campaign, purpose: Option<Purpose>) -> Result<(), Error> {
+        if method::is_of_a_servo(source, purpose)? {
+            let all: Vec<&Estimate> = self.sources.iter().flat_map(Answer::estimates).collect();
+            let (findings, section) = held_against(source.input.path(), source.sidecar.as_deref(), &source.name, &all)?;
+            self.findings.extend(findings.into_iter().map(|f| f.of_source(&source.name)));
+            self.blocks.push(section);
+            return Ok(());
+        }
         let observations = reduce(campaign, source)?;
         let of_source = |f: Finding| f.of_source(&source.name);
         self.findings.extend(observations.findings.into_iter().map(of_source));

@@ -18,7 +18,7 @@ use froude_records::table::Table;
 use froude_records::units::Dimension;
 
 use super::page::with_declared;
-use super::{AxisModel, friction_of, log_chain};
+use super::{AxisModel, friction_of, log_chain, one_excitation};
 use crate::runs::implausible;
 use crate::servo::log::{is_even, rate_of};
 use crate::servo::report::negative;
@@ -138,8 +138,10 @@ pub(super) fn of_table(
         number::count(clock.rows),
         number::count(MOST_KEPT)
     );
-    let mut out =
-        Found { findings: vec![clock.finding(), Finding::new(Severity::Note, "long-log", text)], ..Found::default() };
+    let mut out = Found {
+        findings: vec![clock.finding(), Finding::new(Severity::Note, "long-log", text), one_excitation()],
+        ..Found::default()
+    };
     let mut tables = Vec::new();
     for (words, servo) in under_way {
         let report = servo.finish().map_err(MethodError::refused)?;
@@ -195,7 +197,7 @@ fn coefficient_table(words: &str, report: &LongReport, coefficients: &[ServoCoef
             number::plain(report.rate_hz, 4),
             report.hac_lag_s
         ),
-        head: ["coefficient", "unit", "value", "95 % interval (HAC)", "u (white noise)", "u (HAC)"]
+        head: ["coefficient", "unit", "value", "95 % interval for this excitation (HAC)", "u (white noise)", "u (HAC)"]
             .map(str::to_owned)
             .to_vec(),
         rows: coefficients.iter().map(row).collect(),

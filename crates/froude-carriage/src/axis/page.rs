@@ -21,7 +21,7 @@ pub fn sections(outcome: &AxisModels) -> (DocumentSection, Vec<DocumentSection>)
         let r = &model.report;
         let (body, error) = (mounted(&outcome.rigid_mounts), number::percent(r.relative_force_error));
         let caption = format!("Rigid model, friction {}{body} (relative force error {error}).", model.name);
-        let pieces = if r.spread.runs.is_some() { "clusters" } else { "blocks" };
+        let pieces = if r.spread.runs.is_some() { Pieces::Clusters } else { Pieces::Blocks };
         let estimate =
             outcome.estimates.iter().map(|(estimate, _)| estimate).find(|e| e.method.name == law_of(&model.name));
         tables.push(with_declared(coefficient_table(caption, &r.coefficients, pieces), estimate));
@@ -89,15 +89,38 @@ fn splits(f: &FlexibleReport) -> impl Iterator<Item = String> {
     })
 }
 
+/// What an interval was made of.
+#[derive(Debug, Clone, Copy)]
+enum Pieces {
+    /// Whole runs.
+    Clusters,
+    /// Stretches of one excitation.
+    Blocks,
+    /// Scatter and declared errors.
+    All,
+}
+
+impl Pieces {
+    /// What the interval holds for, where not for every excitation, and its name.
+    const fn words(self) -> [&'static str; 2] {
+        match self {
+            Self::Clusters => ["", "clusters"],
+            Self::Blocks => [" for this excitation", "blocks"],
+            Self::All => ["", "scatter and declared"],
+        }
+    }
+}
+
 /// Coefficients with the published-style standard deviation beside the realistic interval, which is that of `pieces`.
-fn coefficient_table(caption: String, coefficients: &[ServoCoefficient], pieces: &str) -> TextTable {
+fn coefficient_table(caption: String, coefficients: &[ServoCoefficient], pieces: Pieces) -> TextTable {
+    let [interval, pieces] = pieces.words();
     TextTable {
         caption,
         head: vec![
             "coefficient".to_owned(),
             "unit".to_owned(),
             "value".to_owned(),
-            format!("95 % interval ({pieces})"),
+            format!("95 % interval{interval} ({pieces})"),
             "u (white noise)".to_owned(),
             "u (HAC)".to_owned(),
             format!("u ({pieces})"),
@@ -133,7 +156,7 @@ pub(super) fn with_declared(mut table: TextTable, estimate: Option<&Estimate>) -
 /// Two masses; behind a gear whose efficiency is not declared every row is marked as apparent.
 fn flexible_table(report: &FlexibleReport, mounted: &str) -> TextTable {
     let caption = format!("Two masses: motor, chain and load from motor-side signals{mounted}.");
-    let mut table = coefficient_table(caption, &report.coefficients, "scatter and declared");
+    let mut table = coefficient_table(caption, &report.coefficients, Pieces::All);
     if report.is_apparent {
         for (row, c) in table.rows.iter_mut().zip(&report.coefficients) {
             // The rotor lies before the gear, and frequencies do not care.

@@ -16,8 +16,8 @@
 use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 use froude_records::estimate::{
-    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Law, Measured, MethodUsed, OWN, Output,
-    Range, SharedError, Signs, Status, TypeA,
+    Clusters, Coefficient, Derived, Diagnostics, ErrorKind, Estimate, Frame, Interval, Law, Measured, MethodUsed, OWN,
+    Output, Range, SharedError, Signs, Status, TypeA,
 };
 use indexmap::IndexMap;
 
@@ -50,6 +50,7 @@ pub fn rigid(source: &str, friction: &str, report: &ServoReport, gain: &ForcePer
     let recorded = recorded(source, friction, &fit, gain);
     Estimate {
         clusters: report.spread.runs.map(|n| Clusters { by: "run".to_owned(), n }),
+        interval: if report.spread.runs.is_some() { Interval::default() } else { of_one_excitation() },
         derived: gain.drive.map_or_else(IndexMap::new, |drive| effective(report, drive)),
         validity: validity(report.rows.names.iter().zip(&report.rows.columns).map(|((name, _), column)| {
             let bounds = [f64::INFINITY, f64::NEG_INFINITY];
@@ -81,7 +82,12 @@ pub fn long(
         findings,
     };
     let ranges = report.names.iter().zip(&report.ranges).map(|((name, _), range)| (name.as_str(), *range));
-    Estimate { validity: validity(ranges), ..recorded(source, friction, &fit, gain) }
+    Estimate { validity: validity(ranges), interval: of_one_excitation(), ..recorded(source, friction, &fit, gain) }
+}
+
+/// Intervals of blocks within one motion, which say nothing of another.
+fn of_one_excitation() -> Interval {
+    Interval { of: "excitation".to_owned(), ..Interval::default() }
 }
 
 /// The fit of a rigid model as its record wants it.

@@ -13,6 +13,8 @@ pub(crate) const REPEATS_WITHIN: f64 = 2e-3;
 const FEW_COPIES: usize = 3;
 /// Differences below this part of a range are rounding.
 const ROUNDED: f64 = 1e-9;
+/// Step of readings over their range, below which no rig repeats every setting to the step.
+const FINE: f64 = 1e-3;
 
 /// Share of the speed along x from which a body shows its frontal area: within 8°.
 pub(crate) const AHEAD: f64 = 0.99;
@@ -74,18 +76,23 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
 /// Chance that two true repeats read the same in every load, where that explains the copies: a sensor of coarse steps.
 ///
 /// With the step Δ of the readings and the scatter σ of repeats that differ, two repeats read the same with a chance of Δ/(2√π σ). Where no repeats differ at all, and that at
-/// several settings, the steps are coarser than the scatter, unless one part of the table stands in it twice.
+/// several settings, the steps are coarser than the scatter, unless they are finer than any rig's, or one part of the table stands in it twice.
 fn coarse(data: &Dataset, copies: &[(usize, usize)]) -> Option<f64> {
     let apart = copies.first().map_or(0, |(a, b)| b - a);
     if copies.len() >= FEW_COPIES && apart >= FEW_COPIES && copies.iter().all(|(a, b)| b - a == apart) {
         return None;
     }
     let settings = repeat_groups(data);
-    let chance = |load: &&str| {
-        let values = data.values(load)?;
+    let loads: Vec<&[f64]> = LOADS.iter().filter_map(|load| data.values(load)).collect();
+    // Of loads under names of the user's nothing tells which columns they are.
+    if loads.is_empty() {
+        return None;
+    }
+    let steps: Vec<f64> = loads.iter().map(|values| step(values)).collect();
+    let chance = |(values, step): (&&[f64], &f64)| {
         // Of each setting the readings that differ: copies among them tell no scatter.
         let mut by_setting: IndexMap<usize, Vec<f64>> = IndexMap::new();
-        for (setting, value) in settings.iter().zip(values) {
+        for (setting, value) in settings.iter().zip(*values) {
             by_setting.entry(*setting).or_default().push(*value);
         }
         let (mut squares, mut count) = (0.0, 0.0);
@@ -96,11 +103,6 @@ fn coarse(data: &Dataset, copies: &[(usize, usize)]) -> Option<f64> {
             squares += readings.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
             count += readings.len() as f64 - 1.0;
         }
-        let mut sorted = values.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let range = sorted.last()? - sorted.first()?;
-        let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|d| *d > ROUNDED * range);
-        let step = steps.fold(f64::INFINITY, f64::min);
         let sigma = (squares / count).sqrt();
         (count > 0.0).then(|| (step / (2.0 * std::f64::consts::PI.sqrt() * sigma)).min(1.0))
     };
@@ -110,14 +112,35 @@ fn coarse(data: &Dataset, copies: &[(usize, usize)]) -> Option<f64> {
     }
     let pairs: f64 = size.values().map(|n| 0.5 * n * (n - 1.0)).sum();
     let repeated = size.values().filter(|n| **n > 1.0).count();
-    let of_loads: Vec<Option<f64>> = LOADS.iter().filter(|load| data.values(load).is_some()).map(chance).collect();
+    let of_loads: Vec<Option<f64>> = loads.iter().zip(&steps).map(chance).collect();
     if of_loads.iter().all(Option::is_none) {
-        return (repeated >= FEW_COPIES).then_some(1.0);
+        let is_coarse = loads.iter().zip(&steps).all(|(values, step)| *step >= FINE * range(values));
+        return (repeated >= FEW_COPIES && is_coarse).then_some(1.0);
     }
     // A load that repeats always says nothing.
     let p: f64 = of_loads.into_iter().flatten().product();
     let expected = p * pairs;
     (copies.len() as f64 <= expected + 3.0 * expected.sqrt()).then_some(p)
+}
+
+/// The step of readings: the largest number that all their differences are whole multiples of, by Euclid's algorithm; 0 of readings that never change.
+fn step(values: &[f64]) -> f64 {
+    let first = values.first().copied().unwrap_or_default();
+    let range = range(values);
+    let mut step = 0.0;
+    for value in values {
+        let (mut a, mut b) = ((value - first).abs(), step);
+        while a > ROUNDED * range {
+            (a, b) = ((b - a * (b / a).round()).abs(), a);
+        }
+        step = b;
+    }
+    step
+}
+
+fn range(values: &[f64]) -> f64 {
+    let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
+    high - low
 }
 
 /// How many settings were repeated, which is what pure error comes from.

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use froude::methods::tank::oscillation::simulate::{Truths, configurations, planned, simulated};
 use froude::methods::tank::oscillation::source::setup_of;
-use froude::pipeline::{Input, Job, identify};
+use froude::pipeline::{Job, identify};
 use froude::records::campaign::read_campaign;
 use froude::records::table::{Column, ColumnData, Table, prepare_table};
 use froude::records::units::parse_unit;
@@ -163,14 +163,7 @@ fn log(root: &Path, folder: &Path, periods: usize) -> Result<usize, Box<dyn Erro
 /// Reduces a campaign, and says what it found and what it took.
 pub fn child(campaign: &Path) -> Result<(), Box<dyn Error>> {
     let steps = std::cell::Cell::new(0);
-    let job = Job {
-        input: Input::File(campaign.to_owned()),
-        out: None,
-        sidecar: None,
-        models: Vec::new(),
-        purpose: None,
-        date: None,
-    };
+    let job = Job::new(campaign);
     let outcome = identify(&job, &|_| steps.set(steps.get() + 1))?;
     println!("steps {}", steps.get());
     let best = outcome.file.estimates.iter().find(|e| e.recommended).ok_or("nothing is recommended")?;

@@ -60,6 +60,8 @@ pub struct Job {
     /// What is asked of runs or of a log that no campaign names methods for: unless said, their drag of runs, and of a log what its sidecar makes
     /// of it.
     pub purpose: Option<Purpose>,
+    /// The log of a servo that the fits of another are held against.
+    pub validation: Option<PathBuf>,
     /// Date for the report's title page, as text; the pipeline reads no clock.
     pub date: Option<String>,
 }
@@ -74,7 +76,7 @@ impl Job {
     /// A job with nothing but its input.
     #[must_use]
     pub fn of(input: Input) -> Self {
-        Self { input, out: None, sidecar: None, models: Vec::new(), purpose: None, date: None }
+        Self { input, out: None, sidecar: None, models: Vec::new(), purpose: None, validation: None, date: None }
     }
 
     /// Where the results will lie, as far as that is known before the input is read.

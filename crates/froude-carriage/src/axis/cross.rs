@@ -1,0 +1,85 @@
+//! Rigid models of an axis on a log that they were not fitted to: the error that no interval of one excitation tells.
+//!
+//! Residuals of one log hold what this motion leaves over of friction that is not modelled; another motion leaves something else, and its coefficients differ by more
+//! than either interval. The cross force error ‖F − F̂‖/‖F‖ takes F from the command of the other log by its own force per volt, and F̂ from its motion by the
+//! coefficients of the first.
+//!
+//! Source: Janot, Gautier & Brunot 2019 (the measure).
+
+use std::path::Path;
+
+use froude_identify::method::MethodError;
+use froude_records::estimate::Estimate;
+use froude_records::finding::{Finding, Severity};
+use froude_records::number;
+use froude_records::page::{DocumentSection, TextTable};
+use froude_records::run::import_run;
+
+use super::source::Servo;
+use super::{AxisModel, force_per_volt_n_v, friction_of, log_chain, servo_log};
+
+/// The error of one model.
+struct Cross {
+    id: String,
+    /// On the rows that it was fitted to.
+    own: Option<f64>,
+    /// On the rows of the other log.
+    other: f64,
+}
+
+/// Rigid models held against a log called `name`: a note for each in the record, and a section of the page. Estimates of other methods are left out.
+///
+/// # Errors
+///
+/// A log that cannot be read, has no force per volt, or moves too little for rows; no rigid model among the estimates.
+pub fn held_against(
+    path: &Path,
+    sidecar: Option<&Path>,
+    name: &str,
+    estimates: &[&Estimate],
+) -> Result<(Vec<Finding>, DocumentSection), MethodError> {
+    let imported = import_run(path, sidecar)?;
+    let log = servo_log(&imported.log)?;
+    let rate_hz = log.rate_hz().map_err(MethodError::refused)?;
+    let force_per_volt_n_v = force_per_volt_n_v(path, sidecar)?;
+    let mut found = Vec::new();
+    for estimate in estimates {
+        let model = AxisModel::ALL.into_iter().find(|model| model.name() == estimate.method.name);
+        let Some(model) = model.filter(|model| Servo::OF_LOGS.contains(&model.name())) else { continue };
+        let chain = log_chain(force_per_volt_n_v, rate_hz, friction_of(model));
+        let rows = chain.rows(&log).map_err(MethodError::refused)?;
+        // Of a rig the friction may have no offset.
+        let value = |label: &str| {
+            let is_of =
+                |(key, c): &(&String, &froude_records::estimate::Coefficient)| c.label.as_ref().unwrap_or(key) == label;
+            estimate.coefficients.iter().find(is_of).and_then(|(_, c)| c.value).unwrap_or(0.0)
+        };
+        let values: Vec<f64> = rows.names.iter().map(|(label, _)| value(label)).collect();
+        let own = estimate.diagnostics.relative_residual.values().next().copied();
+        found.push(Cross { id: estimate.id.clone(), own, other: rows.relative_error(&values) });
+    }
+    if found.is_empty() {
+        let what = "is the log of a servo, and none of the estimates is a rigid model of one: servo_symmetric or servo_asymmetric";
+        return Err(MethodError::input(path, what));
+    }
+    let findings = found.iter().map(|cross| {
+        let own = cross.own.map_or_else(String::new, |own| format!(", {} where it was fitted", number::percent(own)));
+        let text = format!("{}: cross force error {} on {name}{own}", cross.id, number::percent(cross.other));
+        Finding::new(Severity::Note, "cross-force-error", text)
+    });
+    let findings = imported.findings.into_iter().chain(findings).collect();
+    let row = |cross: &Cross| {
+        vec![
+            cross.id.clone(),
+            cross.own.map_or_else(|| number::MISSING.to_owned(), number::percent),
+            number::percent(cross.other),
+        ]
+    };
+    let table = TextTable {
+        caption: format!("Force error ‖F − F̂‖/‖F‖ on {name}, which no model was fitted to. F is that of its command."),
+        head: ["estimate", "where it was fitted", "cross force error"].map(str::to_owned).to_vec(),
+        rows: found.iter().map(row).collect(),
+    };
+    let title = format!("{name}: held against the fits");
+    Ok((findings, DocumentSection { title, tables: vec![table], ..DocumentSection::default() }))
+}
