@@ -9,7 +9,7 @@ use froude_records::number;
 use froude_records::page::TextTable;
 
 use super::exports::{self, extras};
-use super::facets::geometry;
+use super::facets::{self, correct};
 use super::frame::{Axes, Orientation, Point, inertia_m5, sentence};
 use super::load::{Loaded, load};
 use super::options::Asked;
@@ -65,7 +65,7 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
         let wanted = Wanted { frame, mirrors: s.mirrors, tank: s.tank, ..job.wanted.clone() };
         let refined = refine(&loaded.family, &wanted, &|step| progress(&format!("{}: {step}", s.title)))?;
         findings.extend(not_within(&s.title, &refined));
-        cases.push(Case { title: s.title, surroundings: s.words, is_lid: s.is_lid, refined });
+        cases.push(Case { title: s.title, surroundings: s.words, is_lid: s.is_lid, refined, facets: None });
     }
     let length_m = extent_along(&coarse, mesh.forward().axis);
     let mut notes = vec![format!(
@@ -77,18 +77,24 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
     if let Some(exact) = loaded.shape.as_ref().and_then(spectral::solve) {
         notes.push(spectral::replace(&mut cases[0].refined, &exact, &frame));
     }
-    let mut tables = vec![hydrostatics(&cases[0].refined, loaded.shape.is_none(), density_kg_m3, &frame)];
-    let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
-    tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
     if let Family::Mesh(mesh) = &loaded.family {
-        progress("the same with facets rounded");
-        match geometry(mesh, &cases[0], &job.wanted, &frame, density_kg_m3) {
-            Ok(table) => tables.push(table),
-            Err(why) => {
-                notes.push(format!("The faceting error, smooth body minus polyhedron, is not stated: {why}."));
+        if job.is_polyhedron {
+            notes.push("The facets were taken as the body itself.".to_owned());
+        } else {
+            progress("the same with facets rounded");
+            match facets::of_mesh(mesh, &cases[0], &job.wanted, &frame) {
+                Ok(Some(found)) => correct(&mut cases, &found),
+                Ok(None) => notes.push("All edges of the mesh are edges of the body: its facets are the body itself.".to_owned()),
+                Err(why) => notes.push(format!(
+                    "The matrix is that of the polyhedron; what a smooth body with its corners has more is not known, and not in the uncertainty: {why}."
+                )),
             }
         }
     }
+    let mut tables = vec![hydrostatics(&cases[0].refined, loaded.shape.is_none(), density_kg_m3, &frame)];
+    let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
+    tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
+    tables.extend(facets::table(&cases[0], density_kg_m3));
     if let (Some(tank), Some(surface_m)) = (job.tank_m, job.surface_m) {
         findings.push(limits::clearance(&coarse, tank, surface_m));
     }
@@ -103,7 +109,7 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
             length_m,
             surroundings: case.surroundings.clone(),
         };
-        estimate(&case.refined, &about)
+        estimate(&case.refined, case.facets.as_ref(), &about)
     });
     let estimates = estimates.collect();
     let depth_m = job.surface_m.map(|surface_m| surface_m - mesh.up().coordinate(measure.centroid_m));

@@ -104,16 +104,12 @@ pub enum AddedMassError {
         path: PathBuf,
     },
     /// What only a mesh needs, said of a body file.
-    #[error("{}: {}", .path.display(), if *.is_unit {
-        "--unit is for a mesh; a body file has a unit at each length"
-    } else {
-        "--forward and --up are for a mesh; a body file has x forward along the body and z up"
-    })]
+    #[error("{}: {what}", .path.display())]
     OfAMesh {
         /// The body file.
         path: PathBuf,
-        /// Whether it is the unit.
-        is_unit: bool,
+        /// Which option, and what a body file has instead.
+        what: &'static str,
     },
     /// A centre of gravity that nobody gave.
     #[error("{}: --at cg: {}", .path.display(), if *.is_body_file {

@@ -1,28 +1,52 @@
-//! The faceting error of a mesh.
+//! The facets of a mesh: what a smooth body with the same corners has more than the polyhedron, and how well that is known.
+//!
+//! Subdivision converges to the polyhedron. With A_r on the rounded mesh and A_f on the flat one, each divided once, the smooth body has C = 4/3 (A_r − A_f) more, since
+//! one rounding takes three quarters of a second-order distance away. The matrix is corrected by C, and what is left of it has the expanded uncertainty
+//!
+//! U_ij = 0.7 m √((S_i + A_ii)(S_j + A_jj)), m² = mean of (C_ii/(S_i + A_ii))²
+//!
+//! with S the mass of the displaced water and its inertia about the point, over ρ: a surge that hardly changes errs by a part of what the others change by. The diagonal errs together.
+//!
+//! Source: our derivation; 0.7 by count over 200 tessellations of smooth bodies (`validate facets`). Range: facets that turn by less than 52° from one to the next.
 
 use froude_mesh::refine::{rounded, without_warp};
 use froude_mesh::{Mesh, Vec3};
 use froude_panel::mirror::{Kind, Mirror};
 use froude_panel::problem::{Frame, Problem};
-use froude_panel::refine::{Wanted, forecast, memory_bytes};
+use froude_panel::refine::{Refined, Wanted, forecast, memory_bytes};
 use froude_records::number;
 use froude_records::page::TextTable;
 
+use super::frame::inertia_m5;
 use super::load::WARP;
 use super::record::diagonal_name;
 use crate::outcome::Case;
 
 /// Angle between facets from which an edge is an edge of the body, rad: seven segments to a circle still count as round.
-const CREASE_RAD: f64 = 50.0 * core::f64::consts::PI / 180.0;
+const CREASE_RAD: f64 = 52.0 * core::f64::consts::PI / 180.0;
+/// Expanded uncertainty of a correction, as part of the mean one.
+const UNCERTAIN: f64 = 0.7;
+/// A correction below this part is rounding: the edges of the mesh are edges of the body.
+const NONE: f64 = 1e-9;
 
-/// The faceting error of a mesh: its difference from the smooth body that the facets approximate; otherwise why it is not stated.
-pub(super) fn geometry(
+type Matrix = [[f64; 6]; 6];
+
+/// What facets change, over ρ.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Facets {
+    /// Smooth body minus polyhedron: it is in the value of the case.
+    pub correction: Matrix,
+    /// Its expanded uncertainty: it is in that of the case.
+    pub uncertainty: Matrix,
+}
+
+/// The facets of the body in one surrounding; `None` where all edges are edges of the body, otherwise why the correction is not known.
+pub(super) fn of_mesh(
     mesh: &Mesh,
     case: &Case,
     wanted: &Wanted,
     frame: &Frame,
-    density_kg_m3: f64,
-) -> Result<TextTable, &'static str> {
+) -> Result<Option<Facets>, &'static str> {
     // The mesh divided once is the second of the family.
     let flat = case.refined.steps.get(1).ok_or("panels or memory do not allow a second mesh")?.added_mass.matrix;
     let round = without_warp(&rounded(mesh, CREASE_RAD), WARP);
@@ -39,30 +63,87 @@ pub(super) fn geometry(
         return Err("panels or memory do not allow the rounded mesh");
     }
     let round = froude_panel::solve(&problem).added_mass(0).seen_from(frame).matrix;
-    let rows = (0..6)
-        .map(|i| {
-            // Rounding once takes three quarters of the distance to the smooth body away.
-            let value = case.refined.value[i][i];
+    let value = &case.refined.value;
+    let correction: Matrix = core::array::from_fn(|i| {
+        core::array::from_fn(|j| {
+            let apart = 4.0 / 3.0 * (round[i][j] - flat[i][j]);
             // Less than nothing is not left of an entry.
-            let apart = (4.0 / 3.0 * (round[i][i] - flat[i][i])).max(-value);
-            vec![
-                diagonal_name(i),
-                number::plain(density_kg_m3 * value, 6),
-                percent_of(case.refined.uncertainty[i][i], value).replace('+', ""),
-                percent_of(apart, value),
-            ]
+            if i == j { apart.max(-value[i][i]) } else { apart }
         })
-        .collect();
-    Ok(TextTable {
+    });
+    let size = sizes(&case.refined, frame);
+    let squares: f64 = (0..6).map(|i| (correction[i][i] / size[i]).powi(2)).sum();
+    let mean = (squares / 6.0).sqrt();
+    let uncertainty = core::array::from_fn(|i| core::array::from_fn(|j| UNCERTAIN * mean * (size[i] * size[j]).sqrt()));
+    Ok((mean > NONE).then_some(Facets { correction, uncertainty }))
+}
+
+/// Displaced water and added mass of each motion, over ρ.
+fn sizes(refined: &Refined, frame: &Frame) -> [f64; 6] {
+    let turned = refined.steps.last().map_or([0.0; 3], |step| {
+        let m = step.measure;
+        inertia_m5(m.inertia_m5(), m.volume_m3, m.centroid_m, frame)
+    });
+    core::array::from_fn(|i| refined.value[i][i] + if i < 3 { refined.volume_m3 } else { turned[i - 3] })
+}
+
+impl Facets {
+    /// The same in another surrounding, where the body has more or less added mass.
+    fn beside(&self, here: &Refined, there: &Refined) -> Self {
+        let root = |i: usize| (there.value[i][i] / here.value[i][i]).max(0.0).sqrt();
+        let part = |i: usize| if here.value[i][i] > 0.0 { root(i) } else { 1.0 };
+        let scaled = |of: &Matrix| core::array::from_fn(|i| core::array::from_fn(|j| of[i][j] * part(i) * part(j)));
+        Self { correction: scaled(&self.correction), uncertainty: scaled(&self.uncertainty) }
+    }
+}
+
+/// Corrects all surroundings by the facets of the first.
+pub(super) fn correct(cases: &mut [Case], facets: &Facets) {
+    let Some(first) = cases.first().map(|case| case.refined.clone()) else { return };
+    for case in cases {
+        let own = facets.beside(&first, &case.refined);
+        for i in 0..6 {
+            for j in 0..6 {
+                case.refined.value[i][j] += own.correction[i][j];
+                case.refined.uncertainty[i][j] = case.refined.uncertainty[i][j].hypot(own.uncertainty[i][j]);
+            }
+        }
+        case.facets = Some(own);
+    }
+}
+
+/// What the facets change, entry by entry.
+pub(super) fn table(case: &Case, density_kg_m3: f64) -> Option<TextTable> {
+    let facets = case.facets.as_ref()?;
+    let rows = (0..6).map(|i| {
+        let (value, of_all) = (case.refined.value[i][i], case.refined.uncertainty[i][i]);
+        let [apart, of_facets] = [facets.correction[i][i], facets.uncertainty[i][i]];
+        let polyhedron = value - apart;
+        let of_panels = (of_all * of_all - of_facets * of_facets).max(0.0).sqrt();
+        vec![
+            diagonal_name(i),
+            number::plain(density_kg_m3 * polyhedron, 6),
+            percent_of(of_panels, polyhedron).replace('+', ""),
+            percent_of(apart, polyhedron),
+            percent_of(of_facets, polyhedron).replace('+', ""),
+        ]
+    });
+    Some(TextTable {
         caption: format!(
-            "Two separate uncertainties: the discretisation error of the panels (for the polyhedron as given), and the faceting error, the difference to a \
-             smooth body with the same corners, should the facets approximate one. Edges of more than {:.0}° count as edges of the body.",
+            "The matrix is that of the smooth body whose corners the mesh has: the polyhedron's, with the difference of the two on it. Edges of more than {:.0}° count as edges of the body. If the facets are the body, ask \
+             for --polyhedron.",
             CREASE_RAD.to_degrees()
         ),
-        head: ["", "value [kg, kg m²]", "numerical uncertainty", "smooth body minus polyhedron"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
+        head: [
+            "",
+            "polyhedron [kg, kg m²]",
+            "uncertainty of the panels",
+            "smooth body minus polyhedron",
+            "its uncertainty",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
     })
 }
 

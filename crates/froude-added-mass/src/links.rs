@@ -124,7 +124,7 @@ pub fn links(
             length_m: c.length_m,
             surroundings: "unbounded water".to_owned(),
         };
-        estimate(&c.refined, &about)
+        estimate(&c.refined, None, &about)
     });
     Ok(LinksOutcome {
         place: sentence(job.axes.own_words(), MIDDLE),

@@ -63,10 +63,16 @@ pub fn read_mesh(path: &Path, unit_m: Option<f64>) -> Result<(Mesh, Vec<String>)
 
 /// Refuses for a body file what only a mesh needs.
 pub(super) fn of_a_mesh_only(job: &Asked) -> Result<(), AddedMassError> {
-    if job.unit_m.is_some() || job.orientation.is_some() {
-        return Err(AddedMassError::OfAMesh { path: job.input.clone(), is_unit: job.unit_m.is_some() });
-    }
-    Ok(())
+    let what = if job.unit_m.is_some() {
+        "--unit is for a mesh; a body file has a unit at each length"
+    } else if job.orientation.is_some() {
+        "--forward and --up are for a mesh; a body file has x forward along the body and z up"
+    } else if job.is_polyhedron {
+        "--polyhedron is for a mesh; a body file has no facets"
+    } else {
+        return Ok(());
+    };
+    Err(AddedMassError::OfAMesh { path: job.input.clone(), what })
 }
 
 /// Reads and checks.

@@ -34,6 +34,8 @@ pub struct Asked {
     pub surface_m: Option<f64>,
     /// Length, breadth and depth of water of a tank with the origin in the middle of its plan, m.
     pub tank_m: Option<[f64; 3]>,
+    /// Whether the facets of a mesh are the body itself, and not those of a smooth one.
+    pub is_polyhedron: bool,
     /// What moves apart; `None` for one rigid body.
     pub apart: Option<Apart>,
     /// Tolerance and limits.
@@ -56,6 +58,7 @@ impl Asked {
             orientation: None,
             surface_m: None,
             tank_m: None,
+            is_polyhedron: false,
             apart: None,
             wanted: Wanted::default(),
             export: Vec::new(),
@@ -88,6 +91,7 @@ impl Asked {
                     "joint_angle" => out.apart = Some(Apart::Links { joint_angle_rad: angle(text)? }),
                     "chain" => out.apart = out.apart.or(Some(Apart::Links { joint_angle_rad: 0.0 })),
                     "apart" => out.apart = out.apart.or(Some(Apart::Parts)),
+                    "polyhedron" => out.is_polyhedron = true,
                     "export" => out.export = exports(text)?,
                     other => return Err(format!("there is no option {other:?}")),
                 }
@@ -112,8 +116,8 @@ impl Asked {
              of the mesh, such as --surface \"0.5 m\""
         } else if self.links.len() > 1 {
             // What has no meaning for several numbers of links is refused, not passed over.
-            const OF_ONE: [&str; 9] =
-                ["at", "unit", "forward", "up", "surface", "export", "chain", "joint_angle", "apart"];
+            const OF_ONE: [&str; 10] =
+                ["at", "unit", "forward", "up", "surface", "export", "chain", "joint_angle", "apart", "polyhedron"];
             return match OF_ONE.into_iter().find(|name| given.iter().any(|option| option.name == *name)) {
                 Some(name) => Err(AddedMassError::OfOne { option: name.replace('_', "-") }),
                 None => Ok(()),

@@ -7,6 +7,8 @@ use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
 use froude_records::page::TextTable;
 
+use crate::facets::Facets;
+
 /// A matrix in one surrounding.
 #[derive(Debug, Clone)]
 pub struct Case {
@@ -18,6 +20,8 @@ pub struct Case {
     pub is_lid: Option<bool>,
     /// The matrix.
     pub refined: Refined,
+    /// What the facets of a mesh changed in it.
+    pub facets: Option<Facets>,
 }
 
 /// What came out.

@@ -5,6 +5,7 @@ use froude_records::estimate::Estimate;
 use froude_records::number;
 use froude_records::page::{Chart, ChartPanel, DocumentSection, Mark, Scale, Series, TextTable};
 
+use super::facets::Facets;
 use super::limits;
 use super::links::{Configuration, LinksOutcome, no_fits};
 use super::record::{MOTIONS, diagonal_head, diagonal_name, entry_name};
@@ -46,7 +47,7 @@ pub fn matrix_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
         .collect();
     TextTable {
         caption: "Added mass A: the load on the body is F = −A·v̇, force in the first three rows and moment in the last three. kg, kg m, \
-                  kg m²; ± is the numerical uncertainty, 95 %."
+                  kg m²; ± is the uncertainty of panels and facets, 95 %."
             .to_owned(),
         head: std::iter::once("").chain(MOTIONS).map(str::to_owned).collect(),
         rows,
@@ -104,13 +105,15 @@ pub fn steps_table(refined: &Refined, density_kg_m3: f64) -> TextTable {
 
 /// Distance of each mesh's diagonal from the value given, over panels.
 #[must_use]
-pub fn convergence_chart(refined: &Refined) -> Chart {
+pub fn convergence_chart(refined: &Refined, facets: Option<&Facets>) -> Chart {
+    // Meshes converge to the facets that were given.
+    let of_polyhedron = |i: usize| refined.value[i][i] - facets.map_or(0.0, |facets| facets.correction[i][i]);
     let panels: Vec<f64> = refined.steps.iter().map(|s| s.panels as f64).collect();
     let mut series: Vec<Series> = motions(refined)
         .map(|i| Series {
             name: diagonal_name(i),
             x: panels.clone(),
-            y: refined.steps.iter().map(|s| (s.added_mass.matrix[i][i] / refined.value[i][i] - 1.0).abs()).collect(),
+            y: refined.steps.iter().map(|s| (s.added_mass.matrix[i][i] / of_polyhedron(i) - 1.0).abs()).collect(),
             ..Series::default()
         })
         .collect();
@@ -272,7 +275,7 @@ pub fn links(outcome: &LinksOutcome) -> (DocumentSection, Vec<DocumentSection>) 
         })
         .collect();
     if let (Some(block), Some(last)) = (blocks.last_mut(), configurations.last()) {
-        block.charts.push(convergence_chart(&last.refined));
+        block.charts.push(convergence_chart(&last.refined, None));
     }
     (head, blocks)
 }
@@ -305,7 +308,7 @@ pub fn body(outcome: &BodyOutcome) -> DocumentSection {
         out.tables.extend(tables.map(of_case));
         let words = convergence_words(&case.refined);
         out.paragraphs.push(format!("{} ({}). {}", case.title, case.surroundings, words.join(" ")));
-        let chart = convergence_chart(&case.refined);
+        let chart = convergence_chart(&case.refined, case.facets.as_ref());
         let name = if is_one { chart.name } else { format!("{}-{}", chart.name, i + 1) };
         out.charts.push(Chart { name, title: format!("{}: {}", case.title, chart.title), ..chart });
     }

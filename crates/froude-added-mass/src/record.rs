@@ -4,11 +4,13 @@ use std::path::Path;
 
 use froude_panel::refine::Refined;
 use froude_records::estimate::{
-    Coefficient, Diagnostics, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed, ReferencePoint,
-    Signs, Status, TypeA,
+    Coefficient, Diagnostics, ErrorKind, Estimate, EstimateFile, Frame, Interval, Law, Measured, MethodUsed, OWN,
+    ReferencePoint, SharedError, Signs, Status, TypeA,
 };
 use froude_records::json::read_estimates;
 use indexmap::IndexMap;
+
+use crate::facets::Facets;
 
 /// Coverage factor of a numerical uncertainty: it is stated as an interval of 95 %.
 const COVERAGE: f64 = 2.0;
@@ -105,12 +107,14 @@ pub fn diagonal_name(i: usize) -> String {
 
 /// Covariance of the entries: on its diagonal the squares of their standard uncertainties, beside it what they have in common. `None` where
 /// there is one mesh only.
-fn covariance(refined: &Refined, rho: f64) -> Option<TypeA> {
+fn covariance(refined: &Refined, facets: Option<&Facets>, rho: f64) -> Option<TypeA> {
     let common = |(i, j): (usize, usize), (k, l): (usize, usize)| -> f64 {
         refined.shared.iter().map(|s| rho * s[i][j] * rho * s[k][l]).sum()
     };
     let element = |a: (usize, usize), b: (usize, usize)| {
-        let alone = (rho * refined.uncertainty[a.0][a.1] / COVERAGE).powi(2);
+        let of_facets = facets.map_or(0.0, |facets| facets.uncertainty[a.0][a.1]);
+        let square = refined.uncertainty[a.0][a.1].powi(2) - of_facets.powi(2);
+        let alone = (rho / COVERAGE).powi(2) * square.max(0.0);
         if a == b { alone.max(common(a, a)) } else { common(a, b) }
     };
     let matrix: Vec<Vec<f64>> = entries().map(|a| entries().map(|b| element(a, b)).collect()).collect();
@@ -123,9 +127,30 @@ fn covariance(refined: &Refined, rho: f64) -> Option<TypeA> {
     })
 }
 
+/// The error of the facets: one number that all entries of the diagonal go with, and one for each coupling, whose sign it does not tell.
+fn of_facets(facets: &Facets, rho: f64) -> (String, SharedError) {
+    let couplings: Vec<usize> = entries().enumerate().filter(|(_, (i, j))| i != j).map(|(row, _)| row).collect();
+    let components = 1 + couplings.len();
+    let along = |row: usize, (i, j): (usize, usize)| {
+        let own = couplings.iter().position(|coupling| *coupling == row).map_or(0, |k| 1 + k);
+        let size = rho * facets.uncertainty[i][j] / COVERAGE;
+        (0..components).map(|k| if k == own { size } else { 0.0 }).collect()
+    };
+    let error = SharedError {
+        name: "facets of the mesh: what is left of a correction to the smooth body".to_owned(),
+        quantity: "facets".to_owned(),
+        kind: ErrorKind::B,
+        covariance: (0..components).map(|a| (0..components).map(|b| f64::from(u8::from(a == b))).collect()).collect(),
+        dof: None,
+        limits: None,
+        sensitivity: entries().enumerate().map(|(row, entry)| along(row, entry)).collect(),
+    };
+    (format!("{OWN}facets"), error)
+}
+
 /// The estimate of model `added_mass_6x6`: entries A11 to A66 on and above the diagonal; the matrix is symmetric.
 #[must_use]
-pub fn estimate(refined: &Refined, about: &About) -> Estimate {
+pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Estimate {
     let rho = about.density_kg_m3;
     let mut coefficients = IndexMap::new();
     for (i, j) in entries() {
@@ -150,7 +175,8 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
     }
     let measured = |value: f64, unit: &str| Measured { value, unit: unit.to_owned() };
     let steps = refined.steps.iter().map(|s| s.panels.to_string()).collect::<Vec<_>>().join(", ");
-    let covariance = covariance(refined, rho);
+    let covariance = covariance(refined, facets, rho);
+    let errors = facets.filter(|_| covariance.is_some()).map(|facets| of_facets(facets, rho));
     Estimate {
         id: format!("{}/added_mass_6x6", about.source),
         source: about.source.clone(),
@@ -176,6 +202,7 @@ pub fn estimate(refined: &Refined, about: &About) -> Estimate {
         },
         coefficients,
         type_a: covariance,
+        errors: errors.into_iter().collect(),
         diagnostics: Diagnostics {
             notes: vec![format!(
                 "raw asymmetry of the finest mesh {:.1e}; the symmetric part is given",

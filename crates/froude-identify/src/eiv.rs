@@ -1,8 +1,7 @@
-//! Errors in variables: speed and angle that are uncertain from row to row.
+//! Errors in variables: what a law reads is uncertain from row to row.
 //!
-//! One error of the speed enters v and v|v| of both loads together. The rows'
-//! standard deviations come from the budget (entries of `speed` and `angle`
-//! whose error no two rows share); the fit is an orthogonal distance regression.
+//! One error of the speed enters v and v|v| of both loads together, one of an acceleration only the terms that have it. The rows'
+//! standard deviations come from the budget (entries of the motion, whose error no two rows share); the fit is an orthogonal distance regression.
 
 use faer::Mat;
 use froude_fit::odr::{InputModel, OdrFit, OdrProblem, Sigma, odr};
@@ -11,47 +10,79 @@ use froude_hydro::{Axis, DragModel, Setting};
 use froude_records::campaign::{BudgetEntry, Shared};
 
 use crate::dataset::Dataset;
-use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S};
+use crate::law::{ForceLaw, Kind, REFERENCE_SPEED_M_S, aliased};
 
-/// The inputs that may be uncertain, in the order of the regression.
-const INPUTS: [&str; 2] = ["speed", "angle"];
+/// The velocity as a table of tows states it, which the drag models are fitted in.
+const POLAR: [&str; 2] = ["speed", "angle"];
 
-/// Step of the differences, in m/s and rad: rounding and truncation both near 10⁻¹⁰.
+/// Step of the differences over the size of an input, which is 1 m/s and 1 rad of speed and angle: rounding and truncation both near 10⁻¹⁰.
 const DIFFERENCE_STEP: f64 = 6e-6;
 
-/// Whether an entry of the budget is an error that the regression in variables takes care of.
+/// Whether an entry of the budget is an error that the regression in variables of this law takes care of.
 #[must_use]
-pub fn is_input_error(entry: &BudgetEntry) -> bool {
-    entry.shared == Shared::Sample && INPUTS.contains(&entry.quantity.as_str())
+pub fn is_input_error(entry: &BudgetEntry, law: &ForceLaw) -> bool {
+    let quantity = aliased(&entry.quantity);
+    let is_read = || !matches!(law.kind, Kind::Drag { .. }) && law.channels().contains(&quantity);
+    entry.shared == Shared::Sample && (POLAR.contains(&quantity) || is_read())
 }
 
-/// Standard deviations of speed and angle per row, from the budget; `None` without any.
-///
-/// `rows × 2`: m/s and rad. A relative entry is multiplied by |value| of the row; several entries of one quantity add as variances.
-///
-/// # Source
-///
-/// JCGM 100:2008 (GUM), 5.1.2.
-#[must_use]
-pub fn input_standard(data: &Dataset, budget: &[BudgetEntry]) -> Option<Mat<f64>> {
-    let mut out = Mat::zeros(data.rows, INPUTS.len());
-    let mut has_any = false;
-    for entry in budget.iter().filter(|e| is_input_error(e)) {
-        let Some(k) = INPUTS.iter().position(|name| *name == entry.quantity) else { continue };
-        has_any = true;
-        for i in 0..data.rows {
-            let value = data.values(INPUTS[k]).map_or(0.0, |v| v[i]);
-            let standard = if entry.relative { entry.standard * value.abs() } else { entry.standard };
-            out[(i, k)] = f64::hypot(out[(i, k)], standard);
-        }
+/// What a law reads with errors of its own in each row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Inputs {
+    /// Names of the channels.
+    pub names: Vec<String>,
+    /// Their standard deviations, a row per observation and a column per name, in SI.
+    pub standard: Mat<f64>,
+}
+
+impl Inputs {
+    /// Speed and angle, `rows × 2`: m/s and rad.
+    #[must_use]
+    pub fn polar(standard: Mat<f64>) -> Self {
+        Self { names: POLAR.map(str::to_owned).to_vec(), standard }
     }
-    has_any.then_some(out)
+
+    /// From the budget; `None` without any.
+    ///
+    /// A relative entry is multiplied by |value| of the row; several entries of one quantity add as variances.
+    ///
+    /// # Source
+    ///
+    /// JCGM 100:2008 (GUM), 5.1.2.
+    #[must_use]
+    pub fn of_budget(law: &ForceLaw, data: &Dataset, budget: &[BudgetEntry]) -> Option<Self> {
+        let entries: Vec<&BudgetEntry> = budget.iter().filter(|entry| is_input_error(entry, law)).collect();
+        // Of a table of tows both, though one may be exact.
+        let is_polar = |entry: &&&BudgetEntry| POLAR.contains(&aliased(&entry.quantity));
+        let mut names: Vec<String> =
+            entries.iter().find(is_polar).map_or_else(Vec::new, |_| POLAR.map(str::to_owned).to_vec());
+        for entry in &entries {
+            let name = aliased(&entry.quantity);
+            if !names.iter().any(|other| other == name) {
+                names.push(name.to_owned());
+            }
+        }
+        let mut standard = Mat::zeros(data.rows, names.len());
+        for entry in &entries {
+            let name = aliased(&entry.quantity);
+            let Some(k) = names.iter().position(|other| other == name) else { continue };
+            for i in 0..data.rows {
+                let value = data.values(name).map_or(0.0, |v| v[i]);
+                let own = if entry.relative { entry.standard * value.abs() } else { entry.standard };
+                standard[(i, k)] = f64::hypot(standard[(i, k)], own);
+            }
+        }
+        (!entries.is_empty()).then_some(Self { names, standard })
+    }
 }
 
-/// A force law as a function of speed and angle of one observation.
+/// A force law as a function of the uncertain inputs of one observation.
 struct LawOfInputs<'a> {
     law: &'a ForceLaw,
     data: &'a Dataset,
+    names: &'a [String],
+    /// Size of each input, for the steps of differences.
+    sizes: Vec<f64>,
     /// Of a drag model: what does not depend on the motion.
     drag: Option<Drag>,
 }
@@ -94,7 +125,7 @@ impl InputModel for LawOfInputs<'_> {
     }
 
     fn n_inputs(&self) -> usize {
-        INPUTS.len()
+        self.names.len()
     }
 
     fn regressors(&self, observation: usize, inputs: &[f64], out: &mut [f64]) {
@@ -103,12 +134,10 @@ impl InputModel for LawOfInputs<'_> {
             return;
         }
         let mut one = self.data.subset(&[observation]);
-        for (name, value) in INPUTS.iter().zip(inputs) {
-            if let Some(channel) = one.channels.get_mut(*name) {
-                channel.values[0] = *value;
-            }
+        for (name, value) in self.names.iter().zip(inputs) {
+            let now = one.values(name).map_or(0.0, |v| v[0]);
+            one = one.shifted(name, &[value - now]);
         }
-        one.velocity_from_speed_and_angle();
         match self.law.regressors(&one, &[]) {
             Ok(x) => {
                 for c in 0..x.nrows() {
@@ -126,10 +155,10 @@ impl InputModel for LawOfInputs<'_> {
     /// cross terms as printed jump where v_x turns its sign.
     fn derivatives(&self, observation: usize, inputs: &[f64], out: &mut [f64]) {
         let size = self.n_components() * self.n_coefficients();
-        let goes_back = |inputs: &[f64]| inputs[0] * inputs[1].cos() < 0.0;
+        let goes_back = |inputs: &[f64]| self.drag.is_some() && inputs[0] * inputs[1].cos() < 0.0;
         let mut x = vec![0.0; size];
         for m in 0..self.n_inputs() {
-            let step = DIFFERENCE_STEP * inputs[m].abs().max(1.0);
+            let step = DIFFERENCE_STEP * inputs[m].abs().max(self.sizes[m]);
             let at = |k: f64| {
                 let mut moved = inputs.to_vec();
                 moved[m] += k * step;
@@ -154,9 +183,9 @@ impl InputModel for LawOfInputs<'_> {
     }
 }
 
-/// Fits a linear law with uncertain speed and angle.
+/// Fits a linear law whose inputs are uncertain.
 ///
-/// Minimises Σ (y_i − f(q_i + e_i; β))²/σ² + Σ e_iᵀC_i⁻¹e_i with q = (speed, angle). `standard` is `rows × 2` (m/s, rad); loads are in N or N m.
+/// Minimises Σ (y_i − f(q_i + e_i; β))²/σ² + Σ e_iᵀC_i⁻¹e_i with q the inputs; loads are in N or N m.
 ///
 /// # Errors
 ///
@@ -165,7 +194,8 @@ impl InputModel for LawOfInputs<'_> {
 /// # Source
 ///
 /// Boggs & Rogers (1990), Orthogonal distance regression, Contemporary Mathematics 112.
-pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma) -> Result<OdrFit, FitError> {
+pub fn regress(law: &ForceLaw, data: &Dataset, inputs: Inputs, sigma: Sigma) -> Result<OdrFit, FitError> {
+    let Inputs { names, standard } = inputs;
     let n = data.rows;
     let value = |name: &str, i: usize| data.values(name).map_or(0.0, |v| v[i]);
     let responses = law.measured(data).unwrap_or_default();
@@ -187,14 +217,21 @@ pub fn regress(law: &ForceLaw, data: &Dataset, standard: Mat<f64>, sigma: Sigma)
         return Err(FitError::NoRows);
     }
     let problem = OdrProblem {
-        inputs: Mat::from_fn(n, INPUTS.len(), |i, k| value(INPUTS[k], i)),
+        inputs: Mat::from_fn(n, names.len(), |i, k| value(&names[k], i)),
         input_standard: standard,
         response: Mat::from_fn(n, c, |i, r| responses[r * n + i]),
         sigma: vec![sigma; c],
         components: law.responses.clone(),
         names: law.coefficients.iter().map(|c| c.name.clone()).collect(),
     };
-    odr(&LawOfInputs { law, data, drag }, &problem, 0.95)
+    let largest = |name: &String| data.values(name).map_or(0.0, |v| v.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
+    let size = |name: &String| match largest(name) {
+        _ if POLAR.contains(&name.as_str()) => 1.0,
+        0.0 => 1.0,
+        largest => largest,
+    };
+    let sizes = names.iter().map(size).collect();
+    odr(&LawOfInputs { law, data, names: &names, sizes, drag }, &problem, 0.95)
 }
 
 /// Puts the result in the place of the ordinary fit's coefficients; its design, leverages and AICc stay.

@@ -143,6 +143,7 @@ fn at_once(campaign: &Campaign, source: &Source) -> Option<&'static str> {
         (source.tare.is_some(), "tare (its error differs from row to row)"),
         (!source.uncertainty.is_empty(), "[[source.uncertainty]] (its errors go through every row)"),
         (identify.errors_in_variables, "errors_in_variables (each row has a true speed of its own)"),
+        (!identify.known.is_empty(), "known (its error goes through every row)"),
         (identify.huber.is_some(), "huber (its weights are iterated row by row)"),
         (identify.angle_offset == AngleOffset::Estimate, "angle_offset = \"estimate\" (it is iterated over the rows)"),
         (identify.fitted_weights, "weights = \"fitted\" (each row weighs by the fitted load)"),

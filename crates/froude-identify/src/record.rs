@@ -141,7 +141,7 @@ fn method(model: &ModelFit) -> String {
     };
     let mut out = base.to_owned();
     if model.in_variables {
-        "orthogonal distance regression: speed and angle are uncertain too (σ by restricted maximum likelihood)"
+        "orthogonal distance regression: what the law reads is uncertain too (σ by restricted maximum likelihood)"
             .clone_into(&mut out);
     }
     if model.options.bounds.iter().any(|b| b.lower == 0.0) {
@@ -183,7 +183,8 @@ fn coefficients(model: &ModelFit, labels: &IndexMap<String, String>) -> IndexMap
             };
             let combined = model.combined[j];
             // The interval is the unconstrained one, widened by the budget, cut by the bounds.
-            let centre = fitted.unconstrained;
+            // That of a known coefficient is its own.
+            let centre = fitted.unconstrained.or(fitted.value.filter(|_| fitted.status == fit::Status::Fixed));
             let interval_95 = match (combined, centre) {
                 (Some(c), Some(u)) => {
                     let [low, high] = c.interval(u);

@@ -6,11 +6,12 @@ pub(crate) mod formula_of;
 mod generalised;
 mod held;
 mod job;
+mod known;
 mod problem;
 mod uncertain;
 
 use froude_fit as fit;
-use froude_records::campaign::BoundKind;
+use froude_records::campaign::{BoundKind, Identify, PriorSpec};
 use froude_records::finding::{Finding, Severity};
 
 use crate::dataset::Dataset;
@@ -126,7 +127,7 @@ fn relative_residual(
     Ok(())
 }
 
-/// Replaces the fit by an orthogonal distance regression where the budget gives row errors of speed or angle.
+/// Replaces the fit by an orthogonal distance regression where the budget gives row errors of what the law reads.
 fn errors_in_variables(
     law: &ForceLaw,
     data: &Dataset,
@@ -148,13 +149,13 @@ fn errors_in_variables(
                 .to_owned(),
         });
     }
-    let Some(standard) = eiv::input_standard(data, settings.budget) else {
+    let Some(inputs) = eiv::Inputs::of_budget(law, data, settings.budget) else {
         findings.push(Finding::new(
             Severity::Warning,
             "no-input-errors",
             format!(
-                "model {}: errors_in_variables was asked for, but the budget has no entry for speed or angle with shared = \
-                 \"sample\"; ordinary least squares is used",
+                "model {}: errors_in_variables was asked for, but the budget has no entry with shared = \"sample\" for speed, angle \
+                 or another column that the law reads; ordinary least squares is used",
                 law.name
             ),
         ));
@@ -172,14 +173,19 @@ fn errors_in_variables(
         ));
         return Ok(false);
     }
-    let result =
-        eiv::regress(law, data, standard, fit::odr::Sigma::Estimated).map_err(|source| IdentifyError::Fit {
-            source_name: settings.source_name.to_owned(),
-            model: law.name.clone(),
-            source: Box::new(source),
-        })?;
+    let result = eiv::regress(law, data, inputs, fit::odr::Sigma::Estimated).map_err(|source| IdentifyError::Fit {
+        source_name: settings.source_name.to_owned(),
+        model: law.name.clone(),
+        source: Box::new(source),
+    })?;
     eiv::replace(fitted, &problem.design, &problem.response, result);
     Ok(true)
+}
+
+/// The known coefficients of a law, with their places in the campaign.
+pub(crate) fn known_of<'a>(identify: &'a Identify, law: &ForceLaw) -> impl Iterator<Item = (usize, &'a PriorSpec)> {
+    let is_meant = move |known: &PriorSpec| known.model.as_ref().is_none_or(|model| *model == law.name);
+    identify.known.iter().enumerate().filter(move |(_, known)| is_meant(known))
 }
 
 /// Bounds, fixed values, exclusions, priors and constraints by name.
@@ -216,7 +222,10 @@ fn options(law: &ForceLaw, specs: &[CoefficientSpec], settings: Settings<'_>) ->
                 })
             })
             .collect(),
-        fixed: identify.fixed.iter().filter_map(|(n, v)| position(n).map(|j| (j, *v))).collect(),
+        fixed: (identify.fixed.iter().map(|(name, value)| (name, *value)))
+            .chain(known_of(identify, law).map(|(_, known)| (&known.coefficient, known.value)))
+            .filter_map(|(name, value)| Some((position(name)?, value)))
+            .collect(),
         excluded: identify.exclude.iter().filter_map(|n| position(n)).collect(),
         loss: identify.huber.map_or(fit::Loss::Squares, |k| fit::Loss::Huber { k }),
         covariance: settings.scatter.of_residuals(),

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use froude_identify::source::{SourceResult, identify_source};
 use froude_records::campaign::read_campaign;
+use froude_records::estimate::{Coefficient, Estimate, EstimateFile, Status, TypeA};
+use froude_records::json::write_estimates;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
@@ -358,4 +360,130 @@ fn a_row_that_the_others_do_not_explain_is_named_and_sound_ones_are_left_alone()
     }
     let both = QUADRATIC.replace("quadratic", "linear_quadratic");
     assert_eq!(finding(&identify(folder.path(), &alone, &both), "outlying-row"), None);
+}
+
+/// A body that is towed and accelerated: its drag, its mass, and a force that goes with the sway acceleration.
+fn accelerated() -> (String, Vec<[f64; 3]>) {
+    let mut table = "v_x [m/s],v_y [m/s],v_x_dot [m/s^2],v_y_dot [m/s^2],f_x [N]\n".to_owned();
+    let mut rows = Vec::new();
+    for i in 0..24 {
+        let t = f64::from(i);
+        let (v, a, b) = (0.6 + 0.3 * (0.7 * t).sin(), 0.2 * (1.3 * t).cos(), 0.1 * (2.1 * t).sin());
+        let f = -10.0 * v * v.abs() - 12.0 * a - 3.0 * b + 0.01 * (5.0 * t * t).cos();
+        writeln!(table, "{v},0,{a},{b},{f}").unwrap();
+        rows.push([v * v.abs(), a, b]);
+    }
+    (table, rows)
+}
+
+const ACCELERATED: &str = "[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\nmodels = [\"towed\"]\n\
+     [[identify.model]]\nname = \"towed\"\nf_x = \"-D*v_x*abs(v_x) - A*v_x_dot - B*v_y_dot\"\n";
+
+/// The others are fitted to what the known terms leave over, and err with them: ∂β/∂c = −(XᵀX)⁻¹Xᵀx.
+#[test]
+fn a_known_mass_is_held_and_its_error_goes_through_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let (table, rows) = accelerated();
+    let known = "[[identify.known]]\ncoefficient = \"A\"\nvalue = \"12 kg\"\nstandard_uncertainty = \"0.5 kg\"\n";
+    let exact = identify(folder.path(), &table, &format!("{ACCELERATED}[identify.fixed]\nA = \"12 kg\"\n"));
+    let with = identify(folder.path(), &table, &format!("{ACCELERATED}{known}"));
+    let [exact, with] = [&exact.estimates[0], &with.estimates[0]];
+    let sum = |a: usize, b: usize| rows.iter().map(|r| r[a] * r[b]).sum::<f64>();
+    let determinant = sum(0, 0) * sum(2, 2) - sum(0, 2) * sum(0, 2);
+    let of_drag = -(sum(2, 2) * sum(0, 1) - sum(0, 2) * sum(2, 1)) / determinant;
+    let of_sway = -(sum(0, 0) * sum(2, 1) - sum(0, 2) * sum(0, 1)) / determinant;
+    for (name, moved) in [("D", of_drag), ("B", of_sway)] {
+        let (a, b) = (&exact.coefficients[name], &with.coefficients[name]);
+        assert_eq!(a.value, b.value);
+        assert!((b.type_b.unwrap() / (0.5 * moved.abs()) - 1.0).abs() < 1e-9, "{name}: {b:?}");
+        assert!(b.interval_95.unwrap()[0] < a.interval_95.unwrap()[0]);
+    }
+    let mass = &with.coefficients["A"];
+    assert_eq!((mass.value, mass.type_b), (Some(12.0), Some(0.5)));
+    let [low, high] = mass.interval_95.unwrap();
+    assert!((0.5 * (high - low) / 0.5 - 1.96).abs() < 0.01 && (low + high - 24.0).abs() < 1e-12);
+    assert_eq!(exact.coefficients["A"].interval_95, None);
+    let all = with.covariance().unwrap();
+    let place = |name: &str| all.names.iter().position(|n| n == name).unwrap();
+    let between = all.matrix[place("D")][place("A")];
+    assert!((between / (0.25 * of_drag) - 1.0).abs() < 1e-9, "{between}");
+}
+
+/// Two entries of one record keep their covariance: what they do to a third coefficient together is less than each does alone.
+#[test]
+fn known_coefficients_of_one_record_keep_their_covariance() {
+    let folder = tempfile::tempdir().unwrap();
+    let (table, rows) = accelerated();
+    let entry = |value: f64| Coefficient {
+        label: None,
+        nuisance: false,
+        value: Some(value),
+        unit: "kg".to_owned(),
+        status: Status::Free,
+        standard_uncertainty: Some(0.5),
+        type_a: Some(0.5),
+        type_b: None,
+        interval_95: Some([value - 1.0, value + 1.0]),
+        effective_dof: None,
+        unconstrained: None,
+    };
+    let estimate = Estimate {
+        id: "hull/added_mass_6x6".to_owned(),
+        source: "hull".to_owned(),
+        coefficients: [("A11".to_owned(), entry(12.0)), ("A12".to_owned(), entry(3.0))].into_iter().collect(),
+        type_a: Some(TypeA {
+            names: vec!["A11".to_owned(), "A12".to_owned()],
+            matrix: vec![vec![0.25, -0.2], vec![-0.2, 0.25]],
+            dof: vec![None; 2],
+            kind: "mesh".to_owned(),
+        }),
+        recommended: true,
+        ..Estimate::default()
+    };
+    write_estimates(&folder.path().join("am.json"), &EstimateFile::of(vec![estimate])).unwrap();
+    let known: String = [("A", "A11"), ("B", "A12")]
+        .map(|(c, e)| format!("[[identify.known]]\ncoefficient = \"{c}\"\nrecord = \"am.json\"\nentry = \"{e}\"\n"))
+        .concat();
+    let result = identify(folder.path(), &table, &format!("{ACCELERATED}{known}"));
+    let e = &result.estimates[0];
+    let sum = |a: usize, b: usize| rows.iter().map(|r| r[a] * r[b]).sum::<f64>();
+    let [m, n] = [-sum(0, 1) / sum(0, 0), -sum(0, 2) / sum(0, 0)];
+    let variance = 0.25 * m * m + 0.25 * n * n - 2.0 * 0.2 * m * n;
+    assert!((e.coefficients["D"].type_b.unwrap() / variance.sqrt() - 1.0).abs() < 1e-9, "{:?}", e.coefficients["D"]);
+    let all = e.covariance().unwrap();
+    let place = |name: &str| all.names.iter().position(|n| n == name).unwrap();
+    assert!((all.matrix[place("A")][place("B")] + 0.2).abs() < 1e-12);
+    assert_eq!(e.errors.len(), 1);
+}
+
+/// An acceleration that is read with errors makes least squares too small by its reliability; the regression in variables does not.
+#[test]
+fn errors_of_an_acceleration_do_not_shrink_the_mass() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    let mut normal = |s: f64| {
+        s * {
+            let x: f64 = StandardNormal.sample(&mut rng);
+            x
+        }
+    };
+    let mut table = "v_x [m/s],v_y [m/s],v_x_dot [m/s^2],f_x [N]\n".to_owned();
+    for i in 0..2000 {
+        let t = f64::from(i);
+        let (v, a) = (0.6 + 0.3 * (0.7 * t).sin(), 0.2 * (1.3 * t).cos());
+        let f = -10.0 * v * v.abs() - 12.0 * a + normal(0.05);
+        writeln!(table, "{v},0,{},{f}", a + normal(0.1)).unwrap();
+    }
+    let law = "[[source]]\nname = \"s\"\nkind = \"towing\"\ntable = \"t.csv\"\nmodels = [\"towed\"]\n\
+               [[source.uncertainty]]\nquantity = \"v_x_dot\"\nstandard = \"0.1 m/s^2\"\nshared = \"sample\"\n\
+               [[identify.model]]\nname = \"towed\"\nf_x = \"-D*v_x*abs(v_x) - A*v_x_dot\"\n";
+    let mass = |more: &str| {
+        let result = identify(folder.path(), &table, &format!("{law}{more}"));
+        let c = &result.estimates[0].coefficients["A"];
+        (c.value.unwrap(), c.standard_uncertainty.unwrap())
+    };
+    let ((plain, _), (found, u)) = (mass(""), mass("[identify]\nerrors_in_variables = true\n"));
+    // Reliability σ_a²/(σ_a² + u²) = 0.02/0.03.
+    assert!((plain / 8.0 - 1.0).abs() < 0.05, "{plain}");
+    assert!((found - 12.0).abs() < 3.0 * u && u < 0.3, "{found} ± {u}");
 }

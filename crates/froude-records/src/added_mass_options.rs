@@ -37,7 +37,7 @@ const fn switch(name: &'static str, help: &'static str) -> AddedMassOption {
 const DIRECTIONS: &[&str] = &["x", "-x", "y", "-y", "z", "-z"];
 
 /// All of them.
-pub const ADDED_MASS_OPTIONS: [AddedMassOption; 15] = [
+pub const ADDED_MASS_OPTIONS: [AddedMassOption; 16] = [
     option("links", "K|A..B|K,K", "Links of a robot: 3, or 1..9 for a table with a least-squares fit, or 1,3,6"),
     option("density", "QUANTITY", "Density of the water, with its unit [default: the body file's]"),
     words(
@@ -77,6 +77,10 @@ pub const ADDED_MASS_OPTIONS: [AddedMassOption; 15] = [
     },
     switch("chain", "Give the link-by-link matrix of the straight chain"),
     switch("apart", "Treat the disconnected parts of a mesh as separate bodies"),
+    switch(
+        "polyhedron",
+        "Take the facets of a mesh as the body itself [default: as those of a smooth body with its corners]",
+    ),
     option("export", "FORMAT,…", "Files to write beside the record: wamit, capytaine, csv"),
 ];
 

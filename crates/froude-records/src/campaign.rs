@@ -386,6 +386,10 @@ pub struct Identify {
     pub exclude: Vec<String>,
     /// Published values used as priors.
     pub prior: Vec<PriorSpec>,
+    /// Coefficients that are known from elsewhere: held at their value, whose uncertainty is an error that all rows share.
+    pub known: Vec<PriorSpec>,
+    /// Covariance of the known coefficients, in their order (SI).
+    pub known_covariance: Vec<Vec<f64>>,
     /// `classical`, `HC3`, `cluster` or `blocks`; `None` to choose by the data.
     pub covariance: Option<String>,
     /// Whether rows are weighted by a variance that is fitted to the residuals (`weights = "fitted"`).
@@ -429,7 +433,7 @@ pub enum BoundKind {
     NonNegative,
 }
 
-/// A published value used as prior.
+/// A coefficient with a value and a standard uncertainty from elsewhere: a prior, or one that is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PriorSpec {
     /// The coefficient.
@@ -444,7 +448,7 @@ pub struct PriorSpec {
     pub record: Option<PriorRecord>,
 }
 
-/// Where a prior is taken from.
+/// Where such a value is taken from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PriorRecord {
     /// `estimate.json`.

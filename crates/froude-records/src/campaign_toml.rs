@@ -465,9 +465,12 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         models,
         model_places,
         bounds: bounds(s)?,
-        fixed,
         exclude: s.texts("exclude")?,
         prior: s.sections("prior")?.iter().map(prior).collect::<Result<_, _>>()?,
+        known: known(s, &fixed)?,
+        fixed,
+        // It follows when the records are read.
+        known_covariance: Vec::new(),
         covariance: one_of(s, "covariance", &COVARIANCES, &COVARIANCES)?.map(str::to_owned),
         fitted_weights: one_of(s, "weights", &["std", "fitted"], &[false, true])?.unwrap_or_default(),
         group_offset: one_of(s, "group_offset", &["ignore", "estimate"], &[false, true])?.unwrap_or_default(),
@@ -481,6 +484,29 @@ fn identify(s: &Section<'_>) -> Result<Identify, RecordError> {
         errors_in_variables: s.flag("errors_in_variables")?.unwrap_or(false),
     };
     s.finish()?;
+    Ok(out)
+}
+
+/// Known coefficients, each held once.
+fn known(s: &Section<'_>, fixed: &IndexMap<String, f64>) -> Result<Vec<PriorSpec>, RecordError> {
+    let mut out: Vec<PriorSpec> = Vec::new();
+    for section in s.sections("known")? {
+        let one = prior(&section)?;
+        let is_twice = out.iter().any(|other| {
+            other.coefficient == one.coefficient
+                && (other.model == one.model || other.model.is_none() || one.model.is_none())
+        });
+        let is_fixed = fixed.contains_key(&one.coefficient);
+        if is_twice || is_fixed {
+            let what = if is_twice { "known twice" } else { "in `fixed` too" };
+            return Err(RecordError::Value {
+                place: section.place(),
+                key: "coefficient".to_owned(),
+                problem: format!("is {}, which is {what}; a coefficient is held at one value", one.coefficient),
+            });
+        }
+        out.push(one);
+    }
     Ok(out)
 }
 
@@ -501,7 +527,7 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
     let model = s.text("model")?.map(str::to_owned);
     if let Some(record) = s.text("record")? {
         if let Some((key, value)) = ["value", "standard_uncertainty"].iter().find_map(|k| Some((*k, s.get(k)?))) {
-            return Err(s.wrong(key, value, "and record are given; a prior is written, or taken from a record"));
+            return Err(s.wrong(key, value, "and record are given; a value is written, or taken from a record"));
         }
         let entry =
             s.text("entry")?.ok_or_else(|| s.missing("entry", "name the coefficient of the record, \"A66\" say"))?;
@@ -518,11 +544,11 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
         return Ok(PriorSpec { coefficient, value, standard_uncertainty, model, record: Some(record) });
     }
     if let Some((key, value)) = ["select", "entry", "volume", "model_form"].iter().find_map(|k| Some((*k, s.get(k)?))) {
-        return Err(s.wrong(key, value, "belongs to a prior of a record: write record = \"estimate.json\" beside it"));
+        return Err(s.wrong(key, value, "belongs to a value of a record: write record = \"estimate.json\" beside it"));
     }
     let need = |key: &'static str| -> Result<f64, RecordError> {
         let value =
-            s.get(key).ok_or_else(|| s.missing(key, "a prior needs coefficient, value and standard_uncertainty"))?;
+            s.get(key).ok_or_else(|| s.missing(key, "coefficient, value and standard_uncertainty are needed"))?;
         coefficient_value(s, key, value)
     };
     let out = PriorSpec {
@@ -536,8 +562,7 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
         return Err(RecordError::Value {
             place: s.place(),
             key: "standard_uncertainty".to_owned(),
-            problem: "must be larger than zero; a value without uncertainty is not a prior; fix it with `fixed`"
-                .to_owned(),
+            problem: "must be larger than zero; hold a value without uncertainty with `fixed`".to_owned(),
         });
     }
     Ok(out)

@@ -1,4 +1,4 @@
-//! Priors that are taken from a record: an added mass of potential flow, for a method that cannot see added mass itself.
+//! Priors and known coefficients that are taken from a record: an added mass of potential flow, for a method that cannot see added mass itself.
 //!
 //! ```toml
 //! [identify]
@@ -9,7 +9,10 @@
 //! ```
 //!
 //! The value is that of the entry, in the water of the test where both densities are stated; with `volume`, C_A = A/(ρV) by the density that the record refers to. Its standard uncertainty is that of the record (of the
-//! mesh, that is) and `model_form` of the value, added in the mean square: an ideal fluid is no real one, and the record does not know by how much.
+//! mesh, that is) and `model_form` of the value, added in the mean square: an ideal fluid is no real one, and the record does not know by how much. Known coefficients from one
+//! estimate have its covariance between them; their model forms are independent.
+
+use std::path::PathBuf;
 
 use crate::campaign::{Campaign, PriorRecord, PriorSpec};
 use crate::error::RecordError;
@@ -17,7 +20,7 @@ use crate::estimate::Estimate;
 use crate::json::read_estimates;
 use crate::units::{Dimension, parse_unit};
 
-/// Reads every record that a prior is taken from.
+/// Reads every record that a prior or a known coefficient is taken from.
 ///
 /// # Errors
 ///
@@ -26,13 +29,51 @@ pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
     let density = campaign.fluid.density_kg_m3;
     for prior in &mut campaign.identify.prior {
         if let Some(from) = prior.record.clone() {
-            (prior.value, prior.standard_uncertainty) = value(prior, &from, density)?;
+            let found = value(prior, &from, density)?;
+            (prior.value, prior.standard_uncertainty) = (found.value, found.standard);
         }
     }
+    let mut of_records = Vec::new();
+    for known in &mut campaign.identify.known {
+        let found = known.record.clone().map(|from| value(known, &from, density)).transpose()?;
+        if let Some(found) = &found {
+            (known.value, known.standard_uncertainty) = (found.value, found.standard);
+        }
+        of_records.push(found);
+    }
+    let known = &campaign.identify.known;
+    let between = |i: usize, j: usize| match (&of_records[i], &of_records[j]) {
+        _ if i == j => known[i].standard_uncertainty.powi(2),
+        (Some(a), Some(b)) => a.covariance_with(b),
+        _ => 0.0,
+    };
+    campaign.identify.known_covariance =
+        (0..known.len()).map(|i| (0..known.len()).map(|j| between(i, j)).collect()).collect();
     Ok(())
 }
 
-fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> Result<(f64, f64), RecordError> {
+/// An entry of a record.
+struct Found {
+    value: f64,
+    standard: f64,
+    /// What the entry was divided by.
+    per: f64,
+    path: PathBuf,
+    entry: String,
+    estimate: Estimate,
+}
+
+impl Found {
+    /// Covariance with another entry; none of another estimate.
+    fn covariance_with(&self, other: &Self) -> f64 {
+        let is_one = self.path == other.path && self.estimate.id == other.estimate.id;
+        let Some(all) = self.estimate.covariance().filter(|_| is_one) else { return 0.0 };
+        let place = |of: &Self| all.names.iter().position(|name| *name == of.entry);
+        place(self).zip(place(other)).map_or(0.0, |(i, j)| all.matrix[i][j] / (self.per * other.per))
+    }
+}
+
+fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> Result<Found, RecordError> {
     let wrong =
         |key: &str, problem: String| RecordError::Value { place: from.place.clone(), key: key.to_owned(), problem };
     if !from.path.exists() {
@@ -106,7 +147,8 @@ fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> R
     let value = found / per;
     let standard = (entry.standard_uncertainty.unwrap_or(0.0) / per).hypot(from.model_form * value);
     if standard > 0.0 {
-        return Ok((value, standard));
+        let estimate = estimate.clone();
+        return Ok(Found { value, standard, per, path: from.path.clone(), entry: from.entry.clone(), estimate });
     }
     let problem =
         format!("{} has no uncertainty in {}; write model_form = \"5 %\", for example", from.entry, estimate.id);

@@ -207,7 +207,9 @@ impl<E> Problem<'_, E> {
 
     /// What is known of an unknown beforehand, with its name: declared numbers, and priors of the campaign.
     pub fn known(&self) -> Vec<(String, ls::Prior)> {
-        let of_campaign = self.identify.prior.iter().filter(|p| p.model.as_ref().is_none_or(|m| *m == self.law));
+        // What is known enters with its uncertainty, as a prior does.
+        let stated = self.identify.prior.iter().chain(&self.identify.known);
+        let of_campaign = stated.filter(|p| p.model.as_ref().is_none_or(|m| *m == self.law));
         let of_campaign = of_campaign.filter_map(|p| {
             let prior =
                 ls::Prior { index: self.position(&p.coefficient)?, value: p.value, standard: p.standard_uncertainty };

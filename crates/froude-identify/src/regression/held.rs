@@ -11,6 +11,7 @@ use crate::dataset::Dataset;
 use crate::error::IdentifyError;
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::regression::fitted::{Scatter, Settings};
+use crate::regression::known;
 use crate::regression::problem::step;
 use crate::uncertainty::{Linearised, contributions, scatter};
 
@@ -50,7 +51,8 @@ pub(crate) fn beside_priors(
         settings.shared_errors,
         settings.kind != SourceKind::Cfd,
     )?;
-    let parts: Vec<Part> = std::iter::once(scatter(&free)).chain(declared).collect();
+    let known = known::parts(law, settings, problem, &free);
+    let parts: Vec<Part> = std::iter::once(scatter(&free)).chain(declared).chain(known).collect();
     let mut findings = Vec::new();
     for prior in &options.priors {
         let c = &free.coefficients[prior.index];

@@ -11,6 +11,7 @@ use crate::eiv;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::regression::fitted::{Scatter, Settings};
+use crate::regression::known;
 use crate::regression::problem::step;
 use crate::uncertainty::{Linearised, contributions, scatter};
 
@@ -24,6 +25,10 @@ pub(crate) struct Uncertainty {
     pub(crate) covariance: Mat<f64>,
     /// Where the scatter comes from, in words.
     pub(crate) kind: String,
+}
+
+fn is_fixed(c: &fit::FitCoefficient) -> bool {
+    c.status == fit::Status::Fixed
 }
 
 impl Uncertainty {
@@ -47,9 +52,12 @@ impl Uncertainty {
         let mut declared = contributions(at, settings.budget, settings.campaign, settings.shared_errors, is_measured)?;
         if in_variables {
             for (part, entry) in declared.iter_mut().zip(settings.budget) {
-                part.in_scatter |= eiv::is_input_error(entry);
+                part.in_scatter |= eiv::is_input_error(entry, law);
             }
         }
+        let known = known::parts(law, settings, problem, fitted);
+        let is_known_elsewhere =
+            |j: usize| known.iter().any(|part| part.covariance[(j, j)] > 0.0) && is_fixed(&fitted.coefficients[j]);
         let replicates = match settings.scatter {
             Scatter::Replicates { name, sets } => {
                 Some(replicates::together(name, sets).filter(|part| part.dof.len() == p))
@@ -63,13 +71,13 @@ impl Uncertainty {
             None => c.standard.is_some(),
         };
         let first = replicates.clone().flatten().unwrap_or_else(|| scatter(fitted));
-        let budget: Vec<Part> = std::iter::once(first).chain(declared).collect();
+        let budget: Vec<Part> = std::iter::once(first).chain(declared).chain(known.iter().cloned()).collect();
         let outside = OUTSIDE_95 / settings.looks.max(1) as f64;
         let combined: Vec<Option<Combined>> = fitted
             .coefficients
             .iter()
             .enumerate()
-            .map(|(j, c)| is_known(c).then(|| combine(&budget, j, outside)))
+            .map(|(j, c)| (is_known(c) || is_known_elsewhere(j)).then(|| combine(&budget, j, outside)))
             .collect();
         let kind = match replicates {
             Some(_) => budget[0].name.clone(),

@@ -69,7 +69,7 @@ pub fn cases(claims: &mut Claims, root: &Path, repetitions: usize) -> Result<Vec
         };
         let hits = coverage(repetitions, &|data| {
             let standard = Mat::from_fn(rows, 2, |_, k| if k == 0 { SPEED_M_S } else { ANGLE_RAD });
-            eiv::regress(&law, data, standard, Sigma::Estimated)
+            eiv::regress(&law, data, eiv::Inputs::polar(standard), Sigma::Estimated)
                 .map_or_else(|_| Vec::new(), |f| f.coefficients.iter().map(|c| c.interval).collect())
         });
         let runs = repetitions.min(CONTROL_REPETITIONS);

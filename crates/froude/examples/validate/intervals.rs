@@ -34,14 +34,14 @@ type Failed = Box<dyn Error>;
 
 /// What one table's answer says of a question: held or not, and how wide.
 #[derive(Debug, Clone, Copy)]
-struct Said {
-    holds: bool,
-    width: f64,
+pub struct Said {
+    pub holds: bool,
+    pub width: f64,
 }
 
 /// A question over all seeds.
 #[derive(Debug, Clone, Default)]
-struct Tally {
+pub struct Tally {
     name: String,
     holds: u64,
     width: f64,
@@ -49,7 +49,7 @@ struct Tally {
 }
 
 impl Tally {
-    fn percent(&self) -> f64 {
+    pub fn percent(&self) -> f64 {
         100.0 * self.holds as f64 / self.count as f64
     }
 
@@ -59,7 +59,7 @@ impl Tally {
 }
 
 /// Tables of seeds through one campaign; `table` writes the rows, `judge` reads the answer. A table without answer is counted as one that does not hold.
-fn run(
+pub fn run(
     campaign: &str,
     seeds: u64,
     stream: u128,
@@ -190,6 +190,7 @@ pub fn all(claims: &mut Claims, root: &Path, seeds: u64) -> Result<(), Failed> {
     tares(claims, seeds)?;
     bounds(claims, seeds)?;
     priors(claims, seeds)?;
+    known(claims, seeds)?;
     clusters(claims, seeds)?;
     leverage(claims, seeds)?;
     setups(claims, seeds)?;
@@ -455,6 +456,39 @@ fn priors(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
             let what = format!("a prior {off} standard uncertainties off, the data as uncertain: {}", tally.name);
             claims.add(ROOM, &what, "the power of the 1 % test, and what is left of 95 %", found, Verdict::Measured);
         }
+    }
+    Ok(())
+}
+
+/// A mass that is known from elsewhere to 10 %: what it does to the drag beside it, held against the same without its uncertainty.
+fn known(claims: &mut Claims, seeds: u64) -> Result<(), Failed> {
+    const MASS_KG: [f64; 2] = [20.0, 2.0];
+    let table = |rng: &mut Pcg64| {
+        let mass = MASS_KG[0] + MASS_KG[1] * normal(rng);
+        let mut out = "v_x [m/s],v_x_dot [m/s^2],f_x [N]\n".to_owned();
+        for i in 0..24 {
+            let u = 0.3 + 0.05 * f64::from(i);
+            // Faster runs speed up more.
+            let a = 0.2 * u + 0.1 * f64::from(i % 3);
+            let _ = writeln!(out, "{u},{a},{}", -12.0 * u * u - mass * a + 0.2 * normal(rng));
+        }
+        out
+    };
+    let law = "models = [\"towed\"]\n[[identify.model]]\nname = \"towed\"\nf_x = \"-D*v_x*abs(v_x) - A*v_x_dot\"\n";
+    let judge =
+        |found: &SourceResult| interval(found, 0, "D", 12.0).map(|said| ("D".to_owned(), said)).into_iter().collect();
+    let [value, standard] = MASS_KG;
+    let stated = format!(
+        "{law}[[identify.known]]\ncoefficient = \"A\"\nvalue = \"{value} kg\"\nstandard_uncertainty = \"{standard} kg\"\n"
+    );
+    for tally in run(&campaign(&stated), seeds, 198, table, judge)? {
+        let what = "a mass known to 10 % beside the drag";
+        judged(claims, what, &tally, 94.0, false, &format!(", mean width {:.3}", tally.width()));
+    }
+    let fixed = format!("{law}[identify.fixed]\nA = \"{value} kg\"\n");
+    for tally in run(&campaign(&fixed), seeds, 198, table, judge)? {
+        let found = format!("{:.2} % of {}, mean width {:.3}", tally.percent(), tally.count, tally.width());
+        claims.add(ROOM, "the same mass fixed, as if it were exact: D", "how wrong that is", found, Verdict::Measured);
     }
     Ok(())
 }

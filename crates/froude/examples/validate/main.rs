@@ -2,7 +2,7 @@
 //!
 //! `validate --short` runs what the pipeline runs; `--full` runs 20,000 repetitions per coverage case and writes
 //! `book/src/validation.md`. Names of parts after it run these alone (snake, tanks, predict, servo, two-mass, sweeps, carriage, decay, oscillation, rotation, hour, steady, weights, accelerated, excited, swim, swim-coverage, cfd, cfd-moved, cfd-campaign, clocks,
-//! dynamic, potential, intervals, lints, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
+//! dynamic, potential, facets, intervals, lints, power, coverage); no page is written then, unless `--page` asks for their sections to replace those of the page. A line that misses its bar fails the
 //! run. A line whose data are absent counts as
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
 
@@ -36,7 +36,9 @@ mod kvlcc2;
 mod lints;
 mod oscillation;
 mod potential;
+mod potential_facets;
 mod potential_laws;
+mod power;
 mod predicted;
 mod rm2;
 mod rotation;
@@ -162,6 +164,9 @@ fn main() -> ExitCode {
             potential::all(claims, &root, full)?;
             potential_laws::all(claims, full)?;
         }
+        if wants("facets") {
+            potential_facets::facets(claims, full)?;
+        }
         if chosen.is_empty() {
             family::whole(claims);
         }
@@ -171,6 +176,9 @@ fn main() -> ExitCode {
         if wants("lints") {
             lints::clean(claims, if full { 10_000 } else { 200 })?;
             lints::short(claims, if full { 200_000 } else { 2_000 });
+        }
+        if full && wants("power") {
+            power::all(claims)?;
         }
         if wants("coverage") {
             coverage::all(claims, &root, repetitions)?;

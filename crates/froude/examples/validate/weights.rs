@@ -205,7 +205,7 @@ impl Errors {
             Some(part) => {
                 let speeds = data.values("speed")?.to_vec();
                 let standard = Mat::from_fn(data.rows, 2, |i, k| if k == 0 { part * speeds[i] } else { 0.0 });
-                let fit = eiv::regress(&self.law, &data, standard, Sigma::Known(LOAD_N)).ok()?;
+                let fit = eiv::regress(&self.law, &data, eiv::Inputs::polar(standard), Sigma::Known(LOAD_N)).ok()?;
                 fit.coefficients.iter().filter_map(|c| c.value).collect()
             }
             None => {
