@@ -5,11 +5,12 @@ use froude_mesh::{Mesh, Vec3};
 use froude_panel::family::Family;
 use froude_panel::problem::Frame;
 use froude_panel::refine::{Forecast, Refined, Wanted, plan, refine};
+use froude_records::finding::{Finding, Severity};
 use froude_records::number;
 use froude_records::page::TextTable;
 
 use super::exports::{self, extras};
-use super::facets::{self, correct};
+use super::facets::{self, Facets, correct};
 use super::frame::{Axes, Orientation, Point, inertia_m5, sentence};
 use super::load::{Loaded, load};
 use super::options::Asked;
@@ -83,15 +84,23 @@ pub fn body(job: &Asked, water: &Water, source: &str, progress: &dyn Fn(&str)) -
         } else {
             progress("the same with facets rounded");
             match facets::of_mesh(mesh, &cases[0], &job.wanted, &frame) {
-                Ok(Some(found)) => correct(&mut cases, &found),
-                Ok(None) => notes.push("All edges of the mesh are edges of the body: its facets are the body itself.".to_owned()),
-                Err(why) => notes.push(format!(
-                    "The matrix is that of the polyhedron; what a smooth body with its corners has more is not known, and not in the uncertainty: {why}."
-                )),
+                Ok(Some(found)) => {
+                    findings.push(facets::finding(&found));
+                    correct(&mut cases, &found, &frame);
+                }
+                Ok(None) => notes
+                    .push("All edges of the mesh are edges of the body: its facets are the body itself.".to_owned()),
+                Err(why) => {
+                    let text = format!(
+                        "the matrix is that of the polyhedron; what a smooth body with its corners has more is not known, and not in the uncertainty: {why}"
+                    );
+                    findings.push(Finding::new(Severity::Warning, "facets-not-rounded", text));
+                }
             }
         }
     }
-    let mut tables = vec![hydrostatics(&cases[0].refined, loaded.shape.is_none(), density_kg_m3, &frame)];
+    let mut tables =
+        vec![hydrostatics(&cases[0].refined, loaded.shape.is_none(), cases[0].facets.as_ref(), density_kg_m3, &frame)];
     let (shape, refined) = (loaded.shape.as_ref(), &cases[0].refined);
     tables.push(cross_checks::table(shape, &coarse, refined, density_kg_m3, &frame));
     tables.extend(facets::table(&cases[0], density_kg_m3));
@@ -148,9 +157,22 @@ fn extent_along(mesh: &Mesh, axis: usize) -> f64 {
 }
 
 /// Volume, centre of buoyancy, displaced mass and its inertia.
-pub(crate) fn hydrostatics(refined: &Refined, is_mesh: bool, density_kg_m3: f64, frame: &Frame) -> TextTable {
+pub(crate) fn hydrostatics(
+    refined: &Refined,
+    is_mesh: bool,
+    facets: Option<&Facets>,
+    density_kg_m3: f64,
+    frame: &Frame,
+) -> TextTable {
     let finest = refined.steps.last().map(|s| s.measure);
-    let of = if is_mesh { "exactly that of the facets" } else { "exact for the given dimensions" };
+    let of = match facets {
+        Some(facets) => {
+            let of_facets = number::plain(refined.volume_m3 - facets.volume_m3, 6);
+            format!("of the smooth body; that of the facets is {of_facets} m³")
+        }
+        None if is_mesh => "exactly that of the facets".to_owned(),
+        None => "exact for the given dimensions".to_owned(),
+    };
     let mut rows = vec![
         vec!["volume".to_owned(), format!("{} m³, {of}", number::plain(refined.volume_m3, 6))],
         vec!["displaced mass".to_owned(), format!("{} kg", number::plain(density_kg_m3 * refined.volume_m3, 6))],

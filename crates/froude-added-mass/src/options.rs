@@ -124,6 +124,8 @@ impl Asked {
             };
         } else if self.apart.is_some() && self.surface_m.is_some() {
             "--surface goes with one rigid body, not with --chain or --apart"
+        } else if self.apart.is_some() && self.is_polyhedron {
+            "--polyhedron goes with one rigid body; with --chain or --apart the facets are always taken as they are"
         } else if self.apart.is_some() && self.at.is_some() {
             "--at goes with one rigid body; with --chain or --apart every part is about its own point"
         } else {

@@ -127,14 +127,12 @@ fn covariance(refined: &Refined, facets: Option<&Facets>, rho: f64) -> Option<Ty
     })
 }
 
-/// The error of the facets: one number that all entries of the diagonal go with, and one for each coupling, whose sign it does not tell.
+/// The error of the facets, of each entry by itself: nothing tells what they have in common.
 fn of_facets(facets: &Facets, rho: f64) -> (String, SharedError) {
-    let couplings: Vec<usize> = entries().enumerate().filter(|(_, (i, j))| i != j).map(|(row, _)| row).collect();
-    let components = 1 + couplings.len();
+    let components = entries().count();
     let along = |row: usize, (i, j): (usize, usize)| {
-        let own = couplings.iter().position(|coupling| *coupling == row).map_or(0, |k| 1 + k);
         let size = rho * facets.uncertainty[i][j] / COVERAGE;
-        (0..components).map(|k| if k == own { size } else { 0.0 }).collect()
+        (0..components).map(|k| if k == row { size } else { 0.0 }).collect()
     };
     let error = SharedError {
         name: "facets of the mesh: what is left of a correction to the smooth body".to_owned(),
@@ -197,7 +195,11 @@ pub fn estimate(refined: &Refined, facets: Option<&Facets>, about: &About) -> Es
             words: format!(
                 "potential flow, constant-strength panels, direct formulation, {}; meshes of {steps} panels{}",
                 about.surroundings,
-                if refined.steps.len() > 1 { ", extrapolated" } else { "" }
+                match (refined.steps.len() > 1, facets) {
+                    (_, Some(_)) => ", extrapolated and corrected to the smooth body with the corners of the mesh",
+                    (true, None) => ", extrapolated",
+                    (false, None) => "",
+                }
             ),
         },
         coefficients,

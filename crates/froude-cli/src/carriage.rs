@@ -1,6 +1,6 @@
 //! `froude run` and `froude carriage …`: call, show progress, print.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use froude::carriage::drive::{DriveJob, Prepared, drive, prepare};
 use froude::carriage::tune::{find_resonance, tune};
@@ -242,6 +242,10 @@ fn minutes(seconds: f64) -> String {
 pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
     match job {
         CarriageJob::Identify { input, sidecar, validate, out } => {
+            let is_same = |path: &PathBuf| validate.as_ref().is_some_and(|other| same_file(path, other));
+            if let Some(path) = input.iter().find(|path| is_same(path)) {
+                return Err(Failure::ValidatesItself { path: path.clone() });
+            }
             let job = Job { sidecar, validation: validate, purpose: Some(Purpose::Servo), ..servo(&input, out)? };
             crate::identify(job, is_json, false).map_err(|error| mistaken::SERVO.explain(error, &input))
         }
@@ -271,6 +275,11 @@ pub fn job(job: CarriageJob, is_json: bool) -> Result<(), Failure> {
             crate::print_found(&outcome?, is_json, false)
         }
     }
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    let real = |path: &Path| std::fs::canonicalize(path);
+    real(a).is_ok_and(|a| real(b).is_ok_and(|b| a == b))
 }
 
 /// Folders of runs and runs, or one log of another program, whose results lie beside it.

@@ -26,6 +26,13 @@ pub enum Failure {
         instead: String,
     },
 
+    /// A log that its own fit would be held against.
+    #[error("--validate {}: the log that is fitted says nothing of another motion; name another log", .path.display())]
+    ValidatesItself {
+        /// The log.
+        path: PathBuf,
+    },
+
     /// What the program needs of the system is not to be had.
     #[error("the system does not give what is needed: {0}")]
     Program(std::io::Error),

@@ -752,7 +752,7 @@ fn one_mesh_has_no_uncertainty_and_none_is_made_up() {
     for sentence in [
         "One mesh only: there is no numerical uncertainty; three meshes give one.",
         "There is no finer one: the next mesh has 256 panels, and 64 are allowed (--most-panels).",
-        "is not known, and not in the uncertainty: panels or memory do not allow a second mesh.",
+        "is not known, and not in the uncertainty: panels or memory do not allow a second mesh",
     ] {
         assert!(text.contains(sentence), "{sentence}: {text}");
     }

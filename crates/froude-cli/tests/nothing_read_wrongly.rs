@@ -1241,3 +1241,33 @@ fn clean_tables_and_the_examples_raise_no_alarm() {
         assert_eq!(heard(&out).len(), notes, "{name}: {:?}", heard(&out));
     }
 }
+
+/// A slip in the name of a coefficient would leave free what is meant to be held, and every interval would look better.
+#[test]
+fn a_coefficient_of_no_law_is_held_by_none_and_said() {
+    let mut table = "speed [m/s],f_x [N]\n".to_owned();
+    for i in 1..=12 {
+        let u = 0.1 * f64::from(i);
+        writeln!(table, "{u},{}", -(3.0 * u + 14.0 * u * u) - 0.01 * (7.0 * u).sin()).unwrap();
+    }
+    let campaign = |identify: &str| {
+        format!(
+            "schema = 1\nname = \"x\"\n[fluid]\ndensity = \"1000 kg/m^3\"\n[[source]]\nname = \"tank\"\nkind = \"towing\"\ntable = \"t.csv\"\n\
+             models = [\"linear_quadratic\"]\n[identify]\n{identify}\n"
+        )
+    };
+    for (key, text) in [
+        ("known", "known = [{ coefficient = \"D_x_l\", value = \"3 kg/s\", standard_uncertainty = \"0.1 kg/s\" }]"),
+        ("prior", "prior = [{ coefficient = \"D_x_l\", value = \"3 kg/s\", standard_uncertainty = \"0.1 kg/s\" }]"),
+        ("fixed", "fixed = { D_x_l = \"3 kg/s\" }"),
+        ("exclude", "exclude = [\"D_x_l\"]"),
+    ] {
+        let said = refusal(&[("t.csv", &table), ("c.toml", &campaign(text))], &["identify", "c.toml"]);
+        assert!(said.contains(&format!("`{key}` names \"D_x_l\"")) && said.contains("did you mean `D_x_I`"), "{said}");
+    }
+    // Of other laws than the campaign's it is a warning: its own have the coefficient.
+    let files = [("t.csv", table.as_str()), ("c.toml", &campaign("fixed = { D_x_I = \"3 kg/s\" }"))];
+    let out = json(&files, &["identify", "c.toml", "--models", "quadratic"]);
+    assert_eq!(findings(&out, "held-by-no-law").len(), 1);
+    assert_eq!(findings(&json(&files, &["identify", "c.toml"]), "held-by-no-law").len(), 0);
+}

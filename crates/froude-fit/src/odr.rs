@@ -84,6 +84,8 @@ pub struct OdrFit {
     /// order it allows for regressors taken at estimated inputs and for σ being
     /// estimated: a few per cent, by which intervals would be too short without.
     pub covariance: Mat<f64>,
+    /// `∂β/∂y = (XᵀV⁻¹X)⁻¹XᵀV⁻¹` at the estimated inputs, `p × (c·n)`, component after component: what an error of the response does.
+    pub sensitivity: Mat<f64>,
     /// One per component.
     pub sigma: Vec<OdrSigma>,
     /// `δ`, `n × m`: estimated input less measured input.
@@ -205,10 +207,24 @@ fn finish<M: InputModel>(
         .collect();
     let c = model.n_components();
     let n = problem.response.nrows();
+    let mut weighted = Mat::zeros(c * n, p);
+    let mut column = vec![0.0; c];
+    for i in 0..n {
+        for j in 0..p {
+            for (k, column) in column.iter_mut().enumerate() {
+                *column = rows.design[(i * c + k, j)];
+            }
+            whitened::backward(&rows.factor[i * c * c..(i + 1) * c * c], c, &mut column);
+            for (k, column) in column.iter().enumerate() {
+                weighted[(k * n + i, j)] = *column;
+            }
+        }
+    }
     OdrFit {
         coefficients,
         bias,
         covariance,
+        sensitivity: mul(full.as_ref(), weighted.transpose()),
         sigma: (0..c)
             .map(|k| OdrSigma {
                 component: problem.components[k].clone(),

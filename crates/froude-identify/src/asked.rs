@@ -1,7 +1,11 @@
 //! What the sources of a campaign ask for, taken together.
 
-use froude_records::campaign::{Campaign, Input, Source};
+use std::collections::BTreeSet;
+
+use froude_records::campaign::{Campaign, Identify, Input, Source};
+use froude_records::estimate::Estimate;
 use froude_records::finding::{Finding, Severity};
+use froude_records::nearest::meant;
 
 use crate::error::IdentifyError;
 use crate::source::asked_models;
@@ -25,6 +29,21 @@ pub fn runs_once(campaign: &Campaign) -> Result<(), IdentifyError> {
         }
     }
     Ok(())
+}
+
+/// What `[identify]` says of a coefficient that none of the laws has, in words: a slip of the keyboard would leave free what is meant to be held.
+pub fn held_by_no_law<'a>(identify: &Identify, estimates: impl Iterator<Item = &'a Estimate>) -> Option<String> {
+    let names: BTreeSet<&str> =
+        estimates.flat_map(|estimate| estimate.coefficients.keys()).map(String::as_str).collect();
+    let stated = [("prior", &identify.prior), ("known", &identify.known)];
+    let stated = stated.into_iter().flat_map(|(key, list)| list.iter().map(move |one| (key, &one.coefficient)));
+    let fixed = identify.fixed.keys().map(|name| ("fixed", name));
+    let excluded = identify.exclude.iter().map(|name| ("exclude", name));
+    let (key, name) = stated.chain(fixed).chain(excluded).find(|(_, name)| !names.contains(name.as_str()))?;
+    let known = names.iter().copied();
+    let advice =
+        meant(name, known.clone()).unwrap_or_else(|| format!("they have {}", known.collect::<Vec<_>>().join(", ")));
+    Some(format!("`{key}` names {name:?}, a coefficient of none of the laws that were fitted; {advice}"))
 }
 
 /// Laws of a person that no source is fitted with: a source that names its models is fitted with these alone.

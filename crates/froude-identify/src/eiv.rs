@@ -115,6 +115,13 @@ impl Drag {
     }
 }
 
+impl LawOfInputs<'_> {
+    /// Whether the first inputs are speed and angle, at whose broadside laws may jump.
+    fn is_polar(&self) -> bool {
+        self.names.get(..2).is_some_and(|names| names == POLAR)
+    }
+}
+
 impl InputModel for LawOfInputs<'_> {
     fn n_coefficients(&self) -> usize {
         self.law.coefficients.len()
@@ -155,7 +162,7 @@ impl InputModel for LawOfInputs<'_> {
     /// cross terms as printed jump where v_x turns its sign.
     fn derivatives(&self, observation: usize, inputs: &[f64], out: &mut [f64]) {
         let size = self.n_components() * self.n_coefficients();
-        let goes_back = |inputs: &[f64]| self.drag.is_some() && inputs[0] * inputs[1].cos() < 0.0;
+        let goes_back = |inputs: &[f64]| self.is_polar() && inputs[0] * inputs[1].cos() < 0.0;
         let mut x = vec![0.0; size];
         for m in 0..self.n_inputs() {
             let step = DIFFERENCE_STEP * inputs[m].abs().max(self.sizes[m]);
@@ -258,6 +265,7 @@ pub fn replace(fitted: &mut fit::Fit, design: &Mat<f64>, response: &[f64], resul
         summary.durbin_watson_p = None;
         summary.is_serially_correlated = false;
     }
+    fitted.sensitivity = result.sensitivity;
     fitted.covariance = result.covariance;
     fitted.coefficients = result.coefficients;
     fitted.report = result.report;

@@ -106,11 +106,17 @@ fn scatter_by_load(
         return (loads.iter().map(|c| (c.name.clone(), fewest)).collect(), IndexMap::new());
     }
     let in_logarithms = model.law.in_logarithms();
+    // What a single row scatters by about the law at what was read, errors of that included: the σ of the regression in variables is without them.
+    let of_residuals = data.rows as f64 - model.law.coefficients.len() as f64;
+    let of_rows = |c: &fit::ComponentSummary| {
+        if model.in_variables { Some((c.rss / of_residuals).sqrt()).filter(|s| s.is_finite()) } else { c.sigma }
+    };
+    let dof = |c: &fit::ComponentSummary| if model.in_variables { of_residuals } else { c.dof };
     let sigma = |c: &fit::ComponentSummary| {
         let unit = if in_logarithms { "1".to_owned() } else { unit_text(data, &c.name) };
-        c.sigma.map(|value| (c.name.clone(), Measured { value, unit }))
+        of_rows(c).map(|value| (c.name.clone(), Measured { value, unit }))
     };
-    (loads.iter().map(|c| (c.name.clone(), Some(c.dof))).collect(), loads.iter().filter_map(sigma).collect())
+    (loads.iter().map(|c| (c.name.clone(), Some(dof(c)))).collect(), loads.iter().filter_map(sigma).collect())
 }
 
 /// A coefficient times an exact factor.

@@ -144,8 +144,9 @@ fn errors_in_variables(
     if has_bounds || has_more || has_other || !options.excluded.is_empty() || problem.weight.is_some() {
         return Err(IdentifyError::Campaign {
             place: place(),
-            what: "errors_in_variables goes with neither bounds, priors, fixed or excluded coefficients, dissipative, Huber, HC3, cluster, weights, nor \
-                   std columns; leave one of them out"
+            what: "errors_in_variables goes with neither bounds, priors, known, fixed or excluded coefficients, dissipative, huber, HC3, cluster, weights, nor \
+                   std columns; leave one of them out. Where the terms with the errors have coefficients that are held, leave out errors_in_variables: their errors are scatter then, \
+                   and move no other coefficient"
                 .to_owned(),
         });
     }
@@ -161,6 +162,13 @@ fn errors_in_variables(
         ));
         return Ok(false);
     };
+    let has = |name: &str| inputs.names.iter().any(|other| other == name);
+    if has("speed") && (has("v_x") || has("v_y")) {
+        return Err(IdentifyError::Campaign {
+            place: place(),
+            what: "the budget has errors of rows both of speed or angle and of v_x or v_y: the one velocity is the other; state one of them".to_owned(),
+        });
+    }
     if law.is_nonlinear() || fitted.coefficients.len() != law.coefficients.len() {
         findings.push(Finding::new(
             Severity::Warning,

@@ -13,7 +13,7 @@
 use froude_fit::faer::Mat;
 use froude_records::campaign::BudgetEntry;
 use froude_records::comparison::Validation;
-use froude_records::estimate::{ErrorKind, Estimate};
+use froude_records::estimate::{ErrorKind, Estimate, Status};
 
 use crate::compare::Named;
 use crate::dataset::{Dataset, unit_text};
@@ -169,7 +169,8 @@ fn coefficients(computed: &Estimate, data: &Estimate) -> Vec<Validation> {
     let of = |(j, name): (usize, &String)| {
         let (own, other) = (computed.coefficients.get(name)?, data.coefficients.get(name)?);
         let (s, d) = (own.value?, other.value?);
-        if own.nuisance || own.unit != other.unit {
+        let is_held = [own, other].into_iter().all(|c| c.status == Status::Fixed);
+        if own.nuisance || is_held || own.unit != other.unit {
             return None;
         }
         let mut parts = Parts::default();

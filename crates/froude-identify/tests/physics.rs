@@ -117,6 +117,29 @@ fn equal_repeats_of_a_fine_sensor_are_copies_and_those_of_a_coarse_one_are_not()
     assert_eq!(rows(0.25), (16, true));
 }
 
+/// Repeats of a sensor of fine steps, in any order and read off text: now and then two are the same, and are kept.
+#[test]
+fn few_equal_repeats_among_many_that_differ_are_kept_in_any_order() {
+    let mut rng = Pcg64Mcg::seed_from_u64(3);
+    let mut kept = 0;
+    for _ in 0..40 {
+        let mut rows: Vec<String> = Vec::new();
+        for i in 0..50 {
+            let speed = 0.2 + 0.02 * f64::from(i);
+            for _ in 0..2 {
+                let noise: f64 = StandardNormal.sample(&mut rng);
+                rows.push(format!("{speed:.2},{:.3}", ((-10.0 * speed * speed + 0.002 * noise) * 1e3).round() / 1e3));
+            }
+        }
+        // Strides apart, so that no order helps.
+        let order: Vec<&str> = (0..rows.len()).map(|i| rows[i * 37 % rows.len()].as_str()).collect();
+        let folder = tempfile::tempdir().unwrap();
+        let table = format!("speed [m/s],f_x [N]\n{}\n", order.join("\n"));
+        kept += usize::from(identify(folder.path(), &table, QUADRATIC).data.rows == rows.len());
+    }
+    assert!(kept >= 38, "{kept} of 40");
+}
+
 #[test]
 fn an_angle_offset_is_found_from_pairs_of_opposite_angle_and_taken_out_of_the_cross_term() {
     let folder = tempfile::tempdir().unwrap();
@@ -480,9 +503,19 @@ fn errors_of_an_acceleration_do_not_shrink_the_mass() {
     let mass = |more: &str| {
         let result = identify(folder.path(), &table, &format!("{law}{more}"));
         let c = &result.estimates[0].coefficients["A"];
+        // A row scatters by its own 0.05 N and 12 kg × 0.1 m/s², however they were told apart; by the shrunk mass a little less.
+        let sigma = result.estimates[0].sigma["f_x"].value;
+        assert!((0.9..1.3).contains(&sigma), "{sigma}");
         (c.value.unwrap(), c.standard_uncertainty.unwrap())
     };
     let ((plain, _), (found, u)) = (mass(""), mass("[identify]\nerrors_in_variables = true\n"));
+    // An error of the load that all rows share by a part goes into the mass by that part, and not by the reliability's share of it.
+    let scale =
+        "[[source.uncertainty]]\nname = \"gauge\"\nquantity = \"f_x\"\nstandard = \"1 %\"\nshared = \"campaign\"\n";
+    let with = law.replace("[[identify.model]]", &format!("{scale}[[identify.model]]"));
+    let result = identify(folder.path(), &table, &format!("{with}[identify]\nerrors_in_variables = true\n"));
+    let by_gauge = result.estimates[0].coefficients["A"].type_b.unwrap();
+    assert!((by_gauge / (0.01 * found) - 1.0).abs() < 0.02, "{by_gauge} of {found}");
     // Reliability σ_a²/(σ_a² + u²) = 0.02/0.03.
     assert!((plain / 8.0 - 1.0).abs() < 0.05, "{plain}");
     assert!((found - 12.0).abs() < 3.0 * u && u < 0.3, "{found} ± {u}");

@@ -6,7 +6,7 @@
 //!
 //! | meshes | observed order | finest mesh, f₁ | extrapolated, x₂₁ |
 //! | --- | --- | --- | --- |
-//! | three | 1.5 to 2.5 | U = 1.5 \|f₁ − x₂₁\| | U = 3 \|x₂₁ − x₃₂\|, no less than 0.03 \|f₁ − x₂₁\| |
+//! | three | 1.5 to 2.5 | U = 1.5 \|f₁ − x₂₁\| | U = 1.3 \|x₂₁ − x₃₂\|, no less than 0.03 \|f₁ − x₂₁\| |
 //! | three | other, or none | U = 2.5 \|f₁ − x\|, no less than \|x₂₁ − x₃₂\| | the same |
 //! | two | unknown | U = 3 \|f₁ − x₂₁\| | U = \|f₁ − x₂₁\| |
 //!
@@ -56,8 +56,10 @@ pub struct Converged {
 const ORDERS: core::ops::RangeInclusive<f64> = 1.5..=2.5;
 /// Factor on what the extrapolation subtracts from the finest value.
 const FINE: f64 = 1.5;
-/// Factor on the change of the extrapolated value.
-const SAFETY: f64 = 3.0;
+/// Factor on the change of the extrapolated value, of which half is left over as a rule.
+const SAFETY: f64 = 1.3;
+/// Factor on what the extrapolation from two meshes subtracts.
+const OF_TWO: f64 = 3.0;
 /// Part of what the extrapolation subtracts, below which the change of the extrapolated value is small by chance.
 const CHANCE: f64 = 0.03;
 /// Factors where the order is another: on the distance from the value without both powers, and on the change.
@@ -82,7 +84,7 @@ pub fn converged(sizes: &[f64], values: &[f64], floor: f64) -> Converged {
     let estimate = |value: f64, uncertainty: f64| Estimate { value, uncertainty: uncertainty.max(floor) };
     if n == 2 {
         return Converged {
-            fine: estimate(f1, SAFETY * off),
+            fine: estimate(f1, OF_TWO * off),
             extrapolated: estimate(finer, off),
             shared: 0.5 * (f1 - finer),
             order: None,

@@ -442,6 +442,8 @@ pub struct PriorSpec {
     pub value: f64,
     /// Its standard uncertainty (SI).
     pub standard_uncertainty: f64,
+    /// Degrees of freedom of the standard uncertainty, where a record states them.
+    pub dof: Option<f64>,
     /// The model; `None` for all that have the coefficient.
     pub model: Option<String>,
     /// The record that value and uncertainty are taken from, where they are not written.

@@ -541,7 +541,7 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
         };
         // Value and uncertainty follow when the record is read.
         let (value, standard_uncertainty) = (f64::NAN, f64::NAN);
-        return Ok(PriorSpec { coefficient, value, standard_uncertainty, model, record: Some(record) });
+        return Ok(PriorSpec { coefficient, value, standard_uncertainty, dof: None, model, record: Some(record) });
     }
     if let Some((key, value)) = ["select", "entry", "volume", "model_form"].iter().find_map(|k| Some((*k, s.get(k)?))) {
         return Err(s.wrong(key, value, "belongs to a value of a record: write record = \"estimate.json\" beside it"));
@@ -555,6 +555,7 @@ fn prior(s: &Section<'_>) -> Result<PriorSpec, RecordError> {
         coefficient,
         value: need("value")?,
         standard_uncertainty: need("standard_uncertainty")?,
+        dof: None,
         model,
         record: None,
     };

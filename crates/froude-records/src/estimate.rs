@@ -359,7 +359,7 @@ pub struct Interval {
     pub level: f64,
     /// Looks that they pay for (Bonferroni), 1 or more.
     pub looks: usize,
-    /// What they are of: `coefficient`, `mesh` (its discretisation alone), `excitation` (the coefficients for this motion alone).
+    /// What they are of: `coefficient`, `mesh` (panels and facets), `excitation` (the coefficients for this motion alone).
     pub of: String,
 }
 

@@ -37,7 +37,7 @@ pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
     for known in &mut campaign.identify.known {
         let found = known.record.clone().map(|from| value(known, &from, density)).transpose()?;
         if let Some(found) = &found {
-            (known.value, known.standard_uncertainty) = (found.value, found.standard);
+            (known.value, known.standard_uncertainty, known.dof) = (found.value, found.standard, found.dof);
         }
         of_records.push(found);
     }
@@ -56,6 +56,7 @@ pub(crate) fn resolve(campaign: &mut Campaign) -> Result<(), RecordError> {
 struct Found {
     value: f64,
     standard: f64,
+    dof: Option<f64>,
     /// What the entry was divided by.
     per: f64,
     path: PathBuf,
@@ -148,7 +149,15 @@ fn value(prior: &PriorSpec, from: &PriorRecord, density_kg_m3: Option<f64>) -> R
     let standard = (entry.standard_uncertainty.unwrap_or(0.0) / per).hypot(from.model_form * value);
     if standard > 0.0 {
         let estimate = estimate.clone();
-        return Ok(Found { value, standard, per, path: from.path.clone(), entry: from.entry.clone(), estimate });
+        return Ok(Found {
+            value,
+            standard,
+            dof: entry.effective_dof,
+            per,
+            path: from.path.clone(),
+            entry: from.entry.clone(),
+            estimate,
+        });
     }
     let problem =
         format!("{} has no uncertainty in {}; write model_form = \"5 %\", for example", from.entry, estimate.id);

@@ -218,6 +218,7 @@ fn lambdas_are_held_or_known_beforehand_by_name() {
         coefficient: "lambda_1".to_owned(),
         value: LAMBDAS[0],
         standard_uncertainty: 1e-7,
+        dof: None,
         model: None,
         record: None,
     };

@@ -76,6 +76,11 @@ pub fn identify(job: &Job, progress: &dyn Fn(&str)) -> Result<Outcome, Error> {
         progress(&format!("{}: held against the fits", source.name));
         gathered.validate(source, &campaign, job.purpose)?;
     }
+    let nobodys = asked::held_by_no_law(&campaign.identify, gathered.sources.iter().flat_map(Answer::estimates));
+    if let (Some(what), true) = (&nobodys, job.models.is_empty() && !gathered.has_not_fitted()) {
+        return Err(IdentifyError::Campaign { place: "[identify]".to_owned(), what: what.clone() }.into());
+    }
+    gathered.findings.extend(nobodys.map(|what| Finding::new(Severity::Warning, "held-by-no-law", what)));
     let Gathered { sources, mut summaries, mut blocks, mut exports, published, mut findings, beside, is_part } =
         gathered;
     findings.extend(asked::laws_not_asked(&campaign));
@@ -214,6 +219,12 @@ impl Gathered {
 }
 
 impl Gathered {
+    /// Whether a law could not be fitted, whose coefficients are then in no estimate.
+    fn has_not_fitted(&self) -> bool {
+        let of_sources = self.sources.iter().filter_map(Answer::fitted).any(|found| !found.not_fitted.is_empty());
+        of_sources || self.findings.iter().any(|finding| finding.code == "not-fitted")
+    }
+
     /// Holds the recommended estimates against the rows of a source that none of them was fitted to.
     fn validate(&mut self, source: &Source, campaign: &Campaign, purpose: Option<Purpose>) -> Result<(), Error> {
         if method::is_of_a_servo(source, purpose)? {

@@ -56,7 +56,14 @@ pub fn held_against(
         };
         let values: Vec<f64> = rows.names.iter().map(|(label, _)| value(label)).collect();
         let own = estimate.diagnostics.relative_residual.values().next().copied();
-        found.push(Cross { id: estimate.id.clone(), own, other: rows.relative_error(&values) });
+        let other = rows.relative_error(&values);
+        if !other.is_finite() {
+            return Err(MethodError::input(
+                path,
+                "its command is zero all the time, so that a force error has no measure",
+            ));
+        }
+        found.push(Cross { id: estimate.id.clone(), own, other });
     }
     if found.is_empty() {
         let what = "is the log of a servo, and none of the estimates is a rigid model of one: servo_symmetric or servo_asymmetric";

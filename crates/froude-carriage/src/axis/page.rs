@@ -96,7 +96,7 @@ enum Pieces {
     Clusters,
     /// Stretches of one excitation.
     Blocks,
-    /// Scatter and declared errors.
+    /// Scatter within one excitation, and declared errors.
     All,
 }
 
@@ -106,7 +106,7 @@ impl Pieces {
         match self {
             Self::Clusters => ["", "clusters"],
             Self::Blocks => [" for this excitation", "blocks"],
-            Self::All => ["", "scatter and declared"],
+            Self::All => [" for this excitation", "scatter and declared"],
         }
     }
 }

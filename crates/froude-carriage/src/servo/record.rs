@@ -194,6 +194,7 @@ pub fn two_mass(source: &str, report: &FlexibleReport, drive: &Drive) -> Estimat
             words: "prediction error of the motor's position, two masses and a chain".to_owned(),
         },
         law: law(method, None, IndexMap::new()),
+        interval: of_one_excitation(),
         coefficients: coefficients.collect(),
         type_a: type_a(names, &report.scatter, &report.dof, "CR2 over stretches of the record".to_owned()),
         errors: [(format!("{OWN}drive"), declared)]

@@ -242,9 +242,9 @@ fn findings(coefficients: &[ServoCoefficient], whiteness: Option<&Whiteness>, sp
     let mut out = Vec::new();
     if let Some(w) = whiteness.filter(|w| !w.is_white()) {
         let worst = coefficients.iter().map(|c| c.block_std / c.classical_std).fold(0.0, f64::max);
+        let by = if worst > 1.0 { format!("are up to {worst:.1} times too small") } else { "do not hold".to_owned() };
         out.push(format!(
-            "residuals are not white (r1 = {:.2}, Ljung-Box({}) = {:.0}): classical standard deviations are up to {worst:.1} times \
-             too small; the intervals are those of {}",
+            "residuals are not white (r1 = {:.2}, Ljung-Box({}) = {:.0}): classical standard deviations {by}; the intervals are those of {}",
             w.r1,
             w.lags,
             w.ljung_box,

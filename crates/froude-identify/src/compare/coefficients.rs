@@ -33,8 +33,12 @@ pub(super) fn coefficient_rows(
         .map(|(name, x, y)| {
             let e_n = if x.unit == y.unit {
                 let sides = [Number::of_coefficient(a.estimate, name), Number::of_coefficient(b.estimate, name)];
-                e_n([&sides[0], &sides[1]], common, [first, second], is_same_data)
-                    .and_then(|e_n| not_free(x, first).or_else(|| not_free(y, second)).map_or(Ok(e_n), Err))
+                e_n([&sides[0], &sides[1]], common, [first, second], is_same_data).and_then(|e_n| {
+                    not_free(x, first)
+                        .or_else(|| not_free(y, second))
+                        .or_else(|| held_in_both(x, y))
+                        .map_or(Ok(e_n), Err)
+                })
             } else {
                 Err(format!("units differ: {} and {}", x.unit, y.unit))
             };
@@ -51,6 +55,11 @@ pub(super) fn coefficient_rows(
             }
         })
         .collect()
+}
+
+/// Why two coefficients that somebody knew beforehand say nothing of each other.
+fn held_in_both(x: &Coefficient, y: &Coefficient) -> Option<String> {
+    [x, y].iter().all(|c| c.status == Status::Fixed).then(|| "held at a value from elsewhere in both".to_owned())
 }
 
 /// Why a coefficient is no measurement that stands by itself: a bound, whose uncertainty is that of the fit without it, or

@@ -4,7 +4,7 @@ use faer::Mat;
 use faer::linalg::solvers::Solve;
 use froude_fit::distribution::f_upper;
 use froude_records::comparison::JointComparison;
-use froude_records::estimate::Estimate;
+use froude_records::estimate::{Estimate, Status};
 
 use super::coefficients::{SAME_DATA_JOINTLY, not_free};
 use crate::common::Common;
@@ -27,7 +27,12 @@ pub(super) fn joint(
         if is_same_data {
             return Err(SAME_DATA_JOINTLY.to_owned());
         }
-        let names: Vec<&String> = ca.names.iter().filter(|n| cb.names.contains(n)).collect();
+        // What is held at a value from elsewhere on both sides is no estimate that agrees or not.
+        let is_held = |of: &Named<'_>, name: &String| {
+            of.estimate.coefficients.get(name).is_some_and(|c| c.status == Status::Fixed)
+        };
+        let is_of_both = |name: &&String| cb.names.contains(name) && !(is_held(a, name) && is_held(b, name));
+        let names: Vec<&String> = ca.names.iter().filter(is_of_both).collect();
         for (n, id) in [(a, first), (b, second)] {
             let mut constrained = names.iter().filter_map(|name| n.estimate.coefficients.get(*name));
             if let Some(why) = constrained.find_map(|c| not_free(c, id)) {

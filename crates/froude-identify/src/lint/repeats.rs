@@ -11,10 +11,16 @@ pub(crate) const REPEATS_WITHIN: f64 = 2e-3;
 
 /// So many copies, or settings, say how they came about.
 const FEW_COPIES: usize = 3;
+/// Standard deviations above their expected number that copies by chance may lie: of twelve pairs that a step of 0.8 σ makes alike, three were passed in 0.8 % of tables.
+const DEVIATIONS: f64 = 3.5;
 /// Differences below this part of a range are rounding.
 const ROUNDED: f64 = 1e-9;
 /// Step of readings over their range, below which no rig repeats every setting to the step.
 const FINE: f64 = 1e-3;
+/// Distance from a whole number of steps within which a difference is one: text rounds a step off.
+const WHOLE: f64 = 0.02;
+/// Steps at most in the smallest difference of readings.
+const MOST_PARTS: u8 = 3;
 
 /// Share of the speed along x from which a body shows its frontal area: within 8°.
 pub(crate) const AHEAD: f64 = 0.99;
@@ -79,7 +85,9 @@ pub fn identical_copies(data: &Dataset) -> (Vec<usize>, Option<Finding>) {
 /// several settings, the steps are coarser than the scatter, unless they are finer than any rig's, or one part of the table stands in it twice.
 fn coarse(data: &Dataset, copies: &[(usize, usize)]) -> Option<f64> {
     let apart = copies.first().map_or(0, |(a, b)| b - a);
-    if copies.len() >= FEW_COPIES && apart >= FEW_COPIES && copies.iter().all(|(a, b)| b - a == apart) {
+    // Row after row: of a sweep that was run again only some are alike.
+    let is_block = copies.windows(2).all(|pair| pair[1].1 == pair[0].1 + 1);
+    if copies.len() >= FEW_COPIES && apart >= FEW_COPIES && is_block && copies.iter().all(|(a, b)| b - a == apart) {
         return None;
     }
     let settings = repeat_groups(data);
@@ -114,28 +122,34 @@ fn coarse(data: &Dataset, copies: &[(usize, usize)]) -> Option<f64> {
     let repeated = size.values().filter(|n| **n > 1.0).count();
     let of_loads: Vec<Option<f64>> = loads.iter().zip(&steps).map(chance).collect();
     if of_loads.iter().all(Option::is_none) {
-        let is_coarse = loads.iter().zip(&steps).all(|(values, step)| *step >= FINE * range(values));
-        return (repeated >= FEW_COPIES && is_coarse).then_some(1.0);
+        return (repeated >= FEW_COPIES && loads.iter().all(|values| is_coarse(values))).then_some(1.0);
     }
     // A load that repeats always says nothing.
     let p: f64 = of_loads.into_iter().flatten().product();
     let expected = p * pairs;
-    (copies.len() as f64 <= expected + 3.0 * expected.sqrt()).then_some(p)
+    (copies.len() as f64 <= expected + DEVIATIONS * expected.sqrt()).then_some(p)
 }
 
-/// The step of readings: the largest number that all their differences are whole multiples of, by Euclid's algorithm; 0 of readings that never change.
+/// The step of readings: their smallest difference; 0 of readings that never change.
 fn step(values: &[f64]) -> f64 {
-    let first = values.first().copied().unwrap_or_default();
-    let range = range(values);
-    let mut step = 0.0;
-    for value in values {
-        let (mut a, mut b) = ((value - first).abs(), step);
-        while a > ROUNDED * range {
-            (a, b) = ((b - a * (b / a).round()).abs(), a);
-        }
-        step = b;
-    }
-    step
+    differences(values).into_iter().reduce(f64::min).unwrap_or_default()
+}
+
+/// Differences of neighbouring readings, but for rounding.
+fn differences(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let rounding = ROUNDED * range(values);
+    sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|d| *d > rounding).collect()
+}
+
+/// Whether readings go by whole steps that are no finer than a rig repeats. With few readings the smallest difference may be several steps: halves and thirds of it are tried too.
+fn is_coarse(values: &[f64]) -> bool {
+    let (apart, smallest) = (differences(values), step(values));
+    (1..=MOST_PARTS).map(|parts| smallest / f64::from(parts)).any(|step| {
+        let is_whole = |d: &f64| (d / step - (d / step).round()).abs() < WHOLE;
+        step >= FINE * range(values) && apart.iter().all(is_whole)
+    })
 }
 
 fn range(values: &[f64]) -> f64 {

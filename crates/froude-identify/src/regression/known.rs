@@ -8,50 +8,64 @@
 use froude_fit as fit;
 use froude_fit::budget::{Kind, Origin, Part, Shape};
 use froude_fit::faer::Mat;
-use froude_records::campaign::PriorSpec;
+use froude_records::campaign::{Identify, PriorSpec};
 
 use crate::law::ForceLaw;
 use crate::regression::fitted::Settings;
-use crate::regression::known_of;
 
-/// A line of the budget for each set of known coefficients that are correlated.
+/// A line of the budget for each set of known coefficients that are correlated, as far as the law has any of it.
 pub(crate) fn parts(law: &ForceLaw, settings: Settings<'_>, problem: &fit::Problem, fitted: &fit::Fit) -> Vec<Part> {
-    let covariance = &settings.identify.known_covariance;
-    let place = |known: &PriorSpec| law.coefficients.iter().position(|c| c.name == known.coefficient);
-    let mut sets: Vec<Vec<(usize, usize, &PriorSpec)>> = Vec::new();
-    for (k, known) in known_of(settings.identify, law) {
-        let Some(j) = place(known) else { continue };
-        let goes_with =
-            |set: &&mut Vec<(usize, usize, &PriorSpec)>| set.iter().any(|(other, ..)| covariance[k][*other] != 0.0);
-        match sets.iter_mut().find(goes_with) {
-            Some(set) => set.push((k, j, known)),
-            None => sets.push(vec![(k, j, known)]),
-        }
-    }
-    sets.iter().map(|set| part(set, settings, problem, fitted)).collect()
+    let known = &settings.identify.known;
+    let place = |k: usize| {
+        let is_meant = known[k].model.as_ref().is_none_or(|model| *model == law.name);
+        law.coefficients.iter().position(|c| is_meant && c.name == known[k].coefficient)
+    };
+    let of_law = |set: &Vec<usize>| set.iter().any(|k| place(*k).is_some());
+    let part = |set: Vec<usize>| {
+        let places: Vec<Option<usize>> = set.iter().map(|k| place(*k)).collect();
+        part(&set, &places, settings, problem, fitted)
+    };
+    sets(settings.identify).into_iter().filter(of_law).map(part).collect()
 }
 
-fn part(set: &[(usize, usize, &PriorSpec)], settings: Settings<'_>, problem: &fit::Problem, fitted: &fit::Fit) -> Part {
+/// Known coefficients that are correlated with one another, directly or through others.
+fn sets(identify: &Identify) -> Vec<Vec<usize>> {
+    let mut out: Vec<Vec<usize>> = Vec::new();
+    for k in 0..identify.known.len() {
+        let goes_with = |set: &Vec<usize>| set.iter().any(|other| identify.known_covariance[k][*other] != 0.0);
+        let (with, mut apart): (Vec<_>, Vec<_>) = out.into_iter().partition(goes_with);
+        apart.push(with.into_iter().flatten().chain([k]).collect());
+        out = apart;
+    }
+    out
+}
+
+fn part(
+    set: &[usize],
+    places: &[Option<usize>],
+    settings: Settings<'_>,
+    problem: &fit::Problem,
+    fitted: &fit::Fit,
+) -> Part {
+    let Settings { identify, campaign, .. } = settings;
     let (p, x) = (fitted.coefficients.len(), &problem.design);
-    let moved = Mat::from_fn(p, set.len(), |i, k| {
-        let j = set[k].1;
-        if i == j {
-            return 1.0;
-        }
-        -(0..x.nrows()).map(|row| fitted.sensitivity[(i, row)] * x[(row, j)]).sum::<f64>()
+    let moved = Mat::from_fn(p, set.len(), |i, k| match places[k] {
+        None => 0.0,
+        Some(j) if i == j => 1.0,
+        Some(j) => -(0..x.nrows()).map(|row| fitted.sensitivity[(i, row)] * x[(row, j)]).sum::<f64>(),
     });
-    let covariance = Mat::from_fn(set.len(), set.len(), |a, b| settings.identify.known_covariance[set[a].0][set[b].0]);
-    let names: Vec<&str> = set.iter().map(|(.., known)| known.coefficient.as_str()).collect();
+    let covariance = Mat::from_fn(set.len(), set.len(), |a, b| identify.known_covariance[set[a]][set[b]]);
+    let of = |text: fn(&PriorSpec) -> String| set.iter().map(|k| text(&identify.known[*k])).collect::<Vec<_>>();
+    let (names, values) = (of(|known| known.coefficient.clone()), of(|known| format!("{:e}", known.value)));
+    let dof = set.iter().filter_map(|k| identify.known[*k].dof).fold(f64::INFINITY, f64::min);
     // Two laws that take one value from one place have its error in common.
-    let values: Vec<String> = set.iter().map(|(.., known)| format!("{:e}", known.value)).collect();
-    let is_named = !settings.campaign.is_empty();
-    let key = is_named.then(|| format!("{}/known {}/{}", settings.campaign, names.join(" "), values.join(" ")));
+    let key = (!campaign.is_empty()).then(|| format!("{campaign}/known {}/{}", names.join(" "), values.join(" ")));
     Part {
         name: format!("known {}", names.join(", ")),
         shared: "campaign",
         kind: Kind::B,
         covariance: &moved * &covariance * moved.transpose(),
-        dof: vec![f64::INFINITY; p],
+        dof: vec![dof; p],
         shape: Shape::Normal,
         in_scatter: false,
         origin: key.map(|key| Origin {
