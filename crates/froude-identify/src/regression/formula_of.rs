@@ -65,7 +65,8 @@ pub(crate) fn as_formula(
         largest_difference.push((load.clone(), largest));
     }
     // One that knows a load to nothing where the larger law does not is no formula of it.
-    if !(widened * widened * model.covariance.norm_max()).is_finite() {
+    let is_apart = largest_difference.iter().all(|(_, difference)| difference.is_finite());
+    if !is_apart || !(widened * widened * model.covariance.norm_max()).is_finite() {
         return Ok(None);
     }
     let p = model.specs.len();
