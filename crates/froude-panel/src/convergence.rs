@@ -14,8 +14,8 @@
 //!
 //! **How far it holds.** An order outside 1.5 to 2.5 says here that c is small by chance (the sway of a short body, a coupling), which is why
 //! the extrapolated value stays. At sharp edges that the cells are not graded towards, c h² is not the leading term and neither U holds. Over 1,000 random bodies (`examples/coverage`, which says what was found before) U covers 99.9 % of the finest
-//! values and 99.2 % of the extrapolated ones, 96 % or more of every entry in every class, and is 1.5 and 5.2 times the error at the median;
-//! from two meshes 96 % and 92 %. The meshes must resolve the section: 16 panels around at the coarsest, 32 where it is flatter than 2:1. With 16
+//! values and 99.5 % of the extrapolated ones, 96 % or more of every entry in every class, and is 1.5 and 2.9 times the error at the median;
+//! from two meshes 96 % and 93 %. The meshes must resolve the section: 16 panels around at the coarsest, 32 where it is flatter than 2:1. With 16
 //! there, U of the extrapolated value held for 80 to 90 %.
 //!
 //! Sources: Richardson 1911; Roache 1994; the last factors by count.
