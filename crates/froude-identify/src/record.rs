@@ -107,7 +107,9 @@ fn scatter_by_load(
     }
     let in_logarithms = model.law.in_logarithms();
     // What a single row scatters by about the law at what was read, errors of that included: the σ of the regression in variables is without them.
-    let of_residuals = data.rows as f64 - model.law.coefficients.len() as f64;
+    // Loads share the coefficients of a law evenly, as far as is known here.
+    let of_each = model.law.coefficients.len() as f64 / loads.len().max(1) as f64;
+    let of_residuals = (data.rows as f64 - of_each).max(1.0);
     let of_rows = |c: &fit::ComponentSummary| {
         if model.in_variables { Some((c.rss / of_residuals).sqrt()).filter(|s| s.is_finite()) } else { c.sigma }
     };
