@@ -37,11 +37,12 @@ pub fn table(shape: Option<&Shape>, mesh: &Mesh, refined: &Refined, density_kg_m
         (0..6).for_each(|i| matrix[i][i] = diagonal[i]);
         let moved = AddedMass { matrix, asymmetry: 0.0, frame: Frame::at(centre) }.seen_from(frame).matrix;
         let name = if matches!(shape, Some(Shape::Ellipsoid { .. })) {
-            "ellipsoid, exact (Lamb)"
+            "ellipsoid, exact (Lamb)".to_owned()
         } else {
-            "ellipsoid of the same length, breadth and height (Lamb)"
+            let [length, breadth, height] = half.map(|h| number::plain(2.0 * h, 4));
+            format!("ellipsoid in the same box, {length} × {breadth} × {height} m (Lamb)")
         };
-        rows.push(line(name, core::array::from_fn(|i| Some(moved[i][i]))));
+        rows.push(line(&name, core::array::from_fn(|i| Some(moved[i][i]))));
     }
     if shape.is_some()
         && let Ok(strips) = strip_added_mass(&stations(mesh))

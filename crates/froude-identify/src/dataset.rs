@@ -31,6 +31,8 @@ pub struct Dataset {
     pub run: Vec<String>,
     /// Cluster that each row belongs to, by the source's `group` column.
     pub group: Option<Vec<String>>,
+    /// What its clusters are.
+    pub grouped_by: GroupedBy,
     /// Line of each row in its file.
     pub line: Vec<usize>,
     /// Headers of the table's columns, with the units that its numbers were written in; empty where no table was read.
@@ -39,6 +41,44 @@ pub struct Dataset {
     pub left_out: Vec<String>,
     /// What these rows were drawn from, where they are a sample.
     pub sample: Option<Drawn>,
+}
+
+/// What the clusters of observations are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum GroupedBy {
+    /// What a column of the table says.
+    #[default]
+    Column,
+    /// Runs, whose rows follow each other in time where there are several.
+    Run,
+    /// Motions, each of one run or of several that repeat it.
+    Motion,
+    /// Contiguous blocks of rows.
+    Block,
+}
+
+impl GroupedBy {
+    /// The word of one of them.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Column => "group",
+            Self::Run => "run",
+            Self::Motion => "motion",
+            Self::Block => "block",
+        }
+    }
+
+    /// The word of several.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Column => "groups",
+            Self::Run => "runs",
+            Self::Motion => "motions",
+            Self::Block => "blocks",
+        }
+    }
 }
 
 /// What is known of all observations of which a data set holds a sample.
@@ -181,6 +221,7 @@ impl Dataset {
             setup: text(&self.setup),
             run: text(&self.run),
             group: self.group.as_ref().map(|g| text(g)),
+            grouped_by: self.grouped_by,
             line: keep.iter().filter_map(|&i| self.line.get(i).copied()).collect(),
             headers: self.headers.clone(),
             left_out: self.left_out.clone(),

@@ -8,13 +8,13 @@ use froude_records::finding::{Finding, Severity};
 use froude_records::number::{p_equation, percent, plain, significant};
 use froude_records::text::counted;
 
-use crate::dataset::{Dataset, distinct};
+use crate::dataset::{Dataset, GroupedBy, distinct};
 use crate::error::IdentifyError;
 use crate::law::Kind;
 use crate::outlying::outlying_rows;
 use crate::regression::{ModelFit, Scatter};
 use crate::selection::{Score, aicc};
-use crate::{dissipation, lint, scatter_tests};
+use crate::{dissipation, lint, misfit, scatter_tests};
 
 /// Condition number of the scaled design above which digits are lost to collinearity (Belsley, Kuh, Welsch 1980: 30).
 const COLLINEAR_ABOVE: f64 = 30.0;
@@ -89,6 +89,7 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
     let mut out = Vec::new();
     let (outlying, rows) = outlying_rows(model, data);
     out.extend(scatter_tests::findings(model, data, &outlying));
+    out.extend(misfit::findings(model, data, d, &outlying));
     out.extend(decided_by_one(model, data));
     out.extend(added_mass_sign(model, data));
     out.extend(rows);
@@ -105,16 +106,6 @@ pub fn findings(model: &ModelFit, data: &Dataset, campaign: &Campaign, d: &Diagn
                 pair.first, pair.second, pair.value
             ),
         ));
-    }
-    let loads = d.lack_of_fit_p.len().max(1) as f64;
-    for (component, p) in &d.lack_of_fit_p {
-        if *p < scatter_tests::ALARM / loads && !scatter_tests::declares_groups(model) {
-            out.push(Finding::new(
-                Severity::Warning,
-                "lack-of-fit",
-                format!("{name}, {component}: the lack of fit is larger than the scatter of repeats of the same setting (p = {p:.1e}): the model is wrong somewhere in the range"),
-            ));
-        }
     }
     if let Some(power) = d.largest_power_w
         && power > 0.0
@@ -194,14 +185,16 @@ fn decided_by_one(model: &ModelFit, data: &Dataset) -> Vec<Finding> {
         if model.is_refused(j) {
             let groups = data.group.as_ref().map(|group| distinct(group)).unwrap_or_default();
             let group = groups.get(which).cloned().unwrap_or_default();
-            let advice = if group.starts_with("block ") {
+            let advice = if data.grouped_by == GroupedBy::Block {
                 "blocks hold too few rows of their own: take more rows, or runs in another order"
+            } else if data.grouped_by == GroupedBy::Motion {
+                "record runs of other motions"
             } else {
                 "record more runs of other groups, or estimate an offset of each (group_offset = \"estimate\", covariance = \"classical\")"
             };
             let text = format!(
                 "{numbers} over {}, of which {group:?} makes {} of the scatter: no interval is given below two; {advice}",
-                counted(data.clusters(), "group", "groups"),
+                counted(data.clusters(), data.grouped_by.word(), data.grouped_by.words()),
                 percent(part)
             );
             out.push(Finding::new(Severity::Warning, "one-group-decides", text));

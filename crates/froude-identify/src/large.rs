@@ -23,7 +23,7 @@ mod tests;
 use std::path::Path;
 
 use facts::{Chunk, Facts, Seconds};
-use fold::{Fold, Residuals, numbered};
+use fold::{Fold, Residuals};
 use froude_records::campaign::{AngleOffset, Campaign, Source};
 use froude_records::chunks::{for_each_chunk, has_more_rows};
 use froude_records::finding::{Finding, Severity};
@@ -37,9 +37,9 @@ use crate::reduce::{fitted_loads, kept_rows, left_out, observed, one_unit, zero_
 use crate::regression::{Condensed, ModelFit, Scatter, Settings, regress};
 use crate::result::{ReadFile, SourceResult};
 use crate::seam::{Reduced, conclude};
-use crate::source::handed::{no_budget, of_table, scatter};
+use crate::source::handed::{merges_motions, no_budget, of_table, scatter};
 use crate::source::{check_budget, laws};
-use crate::{columns, diagnosis, dissipation, lint, validity};
+use crate::{columns, diagnosis, dissipation, lint, motions, validity};
 
 pub use crate::large::limits::MOST_KEPT;
 pub(crate) use crate::large::limits::{Limits, refused_above};
@@ -66,13 +66,21 @@ pub(crate) fn identify_source(
     if facts.n_used == 0 {
         return Err(IdentifyError::NothingKept { source_name: source.name.clone(), n_read: facts.n_read });
     }
-    let mut seconds = Seconds::default();
+    let (mut seconds, mut motions) = (Seconds::default(), facts.motions());
     each(campaign, source, true, &mut |chunk| {
         seconds.take(chunk, &facts, campaign);
+        motions.probe(&chunk.data);
         Ok(())
     })?;
-    let few = Few::of(&facts, &seconds, campaign, source)?;
-    let reduced = reduced(campaign, source, &facts, &seconds, &few)?;
+    let mut few = Few::of(&facts, &seconds, campaign, source)?;
+    let mut reduced = reduced(campaign, source, &facts, &seconds, &few)?;
+    if let Some(clusters) = motions.clusters().filter(|_| merges_motions(campaign, &reduced.scatter)) {
+        reduced.findings.push(motions::merged(&clusters).of_source(&source.name));
+        for data in [&mut few.ends, &mut reduced.data] {
+            motions::rename(data, &clusters);
+        }
+        facts.merge(&clusters);
+    }
     if let Some(what) = weighs_all(&reduced) {
         let is_kept = facts.n_read <= MOST_AT_ONCE;
         return if is_kept { Ok(None) } else { Err(refused_above(MOST_AT_ONCE, source, &what)) };
@@ -182,7 +190,7 @@ impl Few {
         let keep = kept_rows(&all, source)?;
         let drawn = Drawn {
             rows: facts.n_used,
-            clusters: if source.group.is_some() { facts.groups.len() } else { 0 },
+            clusters: if source.group.is_some() { facts.clusters() } else { 0 },
             configurations: facts.configurations.iter().cloned().collect(),
             squares: facts.squares.clone(),
         };
@@ -268,7 +276,7 @@ fn regressed(
     let mut folds: Vec<Result<Fold<'_>, IdentifyError>> = reduced.laws.iter().map(begin).collect();
     each(campaign, source, reads_speed(source, &reduced.laws), &mut |chunk| {
         let group = chunk.data.group.as_deref().unwrap_or_default();
-        let clusters = if is_clustered { numbered(&facts.groups, group) } else { Vec::new() };
+        let clusters = if is_clustered { facts.numbered(group) } else { Vec::new() };
         for fold in &mut folds {
             if let Ok(so_far) = fold
                 && let Err(error) = so_far.take(&chunk.data, &clusters)

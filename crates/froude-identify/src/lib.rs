@@ -30,6 +30,8 @@ pub mod large;
 pub mod law;
 pub mod lint;
 pub mod method;
+mod misfit;
+mod motions;
 pub mod observations;
 mod outlying;
 pub mod page;

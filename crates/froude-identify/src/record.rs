@@ -249,10 +249,9 @@ fn law(model: &ModelFit, data: &Dataset, constants: IndexMap<String, Measured>) 
 fn clusters(model: &ModelFit, data: &Dataset) -> Option<Clusters> {
     match &model.scatter {
         Scatter::Classical | Scatter::Hc3 | Scatter::Serial(_) => None,
-        Scatter::Cluster => data.group.as_ref().map(|group| {
-            let by = if *group == data.run { "run" } else { "group" };
-            Clusters { by: by.to_owned(), n: data.clusters() }
-        }),
+        Scatter::Cluster => {
+            data.group.as_ref().map(|_| Clusters { by: data.grouped_by.word().to_owned(), n: data.clusters() })
+        }
         Scatter::Replicates { sets, .. } => {
             sets.first().map(|set| Clusters { by: set.left_out.to_owned(), n: set.without.len() })
         }

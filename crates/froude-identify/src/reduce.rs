@@ -12,7 +12,7 @@ use froude_records::table::{Column, ColumnData, Table, links_of_configuration, r
 use froude_records::text::counted;
 use froude_records::units::Dimension;
 
-use crate::dataset::{Channel, Dataset, LOADS};
+use crate::dataset::{Channel, Dataset, GroupedBy, LOADS};
 use crate::error::IdentifyError;
 use crate::result::ReadFile;
 use crate::source::models;
@@ -228,7 +228,9 @@ fn dataset(table: &Table, source: &Source, has_speed: bool) -> Result<Dataset, I
                 what: format!("group = {group:?}: the table has no such column"),
             });
         }
-        data.group = Some(text(group));
+        let group = text(group);
+        data.grouped_by = if group == data.run { GroupedBy::Run } else { GroupedBy::Column };
+        data.group = Some(group);
     }
     if !data.channels.contains_key("n_links") {
         links_from_configuration(&mut data);

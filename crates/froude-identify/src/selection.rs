@@ -406,7 +406,7 @@ pub fn recommend(models: &[ModelFit], data: &Dataset, tests: &[NestedTest]) -> O
         reason += &format!("; F tests reject {}", rejected.join(", "));
     }
     if models.iter().any(|m| m.in_variables) {
-        reason += "; judged by ordinary least squares, before errors in speed and angle are fitted";
+        reason += "; judged by ordinary least squares, before errors of the regressors are fitted";
     }
     let out: Vec<String> = models.iter().filter(|m| !determined(m)).map(|m| m.law.name.clone()).collect();
     if !out.is_empty() {

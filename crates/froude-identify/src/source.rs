@@ -12,8 +12,8 @@ use crate::law::ForceLaw;
 use crate::reduce::{Observations, reduce};
 use crate::regression::Scatter;
 use crate::seam::{Choice, Reduced, fit};
-use crate::source::handed::{in_blocks, no_budget, of_table, scatter};
-use crate::{columns, diagnosis, lint, validity};
+use crate::source::handed::{in_blocks, merges_motions, no_budget, of_table, scatter};
+use crate::{columns, diagnosis, lint, motions, validity};
 
 pub use crate::result::{NotFitted, ReadFile, SourceResult};
 pub use crate::source::models::{asked_models, check_budget, laws};
@@ -61,6 +61,9 @@ pub fn identify_observations(
     in_blocks(campaign, &mut observations.data);
     let laws = laws(campaign, source, &observations.data)?;
     let scatter = scatter(campaign, source, &observations.data, &mut findings)?;
+    if merges_motions(campaign, &scatter) {
+        findings.extend(motions::merge(&mut observations.data));
+    }
     let observations = Observations { findings: [observations.findings, findings].concat(), ..observations };
     identify_laws(
         campaign,

@@ -17,6 +17,7 @@ use crate::error::IdentifyError;
 use crate::large::limits::{MOST_CLUSTERS, MOST_CONFIGURATIONS, refusal};
 use crate::lint;
 use crate::lint::motion::Pushed;
+use crate::motions::Motions;
 use crate::reduce::{conditioned, kept_rows, zeros_of};
 use crate::source::models::MOMENTS;
 use crate::validity::{self, AT_REST, off_axis, per_observation};
@@ -76,7 +77,10 @@ pub(super) struct Facts {
     /// Last value of each column of numbers that has risen from row to row.
     rising: IndexMap<String, f64>,
     pub(super) configurations: IndexSet<String>,
-    pub(super) groups: IndexSet<String>,
+    groups: IndexSet<String>,
+    /// The cluster of each group, where that is not itself.
+    merged: IndexMap<String, String>,
+    motions: Motions,
     pub(super) squares: IndexMap<String, f64>,
     density: f64,
 }
@@ -93,6 +97,8 @@ impl Facts {
             rising: IndexMap::new(),
             configurations: IndexSet::new(),
             groups: IndexSet::new(),
+            merged: IndexMap::new(),
+            motions: Motions::default(),
             squares: IndexMap::new(),
             density: 0.0,
         }
@@ -148,6 +154,7 @@ impl Facts {
         for &i in keep {
             self.sample.take(table, i);
         }
+        self.motions.span(data);
         // Where the table names none, all rows are of the one without a name.
         let is_named = table.columns.iter().any(|column| column.name == "configuration");
         let configurations =
@@ -159,6 +166,28 @@ impl Facts {
     /// Whether no row can be a copy of another: a column rises from each to the next.
     pub(super) fn has_no_copies(&self) -> bool {
         !self.rising.is_empty()
+    }
+
+    /// The motions of the groups, of which only the spans are known.
+    pub(super) fn motions(&mut self) -> Motions {
+        std::mem::take(&mut self.motions)
+    }
+
+    /// Puts clusters in the place of groups.
+    pub(super) fn merge(&mut self, clusters: &IndexMap<String, String>) {
+        self.groups = clusters.values().cloned().collect();
+        self.merged.clone_from(clusters);
+    }
+
+    /// How many clusters there are.
+    pub(super) fn clusters(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// The number of the cluster of each group.
+    pub(super) fn numbered(&self, groups: &[String]) -> Vec<u64> {
+        let number = |group: &String| self.groups.get_index_of(self.merged.get(group).unwrap_or(group)).unwrap_or(0);
+        groups.iter().map(|group| number(group) as u64).collect()
     }
 
     /// Mean density, where there is one.

@@ -3,7 +3,6 @@
 use froude_fit as fit;
 use froude_fit::faer::{Col, Mat};
 use froude_fit::stream::{Accumulator, ClusterAccumulator, Factor, Shape, StreamError};
-use indexmap::IndexSet;
 
 use crate::dataset::Dataset;
 use crate::error::IdentifyError;
@@ -127,11 +126,6 @@ fn columns(law: &ForceLaw, r: usize) -> Vec<usize> {
         }
         Kind::PowerLaw { .. } => Vec::new(),
     }
-}
-
-/// The number of each text among the distinct ones.
-pub(super) fn numbered(groups: &IndexSet<String>, texts: &[String]) -> Vec<u64> {
-    texts.iter().map(|text| groups.get_index_of(text).unwrap_or(0) as u64).collect()
 }
 
 /// What keeps rows from being folded in, in the words of the fit.

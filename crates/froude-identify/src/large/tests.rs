@@ -153,6 +153,45 @@ fn keep_clusters_bounds_and_drag_models_are_the_same_from_rows_and_from_chunks()
     check(&written(folder.path(), source, "models = [\"f4\"]\nbounds = \"non-negative\"\ndissipative = true"));
 }
 
+/// Runs of two bodies that sway by six amplitudes, each twice.
+fn repeated() -> String {
+    let mut rng = Pcg64::new(7, 0);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+    let mut out = "time [s],run,f_x [N],f_y [N],v_x [m/s],v_y [m/s]\n".to_owned();
+    for run in 0..12 {
+        let amplitude = 0.1 + 0.05 * f64::from(run % 6);
+        for i in 0..1_000 {
+            let t = 0.01 * f64::from(i);
+            let (u, v) = (1.0, amplitude * (std::f64::consts::TAU * 0.2 * t).sin());
+            let (x, y) = (-2.0 * u * u + 0.1 * normal(), -1.5 * v - 12.0 * v * v.abs() + 0.1 * normal());
+            let _ = writeln!(out, "{:.3},r{run},{x:.6},{y:.6},{u:.6},{v:.6}", 20.0 * f64::from(run) + t);
+        }
+    }
+    out
+}
+
+#[test]
+fn runs_that_repeat_a_motion_are_one_cluster_in_rows_and_in_chunks() {
+    let folder = tempfile::tempdir().unwrap();
+    let law = "models = [\"own\"]\n[[identify.model]]\nname = \"own\"\nf_y = \"Y_v*v + Y_vav*v*abs(v)\"";
+    std::fs::write(folder.path().join("repeated.csv"), repeated()).unwrap();
+    let campaign = written(
+        folder.path(),
+        "table = \"repeated.csv\"\ngroup = \"run\"",
+        &format!("covariance = \"cluster\"\n{law}"),
+    );
+    check(&campaign);
+    let [rows, chunks] = both(&campaign);
+    for result in [rows, chunks] {
+        let clusters = result.estimates[0].clusters.clone().unwrap();
+        assert_eq!((clusters.by.as_str(), clusters.n), ("motion", 6));
+        let said = result.findings.iter().find(|f| f.code == "repeated-motions").unwrap();
+        assert!(
+            said.message.contains("6 of the 12 groups in time repeat the motion of another (\"r6\" that of \"r0\")")
+        );
+    }
+}
+
 #[test]
 fn a_parquet_table_gives_what_the_csv_gives() {
     let folder = tempfile::tempdir().unwrap();

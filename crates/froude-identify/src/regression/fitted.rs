@@ -8,7 +8,7 @@ use froude_fit::replicates::Replicates;
 use froude_records::campaign::{BudgetEntry, Identify, SourceKind};
 use froude_records::finding::Finding;
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, GroupedBy};
 use crate::law::{CoefficientSpec, ForceLaw};
 use crate::uncertainty::{SharedError, coverage_factor};
 
@@ -175,7 +175,9 @@ impl ModelFit {
     pub fn is_in_time(&self, data: &Dataset) -> bool {
         match self.scatter {
             Scatter::Serial(_) => true,
-            Scatter::Cluster => data.group.as_ref() == Some(&data.run) && data.rows >= 2 * data.clusters(),
+            Scatter::Cluster => {
+                matches!(data.grouped_by, GroupedBy::Run | GroupedBy::Motion) && data.rows >= 2 * data.clusters()
+            }
             Scatter::Classical | Scatter::Hc3 | Scatter::Replicates { .. } => false,
         }
     }

@@ -6,7 +6,7 @@ use froude_fit::budget::{Combined, Kind, OUTSIDE_95, Part, Shape, combine};
 use froude_fit::replicates;
 use froude_records::campaign::SourceKind;
 
-use crate::dataset::{Dataset, labels};
+use crate::dataset::{Dataset, GroupedBy, labels};
 use crate::eiv;
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
@@ -145,9 +145,14 @@ fn residuals_in_words(data: &Dataset, settings: Settings<'_>) -> String {
     let kind = match settings.scatter.of_residuals() {
         fit::CovarianceKind::Classical => "classical".to_owned(),
         fit::CovarianceKind::Hc3 => "HC3".to_owned(),
-        fit::CovarianceKind::Cr3 if settings.identify.covariance.is_some() => format!("CR3, {} clusters", clusters()),
-        fit::CovarianceKind::Cr3 if data.group.as_ref() == Some(&data.run) => format!("CR3 by {} runs", clusters()),
-        fit::CovarianceKind::Cr3 => format!("CR3 by {} configurations", clusters()),
+        // Without a word of the campaign the groups of a computation are its configurations.
+        fit::CovarianceKind::Cr3 => match data.grouped_by {
+            GroupedBy::Column if settings.identify.covariance.is_none() => {
+                format!("CR3 by {} configurations", clusters())
+            }
+            GroupedBy::Column => format!("CR3, {} clusters", clusters()),
+            by => format!("CR3 by {} {}", clusters(), by.words()),
+        },
     };
     if settings.kind == SourceKind::Cfd { format!("{kind}; residuals are model error, not noise") } else { kind }
 }

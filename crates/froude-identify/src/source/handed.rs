@@ -5,7 +5,7 @@ use froude_records::campaign::{Campaign, Source, SourceKind};
 use froude_records::estimate::ReferencePoint;
 use froude_records::finding::{Finding, Severity};
 
-use crate::dataset::Dataset;
+use crate::dataset::{Dataset, GroupedBy};
 use crate::error::IdentifyError;
 use crate::law::ForceLaw;
 use crate::regression::Scatter;
@@ -45,7 +45,14 @@ const BLOCKS: usize = 4;
 pub(crate) fn in_blocks(campaign: &Campaign, data: &mut Dataset) {
     if campaign.identify.covariance.as_deref() == Some("blocks") {
         data.group = Some((0..data.rows).map(|i| format!("block {}", 1 + i * BLOCKS / data.rows)).collect());
+        data.grouped_by = GroupedBy::Block;
     }
+}
+
+/// Whether runs that repeat a motion are one cluster: wherever groups are clusters, and not offsets or blocks.
+pub(crate) fn merges_motions(campaign: &Campaign, scatter: &Scatter) -> bool {
+    let is_blocks = campaign.identify.covariance.as_deref() == Some("blocks");
+    *scatter == Scatter::Cluster && !is_blocks && !campaign.identify.group_offset
 }
 
 /// The scatter that the campaign asks for, else what suits the source: residuals of a computation are model error, alike within a configuration.

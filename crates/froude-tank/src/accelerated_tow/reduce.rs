@@ -17,7 +17,7 @@ use froude_fit::faer::Mat;
 use froude_fit::propagate::effective_dof;
 use froude_fit::serial::{RowErrors, serial};
 use froude_fit::{FEWEST_CLUSTERS, Options, Problem, fit};
-use froude_identify::dataset::Dataset;
+use froude_identify::dataset::{Dataset, GroupedBy};
 use froude_identify::uncertainty::SharedError;
 use froude_records::run::Declared;
 
@@ -176,6 +176,7 @@ pub fn reduce(mounted: &[Mounted<'_>], setup: &Setup) -> Option<Reduced> {
     }
     let mut data = data(channels, &setup.axis);
     data.group = is_by_run.then(|| data.run.clone());
+    data.grouped_by = GroupedBy::Run;
     let moved_kg: Vec<f64> = (0..masses.len()).map(|b| masses[b].value_kg + added_kg[b]).collect();
     let of_rows = by_motion(wet.iter().map(|(_, b, rows)| (moved_kg[*b], rows)));
     Some(Reduced { runs: wet, masses, added_kg, data, errors, left_out, is_by_run, of_rows })

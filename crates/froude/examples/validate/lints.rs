@@ -23,7 +23,7 @@ const MOST: [f64; 2] = [0.0068, 0.0001];
 /// A kind of sound table: its name, the campaign's keys, and its rows.
 type Kind = (&'static str, &'static str, fn(&mut Pcg64) -> String);
 
-const KINDS: [Kind; 8] = [
+const KINDS: [Kind; 10] = [
     ("steady tows", "", |rng| along(rng, 0.0)),
     ("declared clusters", "group = \"day\"\n[identify]\ncovariance = \"cluster\"\n", days),
     (
@@ -44,6 +44,16 @@ const KINDS: [Kind; 8] = [
         accelerated,
     ),
     ("a sensor of coarse steps", "", |rng| along(rng, 0.25)),
+    (
+        "a rotor over its tip speed ratio",
+        "[identify]\n[[identify.model]]\nname = \"rotor\"\nf_x = \"-(A + B*tip_speed_ratio + C*tip_speed_ratio^2)*speed*abs(speed)\"\n",
+        rotor,
+    ),
+    (
+        "planar motion, each of eight run twice",
+        "group = \"run\"\n[identify]\ncovariance = \"cluster\"\n[[identify.model]]\nname = \"sway\"\nf_y = \"-B*v_y_dot - Y_v*v_y - Y_vv*v_y*abs(v_y)\"\n",
+        swayed,
+    ),
 ];
 
 fn along(rng: &mut Pcg64, step: f64) -> String {
@@ -119,6 +129,31 @@ fn accelerated(rng: &mut Pcg64) -> String {
     for i in 0..30 {
         let (v, a) = (0.4 + 0.1 * f64::from(i % 10), [-0.3, 0.1, 0.4][i as usize / 10]);
         let _ = writeln!(out, "{v:.3},{a},{:.5}", -15.0 * v * v - 30.0 * a + 0.2 * normal(rng));
+    }
+    out
+}
+
+fn rotor(rng: &mut Pcg64) -> String {
+    let mut out = "speed [m/s],tip_speed_ratio [1],f_x [N]\n".to_owned();
+    for i in 0..24 {
+        let (u, ratio) = ([0.8, 1.0][i % 2], 1.0 + 0.2 * (i / 2) as f64);
+        let load = (40.0 + 12.0 * ratio - 1.5 * ratio * ratio) * u * u;
+        let _ = writeln!(out, "{u},{ratio:.2},{:.5}", -load + 0.4 * normal(rng));
+    }
+    out
+}
+
+fn swayed(rng: &mut Pcg64) -> String {
+    let mut out = "time [s],v_x [m/s],v_y [m/s],v_y_dot [m/s^2],f_y [N],run\n".to_owned();
+    for run in 0..16 {
+        let amplitude = 0.15 + 0.05 * f64::from(run % 8);
+        for i in 0..50 {
+            let t = 0.2 * f64::from(i);
+            let (sin, cos) = (0.2 * std::f64::consts::TAU * t).sin_cos();
+            let (v, a) = (amplitude * sin, 0.2 * std::f64::consts::TAU * amplitude * cos);
+            let f = -30.0 * a - 10.0 * v - 60.0 * v * v.abs() + 0.3 * normal(rng);
+            let _ = writeln!(out, "{},1,{v:.5},{a:.5},{f:.5},r{run}", 100.0 * f64::from(run) + t);
+        }
     }
     out
 }

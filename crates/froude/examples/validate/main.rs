@@ -7,6 +7,7 @@
 //! skipped, never as passed. A finding is a figure that contradicts a paper or a data set: it is reported, not tuned.
 
 mod accelerated;
+mod best;
 #[path = "../../../froude-panel/examples/coverage/bodies.rs"]
 mod bodies;
 mod carriage;
